@@ -1,0 +1,81 @@
+"""A measured or derived number as every product states it: value, unit, standard deviation, 95 % interval."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+NORMAL_95 = 1.959963984540054
+"""Half-width of the central 95 % of a normal distribution, in standard deviations."""
+
+IDENTIFIED = "identified"
+NOT_IDENTIFIABLE = "not identifiable"
+UNPHYSICAL = "unphysical"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with its unit and uncertainty, or the reason why it cannot be had.
+
+    ``value`` is in the SI unit named by ``unit`` ("" for a pure number); ``std`` is one standard deviation. ``ci95``
+    defaults to the normal interval. Where ``value`` is None, ``reason`` says why. ``verdict`` and ``why`` judge it.
+    """
+
+    value: float | None
+    unit: str = ""
+    std: float | None = None
+    ci95: tuple[float, float] | None = None
+    reason: str | None = None
+    verdict: str | None = None
+    why: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.value is None and not self.reason:
+            raise ValueError("a quantity without a value must say why")
+        if self.value is not None and not math.isfinite(self.value):
+            raise ValueError(f"a quantity must be finite, not {self.value}")
+
+    @classmethod
+    def absent(cls, reason: str, *, verdict: str | None = None) -> Quantity:
+        """A quantity that cannot be had, with the reason."""
+        return cls(None, reason=reason, verdict=verdict)
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """The 95 % interval: as given, else the normal one from ``std``; None where neither is known."""
+        if self.ci95 is not None:
+            return self.ci95
+        if self.value is None or self.std is None:
+            return None
+        half = NORMAL_95 * self.std
+        return (self.value - half, self.value + half)
+
+    def to_json(self) -> dict[str, Any]:
+        """The form the products use."""
+        if self.value is None:
+            judged = {"verdict": self.verdict} if self.verdict else {}
+            return {"value": None, "reason": self.reason, **judged}
+        out: dict[str, Any] = {"value": self.value, "unit": self.unit, "std": self.std}
+        out["ci95"] = list(self.interval) if self.interval else None
+        if self.verdict:
+            out["verdict"] = self.verdict
+        if self.why:
+            out["why"] = self.why
+        return out
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Quantity:
+        """The inverse of :meth:`to_json`."""
+        if data["value"] is None:
+            return cls(None, reason=data["reason"], verdict=data.get("verdict"))
+        ci95 = data.get("ci95")
+        return cls(
+            data["value"],
+            data["unit"],
+            data["std"],
+            (ci95[0], ci95[1]) if ci95 else None,
+            verdict=data.get("verdict"),
+            why=data.get("why"),
+        )
