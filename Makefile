@@ -1,0 +1,70 @@
+# `make` prints what there is to do. Every target sets up .venv/ first, where that is missing or out of date.
+
+PYTHON ?= python3
+TEST   ?=
+FLAGS  ?=
+
+VENV  := .venv
+BIN   := $(VENV)/bin
+STAMP := $(VENV)/.set-up
+STAGES := ingest segment calibrate validate report run
+
+export TEST
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help setup $(STAGES) all test lint format benchmark recovery lock clean
+
+help: ## this list
+	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
+	@echo
+	@sed -n 's/^\([a-z][a-z ]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | while IFS="$$(printf '\t')" read -r name text; do \
+		printf '  %-10s %s\n' "$$name" "$$text"; done
+
+include pipeline/dag.mk
+
+setup: $(STAMP) ## make .venv/ with the locked packages and the command hfa
+
+$(STAMP): requirements.lock pyproject.toml
+	@sh pipeline/setup.sh '$(PYTHON)' $(VENV)
+	@touch $@
+
+# The stages print what they found, so they always ask hfa, which redoes only what changed.
+ingest: ## TEST=… raw log to canonical channels in SI with quality flags
+segment: ## TEST=… find the phases of the test
+calibrate: ## TEST=… injector coefficient, polytropic exponent, feed losses
+validate: ## TEST=… the tank model against the measurement
+report: ## TEST=… processed/TEST/report.html
+run: ## TEST=… every stage
+$(STAGES): $(STAMP)
+	@if [ -z "$$TEST" ]; then \
+		echo "make $@: which test? For example: make $@ TEST=$(or $(firstword $(TESTS)),HF5)" >&2; \
+		echo "There are: $(or $(TESTS),none in raw_tests/)" >&2; exit 2; fi
+	@$(BIN)/hfa $@ $(FLAGS) -- "$$TEST"
+
+all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_tests/
+
+test: lint ## ruff, mypy and the tests
+	$(BIN)/pytest -n 2 $(FLAGS)
+
+lint: $(STAMP) ## ruff and mypy
+	$(BIN)/ruff check
+	$(BIN)/mypy
+
+format: $(STAMP) ## format the code with ruff
+	$(BIN)/ruff format
+
+benchmark: $(STAMP) ## start-up time beside the bare import of the stack; ingest of a 1 GB log beside pandas
+	$(BIN)/python benchmarks/startup.py
+	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python benchmarks/ingest_1gb.py --gigabytes 1; fi
+
+recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
+	$(BIN)/python benchmarks/recovery.py $(FLAGS)
+
+lock: $(STAMP) ## write requirements.lock anew from pyproject.toml
+	$(BIN)/uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --only-binary :all: --upgrade \
+		--generate-hashes --no-emit-index-url --custom-compile-command 'make lock' --quiet -o requirements.lock
+
+clean: ## remove processed/ and caches; raw_tests/ and .venv/ stay
+	rm -rf processed .mypy_cache .ruff_cache .pytest_cache .hypothesis .cache dist
+	find src tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +

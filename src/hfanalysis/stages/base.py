@@ -1,0 +1,138 @@
+"""What a stage is, and what it works with.
+
+A stage is a module of this package that says what it needs, what it writes and how::
+
+    # stages/segment.py
+    def run(context: Context) -> None:
+        log = read_log(context.product("ingest.h5"))             # a finished product of a stage this one needs
+        ...
+        context.write_json("segments.json", {"t_open": quantity, ...})   # "test" and "provenance" are added
+
+    STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run)
+
+Products that are not JSON are written to ``context.scratch("residuals.h5")``, a temporary name in the product folder.
+Nothing appears under its final name before ``run`` has returned. Optional fields: ``wants`` (stages to run first whose
+absence, AbsentError, does not stop this one: ask ``context.absent``) and ``parameters`` (settings with their defaults,
+read with ``context.parameter("name")``; they are part of what decides whether a product is up to date).
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from hfanalysis.errors import InputError
+from hfanalysis.spelling import near_misses
+from hfanalysis.stages import ORDER
+from hfanalysis.testdata import products
+from hfanalysis.testdata.definition import TestDefinition
+
+Progress = Callable[[str, float | None], None]
+"""Told what is being done, and the fraction done where it is known."""
+
+
+def silent(_text: str, _fraction: float | None = None) -> None:
+    """Progress that nobody watches."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One step of the way through: what it needs, what it writes, and the function that does it."""
+
+    name: str
+    needs: tuple[str, ...]
+    products: tuple[str, ...]
+    run: Callable[[Context], None]
+    wants: tuple[str, ...] = ()
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def upstream(self) -> tuple[str, ...]:
+        """The stages to run first, in order."""
+        return self.needs + self.wants
+
+
+def load_stage(name: str) -> Stage:
+    """The stage of that name; its module is imported only now, so that starting up stays light."""
+    if name not in ORDER:
+        raise InputError(f'there is no stage "{name}"{near_misses(name, ORDER)}')
+    stage = importlib.import_module(f"hfanalysis.stages.{name}").STAGE
+    assert isinstance(stage, Stage)
+    return stage
+
+
+@dataclass(frozen=True)
+class Context:
+    """One test as a stage sees it.
+
+    Attributes:
+        root: the folder that holds ``raw_tests/`` and ``processed/``.
+        definition: what the engineer knows about the test (``test.toml``).
+        out: the product folder of this test.
+        progress: called with what is being done.
+        settings: parameters set for this run, by ``"stage.parameter"``.
+        absent: why a stage that ran before has no products, by stage name.
+        record: what the products are made from (the ``provenance`` block); filled in by the runner.
+        stage: the stage that is running.
+    """
+
+    root: Path
+    definition: TestDefinition
+    out: Path
+    progress: Progress = silent
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    absent: Mapping[str, str] = field(default_factory=dict)
+    record: Mapping[str, Any] = field(default_factory=dict)
+    stage: Stage | None = None
+
+    @property
+    def id(self) -> str:
+        """The test's name: that of its folder."""
+        return self.definition.test.id
+
+    @property
+    def raw(self) -> Path:
+        """The folder of the raw files; only ever read."""
+        return self.definition.path.parent
+
+    def product(self, name: str) -> Path:
+        """Where a finished product is found."""
+        return self.out / name
+
+    def read_json(self, name: str) -> dict[str, Any]:
+        """The data of a finished JSON product."""
+        return products.read_json(self.product(name))
+
+    def scratch(self, name: str) -> Path:
+        """Where to write a product of the running stage; it gets its final name when the stage is done."""
+        if self.stage is None or name not in self.stage.products:
+            raise ValueError(f"{name} is not declared as a product of this stage")
+        return products.temporary_path(self.out / name)
+
+    def write_json(self, name: str, data: Mapping[str, Any]) -> None:
+        """Write a JSON product of the running stage, with the test's name first and its provenance last."""
+        body = {"test": self.id, "source": self.definition.test.source, **data}
+        body["provenance"] = {**self.provenance(), **data.get("provenance", {})}
+        self.scratch(name).write_text(products.to_json(body), encoding="utf-8")
+
+    def provenance(self) -> dict[str, Any]:
+        """What the running stage's products are made from: hashes, versions, parameters."""
+        return dict(self.record)
+
+    def parameter(self, name: str) -> Any:
+        """A parameter of the running stage: as set for this run, else its default."""
+        return self.parameters()[name]
+
+    def parameters(self) -> dict[str, Any]:
+        """All parameters of the running stage."""
+        if self.stage is None:
+            return {}
+        defaults = self.stage.parameters
+        return {key: self.settings.get(f"{self.stage.name}.{key}", default) for key, default in defaults.items()}
+
+    def at(self, stage: Stage, **changes: Any) -> Context:
+        """This context for one stage."""
+        return replace(self, stage=stage, **changes)

@@ -1,0 +1,111 @@
+"""What a stage's products were made from, and whether that is still so."""
+
+from __future__ import annotations
+
+import functools
+import importlib.metadata
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import hfanalysis
+from hfanalysis.errors import InputError
+from hfanalysis.stages.base import Context, Stage, load_stage
+from hfanalysis.testdata import products
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.products import HashCache
+
+LIBRARIES = ("numpy", "scipy", "CoolProp", "pandas", "h5py")
+"""Libraries whose version can change a number."""
+
+STATE = ".state"
+
+
+@functools.cache
+def code_hash() -> str:
+    """SHA-256 of the package's own source."""
+    return products.sha256_tree(Path(hfanalysis.__file__).parent)
+
+
+@functools.cache
+def library_versions() -> dict[str, str]:
+    """The versions of the libraries that the numbers come from."""
+    return {name: importlib.metadata.version(name) for name in LIBRARIES}
+
+
+def raw_files(definition: TestDefinition) -> list[Path]:
+    """The files the test's results rest on, besides its ``test.toml``."""
+    folder = definition.path.parent
+    return [folder / name for name in definition.log.files]
+
+
+def effect_files(context: Context) -> list[Path]:
+    """The adopted effects that apply to this test, where there are any."""
+    names = (context.id, context.definition.test.stand)
+    paths = [context.root / "engines" / f"{name}.effects.toml" for name in names if name]
+    return [path for path in dict.fromkeys(paths) if path.is_file()]
+
+
+def input_files(context: Context) -> list[Path]:
+    """Every file outside the product folder that the products are made from, but for the package's source."""
+    return [context.definition.path, *raw_files(context.definition), *effect_files(context)]
+
+
+def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, Any]:
+    """What ``stage``'s products would be made from if it ran now: the ``provenance`` block of a product."""
+    return {
+        "hfanalysis": hfanalysis.__version__,
+        "code": code_hash(),
+        "test_toml": hashes(context.definition.path),
+        "raw": {path.name: _raw_hash(context, path, hashes) for path in raw_files(context.definition)},
+        "effects": {path.name: hashes(path) for path in effect_files(context)},
+        "libraries": library_versions(),
+        "parameters": context.at(stage).parameters(),
+        "inputs": _upstream(context, stage, hashes),
+    }
+
+
+def _raw_hash(context: Context, path: Path, hashes: HashCache) -> str:
+    try:
+        return hashes(path)
+    except OSError as error:
+        there = ", ".join(sorted(item.name for item in context.raw.iterdir())) or "nothing"
+        found = f"cannot read {path.name} ({error.strerror})"
+        raise InputError(f"{context.definition.path}: log.files: {found}; the folder holds: {there}") from None
+
+
+def _upstream(context: Context, stage: Stage, hashes: HashCache) -> dict[str, str]:
+    """Upstream products by name with their hashes, or why a stage has none."""
+    found: dict[str, str] = {}
+    for name in stage.upstream:
+        if name in context.absent:
+            found[name] = f"absent: {context.absent[name]}"
+        else:
+            found |= {product: hashes(context.product(product)) for product in load_stage(name).products}
+    return found
+
+
+def state_path(context: Context, stage: Stage) -> Path:
+    """Where it is noted what the stage's products were made from."""
+    return context.out / STATE / f"{stage.name}.json"
+
+
+def recorded(context: Context, stage: Stage) -> dict[str, Any]:
+    """The note of the last complete run of ``stage``; empty where there is none or it cannot be read."""
+    try:
+        return products.read_json(state_path(context, stage))
+    except (OSError, ValueError):
+        return {}
+
+
+def is_fresh(context: Context, stage: Stage, note: Mapping[str, Any], key: str, hashes: HashCache) -> bool:
+    """Whether the products are there, as written, and made from what there is now."""
+    if note.get("key") != key:
+        return False
+    if note.get("absent"):
+        return True
+    made = note.get("products", {})
+    try:
+        return all(hashes(context.product(name)) == made.get(name) for name in stage.products)
+    except OSError:
+        return False

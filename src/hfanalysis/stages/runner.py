@@ -1,0 +1,193 @@
+"""Runs what a stage needs first, redoes only what changed, and leaves whole products or none.
+
+Whether a product is up to date is judged by content: SHA-256 of the raw files, ``test.toml``, adopted effects, the
+package's source, the libraries' versions, the stage's parameters and the upstream products. The time stamps that make
+goes by are kept in agreement.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import platform
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import hfanalysis
+from hfanalysis.errors import AbsentError, AnalysisError, InputError
+from hfanalysis.stages import ORDER, freshness
+from hfanalysis.stages.base import Context, Stage, load_stage
+from hfanalysis.stages.lock import locked
+from hfanalysis.testdata import products
+from hfanalysis.testdata.products import HashCache
+
+RUN_LOG = "run.log"
+_REFUSED = {errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOSPC, errno.EDQUOT}
+_ATTEMPTS = 3
+
+
+def run_to(name: str, context: Context, *, force: bool = False) -> Context:
+    """Bring the products of stage ``name`` up to date, and of every stage before it.
+
+    Args:
+        name: the stage.
+        context: the test, from :func:`hfanalysis.stages.opening.open_test`.
+        force: redo the stage and all before it, even where nothing changed.
+
+    Returns:
+        The context, with ``absent`` telling which stages the log holds nothing for.
+
+    Raises:
+        InputError, AbsentError: the stage, or one that it needs, could not be done.
+    """
+    for attempt in range(_ATTEMPTS):
+        try:
+            with _plain_refusals(context), locked(context.out, lambda: _say_waiting(context)):
+                return _Run(context, force).to(name)
+        except FileNotFoundError:
+            if (context.out / freshness.STATE).exists() or attempt == _ATTEMPTS - 1:
+                raise
+    raise AssertionError("unreachable")
+
+
+def _say_waiting(context: Context) -> None:
+    context.progress(f"waiting for another run of {context.id} to end", None)
+
+
+@contextmanager
+def _plain_refusals(context: Context) -> Iterator[None]:
+    """Say in plain words that products cannot be written, where the system refuses."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in _REFUSED:
+            raise
+        place = error.filename or context.out
+        raise InputError(f"{place}: {error.strerror}; choose another place for the products with --out DIR") from None
+
+
+class _Run:
+    """One run over the stages of one test, under its lock."""
+
+    def __init__(self, context: Context, force: bool) -> None:
+        self.context = context
+        self.force = force
+        self.done: set[str] = set()
+        state = context.out / freshness.STATE
+        state.mkdir(exist_ok=True)
+        self.hashes = HashCache(state / "hashes.json")
+
+    def to(self, name: str) -> Context:
+        """Bring ``name`` up to date, its upstream first."""
+        products.remove_temporaries(self.context.out)
+        try:
+            self._bring(load_stage(name))
+        finally:
+            products.remove_temporaries(self.context.out)
+            if self.context.out.exists():
+                self.hashes.save()
+        return self.context
+
+    def _bring(self, stage: Stage) -> None:
+        if stage.name in self.done:
+            return
+        for name in stage.upstream:
+            self._bring_upstream(load_stage(name), needed=name in stage.needs)
+        self._bring_one(stage)
+        self.done.add(stage.name)
+
+    def _bring_upstream(self, stage: Stage, needed: bool) -> None:
+        try:
+            self._bring(stage)
+        except AbsentError as error:
+            if needed:
+                raise
+            self.context = replace(self.context, absent={**self.context.absent, stage.name: str(error)})
+
+    def _bring_one(self, stage: Stage) -> None:
+        record = freshness.provenance(self.context, stage, self.hashes)
+        key = products.sha256_json([stage.name, record])
+        note = freshness.recorded(self.context, stage)
+        if self.force or not freshness.is_fresh(self.context, stage, note, key, self.hashes):
+            self._redo(stage, record, key)
+        elif note.get("absent"):
+            raise AbsentError(note["absent"])
+        self._agree_with_make(stage)
+
+    def _redo(self, stage: Stage, record: dict[str, Any], key: str) -> None:
+        started = time.perf_counter()
+        self.context.progress(stage.name, None)
+        try:
+            stage.run(self.context.at(stage, record=record))
+            self._check_untouched(record)
+            made = self._commit(stage)
+        except AnalysisError as error:
+            self._withdraw(stage)
+            if isinstance(error, AbsentError):
+                self._note(stage, {"key": key, "absent": str(error)})
+            self._log(stage, started, f"exit {error.exit_status}: {error}")
+            raise
+        self._note(stage, {"key": key, "products": made})
+        self._log(stage, started, "done")
+
+    def _check_untouched(self, record: dict[str, Any]) -> None:
+        """A log that grew while it was read would be recorded under a hash that is not its own."""
+        for path in freshness.raw_files(self.context.definition):
+            if self.hashes(path) != record["raw"][path.name]:
+                raise InputError(f"{path}: the file changed while it was being read; run again when it is complete")
+
+    def _commit(self, stage: Stage) -> dict[str, str]:
+        """Give the products their names, all of them complete, and say what they are."""
+        finals = [self.context.product(name) for name in stage.products]
+        for final in finals:
+            products.fsync(products.temporary_path(final))
+        for final in finals:
+            os.replace(products.temporary_path(final), final)
+        products.fsync(self.context.out)
+        return {final.name: self.hashes(final) for final in finals}
+
+    def _withdraw(self, stage: Stage) -> None:
+        """Remove products that no longer follow from the input, of this stage and of those after it."""
+        gone = {stage.name}
+        for later in map(load_stage, ORDER):
+            if later.name in gone or gone & set(later.needs):
+                gone.add(later.name)
+                freshness.state_path(self.context, later).unlink(missing_ok=True)
+                for name in later.products:
+                    self.context.product(name).unlink(missing_ok=True)
+
+    def _note(self, stage: Stage, note: dict[str, Any]) -> None:
+        products.write_json(freshness.state_path(self.context, stage), note)
+
+    def _log(self, stage: Stage, started: float, end: str) -> None:
+        """Add a line to run.log, which is kept apart so that products are the same from run to run."""
+        line = {
+            "time": time.strftime("%Y-%m-%dT%H:%M:%S%z"),
+            "stage": stage.name,
+            "seconds": round(time.perf_counter() - started, 3),
+            "end": end,
+            "hfanalysis": hfanalysis.__version__,
+            "python": platform.python_version(),
+            "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        }
+        with (self.context.out / RUN_LOG).open("a", encoding="utf-8") as file:
+            file.write(json.dumps(line, ensure_ascii=False) + "\n")
+
+    def _agree_with_make(self, stage: Stage) -> None:
+        inputs = [*freshness.input_files(self.context), *source_files(), *self._upstream_products(stage)]
+        for name in stage.products:
+            products.touch_after(self.context.product(name), inputs)
+
+    def _upstream_products(self, stage: Stage) -> list[Path]:
+        names = (name for name in stage.upstream if name not in self.context.absent)
+        return [self.context.product(product) for name in names for product in load_stage(name).products]
+
+
+def source_files() -> list[Path]:
+    """The package's source files, which make takes into account by their times."""
+    return list(Path(hfanalysis.__file__).parent.rglob("*.py"))
