@@ -1,0 +1,33 @@
+"""Flow from the tank through feed line and injector into the chamber (report, eq. 3.2 and chapter 4)."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from numba import njit
+
+
+@njit(cache=True)
+def mass_flow(area: float, density: float, pressure_drop: float) -> float:
+    """mdot = C_i N_i A_i sqrt(2 rho dp) [kg/s], zero for dp <= 0: flow reverses for nobody.
+
+    ``area`` is the effective area C_i N_i A_i [m^2], ``density`` [kg/m^3] upstream, ``pressure_drop`` p_run - p_c [Pa].
+
+    >>> round(mass_flow(3.786e-5, 742.5, 57.29e5 - 0.345e5 - 27.579e5), 3)
+    2.5
+    """
+    return area * sqrt(2.0 * density * pressure_drop) if pressure_drop > 0.0 else 0.0
+
+
+@njit(cache=True)
+def mass_flow_with_feed(
+    area: float, feed_loss_factor: float, density: float, pressure_drop: float
+) -> float:
+    """mdot [kg/s] through a feed line that loses K_loss mdot^2 / rho and the injector behind it.
+
+    ``pressure_drop`` is p_T - p_c [Pa], ``feed_loss_factor`` K_loss [1/m^4]. Both losses are quadratic in mdot, so that the
+    two resistances add: mdot^2 = rho dp / (K_loss + 1 / (2 (C_i N_i A_i)^2)).
+    """
+    if pressure_drop <= 0.0:
+        return 0.0
+    return sqrt(density * pressure_drop / (feed_loss_factor + 0.5 / (area * area)))

@@ -1,0 +1,1 @@
+"""Thermophysical properties: saturated nitrous oxide from two sources, and the atmosphere."""

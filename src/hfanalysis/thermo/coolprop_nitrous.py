@@ -1,0 +1,79 @@
+"""Saturated nitrous oxide from CoolProp's reference equation of state (Lemmon & Span 2006), tabulated once and cached.
+
+One source for pressure, volumes and energies: a saturated tank closes in energy to round-off, which a mix of
+correlations cannot. Importing CoolProp takes longer than a whole calibration, so the table is kept in the user's cache.
+"""
+
+from __future__ import annotations
+
+import os
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from hfanalysis.thermo.saturation import NODES, Array, Property, Saturation
+
+CRITICAL_TEMPERATURE = 309.5207
+T_MIN = 182.34
+T_MAX = 309.50
+LAYOUT = 1
+"""Raised when the content of the cached table changes."""
+
+
+def build() -> Saturation:
+    """The table, from the cache where it is there, else from CoolProp (about 3 s, once)."""
+    theta = np.linspace(_theta(T_MAX), _theta(T_MIN), NODES)
+    samples = _cached(theta)
+    return Saturation.from_samples("coolprop", theta, dict(zip(Property, samples, strict=True)), CRITICAL_TEMPERATURE)
+
+
+def cache_directory() -> Path:
+    """Where tables are kept: $HFA_CACHE, else the user's cache folder."""
+    if os.environ.get("HFA_CACHE"):
+        return Path(os.environ["HFA_CACHE"])
+    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    return Path(base) / "hfanalysis"
+
+
+def sample(theta: Array) -> Array:
+    """All properties at the given theta, straight from CoolProp: shape (properties, len(theta)), specific SI units."""
+    from CoolProp import CoolProp
+
+    state = CoolProp.AbstractState("HEOS", "NitrousOxide")
+    rows = np.empty((len(Property), theta.size))
+    for i, t in enumerate(CRITICAL_TEMPERATURE * (1.0 - theta**3)):
+        state.update(CoolProp.QT_INPUTS, 0.0, t)
+        liquid = (1.0 / state.rhomass(), state.umass(), state.hmass())
+        state.update(CoolProp.QT_INPUTS, 1.0, t)
+        vapor = (np.log(1.0 / state.rhomass()), state.umass(), state.hmass())
+        capacities = (np.log(state.cvmass()), np.log(state.cpmass()))
+        rows[:, i] = (np.log(state.p()), liquid[0], vapor[0], liquid[1], vapor[1], liquid[2], vapor[2], *capacities)
+    return rows
+
+
+def _theta(temperature: float) -> float:
+    return float((1.0 - temperature / CRITICAL_TEMPERATURE) ** (1.0 / 3.0))
+
+
+def _cached(theta: Array) -> Array:
+    path = cache_directory() / f"nitrous-coolprop-{version('CoolProp')}-{NODES}-{LAYOUT}.npy"
+    try:
+        stored = np.load(path, allow_pickle=False)
+        if stored.shape == (len(Property), theta.size) and np.isfinite(stored).all():
+            return np.asarray(stored, dtype=np.float64)
+    except (OSError, ValueError, EOFError):
+        pass  # absent, unreadable or cut short: made anew below
+    fresh = sample(theta)
+    _store(path, fresh)
+    return fresh
+
+
+def _store(path: Path, values: Array) -> None:
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.npy")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        np.save(temporary, values)
+        temporary.replace(path)
+    except OSError:
+        temporary.unlink(missing_ok=True)  # a read-only home costs time at each start, nothing else
