@@ -1,0 +1,172 @@
+"""The quiet time before a firing and after it, and the zeros taken there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+BLOCK = 0.02
+"""[s] over which samples are averaged to look for the firing."""
+SUSTAINED = 0.1
+"""[s] that a departure must last to be one."""
+MARGIN = 0.2
+"""[s] kept clear before the firing."""
+LONGEST = 30.0
+"""[s] of quiet time used at most, so that filling the tank does not count."""
+SHORTEST = 0.3
+"""[s] of quiet time below which no zero is taken."""
+SETTLING = 0.5
+"""[s] after the firing before a zero may be taken."""
+REFERENCES = ("p_chamber", "thrust", "p_run", "p_tank")
+"""Channels that say when the firing is, the most telling first."""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A channel's good samples: time [s], values [SI]."""
+
+    time: Floats
+    values: Floats
+
+    def between(self, start: float, end: float) -> Trace:
+        """The samples in a window."""
+        inside = (self.time >= start) & (self.time <= end)
+        return Trace(self.time[inside], self.values[inside])
+
+
+@dataclass(frozen=True)
+class Level:
+    """A level held for a while: mean and its standard deviation [SI], and the middle of the time [s]."""
+
+    value: float
+    std: float
+    time: float
+
+
+@dataclass(frozen=True)
+class Firing:
+    """When the log departs from rest and when it is back [s, log time], and which channel said so."""
+
+    start: float
+    end: float
+    channel: str
+
+
+def find_firing(traces: Mapping[str, Trace]) -> Firing | None:
+    """The first sustained departure from rest, from the most telling channel that shows one."""
+    for name in REFERENCES:
+        if name in traces and (found := _departure(traces[name])):
+            return Firing(*found, name)
+    return None
+
+
+def _departure(trace: Trace) -> tuple[float, float] | None:
+    """First and last time [s] a channel is away from rest; None where it never leaves."""
+    blocks = in_blocks(trace, BLOCK)
+    if len(blocks.time) < 10:
+        return None
+    low = float(np.percentile(blocks.values, 5))
+    top = float(_smoothed(blocks.values).max())
+    rest = blocks.values[blocks.values < low + 0.1 * (top - low)]
+    base, noise = float(np.median(rest)), spread(rest)
+    threshold = base + max(0.05 * (top - base), 6.0 * noise)
+    away = blocks.values > threshold
+    step = float(np.median(np.diff(blocks.time)))
+    first = _first_run(away, max(3, round(SUSTAINED / step)))
+    if first is None:
+        return None
+    while first > 0 and blocks.values[first - 1] > base + 3.0 * noise:
+        first -= 1
+    return float(blocks.time[first]), float(blocks.time[np.flatnonzero(away)[-1]])
+
+
+def _first_run(mask: NDArray[np.bool_], length: int) -> int | None:
+    """Where the first run of at least ``length`` trues begins."""
+    edges = np.flatnonzero(np.diff(mask.astype(np.int8), prepend=0, append=0))
+    starts, ends = edges[::2], edges[1::2]
+    long = np.flatnonzero(ends - starts >= length)
+    return int(starts[long[0]]) if len(long) else None
+
+
+def in_blocks(trace: Trace, width: float) -> Trace:
+    """Means over blocks of about ``width`` [s] (single samples where they are further apart)."""
+    if len(trace.time) < 2:
+        return trace
+    step = float(np.median(np.diff(trace.time)))
+    per = max(1, round(width / step)) if step > 0 else 1
+    count = len(trace.time) // per
+    shape = (count, per)
+    return Trace(trace.time[: count * per].reshape(shape).mean(1), trace.values[: count * per].reshape(shape).mean(1))
+
+
+def _smoothed(values: Floats) -> Floats:
+    """Running median of five."""
+    if len(values) < 5:
+        return values
+    smooth: Floats = np.median(np.lib.stride_tricks.sliding_window_view(values, 5), axis=1)
+    return smooth
+
+
+def spread(values: Floats) -> float:
+    """Robust standard deviation: 1.4826 times the median absolute deviation."""
+    return float(1.4826 * np.median(np.abs(values - np.median(values)))) if len(values) else 0.0
+
+
+def level(trace: Trace) -> Level | None:
+    """Robust mean of a quiet stretch; None where it is too short.
+
+    The standard deviation is that of block means where it is the larger: neighbouring samples are not independent.
+    """
+    if len(trace.time) < 5 or trace.time[-1] - trace.time[0] < SHORTEST:
+        return None
+    limit = max(4.0 * spread(trace.values), 1e-12)
+    near = np.abs(trace.values - np.median(trace.values)) <= limit
+    kept = trace.values[near]
+    blocks = np.array([part.mean() for part in np.array_split(kept, min(12, max(2, len(kept) // 5)))])
+    std = max(_std_of_mean(kept), _std_of_mean(blocks))
+    return Level(float(kept.mean()), std, float(trace.time[near].mean()))
+
+
+def _std_of_mean(values: Floats) -> float:
+    return float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else 0.0
+
+
+def before(trace: Trace, firing: Firing) -> Trace:
+    """The quiet stretch before a firing, cut where the channel itself departs earlier."""
+    window = trace.between(firing.start - LONGEST, firing.start - MARGIN)
+    blocks = in_blocks(window, 5 * BLOCK)
+    if len(blocks.time) < 5:
+        return window
+    limit = 4.0 * max(spread(blocks.values), 1e-12)
+    calm = np.flatnonzero(np.abs(blocks.values - np.median(blocks.values)) <= limit)
+    return window.between(-np.inf, float(blocks.time[calm[-1]]) + BLOCK)
+
+
+def after(trace: Trace, firing: Firing) -> Trace | None:
+    """The longest stretch after a firing over which the channel is flat; None where there is none."""
+    start, end = firing.end + SETTLING, float(trace.time[-1])
+    while end - start >= SHORTEST:
+        window = trace.between(start, min(end, start + LONGEST))
+        if is_flat(window):
+            return window
+        start += 0.25 * (end - start)
+    return None
+
+
+def is_flat(trace: Trace) -> bool:
+    """Whether a stretch has no trend beyond its own scatter: its two halves agree within what block means scatter."""
+    first, last = (level(part) for part in _halves(trace))
+    if first is None or last is None:
+        return False
+    within = np.hypot(first.std, last.std)
+    return bool(abs(last.value - first.value) <= 3.0 * within)
+
+
+def _halves(trace: Trace) -> tuple[Trace, Trace]:
+    middle = len(trace.time) // 2
+    return Trace(trace.time[:middle], trace.values[:middle]), Trace(trace.time[middle:], trace.values[middle:])
