@@ -1,0 +1,1 @@
+"""Phases of a test from the physics of its signals: one file per event."""

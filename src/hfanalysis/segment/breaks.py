@@ -1,0 +1,162 @@
+"""Where a signal breaks: kinks and sudden relaxations, found by least squares over the instant of the break.
+
+For every candidate instant the signal is fitted by a smooth curve on either side that meets at the break. The sum of squares
+against the instant gives its likelihood; the noise is judged from the residuals, with their autocorrelation counted, so that
+a wandering sensor does not pass for a precise one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.segment.signals import Signal
+
+Array = NDArray[np.float64]
+Design = Callable[[Array, float], Array]
+
+RELAXATIONS = (0.0, 0.002, 0.005, 0.012, 0.03, 0.07, 0.15, 0.3, 0.6)
+"""Time constants tried for what follows a break [s]; 0 is a step."""
+
+
+@dataclass(frozen=True)
+class Break:
+    """An instant of a break [s, time of the signal] with its standard deviation.
+
+    ``candidates`` and ``log_likelihood`` are the profile it comes from; ``relaxation`` is the best time constant [s] of what
+    follows.
+    """
+
+    time: float
+    std: float
+    candidates: Array
+    log_likelihood: Array
+    relaxation: float
+    channels: tuple[str, ...]
+
+
+def kink(order: int = 2, before: int | None = None) -> Design:
+    """Curves of the given polynomial order on both sides, equal at the break; ``before`` sets the left one's order apart."""
+    left = order if before is None else before
+
+    def columns(time: Array, instant: float) -> Array:
+        x = time - instant
+        past, future = np.minimum(x, 0.0), np.maximum(x, 0.0)
+        powers = [past**k for k in range(1, left + 1)] + [future**k for k in range(1, order + 1)]
+        return np.stack([np.ones_like(x), *powers], axis=1)
+
+    return columns
+
+
+def relaxation(time_constant: float, before: int = 1) -> Design:
+    """A curve of order ``before``, then a change that relaxes with a time constant [s] onto another straight line."""
+
+    def columns(time: Array, instant: float) -> Array:
+        x = time - instant
+        past, future = np.minimum(x, 0.0), np.maximum(x, 0.0)
+        after = (x >= 0.0).astype(np.float64)
+        change = after if time_constant == 0.0 else 1.0 - np.exp(-future / time_constant)
+        powers = [past**k for k in range(1, before + 1)]
+        return np.stack([np.ones_like(x), *powers, future, change], axis=1)
+
+    return columns
+
+
+def find_break(
+    signal: Signal,
+    candidates: Array,
+    designs: Sequence[Design],
+    constants: Sequence[float] = (0.0,),
+    quiet: Signal | None = None,
+) -> Break:
+    """The most likely instant of a break in a signal (a window around it), over the candidate instants.
+
+    ``designs`` are the shapes tried; each instant takes its best. ``constants`` are their time constants, for the record.
+    ``quiet`` is a stretch of the same sensor in which nothing happens: its slow wander counts as noise, too.
+    """
+    sums = np.array([[_sum_of_squares(signal, design, c) for c in candidates] for design in designs])
+    best = int(np.argmin(sums.min(axis=1)))
+    profile = sums.min(axis=0)
+    instant = float(candidates[int(np.argmin(profile))])
+    scale = _noise_variance(signal, designs[best], instant)
+    if quiet is not None:
+        scale = max(scale, slow_variance(quiet.value, signal.time.size))
+    log_likelihood = -0.5 * (profile - profile.min()) / scale
+    constant = constants[best] if best < len(constants) else 0.0
+    return _summarise(candidates, log_likelihood, constant, (signal.name,), signal.step)
+
+
+def combine(breaks: Sequence[Break], step: float) -> Break:
+    """One instant from several signals that break together: their profiles multiply (same candidates)."""
+    total = np.sum([b.log_likelihood for b in breaks], axis=0)
+    names = tuple(name for b in breaks for name in b.channels)
+    return _summarise(breaks[0].candidates, total - total.max(), breaks[0].relaxation, names, step)
+
+
+def _summarise(candidates: Array, log_likelihood: Array, constant: float, names: tuple[str, ...], step: float) -> Break:
+    """Mean and spread over the profile. No instant is dated better than half a sample interval: the log does not say when
+    within it a sample was taken."""
+    weight = np.exp(log_likelihood - log_likelihood.max()) * np.gradient(candidates)
+    weight /= weight.sum()
+    mean = float(weight @ candidates)
+    spread = float(weight @ (candidates - mean) ** 2)
+    return Break(mean, float(np.sqrt(spread + step**2 / 4.0)), candidates, log_likelihood, constant, names)
+
+
+def _sum_of_squares(signal: Signal, design: Design, instant: float) -> float:
+    residual = _residual(signal, design, instant)
+    return float(residual @ residual)
+
+
+def _residual(signal: Signal, design: Design, instant: float) -> Array:
+    x = design(signal.time, instant)
+    gram = x.T @ x
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(gram), 1e-30))
+    ridge = 1e-11 * np.eye(len(scale))
+    beta = np.linalg.solve(gram * np.outer(scale, scale) + ridge, (x.T @ signal.value) * scale) * scale
+    return np.asarray(signal.value - x @ beta)
+
+
+def _noise_variance(signal: Signal, design: Design, instant: float) -> float:
+    """Variance per independent sample: that of the residuals times the length of their memory in samples."""
+    residual = _residual(signal, design, instant)
+    variance = float(residual @ residual) / max(residual.size - 6, 1)
+    return max(variance * memory_length(residual), 1e-12 * float(np.ptp(signal.value)) ** 2, 1e-300)
+
+
+def slow_variance(quiet: Array, samples: int) -> float:
+    """Variance per independent sample of a quiet sensor on the time scale of a window of that many samples.
+
+    The mean of the periodogram between one and six periods per window; equal to the variance for white noise,
+    larger for a sensor that wanders (1/f). 0 where the stretch is shorter than the window.
+    """
+    n = quiet.size
+    if n < max(samples, 16):
+        return 0.0
+    x = quiet - quiet.mean()
+    power = np.abs(np.fft.rfft(x)) ** 2 / n
+    low, high = max(int(n / samples), 1), max(int(np.ceil(6.0 * n / samples)), 4)
+    return float(power[low : high + 1].mean())
+
+
+def memory_length(residual: Array) -> float:
+    """Integrated autocorrelation of a noise series in samples (1 for white noise): initial positive sequence.
+
+    Geyer's rule: pairs of lags are added while their sum is positive, which keeps the far, noisy lags out.
+    """
+    n = residual.size
+    if n < 8:
+        return 1.0
+    x = residual - residual.mean()
+    spectrum = np.abs(np.fft.rfft(x, 2 * n)) ** 2
+    correlation = np.fft.irfft(spectrum)[: n // 2]
+    if correlation[0] <= 0.0:
+        return 1.0
+    correlation = correlation / correlation[0]
+    pairs = correlation[1:-1:2] + correlation[2::2]
+    stop = np.flatnonzero(pairs <= 0.0)
+    used = pairs[: stop[0]] if stop.size else pairs
+    return float(max(1.0, 1.0 + 2.0 * used.sum()))

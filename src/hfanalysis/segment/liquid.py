@@ -1,0 +1,135 @@
+"""t_v: the liquid is gone. The knee of the tank pressure, where it agrees with mass and energy of a saturated tank.
+
+While liquid boils off, the tank pressure falls slowly; once only vapour is left the same valve empties it several times faster.
+Valve openings, rebounds of late boiling, nitrogen and the end of the fuel bend the pressure too, so that every downward knee is
+a candidate and is weighed against the pressure at which an adiabatic saturated tank of this volume and load runs dry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from hfanalysis.engine.tank import mass_along_blowdown
+from hfanalysis.segment.breaks import Break
+from hfanalysis.segment.refine import refine_kink, refine_step
+from hfanalysis.segment.signals import Array, Signal
+from hfanalysis.thermo.saturation import Saturation
+
+STEEPER = 1.25
+"""A knee is a fall at least this much steeper after than before."""
+
+DRY_PRESSURE_SPREAD = 0.2
+"""Standard deviation of ln(p) within which real tanks run dry about the adiabatic value: heat, mass and stratification."""
+
+SHARP = 0.04
+"""Chamber and thrust count as sharp, and then date the event, where they relax faster than this [s]."""
+
+
+@dataclass(frozen=True)
+class LiquidEnd:
+    """t_v [s] with its standard deviation, the channels that date it, and what other channels say (seen apart)."""
+
+    time: float
+    std: float
+    channels: tuple[str, ...]
+    apart: dict[str, float]
+
+
+def dry_pressure(saturation: Saturation, volume: float, mass: float, pressure: float) -> float | None:
+    """Tank pressure [Pa] at which the liquid of an adiabatic saturated tank runs out (None where it cannot be saturated).
+
+    ``pressure`` [Pa] is that of the full tank; found by following the blowdown upwards from trial end temperatures.
+    """
+    start = float(saturation.temperature(pressure))
+    if not np.isfinite(start):
+        return None
+    ends = np.linspace(max(saturation.t_min, start - 60.0), start - 0.05, 60)
+    masses = np.array([mass_along_blowdown(saturation, volume, e, np.array([start]))[0] for e in ends])
+    order = np.argsort(masses)
+    if not masses.min() <= mass <= masses.max():
+        return None
+    return float(saturation.pressure(np.interp(mass, masses[order], ends[order])))
+
+
+def find_liquid_end(signals: Mapping[str, Signal], end: float, expected: float | None) -> LiquidEnd | None:
+    """t_v from signals whose time counts from the opening, searched up to ``end`` [s]; ``expected`` is the dry pressure [Pa].
+
+    None where the tank pressure shows no knee.
+    """
+    tank = signals["p_tank"]
+    rough = _rough_knee(tank, end, expected)
+    if rough is None:
+        return None
+    reach = max(0.12, 4.0 * tank.step)
+    half = min(max(0.3, 15.0 * tank.step), max(0.8 * rough, 6.0 * tank.step))
+    knee = refine_kink(tank, rough, half + reach, half + reach, reach, quiet=tank.between(-3.0, -0.05))
+    if knee is None:
+        return LiquidEnd(rough, 0.5 * reach, ("p_tank",), {})
+    return _dated_by_steps(signals, knee, half)
+
+
+def _rough_knee(tank: Signal, end: float, expected: float | None) -> float | None:
+    coarse = tank.reduced(max(0.01, tank.step))
+    width = float(np.clip(0.05 * end, max(0.1, 5 * tank.step), max(0.4, 8 * tank.step)))
+    times = np.arange(0.5 * width, end, 0.25 * width)
+    before = np.array([_slope(coarse, t - width if t > 1.2 * width else 0.2 * width, t) for t in times])
+    after = np.array([_slope(coarse, t, t + width) for t in times])
+    fall = before - after
+    pressure = np.maximum(coarse.at(times), 1.0)
+    weight = np.ones_like(times)
+    if expected is not None:
+        weight = np.exp(-0.5 * (np.log(pressure / expected) / DRY_PRESSURE_SPREAD) ** 2)
+    typical = float(np.nanmedian(np.abs(before[np.isfinite(before)]))) if np.isfinite(before).any() else 0.0
+    uncertain = 6.0 * tank.noise * np.sqrt(2.0 * tank.step / width) / width
+    steeper = after < STEEPER * np.minimum(before, -0.2 * typical)
+    score = np.where(steeper & (before < 0.0) & (fall > uncertain), fall * weight, 0.0)
+    best = int(np.nanargmax(score)) if np.isfinite(score).any() else 0
+    return float(times[best]) if np.isfinite(score[best]) and score[best] > 0.0 else None
+
+
+def _slope(signal: Signal, start: float, end: float) -> float:
+    part = signal.between(start, end)
+    if part.time.size < 4:
+        return float("nan")
+    x = part.time - part.time.mean()
+    return float(x @ part.value / (x @ x))
+
+
+def _dated_by_steps(signals: Mapping[str, Signal], knee: Break, half: float) -> LiquidEnd:
+    """Chamber pressure and thrust fall within milliseconds when the liquid ends: where they do, they date it best."""
+    steps: list[Break] = []
+    apart: dict[str, float] = {}
+    for name in ("p_chamber", "thrust"):
+        found = _sudden_fall(signals[name], knee, half) if name in signals else None
+        if found is None:
+            continue
+        if found.relaxation <= SHARP and abs(found.time - knee.time) < 4.0 * np.hypot(knee.std, found.std) + 0.06:
+            steps.append(found)
+        else:
+            apart[name] = found.time
+    if not steps:
+        return LiquidEnd(knee.time, knee.std, ("p_tank",), apart)
+    best = _weighted(steps)
+    return LiquidEnd(best[0], best[1], ("p_tank", *(s.channels[0] for s in steps)), apart)
+
+
+def _weighted(steps: list[Break]) -> tuple[float, float]:
+    weight = np.array([1.0 / s.std**2 for s in steps])
+    time = float(weight @ np.array([s.time for s in steps]) / weight.sum())
+    spread = float(np.ptp([s.time for s in steps])) if len(steps) > 1 else 0.0
+    return time, float(np.hypot(1.0 / np.sqrt(weight.sum()), 0.5 * spread))
+
+
+def _sudden_fall(signal: Signal, knee: Break, half: float) -> Break | None:
+    before = signal.mean(knee.time - half, knee.time - 0.1)
+    after = signal.mean(knee.time + 0.1, knee.time + half)
+    scatter = signal.between(knee.time - half, knee.time - 0.1).value.std() if np.isfinite(before) else np.inf
+    if not before - after > max(4.0 * scatter, 0.05 * abs(before)):
+        return None
+    reach = max(0.15, 4 * knee.std, 3 * signal.step)
+    return refine_step([signal], knee.time, min(half, 0.3) + reach, 0.15 + reach, reach)
+
+

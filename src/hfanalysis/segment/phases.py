@@ -1,0 +1,233 @@
+"""The phases of a test, put together from the single events."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from hfanalysis.errors import AbsentError
+from hfanalysis.quantity import Quantity
+from hfanalysis.segment.ending import find_unchoking
+from hfanalysis.segment.feed import find_line_full
+from hfanalysis.segment.fuel import find_fuel_end
+from hfanalysis.segment.kind import Kind, recognise
+from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
+from hfanalysis.segment.opening import Opening, find_opening
+from hfanalysis.segment.purge import find_nitrogen
+from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import TestLog
+from hfanalysis.thermo.nitrous import saturation
+
+EVENTS = ("t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+LONGEST_RUN = 120.0
+"""Seconds after the opening in which events are looked for."""
+
+BY_HAND = "set by the engineer"
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Events of a test: quantities [s] after the opening; ``t_open`` in log time.
+
+    ``engineer`` names what was set by hand; ``notes`` say what was seen beside the events.
+    """
+
+    t_open: Quantity
+    events: dict[str, Quantity]
+    kind: Kind
+    engineer: tuple[str, ...] = ()
+    found: dict[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def time(self, name: str) -> float | None:
+        """An event's instant [s], None where the test does not have it."""
+        return self.events[name].value
+
+    def std(self, name: str) -> float:
+        """An event's standard deviation [s]; 0 where there is none."""
+        return self.events[name].std or 0.0
+
+    def to_json(self) -> dict[str, Any]:
+        """The content of segments.json."""
+        order = sorted((q.value, n) for n, q in self.events.items() if q.value is not None)
+        return {
+            "kind": self.kind.name,
+            "kind_reason": self.kind.why,
+            "t_open": self.t_open,
+            **self.events,
+            "order": [name for _, name in order],
+            "engineer": list(self.engineer),
+            "found_where_engineer_set": self.found,
+            "notes": list(self.notes),
+            "warnings": list(self.warnings),
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Segments:
+        """The inverse of :meth:`to_json`."""
+        events = {name: Quantity.from_json(data[name]) for name in EVENTS}
+        kind = Kind(data["kind"], data["kind_reason"])
+        found = dict(data["found_where_engineer_set"])
+        lists = (tuple(data["notes"]), tuple(data["warnings"]))
+        return cls(Quantity.from_json(data["t_open"]), events, kind, tuple(data["engineer"]), found, *lists)
+
+
+def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
+    """All events of a log. Raises AbsentError where nothing opens: a log with no firing in it."""
+    signals = {name: Signal.of(channel) for name, channel in log.channels.items() if channel.good.sum() > 7}
+    opening = _opening(signals, definition)
+    origin = opening.time
+    shifted = {name: s.between(origin - 60.0, origin + LONGEST_RUN).shifted(origin) for name, s in signals.items()}
+    search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std)
+    result = search.run()
+    t_open = Quantity(opening.time, "s", max(opening.std, 1e-9), why=f"from {', '.join(opening.channels)}")
+    engineer = tuple(name for name in ("t_open", *EVENTS) if name in definition.segments)
+    return replace(result, t_open=t_open, engineer=engineer)
+
+
+def _opening(signals: Mapping[str, Signal], definition: TestDefinition) -> Opening:
+    stated = definition.segments.get("t_open")
+    if stated is not None:
+        return Opening(stated.value, stated.std or 1e-3, (BY_HAND,))
+    found = find_opening(signals)
+    if found is None:
+        looked = ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals) or "no channel"
+        raise AbsentError(
+            f"test {definition.test.id}: the log holds no firing and no flow: nothing in {looked} responds to an opening "
+            "valve; set [segments] t_open in test.toml if there is one"
+        )
+    return found
+
+
+class _Search:
+    """The search for the events of one test; keeps what has been found while the next event is looked for."""
+
+    def __init__(self, signals: Mapping[str, Signal], definition: TestDefinition, opening_std: float) -> None:
+        self.opening_std = opening_std
+        self.signals = signals
+        self.definition = definition
+        self.ambient = definition.ambient_pressure.value
+        self.last = max((float(s.time[-1]) for s in signals.values()), default=0.0)
+        self.events: dict[str, Quantity] = {}
+        self.found: dict[str, float] = {}
+        self.notes: list[str] = []
+        self.warnings: list[str] = []
+
+    def run(self) -> Segments:
+        """Every event in an order in which each can use the ones before."""
+        self._take("t_v", self._liquid_end())
+        self._take("t_feed", self._line_full())
+        self._take("t_purge", self._nitrogen())
+        kind = self._kind()
+        self._take("t_end", self._unchoking(kind))
+        self._take("t_fuel_out", self._fuel_end(kind))
+        self._check_order()
+        events = {name: self.events[name] for name in EVENTS}
+        nothing = Quantity.absent("set by the caller")
+        return Segments(nothing, events, kind, (), self.found, tuple(self.notes), tuple(self.warnings))
+
+    def _take(self, name: str, found: tuple[float, float] | str) -> None:
+        stated = self.definition.segments.get(name)
+        if stated is None:
+            self.events[name] = Quantity.absent(found) if isinstance(found, str) else self._seconds(*found)
+            return
+        self.events[name] = Quantity(stated.value, "s", stated.std or 1e-3, why=BY_HAND)
+        if isinstance(found, str):
+            self.notes.append(f"{name} is {BY_HAND} at {stated.value:.3f} s; the search found none: {found}")
+            return
+        self.found[name] = found[0]
+        self.notes.append(f"{name} is {BY_HAND} at {stated.value:.3f} s; the search finds {found[0]:.3f} s")
+
+    def _seconds(self, time: float, std: float) -> Quantity:
+        return Quantity(time, "s", float(np.hypot(std, self.opening_std)))
+
+    def _liquid_end(self) -> tuple[float, float] | str:
+        if "p_tank" not in self.signals:
+            return "the log has no p_tank: the end of the liquid shows in the tank's pressure"
+        tank = self.signals["p_tank"]
+        end = _discharged(tank, min(self.last, LONGEST_RUN))
+        found = find_liquid_end(self.signals, end, self._dry_pressure(tank))
+        if found is None:
+            return "the tank pressure shows no knee: it never falls faster than before, as it does when the liquid is gone"
+        for name, time in found.apart.items():
+            self.notes.append(f"{name} falls {time - found.time:+.2f} s from the tank's knee")
+        return found.time, found.std
+
+    def _dry_pressure(self, tank: Signal) -> float | None:
+        section = self.definition.tank
+        if section is None or section.volume is None or section.oxidizer_mass is None:
+            return None
+        source = saturation(self.definition.model.properties)
+        start = min(tank.mean(0.25, 0.75), 0.999 * source.pressure_range[1])
+        if not np.isfinite(start):
+            return None
+        return dry_pressure(source, section.volume.value, section.oxidizer_mass.value, start)
+
+    def _line_full(self) -> tuple[float, float] | str:
+        if "p_run" not in self.signals:
+            return "the log has no p_run"
+        t_v = self._time("t_v")
+        return find_line_full(self.signals["p_run"], t_v if t_v is not None else min(self.last, 5.0))
+
+    def _nitrogen(self) -> tuple[float, float] | str:
+        if "p_purge" not in self.signals:
+            return "the log has no p_purge: nitrogen shows in its supply line"
+        return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"))
+
+    def _unchoking(self, kind: Kind) -> tuple[float, float] | str:
+        if "p_chamber" not in self.signals:
+            return "the log has no p_chamber"
+        if kind.name != "hot_fire":
+            return f"nothing burns ({kind.name}): {kind.why}"
+        return find_unchoking(self.signals["p_chamber"], self.ambient, self._time("t_feed") or 0.3)
+
+    def _fuel_end(self, kind: Kind) -> tuple[float, float] | str:
+        if kind.name != "hot_fire":
+            return f"nothing burns ({kind.name}): {kind.why}"
+        if "p_chamber" not in self.signals:
+            return "the log has no p_chamber"
+        found = find_fuel_end(self.signals, self.ambient, self._time("t_feed") or 0.3, self._time("t_v"), self.last)
+        if isinstance(found, str):
+            return found
+        if found.duration > 0.2:
+            self.notes.append(f"the fuel fades over about {found.duration:.1f} s; t_fuel_out is the middle of the fall")
+        return found.time, found.std
+
+    def _kind(self) -> Kind:
+        t_v, nozzle, tank = self._time("t_v"), self.definition.nozzle, self.definition.tank
+        span = (self._time("t_feed") or 0.0, t_v if t_v is not None else min(self.last, 5.0))
+        flow = None
+        if t_v and tank is not None and tank.oxidizer_mass is not None:
+            flow = 0.8 * tank.oxidizer_mass.value / t_v  # about a fifth of a load is still there as vapour
+        area = np.pi * nozzle.throat_radius.value**2 if nozzle is not None and nozzle.throat_radius is not None else None
+        kind = recognise(self.signals, self.definition.test.kind, self.ambient, span, flow, area)
+        if kind.name == "misfire":
+            self.warnings.append(f"stated as a hot fire, but nothing burns: {kind.why}")
+        return kind
+
+    def _check_order(self) -> None:
+        t_v, t_purge = self._time("t_v"), self._time("t_purge")
+        if t_v is None or t_purge is None:
+            return
+        early = t_v - t_purge
+        if early > 2.0 * np.hypot(self.events["t_v"].std or 0.0, self.events["t_purge"].std or 0.0):
+            self.notes.append(f"nitrogen enters {early:.2f} s before the liquid is gone: there is no vapour-only phase")
+
+    def _time(self, name: str) -> float | None:
+        return self.events[name].value if name in self.events else None
+
+
+def _discharged(tank: Signal, end: float) -> float:
+    """When the tank has lost 90 % of its pressure above the lowest: knees beyond that are of no liquid."""
+    part = tank.between(0.0, end)
+    if part.time.size < 8:
+        return end
+    smooth = part.smooth(max(0.1, 4.0 * tank.step))
+    low, high = float(smooth.min()), float(smooth[0])
+    gone = np.flatnonzero(smooth < low + 0.1 * (high - low))
+    return float(part.time[gone[0]]) if gone.size else end

@@ -1,0 +1,68 @@
+"""t_purge: nitrogen enters the tank, seen as the moment when the purge line, quiet until then, starts to sag."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hfanalysis.segment.refine import refine_kink
+from hfanalysis.segment.signals import Array, Signal
+
+SMALLEST_SAG = 0.01
+"""The line has to lose at least this part of its pressure before a sag is believed."""
+
+LASTING = 0.4
+"""Seconds over which a sag must go on: valve hammer and electrical spikes do not."""
+
+
+def find_nitrogen(purge: Signal, end: float, tank: Signal | None) -> tuple[float, float] | str:
+    """t_purge [s] and its standard deviation, time counted from the opening, searched up to ``end``; else the reason.
+
+    ``tank`` is the tank pressure: the check valve cannot have opened while the tank stands above the purge line.
+    """
+    quiet = purge.between(-3.0, -0.02)
+    if quiet.time.size < 8:
+        return "the log has no quiet purge line before the opening"
+    level = float(np.median(quiet.value))
+    coarse = purge.between(-1.0, end).reduced(max(0.02, purge.step))
+    rough = _start_of_sag(coarse, level, max(6.0 * coarse.noise, SMALLEST_SAG * abs(level)))
+    if rough is None:
+        return "the purge line keeps its pressure to the end of the log"
+    if tank is not None and (obstacle := _held_shut(tank, level, rough)):
+        return obstacle
+    window = max(0.35, 15.0 * purge.step)
+    reach = max(0.2, 6.0 * purge.step)
+    still = purge.between(-np.inf, rough - reach)
+    found = refine_kink(purge, rough, window + reach, window + reach, reach, flat=True, quiet=still)
+    return (found.time, found.std) if found else (rough, reach)
+
+
+def _start_of_sag(coarse: Signal, level: float, drop: float) -> float | None:
+    low = coarse.value < level - drop
+    lasting = max(int(LASTING / coarse.step), 2)
+    for i in np.flatnonzero(low & (coarse.time > 0.0)):
+        if low[i : i + lasting].mean() > 0.9:
+            return _traced_back(coarse, int(i), level, drop)
+    return None
+
+
+def _traced_back(coarse: Signal, index: int, level: float, drop: float) -> float:
+    """The line through the first part of the sag, back to the quiet level."""
+    ahead = slice(index, index + max(int(0.2 / coarse.step), 3))
+    slope = _line(coarse.time[ahead], coarse.value[ahead])
+    back = drop / max(-slope, 1e-9)
+    return float(coarse.time[index] - min(back, 0.5))
+
+
+def _line(time: Array, value: Array) -> float:
+    x = time - time.mean()
+    return float(x @ value / max(x @ x, 1e-12))
+
+
+def _held_shut(tank: Signal, level: float, time: float) -> str | None:
+    standing = tank.mean(time - 0.05, time + 0.05 + 2.0 * tank.step)
+    if standing > 1.1 * level:
+        return (
+            f"the purge line sags at {time:.2f} s, but the tank ({standing / 1e5:.1f} bar) stands above it "
+            f"({level / 1e5:.1f} bar): no nitrogen can enter"
+        )
+    return None

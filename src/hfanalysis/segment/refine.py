@@ -1,0 +1,72 @@
+"""From a rough instant to a fitted one: windows and candidate grids for the break search."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hfanalysis.segment.breaks import RELAXATIONS, Break, Design, combine, find_break, kink, relaxation
+from hfanalysis.segment.signals import Array, Signal
+
+COARSE, FINE = 41, 61
+
+
+def refine_kink(
+    signal: Signal,
+    rough: float,
+    before: float,
+    after: float,
+    reach: float,
+    flat: bool = False,
+    quiet: Signal | None = None,
+) -> Break | None:
+    """A change of slope near ``rough`` [s]: window [rough - before, rough + after], searched within ``reach`` of rough.
+
+    ``flat`` says that the signal is constant before the break; ``quiet`` is a stretch of it in which nothing happens, for its
+    noise. None where the window holds too few samples.
+    """
+    design = kink(order=2, before=0 if flat else 2)
+    return _search([signal], rough, before, after, reach, [design], (0.0,), quiet)
+
+
+def refine_step(signals: Sequence[Signal], rough: float, before: float, after: float, reach: float, order: int = 1) -> Break | None:
+    """A sudden change that relaxes, in one or several signals at the same instant; ``order`` of the curve before it."""
+    designs = [relaxation(c, before=order) for c in RELAXATIONS]
+    return _search(signals, rough, before, after, reach, designs, RELAXATIONS)
+
+
+def _search(
+    signals: Sequence[Signal],
+    rough: float,
+    before: float,
+    after: float,
+    reach: float,
+    designs: Sequence[Design],
+    constants: Sequence[float],
+    quiet: Signal | None = None,
+) -> Break | None:
+    windows = [s.between(rough - before, rough + after) for s in signals]
+    windows = [w for w in windows if _enough(w, rough)]
+    if not windows:
+        return None
+    found = _profile(windows, np.linspace(rough - reach, rough + reach, COARSE), designs, constants, quiet)
+    step = min(w.step for w in windows)
+    zoom = min(max(5.0 * found.std, 2.5 * step, 2.0 * reach / COARSE), reach)
+    return _profile(windows, np.linspace(found.time - zoom, found.time + zoom, FINE), designs, constants, quiet)
+
+
+def _profile(
+    windows: Sequence[Signal],
+    candidates: Array,
+    designs: Sequence[Design],
+    constants: Sequence[float],
+    quiet: Signal | None,
+) -> Break:
+    breaks = [find_break(w, candidates, designs, constants, quiet) for w in windows]
+    return combine(breaks, min(w.step for w in windows))
+
+
+def _enough(window: Signal, rough: float) -> bool:
+    left = int(np.searchsorted(window.time, rough))
+    return left >= 4 and window.time.size - left >= 4
