@@ -25,10 +25,10 @@ from pathlib import Path
 from typing import Any
 
 from hfanalysis.errors import InputError
-from hfanalysis.spelling import near_misses
 from hfanalysis.stages import ORDER
 from hfanalysis.testdata import products
 from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.units import near
 
 Progress = Callable[[str, float | None], None]
 """Told what is being done, and the fraction done where it is known."""
@@ -58,7 +58,7 @@ class Stage:
 def load_stage(name: str) -> Stage:
     """The stage of that name; its module is imported only now, so that starting up stays light."""
     if name not in ORDER:
-        raise InputError(f'there is no stage "{name}"{near_misses(name, ORDER)}')
+        raise InputError(f"there is no stage {name!r}{near(name, ORDER)}; expected one of {', '.join(ORDER)}")
     stage = importlib.import_module(f"hfanalysis.stages.{name}").STAGE
     assert isinstance(stage, Stage)
     return stage

@@ -10,7 +10,8 @@ from typing import Any
 
 import hfanalysis
 from hfanalysis.errors import InputError
-from hfanalysis.stages.base import Context, Stage, load_stage
+from hfanalysis.stages import base
+from hfanalysis.stages.base import Context, Stage
 from hfanalysis.testdata import products
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.products import HashCache
@@ -35,8 +36,8 @@ def library_versions() -> dict[str, str]:
 
 def raw_files(definition: TestDefinition) -> list[Path]:
     """The files the test's results rest on, besides its ``test.toml``."""
-    folder = definition.path.parent
-    return [folder / name for name in definition.log.files]
+    tables = [definition.rocket.drag_table] if definition.rocket and definition.rocket.drag_table else []
+    return [definition.folder / name for name in [*(spec.file for spec in definition.log.files), *tables]]
 
 
 def effect_files(context: Context) -> list[Path]:
@@ -57,7 +58,9 @@ def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, A
         "hfanalysis": hfanalysis.__version__,
         "code": code_hash(),
         "test_toml": hashes(context.definition.path),
-        "raw": {path.name: _raw_hash(context, path, hashes) for path in raw_files(context.definition)},
+        "raw": {
+            path.relative_to(context.raw).as_posix(): _raw_hash(path, hashes) for path in raw_files(context.definition)
+        },
         "effects": {path.name: hashes(path) for path in effect_files(context)},
         "libraries": library_versions(),
         "parameters": context.at(stage).parameters(),
@@ -65,13 +68,11 @@ def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, A
     }
 
 
-def _raw_hash(context: Context, path: Path, hashes: HashCache) -> str:
+def _raw_hash(path: Path, hashes: HashCache) -> str:
     try:
         return hashes(path)
     except OSError as error:
-        there = ", ".join(sorted(item.name for item in context.raw.iterdir())) or "nothing"
-        found = f"cannot read {path.name} ({error.strerror})"
-        raise InputError(f"{context.definition.path}: log.files: {found}; the folder holds: {there}") from None
+        raise InputError(f"{path}: cannot be read ({error.strerror}); expected a log file named in test.toml") from None
 
 
 def _upstream(context: Context, stage: Stage, hashes: HashCache) -> dict[str, str]:
@@ -81,7 +82,7 @@ def _upstream(context: Context, stage: Stage, hashes: HashCache) -> dict[str, st
         if name in context.absent:
             found[name] = f"absent: {context.absent[name]}"
         else:
-            found |= {product: hashes(context.product(product)) for product in load_stage(name).products}
+            found |= {product: hashes(context.product(product)) for product in base.load_stage(name).products}
     return found
 
 

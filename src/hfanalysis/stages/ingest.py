@@ -1,6 +1,6 @@
 """ingest: the raw log, as the logger wrote it, on canonical channels in SI with quality flags per sample.
 
-Reads the raw files; writes ``ingest.h5``.
+Reads the raw files; writes ``ingest.h5`` and, for who wants to know what it holds without opening it, ``ingest.json``.
 """
 
 from __future__ import annotations
@@ -11,8 +11,11 @@ from hfanalysis.stages.base import Context, Stage
 def run(context: Context) -> None:
     """Ingest the raw files of the test."""
     from hfanalysis.testdata.ingest import ingest
+    from hfanalysis.testdata.log import read_log
+    from hfanalysis.testdata.summary import summary
 
-    ingest(context.definition, context.scratch("ingest.h5"))
+    ingest(context.definition, context.scratch("ingest.h5"), context.progress)
+    context.write_json("ingest.json", summary(read_log(context.scratch("ingest.h5"))))
 
 
-STAGE = Stage(name="ingest", needs=(), products=("ingest.h5",), run=run)
+STAGE = Stage(name="ingest", needs=(), products=("ingest.h5", "ingest.json"), run=run)

@@ -20,8 +20,8 @@ from typing import Any
 
 import hfanalysis
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
-from hfanalysis.stages import ORDER, freshness
-from hfanalysis.stages.base import Context, Stage, load_stage
+from hfanalysis.stages import ORDER, base, freshness
+from hfanalysis.stages.base import Context, Stage
 from hfanalysis.stages.lock import locked
 from hfanalysis.testdata import products
 from hfanalysis.testdata.products import HashCache
@@ -86,7 +86,7 @@ class _Run:
         """Bring ``name`` up to date, its upstream first."""
         products.remove_temporaries(self.context.out)
         try:
-            self._bring(load_stage(name))
+            self._bring(base.load_stage(name))
         finally:
             products.remove_temporaries(self.context.out)
             if self.context.out.exists():
@@ -97,7 +97,7 @@ class _Run:
         if stage.name in self.done:
             return
         for name in stage.upstream:
-            self._bring_upstream(load_stage(name), needed=name in stage.needs)
+            self._bring_upstream(base.load_stage(name), needed=name in stage.needs)
         self._bring_one(stage)
         self.done.add(stage.name)
 
@@ -137,8 +137,9 @@ class _Run:
 
     def _check_untouched(self, record: dict[str, Any]) -> None:
         """A log that grew while it was read would be recorded under a hash that is not its own."""
-        for path in freshness.raw_files(self.context.definition):
-            if self.hashes(path) != record["raw"][path.name]:
+        for name, digest in record["raw"].items():
+            path = self.context.raw / name
+            if self.hashes(path) != digest:
                 raise InputError(f"{path}: the file changed while it was being read; run again when it is complete")
 
     def _commit(self, stage: Stage) -> dict[str, str]:
@@ -154,7 +155,7 @@ class _Run:
     def _withdraw(self, stage: Stage) -> None:
         """Remove products that no longer follow from the input, of this stage and of those after it."""
         gone = {stage.name}
-        for later in map(load_stage, ORDER):
+        for later in map(base.load_stage, ORDER):
             if later.name in gone or gone & set(later.needs):
                 gone.add(later.name)
                 freshness.state_path(self.context, later).unlink(missing_ok=True)
@@ -185,9 +186,10 @@ class _Run:
 
     def _upstream_products(self, stage: Stage) -> list[Path]:
         names = (name for name in stage.upstream if name not in self.context.absent)
-        return [self.context.product(product) for name in names for product in load_stage(name).products]
+        return [self.context.product(product) for name in names for product in base.load_stage(name).products]
 
 
 def source_files() -> list[Path]:
     """The package's source files, which make takes into account by their times."""
-    return list(Path(hfanalysis.__file__).parent.rglob("*.py"))
+    paths = Path(hfanalysis.__file__).parent.rglob("*")
+    return [path for path in paths if path.is_file() and "__pycache__" not in path.parts]

@@ -1,0 +1,18 @@
+"""The command line: ``hfa COMMAND TEST``."""
+
+from __future__ import annotations
+
+import sys
+
+INTERRUPTED = 130
+
+
+def main() -> None:
+    """Run ``hfa``; the exit status tells how it ended (see the README)."""
+    try:
+        from hfanalysis.cli.app import app
+
+        app()
+    except KeyboardInterrupt:
+        print("hfa: interrupted; products are as they were before, or complete", file=sys.stderr)
+        sys.exit(INTERRUPTED)

@@ -1,0 +1,103 @@
+"""The commands and their options. Nothing heavy is imported before a command needs it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import hfanalysis
+from hfanalysis.cli.ending import ending
+
+app = typer.Typer(
+    name="hfa",
+    help="Hot-fire test data analysis for nitrous oxide / paraffin hybrid engines.",
+    epilog="Exit status: 0 done, 2 the input is at fault, 3 the log does not hold what was asked, 1 a defect of ours.",
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+Test = Annotated[str, typer.Argument(metavar="TEST", help="Name of the test: its folder below raw_tests/.")]
+Root = Annotated[Path, typer.Option(help="Folder that holds raw_tests/ and processed/.", show_default="here")]
+Out = Annotated[Path | None, typer.Option(help="Write products to OUT/TEST/ instead of ROOT/processed/TEST/.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the stage's JSON product on standard output, nothing else.")]
+Force = Annotated[bool, typer.Option("--force", help="Redo the stage and all before it, even if nothing changed.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No table and no progress; warnings still show.")]
+Set = Annotated[
+    list[str] | None, typer.Option("--set", metavar="STAGE.NAME=VALUE", help="Set a parameter of a stage for this run.")
+]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"hfa {hfanalysis.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _hfa(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and stop.")
+    ] = False,
+) -> None:
+    """Hot-fire test data analysis for nitrous oxide / paraffin hybrid engines."""
+
+
+def _do(
+    stage: str,
+    test: str,
+    root: Path,
+    out: Path | None,
+    as_json: bool,
+    force: bool,
+    quiet: bool,
+    settings: list[str] | None,
+) -> None:
+    with ending():
+        from hfanalysis.cli import perform
+
+        perform.stage(stage, perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ())))
+
+
+_STAGES = {
+    "ingest": "Read the raw log onto canonical channels in SI, with quality flags per sample.",
+    "segment": "Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end.",
+    "calibrate": "Injector coefficient, feed losses, compressibility and polytropic exponent, with intervals.",
+    "validate": "Run the model against the measurement.",
+    "report": "Write report.html, one page to read offline.",
+    "run": "Every stage.",
+}
+
+
+def _add(stage: str, text: str) -> None:
+    @app.command(stage, help=text)
+    def command(
+        test: Test,
+        root: Root = Path(),
+        out: Out = None,
+        as_json: Json = False,
+        force: Force = False,
+        quiet: Quiet = False,
+        settings: Set = None,
+    ) -> None:
+        _do(stage, test, root, out, as_json, force, quiet, settings)
+
+
+for _name, _text in _STAGES.items():
+    _add(_name, _text)
+
+
+@app.command("new")
+def _new(
+    test: Annotated[str, typer.Argument(metavar="ID", help="Name of the new test.")],
+    log: Annotated[Path, typer.Option(help="Its log file; copied to raw_tests/ID/ if it is elsewhere.")],
+    root: Root = Path(),
+) -> None:
+    """Draft raw_tests/ID/test.toml from what a log shows. Never overwrites."""
+    with ending():
+        from hfanalysis.testdata.draft import new_test
+
+        typer.echo(f"{new_test(root, test, log)}: drafted; complete what is marked there, then: hfa calibrate {test}")

@@ -1,0 +1,29 @@
+"""How a command ends: an exit status for each kind of end, and one plain message where the input is at fault."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import typer
+
+from hfanalysis.errors import AnalysisError
+
+
+@contextmanager
+def ending() -> Iterator[None]:
+    """Turn an :class:`AnalysisError` into its message and exit status; everything else passes, as a defect of ours."""
+    try:
+        yield
+    except AnalysisError as error:
+        tell(str(error))
+        raise typer.Exit(error.exit_status) from None
+    except KeyboardInterrupt:
+        tell("interrupted; products are as they were before, or complete")
+        raise typer.Exit(130) from None
+
+
+def tell(text: str) -> None:
+    """One line for people, on standard error."""
+    print(f"hfa: {text}", file=sys.stderr)

@@ -1,0 +1,123 @@
+"""Doing what a command asks for, and showing what came of it."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hfanalysis.cli.ending import tell
+from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.stages import ORDER
+from hfanalysis.stages.base import Context, Progress, load_stage, silent
+from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.runner import run_to
+from hfanalysis.units import near
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the command line asks for."""
+
+    test: str
+    root: Path
+    out: Path | None
+    as_json: bool
+    force: bool
+    quiet: bool
+    settings: tuple[str, ...] = ()
+
+
+def stage(name: str, request: Request) -> None:
+    """Bring a stage (or, for "run", all of them) up to date and show it."""
+    with _watch(request) as progress:
+        context = open_test(
+            request.root, request.test, request.out, progress=progress, settings=_settings(request.settings)
+        )
+        context = run_to(ORDER[-1] if name == "run" else name, context, force=request.force)
+    _show(name, context, request)
+    for text in _warnings(context, name):
+        tell(f"warning: {text}")
+    if name == "run" and context.absent:
+        raise AbsentError("; ".join(f"{stage}: {reason}" for stage, reason in context.absent.items()))
+
+
+def _settings(texts: tuple[str, ...]) -> dict[str, Any]:
+    """The parameters of ``--set STAGE.NAME=VALUE``, checked against what the stages know."""
+    return dict(_setting(text) for text in texts)
+
+
+def _setting(text: str) -> tuple[str, Any]:
+    name, equals, value = text.partition("=")
+    known = {f"{stage}.{key}": default for stage in ORDER for key, default in load_stage(stage).parameters.items()}
+    if not equals or name not in known:
+        raise InputError(
+            f"--set {text}: expected STAGE.NAME=VALUE{near(name, known)}; there are: {', '.join(known) or 'none'}"
+        )
+    try:
+        found = json.loads(value)
+    except ValueError:
+        found = value
+    default = known[name]
+    if type(found) is not type(default) and not (isinstance(default, float) and type(found) is int):
+        raise InputError(f"--set {text}: found {value!r}, expected a value such as {default!r}")
+    return name, found
+
+
+@contextmanager
+def _watch(request: Request) -> Iterator[Progress]:
+    """A spinner on standard error for what takes over two seconds, at a terminal only."""
+    if request.quiet or not sys.stderr.isatty():
+        yield silent
+        return
+    from hfanalysis.cli.progress import spinner
+
+    with spinner(request.test) as progress:
+        yield progress
+
+
+def _show(name: str, context: Context, request: Request) -> None:
+    if request.as_json:
+        sys.stdout.write(_json(name, context))
+    elif not request.quiet:
+        from hfanalysis.cli import tables
+
+        tables.show(name, context)
+
+
+def _json(name: str, context: Context) -> str:
+    """The stage's JSON product as it is on disk; for stages without one, what they made."""
+    from hfanalysis.testdata.products import to_json
+
+    if name == "run":
+        return to_json({stage: json.loads(_json(stage, context)) for stage in ORDER if stage not in context.absent})
+    for product in load_stage(name).products:
+        if product.endswith(".json"):
+            return context.product(product).read_text(encoding="utf-8")
+    made = [context.product(product) for product in load_stage(name).products]
+    return to_json({"test": context.id, "products": made})
+
+
+def _warnings(context: Context, name: str) -> list[str]:
+    """What the products up to this stage warn of, each once."""
+    until = len(ORDER) if name == "run" else ORDER.index(name) + 1
+    texts = list(context.definition.warnings)
+    for stage in ORDER[:until]:
+        if stage in context.absent:
+            texts.append(f"{stage}: {context.absent[stage]}")
+            continue
+        texts += _product_warnings(context, stage)
+    return list(dict.fromkeys(texts))
+
+
+def _product_warnings(context: Context, name: str) -> list[str]:
+    found: list[str] = []
+    for product in load_stage(name).products:
+        path = context.product(product)
+        if path.exists() and product.endswith(".json"):
+            found += [str(text) for text in context.read_json(product).get("warnings", [])]
+    return found

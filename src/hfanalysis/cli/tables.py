@@ -1,0 +1,116 @@
+"""What a stage found, as people read it at a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
+from hfanalysis.report import wording
+from hfanalysis.report.wording import Shown, in_words, quantities, shown
+from hfanalysis.stages import ORDER
+from hfanalysis.stages.base import Context
+
+_NARROWEST = 100
+"""Columns assumed where nobody says (a pipe), so that tables do not break."""
+
+_STYLES = {IDENTIFIED: "green", UNPHYSICAL: "red"}
+
+
+def show(name: str, context: Context) -> None:
+    """Print what a stage ("run": all of them) found, on standard output."""
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = max(console.width, _NARROWEST)
+    console.print(_headline(context))
+    for stage in ORDER if name == "run" else (name,):
+        if stage not in context.absent:
+            _SHOWN[stage](context, console)
+
+
+def _headline(context: Context) -> Text:
+    test = context.definition.test
+    words = [test.id, wording.KINDS.get(test.kind, test.kind), str(test.date or "")]
+    source = wording.SOURCES.get(test.source, test.source)
+    style = "" if test.source == "measured" else "bold yellow"
+    return Text("  ").join([Text("  ".join(filter(None, words)), style="bold"), Text(source, style=style)])
+
+
+def _table(*columns: str, title: str) -> Table:
+    table = Table(title=title, title_justify="left", title_style="", box=None, pad_edge=False, header_style="dim")
+    for column in columns:
+        right = column in ("value", "± std", "samples", "rate", "least", "largest")
+        table.add_column(column, justify="right" if right else "left", no_wrap=column != "flags")
+    return table
+
+
+def _quantities(found: Mapping[str, Mapping[str, Any]], title: str) -> Table:
+    table = _table("", "", "value", "± std", "95 % interval", "unit", "verdict", title=title)
+    for name, quantity in found.items():
+        text = shown(quantity)
+        verdict = Text(text.verdict, style=_STYLES.get(text.verdict, "yellow"))
+        table.add_row(name, in_words(name), text.value, text.std, text.interval, text.unit, verdict)
+    return table
+
+
+def _notes(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+    """Why a quantity is missing, or judged as it is, where that is not plain."""
+    for name, quantity in found.items():
+        text: Shown = shown(quantity)
+        if text.why and text.verdict != IDENTIFIED:
+            yield f"{name}: {text.verdict}: {text.why}"
+
+
+def _print(console: Console, found: Mapping[str, Mapping[str, Any]], title: str) -> None:
+    console.print(_quantities(found, title))
+    for note in _notes(found):
+        console.print(Text(f"  {note}"), soft_wrap=True)
+
+
+def _ingest(context: Context, console: Console) -> None:
+    table = _table("channel", "column", "unit", "samples", "rate", "least", "largest", "flags", title="channels")
+    for name, row in context.read_json("ingest.json")["channels"].items():
+        factor, unit = wording.people_unit(row["unit"])
+        ends = [Text("–" if row[end] is None else f"{factor * row[end]:.4g}") for end in ("least", "largest")]
+        flags = ", ".join(f"{count} {flag}" for flag, count in row["flags"].items())
+        rate = "" if row["rate"] is None else f"{row['rate']:.4g} Hz"
+        table.add_row(name, Text(row["label"]), unit, str(row["samples"]), rate, *ends, flags)
+    console.print(table)
+
+
+def _segment(context: Context, console: Console) -> None:
+    product = context.read_json("segments.json")
+    found = {name: product[name] for name in wording.EVENTS if name in product}
+    kind = wording.KINDS.get(product.get("kind", ""), str(product.get("kind", "")))
+    _print(console, found, f"phases (seconds after the valve opens): recognised as {kind}")
+    by_hand = ", ".join(product.get("engineer", []))
+    if by_hand:
+        console.print(Text(f"  set by the engineer in test.toml: {by_hand}"))
+
+
+def _calibrate(context: Context, console: Console) -> None:
+    found = quantities(context.read_json("calibration.json"))
+    segments = context.read_json("segments.json")
+    times = {name: segments[name] for name in ("t_feed", "t_v", "t_purge") if name in segments}
+    _print(console, {name: found[name] for name in found if name not in times} | times, "calibration")
+
+
+def _validate(context: Context, console: Console) -> None:
+    console.print(Text(f"residuals: {context.product('residuals.h5')}"), soft_wrap=True)
+
+
+def _report(context: Context, console: Console) -> None:
+    console.print(Text(f"report: {context.product('report.html')}"), soft_wrap=True)
+
+
+_SHOWN = {
+    "ingest": _ingest,
+    "segment": _segment,
+    "calibrate": _calibrate,
+    "validate": _validate,
+    "report": _report,
+}
