@@ -32,6 +32,13 @@ _HINTS: tuple[tuple[str, str], ...] = (
 )
 """Canonical channel and what its column may be called; the first that fits and whose unit agrees is the guess."""
 
+_OFTEN = {
+    "p_run": ('# zero = "ambient"   # if it is open to the air before ignition',),
+    "p_chamber": ('# zero = "ambient"   # if it is open to the air before ignition',),
+    "thrust": ('tare = "auto"   # zero from the quiet time before ignition and after the burn; none if already done',),
+}
+"""What is often needed for a channel, beside column and unit."""
+
 _TIME = re.compile(r"^(t|time|seconds?|secs?|timestamp|zeit|temps|tiempo|elapsed.*|.*\btime)$", re.IGNORECASE)
 
 _TEMPLATE = """\
@@ -43,7 +50,7 @@ schema = 1
 id = {id_text}
 kind = "hot_fire"               # hot_fire | cold_flow: check
 source = "measured"             # measured | replica | synthetic
-description = ""
+# description = "what was tested, and how it went"
 # date = 2022-04-03
 # stand = "name of the test stand"
 
@@ -51,6 +58,8 @@ description = ""
 files = [{log_text}]
 {time}
 
+# Optional for every channel: accuracy = "2 psi", one standard deviation of its bias (else a class default is used and
+# marked), scale and offset (applied before the unit), gauge = true; see docs/test-toml.md.
 {channels}
 # What is known about the engine. What is not stated is not assumed: results that need it are given as absent.
 # [tank]
@@ -125,7 +134,7 @@ def _place(text: str, target: Path, log: Path | None) -> None:
 def draft(test_id: str, log: Path) -> str:
     """The text of a commented test.toml for ``log``."""
     columns = read_columns(log)
-    time = next((column for column in columns if _TIME.match(column.name)), None)
+    time = _time_column(columns)
     channels = _channels([column for column in columns if column is not time])
     return _TEMPLATE.format(
         id=test_id,
@@ -135,6 +144,12 @@ def draft(test_id: str, log: Path) -> str:
         time=_time_line(time, columns),
         channels=channels,
     )
+
+
+def _time_column(columns: list[Column]) -> Column | None:
+    """The column of the time stamps, by its name; one that states its unit is preferred."""
+    named = [column for column in columns if _TIME.match(column.name)]
+    return next((column for column in named if _fits(column.unit, "time")), named[0] if named else None)
 
 
 def read_columns(log: Path) -> list[Column]:
@@ -204,7 +219,7 @@ def _block(column: Column, channel: str | None) -> str:
         f"[channels.{channel or 'NAME'}]" + (f"   # {LONG_NAMES[channel]}: check" if channel else ""),
         f"column = {_quoted(column.label)}",
         f"unit = {_quoted(column.unit or '…')}" + _remark(column, channel),
-        '# accuracy = "…"   # one standard deviation of its bias; a class default is used and marked where absent',
+        *_OFTEN.get(channel or "", ()),
     ]
     return "\n".join(lines if known else [f"# {line.removeprefix('# ')}" for line in lines]) + "\n"
 

@@ -1,0 +1,203 @@
+"""The charts of a test's page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from markupsafe import Markup
+
+from hfanalysis.report import svg
+from hfanalysis.report.envelope import Envelope, Floats, envelope
+from hfanalysis.report.material import Material, event_list, phase_list, window
+from hfanalysis.report.wording import people_unit, shown
+from hfanalysis.testdata.channels import LONG_NAMES
+from hfanalysis.testdata.log import Channel
+
+PRESSURES = ("p_tank", "p_run", "p_chamber", "p_purge")
+_TIME = "time after the valve opens [s]"
+_LOG_TIME = "log time [s]"
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A chart with its heading and the sentence below it."""
+
+    heading: str
+    chart: Markup
+    caption: str
+
+
+def figures(material: Material) -> list[Figure]:
+    """All charts that the products allow, in the order of the page."""
+    drawn = (
+        _pressures(material),
+        _thrust(material),
+        _mass(material),
+        _injector(material),
+        _tank_free(material),
+        _residual(material),
+    )
+    return [figure for figure in drawn if figure is not None]
+
+
+def _time_label(material: Material) -> str:
+    return _LOG_TIME if material.segments is None else _TIME
+
+
+def _channel(material: Material, channel: Channel, raw: bool = False) -> Envelope:
+    """A channel's good samples within the page's window, in the unit of people."""
+    factor, _ = people_unit(channel.unit)
+    values = channel.raw if raw and channel.raw is not None else channel.values
+    good = channel.good
+    return envelope(channel.time[good] - material.opening, values[good] * factor, *window(material))
+
+
+def _drawn(
+    material: Material,
+    lines: Sequence[tuple[Envelope, str, str]],
+    y_label: str,
+    height: float = 320.0,
+    with_zero: bool = True,
+) -> svg.Plot:
+    """A chart of lines (data, style, name) over phases and events."""
+    extremes = [array for data, _, _ in lines for array in (data.low, data.high)]
+    plot = svg.new_plot(window(material), svg.value_range(extremes, with_zero), height)
+    svg.phases(plot, phase_list(material))
+    svg.axes(plot, _time_label(material), y_label)
+    svg.events(plot, event_list(material))
+    for data, style, name in lines:
+        svg.line(plot, data, style, name)
+    return plot
+
+
+def _range_words(data: Envelope, name: str, unit: str) -> str:
+    if data.empty:
+        return f"{name}: no good samples here"
+    low, high = float(np.nanmin(data.low)), float(np.nanmax(data.high))
+    return f"{name} between {low:.3g} and {high:.3g} {unit}"
+
+
+def _pressures(material: Material) -> Figure | None:
+    channels = [material.log.channels[name] for name in PRESSURES if name in material.log.channels]
+    lines = [(_channel(material, channel), channel.name, channel.name) for channel in channels]
+    lines = [line for line in lines if not line[0].empty]
+    if not lines:
+        return None
+    plot = _drawn(material, lines, "pressure [bar, absolute]", 400.0)
+    words = "; ".join(_range_words(data, LONG_NAMES[name], "bar") for data, name, _ in lines)
+    chart = svg.render(plot, "pressures", "Pressures", f"{words}. {_events_in_words(material)}")
+    return Figure("Pressures", chart, "Mean and, lighter, the extremes of the samples; flagged samples are left out.")
+
+
+def _events_in_words(material: Material) -> str:
+    found = [f"{event.name} at {event.time:.3f} s" for event in event_list(material)]
+    return f"Events: {', '.join(found)}." if found else "No firing was found in this log."
+
+
+def _thrust(material: Material) -> Figure | None:
+    channel = material.log.get("thrust")
+    if channel is None:
+        return None
+    return _with_raw(material, channel, "Thrust", "thrust [N]")
+
+
+def _mass(material: Material) -> Figure | None:
+    channel = material.log.get("m_tank")
+    if channel is None:
+        return None
+    return _with_raw(material, channel, "Tank mass", "tank mass [kg]")
+
+
+def _with_raw(material: Material, channel: Channel, heading: str, y_label: str) -> Figure | None:
+    """A weighed or pushed cell: corrected, and as logged where a zero was taken off."""
+    corrected = _channel(material, channel)
+    lines = [(corrected, channel.name, "corrected" if channel.raw is not None else channel.name)]
+    if channel.raw is not None:
+        lines.insert(0, (_channel(material, channel, raw=True), "raw", "as logged"))
+    if corrected.empty:
+        return None
+    plot = _drawn(material, lines, y_label, 280.0)
+    words = _range_words(corrected, heading, channel.unit)
+    return Figure(heading, svg.render(plot, channel.name, heading, words), _zero_words(channel))
+
+
+def _zero_words(channel: Channel) -> str:
+    if channel.raw is None:
+        return "As logged: no zero was taken."
+    drift = f"; drift of {channel.drift:.3g} {channel.unit} removed, linear in time" if channel.drift else ""
+    return f"Zero of {channel.zero:.3g} {channel.unit} subtracted{drift}."
+
+
+def _injector(material: Material) -> Figure | None:
+    """C_i over the liquid phase, each instant taken for itself."""
+    history = (material.calibration or {}).get("C_i_history") or {}
+    time, value = (np.asarray(history.get(key, []), dtype=float) for key in ("time", "value"))
+    if time.size < 2:
+        return None
+    std = _like(history.get("std"), time)
+    data = envelope(time, value, float(time[0]), float(time[-1]))
+    inner = np.isfinite(value) & (time > time[0] + 0.1 * (time[-1] - time[0]))
+    limits = np.nanpercentile(value[inner] if inner.any() else value, [1, 99])
+    low, high = svg.value_range([np.asarray(limits)], with_zero=False)
+    air = 0.5 * (high - low)
+    plot = svg.new_plot(window(material), (max(0.0, low - air), high + air), 280.0)
+    svg.phases(plot, phase_list(material))
+    svg.axes(plot, _TIME, "C_i [-]")
+    svg.events(plot, event_list(material))
+    bounds = envelope(time, std, float(time[0]), float(time[-1])).mean
+    svg.band(plot, data.time, data.mean - 1.96 * bounds, data.mean + 1.96 * bounds, "C_i")
+    svg.line(plot, Envelope(data.time, data.mean, data.mean, data.mean), "C_i", "C_i(t)")
+    words = _coefficient_level(material, plot)
+    chart = svg.render(plot, "injector", "Injector coefficient over time", words)
+    return Figure(
+        "Injector coefficient over time",
+        chart,
+        f"{words} A coefficient that drifts says that the model lacks something.",
+    )
+
+
+def _coefficient_level(material: Material, plot: svg.Plot) -> str:
+    quantity = (material.calibration or {}).get("C_i") or {}
+    if quantity.get("value") is None:
+        return "Each instant taken for itself, with its 95 % interval."
+    svg.level(plot, quantity["value"], "C_i")
+    text = shown(quantity)
+    dashed = f"dashed: the calibrated C_i = {text.value} ± {text.std}"
+    return f"Each instant taken for itself, with its 95 % interval; {dashed}."
+
+
+def _like(values: object, time: Floats) -> Floats:
+    if values is None:
+        return np.zeros_like(time)
+    return np.broadcast_to(np.asarray(values, dtype=float), time.shape)
+
+
+def _tank_free(material: Material) -> Figure | None:
+    """The tank model alone against the measurement."""
+    found = material.residuals
+    if found is None or found.time.size < 2:
+        return None
+    span = (float(found.time[0]), float(found.time[-1]))
+    measured, model = (envelope(found.time, values * 1e-5, *span) for values in (found.measured, found.model))
+    plot = _drawn(material, [(measured, "p_tank", "measured"), (model, "model", "model")], "p_tank [bar]", 320.0)
+    rms = float(np.sqrt(np.nanmean(found.residual**2))) * 1e-5
+    noise = float(np.sqrt(np.nanmean(found.noise_std**2))) * 1e-5
+    words = f"Root mean square of the residual {rms:.2f} bar, of the noise {noise:.2f} bar."
+    chart = svg.render(plot, "tank-free", "Tank model against measured tank pressure", words)
+    return Figure("Tank model against measurement", chart, f"Only the measured chamber pressure goes in. {words}")
+
+
+def _residual(material: Material) -> Figure | None:
+    found = material.residuals
+    if found is None or found.time.size < 2:
+        return None
+    span = (float(found.time[0]), float(found.time[-1]))
+    residual = envelope(found.time, found.residual * 1e-5, *span)
+    noise = envelope(found.time, found.noise_std * 1e-5, *span).mean
+    plot = _drawn(material, [(residual, "residual", "residual")], "measured − model [bar]", 260.0)
+    svg.band(plot, residual.time, -1.96 * noise, 1.96 * noise, "noise")
+    svg.level(plot, 0.0, "zero")
+    words = "Residual of the tank pressure; the grey band is what noise alone would do in 95 % of the samples."
+    return Figure("Residual", svg.render(plot, "residual", "Residual of the tank pressure", words), words)

@@ -1,0 +1,114 @@
+"""A made-up test with every product the page can show, small enough to be made in a moment."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hfanalysis.report.material import Material, Residuals
+from hfanalysis.testdata.definition import load_definition
+from hfanalysis.testdata.log import Channel, TestLog
+from hfanalysis.testdata.summary import summary
+
+TOML = """\
+schema = 1
+[test]
+id = "{id}"
+kind = "hot_fire"
+date = 2024-05-17
+source = "{source}"
+description = {description}
+[log]
+files = ["log.csv"]
+time = {{ column = "time", unit = "s" }}
+[channels.p_tank]
+column = {column}
+unit = "bar"
+"""
+
+
+def quantity(value: float, unit: str, std: float, **more: Any) -> dict[str, Any]:
+    """A quantity as products state it."""
+    return {"value": value, "unit": unit, "std": std, "ci95": [value - 1.96 * std, value + 1.96 * std], **more}
+
+
+def definition(folder: Path, **text: str) -> Any:
+    """A test.toml on disk, loaded; texts are put in as TOML strings, unescaped."""
+    words = {"source": "replica", "description": '"made up"', "column": '"p_tank"', **text}
+    path = folder / "HF0" / "test.toml"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    (path.parent / "log.csv").write_text("time,p_tank\n0,1\n1,2\n")
+    path.write_text(TOML.format(id="HF0", **words), encoding="utf-8")
+    return load_definition(path)
+
+
+def channel(name: str, unit: str, values: Any, label: str | None = None, **more: Any) -> Channel:
+    """A channel at 200 Hz from -3 to 20 s after an opening at 100 s, with a few dropped samples."""
+    time = np.arange(-3.0, 20.0, 0.005)
+    noise = np.random.default_rng(1).normal(0.0, 0.01, time.size)
+    signal = np.asarray(values(time) * (1.0 + noise))
+    flags = np.zeros(time.size, np.uint8)
+    flags[1000:1010] = 1
+    return Channel(name, unit, time + 100.0, signal, flags, 1e4, True, label or name, **more)
+
+
+def log(label: str | None = None) -> TestLog:
+    """Pressures, thrust and tank mass of a plausible firing."""
+    on = lambda t: 1.0 / (1.0 + np.exp(-30.0 * t))  # noqa: E731
+    thrust = channel("thrust", "N", lambda t: 2400.0 * on(t) * np.exp(-np.maximum(t, 0.0) / 9.0))
+    thrust = Channel(**{**vars(thrust), "raw": thrust.values + 40.0, "zero": 40.0, "zero_std": 1.0, "drift": 12.0})
+    made = [
+        channel("p_tank", "Pa", lambda t: 6.5e6 * np.exp(-np.maximum(t, 0.0) / 14.0), label),
+        channel("p_run", "Pa", lambda t: 1e5 + 4.2e6 * on(t) * np.exp(-np.maximum(t, 0.0) / 13.0)),
+        channel("p_chamber", "Pa", lambda t: 1e5 + 1.3e6 * on(t) * np.exp(-np.maximum(t, 0.0) / 9.0)),
+        channel("p_purge", "Pa", lambda t: 3.9e6 - 1e4 * t),
+        thrust,
+        channel("m_tank", "kg", lambda t: 8.35 - np.clip(t, 0.0, 6.0) * 1.3),
+    ]
+    return TestLog({item.name: item for item in made}, ("channel p_run: 10 of 4600 samples flagged dropout",))
+
+
+SEGMENTS: dict[str, Any] = {
+    "kind": "hot_fire",
+    "t_open": quantity(100.0, "s", 0.002),
+    "t_feed": quantity(0.87, "s", 0.02),
+    "t_v": quantity(5.271, "s", 0.006),
+    "t_purge": quantity(5.99, "s", 0.011, why="slope of the purge line"),
+    "t_fuel_out": {"value": None, "reason": "no common fall of chamber pressure and thrust"},
+    "t_end": quantity(17.0, "s", 0.05),
+    "engineer": ["t_end"],
+    "notes": [],
+    "warnings": [],
+    "provenance": {"hfanalysis": "0.1.0", "raw": {"log.csv": "ab" * 32}},
+}
+
+_TIME = np.linspace(0.9, 5.2, 120)
+
+CALIBRATION: dict[str, Any] = {
+    "C_i": quantity(0.2931, "", 0.0034, verdict="identified"),
+    "m": quantity(-3.1, "", 0.4, verdict="unphysical", why="needs 14 kW of heat"),
+    "Z": {"value": None, "reason": "the vapour phase lasts 0.05 s", "verdict": "not identifiable"},
+    "K_loss": quantity(6.371e8, "1/m^4", 2.1e7, verdict="identified"),
+    "p_loss_liquid": quantity(11.43e5, "Pa", 0.12e5, verdict="identified"),
+    "rest": {"temperature": quantity(293.4, "K", 0.3), "finding": "pressure and mass fit a saturated tank"},
+    "C_i_history": {"time": list(_TIME), "value": list(0.29 + 0.002 * _TIME), "std": [0.004] * _TIME.size},
+    "warnings": ["the purge check valve opens before the liquid is gone"],
+    "provenance": {"hfanalysis": "0.1.0", "raw": {"log.csv": "ab" * 32}, "parameters": {}},
+}
+
+
+def residuals() -> Residuals:
+    """Half a bar of misfit on noise of 0.1 bar."""
+    time = np.linspace(0.0, 6.0, 1200)
+    model = 6.5e6 * np.exp(-time / 14.0)
+    residual = 0.5e5 * np.sin(time)
+    return Residuals(time, model + residual, model, residual, np.full(time.size, 1e4))
+
+
+def material(folder: Path, label: str | None = None, **text: str) -> Material:
+    """All of it."""
+    made = log(label)
+    about = {**summary(made), "provenance": {}}
+    return Material(definition(folder, **text), made, about, SEGMENTS, CALIBRATION, residuals(), {})
