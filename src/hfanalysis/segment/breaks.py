@@ -8,11 +8,12 @@ a wandering sensor does not pass for a precise one.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.signals import Signal
 
 Array = NDArray[np.float64]
@@ -20,6 +21,10 @@ Design = Callable[[Array, float], Array]
 
 RELAXATIONS = (0.0, 0.002, 0.005, 0.012, 0.03, 0.07, 0.15, 0.3, 0.6)
 """Time constants tried for what follows a break [s]; 0 is a step."""
+
+
+WANDER_POINTS = 120
+"""Block means over a window that are enough to carry the wander into the instant."""
 
 
 @dataclass(frozen=True)
@@ -70,27 +75,30 @@ def find_break(
     candidates: Array,
     designs: Sequence[Design],
     constants: Sequence[float] = (0.0,),
-    quiet: Signal | None = None,
+    noise: Noise | None = None,
 ) -> Break:
     """The most likely instant of a break in a signal (a window around it), over the candidate instants.
 
     ``designs`` are the shapes tried; each instant takes its best. ``constants`` are their time constants, for the record.
-    ``quiet`` is a stretch of the same sensor in which nothing happens: its slow wander counts as noise, too.
+    ``noise`` is the sensor's, with its slow wander, which the residuals of so short a window do not show.
     """
     sums = np.array([[_sum_of_squares(signal, design, c) for c in candidates] for design in designs])
     best = int(np.argmin(sums.min(axis=1)))
     profile = sums.min(axis=0)
     instant = float(candidates[int(np.argmin(profile))])
     scale = _noise_variance(signal, designs[best], instant)
-    if quiet is not None:
-        scale = max(scale, slow_variance(quiet.value, signal.time.size))
     log_likelihood = -0.5 * (profile - profile.min()) / scale
     constant = constants[best] if best < len(constants) else 0.0
-    return _summarise(candidates, log_likelihood, constant, (signal.name,), signal.step)
+    found = _summarise(candidates, log_likelihood, constant, (signal.name,), signal.step)
+    if noise is None:
+        return found
+    return replace(found, std=max(found.std, float(np.hypot(_linear_std(signal, designs[best], found.time, noise), 0.5 * signal.step))))
 
 
 def combine(breaks: Sequence[Break], step: float) -> Break:
     """One instant from several signals that break together: their profiles multiply (same candidates)."""
+    if len(breaks) == 1:
+        return breaks[0]
     total = np.sum([b.log_likelihood for b in breaks], axis=0)
     names = tuple(name for b in breaks for name in b.channels)
     return _summarise(breaks[0].candidates, total - total.max(), breaks[0].relaxation, names, step)
@@ -120,26 +128,22 @@ def _residual(signal: Signal, design: Design, instant: float) -> Array:
     return np.asarray(signal.value - x @ beta)
 
 
+def _linear_std(signal: Signal, design: Design, instant: float, noise: Noise) -> float:
+    """Standard deviation of the instant from white noise and wander together, to first order in both."""
+    part = signal.reduced(float(np.ptp(signal.time)) / WANDER_POINTS)
+    small = max(1e-4, 0.05 * signal.step)
+    x = design(part.time, instant)
+    beta, *_ = np.linalg.lstsq(x, part.value, rcond=None)
+    by_instant = (design(part.time, instant + small) - design(part.time, instant - small)) @ beta / (2.0 * small)
+    weights = np.linalg.pinv(np.column_stack([x, by_instant]), rcond=1e-10)[-1]
+    return noise.std_of(weights, part.time)
+
+
 def _noise_variance(signal: Signal, design: Design, instant: float) -> float:
     """Variance per independent sample: that of the residuals times the length of their memory in samples."""
     residual = _residual(signal, design, instant)
     variance = float(residual @ residual) / max(residual.size - 6, 1)
     return max(variance * memory_length(residual), 1e-12 * float(np.ptp(signal.value)) ** 2, 1e-300)
-
-
-def slow_variance(quiet: Array, samples: int) -> float:
-    """Variance per independent sample of a quiet sensor on the time scale of a window of that many samples.
-
-    The mean of the periodogram between one and six periods per window; equal to the variance for white noise,
-    larger for a sensor that wanders (1/f). 0 where the stretch is shorter than the window.
-    """
-    n = quiet.size
-    if n < max(samples, 16):
-        return 0.0
-    x = quiet - quiet.mean()
-    power = np.abs(np.fft.rfft(x)) ** 2 / n
-    low, high = max(int(n / samples), 1), max(int(np.ceil(6.0 * n / samples)), 4)
-    return float(power[low : high + 1].mean())
 
 
 def memory_length(residual: Array) -> float:

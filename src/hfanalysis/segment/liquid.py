@@ -14,6 +14,7 @@ import numpy as np
 
 from hfanalysis.engine.tank import mass_along_blowdown
 from hfanalysis.segment.breaks import Break
+from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.refine import refine_kink, refine_step
 from hfanalysis.segment.signals import Array, Signal
 from hfanalysis.thermo.saturation import Saturation
@@ -65,7 +66,7 @@ def find_liquid_end(signals: Mapping[str, Signal], end: float, expected: float |
         return None
     reach = max(0.12, 4.0 * tank.step)
     half = min(max(0.3, 15.0 * tank.step), max(0.8 * rough, 6.0 * tank.step))
-    knee = refine_kink(tank, rough, half + reach, half + reach, reach, quiet=tank.between(-3.0, -0.05))
+    knee = refine_kink(tank, rough, half + reach, half + reach, reach, noise=Noise.of(tank, tank.between(-3.0, -0.05)))
     if knee is None:
         return LiquidEnd(rough, 0.5 * reach, ("p_tank",), {})
     return _dated_by_steps(signals, knee, half)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.refine import refine_kink
 from hfanalysis.segment.signals import Array, Signal
 
@@ -31,8 +32,8 @@ def find_nitrogen(purge: Signal, end: float, tank: Signal | None) -> tuple[float
         return obstacle
     window = max(0.35, 15.0 * purge.step)
     reach = max(0.2, 6.0 * purge.step)
-    still = purge.between(-np.inf, rough - reach)
-    found = refine_kink(purge, rough, window + reach, window + reach, reach, flat=True, quiet=still)
+    noise = Noise.of(purge, purge.between(-np.inf, rough - reach))
+    found = refine_kink(purge, rough, window + reach, window + reach, reach, flat=True, noise=noise)
     return (found.time, found.std) if found else (rough, reach)
 
 

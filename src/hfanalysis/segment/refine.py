@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hfanalysis.segment.breaks import RELAXATIONS, Break, Design, combine, find_break, kink, relaxation
+from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.signals import Array, Signal
 
 COARSE, FINE = 41, 61
@@ -19,15 +20,14 @@ def refine_kink(
     after: float,
     reach: float,
     flat: bool = False,
-    quiet: Signal | None = None,
+    noise: Noise | None = None,
 ) -> Break | None:
     """A change of slope near ``rough`` [s]: window [rough - before, rough + after], searched within ``reach`` of rough.
 
-    ``flat`` says that the signal is constant before the break; ``quiet`` is a stretch of it in which nothing happens, for its
-    noise. None where the window holds too few samples.
+    ``flat`` says that the signal is constant before the break; ``noise`` is that of its sensor. None where the window holds too few samples.
     """
     design = kink(order=2, before=0 if flat else 2)
-    return _search([signal], rough, before, after, reach, [design], (0.0,), quiet)
+    return _search([signal], rough, before, after, reach, [design], (0.0,), noise)
 
 
 def refine_step(signals: Sequence[Signal], rough: float, before: float, after: float, reach: float, order: int = 1) -> Break | None:
@@ -44,16 +44,16 @@ def _search(
     reach: float,
     designs: Sequence[Design],
     constants: Sequence[float],
-    quiet: Signal | None = None,
+    noise: Noise | None = None,
 ) -> Break | None:
     windows = [s.between(rough - before, rough + after) for s in signals]
     windows = [w for w in windows if _enough(w, rough)]
     if not windows:
         return None
-    found = _profile(windows, np.linspace(rough - reach, rough + reach, COARSE), designs, constants, quiet)
+    found = _profile(windows, np.linspace(rough - reach, rough + reach, COARSE), designs, constants, noise)
     step = min(w.step for w in windows)
     zoom = min(max(5.0 * found.std, 2.5 * step, 2.0 * reach / COARSE), reach)
-    return _profile(windows, np.linspace(found.time - zoom, found.time + zoom, FINE), designs, constants, quiet)
+    return _profile(windows, np.linspace(found.time - zoom, found.time + zoom, FINE), designs, constants, noise)
 
 
 def _profile(
@@ -61,9 +61,9 @@ def _profile(
     candidates: Array,
     designs: Sequence[Design],
     constants: Sequence[float],
-    quiet: Signal | None,
+    noise: Noise | None,
 ) -> Break:
-    breaks = [find_break(w, candidates, designs, constants, quiet) for w in windows]
+    breaks = [find_break(w, candidates, designs, constants, noise) for w in windows]
     return combine(breaks, min(w.step for w in windows))
 
 

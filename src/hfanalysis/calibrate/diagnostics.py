@@ -1,0 +1,164 @@
+"""Beside the calibrated constants: the tank at rest, and C_i over time as the tank's energy has it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.calibrate.blowdown import Inputs, Reduction
+from hfanalysis.calibrate.histories import Histories
+from hfanalysis.calibrate.loaded_mass import LoadedMass, load_cell_mass
+from hfanalysis.calibrate.rest import (
+    MODEL_MASS_SPREAD,
+    STRATIFIED,
+    Rest,
+    blowdown_mass,
+    fit_bulk,
+    liquid_phase_heat,
+    state_remarks,
+)
+from hfanalysis.engine.tank import energy_derivatives
+from hfanalysis.quantity import Quantity
+from hfanalysis.segment.phases import Segments
+from hfanalysis.testdata.log import TestLog
+from hfanalysis.thermo.saturation import Saturation
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CoefficientHistory:
+    """C_i over time [s] from the tank's energy balance, with standard deviations; a diagnostic, not a fit."""
+
+    time: Array
+    value: Array
+    std: Array
+
+    def to_json(self) -> dict[str, Any]:
+        """Lists, as calibration.json has them."""
+        return {name: [round(float(x), 6) for x in getattr(self, name)] for name in ("time", "value", "std")}
+
+
+def coefficient_history(
+    saturation: Saturation, histories: Histories, inputs: Inputs, left: Array, window: float = 0.5
+) -> CoefficientHistory | None:
+    """C_i(t) from mdot = U_T / (h_l - U_M) dT/dt of the saturated tank over the injector's ideal flow.
+
+    Heat into the tank makes it too small, nitrogen too; where it drifts, the tank or the injector does something that the model
+    lacks. ``left`` is the mass gone [kg] at the histories' times. None for a liquid phase shorter than two windows.
+    """
+    start, end = max(inputs.t_feed, 0.1), inputs.t_v - 0.02
+    if end - start < 2.0 * window:
+        return None
+    h = histories
+    t = h.tank_temperature(saturation)
+    drop = np.maximum(h.run - h.chamber, 0.0)
+    ideal = inputs.area * np.sqrt(2.0 * saturation.liquid_density(t) * drop)
+    rows = []
+    for middle in np.arange(start + 0.5 * window, end - 0.5 * window + 1e-9, 0.5 * window):
+        part = np.abs(h.time - middle) <= 0.5 * window
+        if part.sum() < 6 or ideal[part].mean() <= 0.0:
+            continue
+        slope, error = _slope(h.time[part], t[part])
+        mass = inputs.mass - float(left[part].mean())
+        by_mass, by_temperature, h_l = energy_derivatives(
+            saturation.kernel_table, inputs.volume, mass, float(t[part].mean())
+        )
+        scale = -by_temperature / (h_l - by_mass) / float(ideal[part].mean())
+        rows.append((middle, scale * slope, abs(scale) * error))
+    if not rows:
+        return None
+    table = np.array(rows)
+    return CoefficientHistory(table[:, 0], table[:, 1], table[:, 2])
+
+
+def _slope(time: Array, value: Array) -> tuple[float, float]:
+    x = time - time.mean()
+    slope = float(x @ value / (x @ x))
+    residual = value - value.mean() - slope * x
+    return slope, float(np.sqrt(residual @ residual / max(x.size - 2, 1) / (x @ x)))
+
+
+def rest_of(
+    log: TestLog,
+    segments: Segments,
+    saturation: Saturation,
+    histories: Histories,
+    inputs: Inputs,
+    r: Reduction,
+    left: Array,
+    mass: LoadedMass,
+) -> tuple[Rest, list[str]]:
+    """The tank at rest and what the blowdown says of it, with remarks for people."""
+    tank = histories.signals["p_tank"]
+    channel = log["p_tank"]
+    bias = channel.zero_std if channel.zero_std is not None else channel.accuracy
+    still = tank.between(-2.0, -0.1)
+    pressure = float(np.median(still.value)) if still.time.size else float(tank.value[0])
+    share, remarks = state_remarks(saturation, inputs.volume, inputs.mass, pressure)
+    t_rest = float(saturation.temperature(pressure))
+    slope = float(saturation.pressure_slope(t_rest)) if np.isfinite(t_rest) else np.nan
+    liquid = (histories.time > max(inputs.t_feed, 0.1)) & (histories.time < inputs.t_v - 0.01)
+    bulk = fit_bulk(left[liquid], histories.tank_temperature(saturation)[liquid])
+    rest = Rest(
+        Quantity(pressure, "Pa", bias),
+        Quantity(t_rest, "K", bias / slope) if np.isfinite(t_rest) else Quantity.absent("above the critical pressure"),
+        _bulk_quantity(bulk, bias / slope if np.isfinite(slope) else 0.2),
+        Quantity(share, "") if share is not None else Quantity.absent("not a saturated tank"),
+        *_masses_and_heat(saturation, inputs, r, bulk.temperature if bulk else None),
+        _cell(log, segments),
+        (),
+    )
+    remarks += _stratified(rest) + _mass_remarks(rest, mass)
+    return Rest(**{**{n: getattr(rest, n) for n in Rest.__dataclass_fields__}, "remarks": tuple(remarks)}), remarks
+
+
+def _bulk_quantity(bulk: Any, error: float) -> Quantity:
+    if bulk is None:
+        return Quantity.absent("too few samples between t_feed and t_v")
+    return Quantity(bulk.temperature, "K", float(np.hypot(bulk.std, error)))
+
+
+def _masses_and_heat(saturation: Saturation, inputs: Inputs, r: Reduction, bulk: float | None) -> tuple[Quantity, Quantity]:
+    own = blowdown_mass(saturation, inputs.volume, bulk, r.temperature_v) if bulk is not None else None
+    if bulk is None or own is None:
+        reason = "the blowdown does not cool as a saturated tank does"
+        return Quantity.absent(reason), Quantity.absent(reason)
+    heat = liquid_phase_heat(saturation, inputs.volume, inputs.mass, bulk, r.temperature_v)
+    return (
+        Quantity(own, "kg", MODEL_MASS_SPREAD * own, why="from p_tank and volume alone, adiabatic"),
+        Quantity(heat / inputs.t_v, "W", why="mean over the liquid phase that would reconcile mass and pressures"),
+    )
+
+
+def _cell(log: TestLog, segments: Segments) -> Quantity:
+    cell = load_cell_mass(log, segments)
+    return Quantity(cell[0], "kg", cell[1]) if cell else Quantity.absent("no load cell reading at rest")
+
+
+def _stratified(rest: Rest) -> list[str]:
+    if rest.temperature.value is None or rest.bulk_temperature.value is None:
+        return []
+    warmer = rest.temperature.value - rest.bulk_temperature.value
+    if warmer < STRATIFIED:
+        return []
+    return [
+        f"the tank is stratified or late to boil: {rest.temperature.value - 273.15:.1f} degC by its pressure at rest, but the blowdown "
+        f"starts from {rest.bulk_temperature.value - 273.15:.1f} degC"
+    ]
+
+
+def _mass_remarks(rest: Rest, mass: LoadedMass) -> list[str]:
+    out = []
+    cell, own = rest.load_cell_mass, rest.blowdown_mass
+    if cell.value is not None and abs(cell.value - mass.value) > 3.0 * np.hypot(cell.std or 0.0, mass.std) + 0.02 * mass.value:
+        out.append(f"the load cell reads {cell.value:.2f} kg at rest, the calibration works with {mass.value:.2f} kg")
+    if own.value is not None and abs(own.value - mass.value) > 3.0 * np.hypot(own.std or 0.0, mass.std):
+        out.append(
+            f"the blowdown fits {own.value:.1f} kg, not {mass.value:.1f} kg: the mass is off by kilograms, or heat or nitrogen "
+            "carries the pressure; C_i scales with the mass that is right"
+        )
+    return out

@@ -1,0 +1,111 @@
+"""The measured pressures on one clock, counted from the valve opening: what every reduction starts from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.errors import AbsentError
+from hfanalysis.segment.breaks import kink
+from hfanalysis.segment.noise import Noise, pool
+from hfanalysis.segment.phases import Segments
+from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import TestLog
+from hfanalysis.thermo.saturation import Saturation
+
+Array = NDArray[np.float64]
+
+READING_POINTS = 150
+"""Block means over the window of a reading: few enough for a full covariance."""
+
+FINEST = 0.002
+"""Block means over this time [s]: fine against every phase, coarse enough for hundreds of repetitions."""
+
+
+@dataclass(frozen=True)
+class Histories:
+    """Pressures [Pa] at ``time`` [s after opening], all of one length, good samples only (linear between them).
+
+    ``signals`` are the channels they come from, with all their samples; ``assumed`` says what was taken for missing.
+    """
+
+    time: Array
+    tank: Array
+    run: Array
+    chamber: Array
+    signals: dict[str, Signal]
+    noises: dict[str, Noise]
+    assumed: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, log: TestLog, segments: Segments, definition: TestDefinition, end: float) -> Histories:
+        """From the opening to ``end`` [s]. Raises AbsentError where the log has no p_tank or no p_run."""
+        origin = segments.t_open.value or 0.0
+        signals = {
+            name: Signal.of(log.channels[name]).shifted(origin)
+            for name in ("p_tank", "p_run", "p_chamber", "p_purge")
+            if name in log.channels and log.channels[name].good.sum() > 7
+        }
+        noises = _noises(signals, segments.time("t_purge"))
+        for name in ("p_tank", "p_run"):
+            if name not in signals:
+                raise AbsentError(f"the log has no {name}")
+        blocks = signals["p_tank"].between(0.0, end).reduced(FINEST)
+        if blocks.time.size < 8:
+            raise AbsentError("too few good samples of p_tank after the opening")
+        time = blocks.time
+        run = _on(signals["p_run"], time)
+        if "p_chamber" in signals:
+            return cls(time, blocks.value, run, _on(signals["p_chamber"], time), signals, noises)
+        ambient = np.full(time.size, definition.ambient_pressure.value)
+        return cls(time, blocks.value, run, ambient, signals, noises, ("p_chamber is not in the log: ambient pressure taken",))
+
+    def mean(self, values: Array, start: float, end: float) -> float:
+        """Mean of values on this clock over [start, end)."""
+        part = (self.time >= start) & (self.time < end)
+        return float(values[part].mean()) if part.any() else float("nan")
+
+    def tank_temperature(self, saturation: Saturation) -> Array:
+        """T_sat(p_tank) [K]; pressures beyond the critical point count as just below it."""
+        low, high = saturation.pressure_range
+        return saturation.temperature(np.clip(self.tank, low, high))
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Value of a signal at an instant, its mean slope there [unit/s], and how it is made from block means."""
+
+    value: float
+    slope: float
+    weights: Array
+    time: Array
+
+
+def read_at_break(signal: Signal, instant: float, before: float, after: float) -> Reading:
+    """A signal where its slope breaks, from smooth curves over ``before`` and ``after`` seconds on both sides."""
+    window = signal.between(instant - before, instant + after).reduced((before + after) / READING_POINTS)
+    if window.time.size < 8:
+        nearest = np.array([float(np.interp(instant, signal.time, signal.value))])
+        return Reading(float(nearest[0]), 0.0, np.ones(1), np.array([instant]))
+    x = kink(order=2)(window.time, instant)
+    weights = np.linalg.pinv(x, rcond=1e-9)
+    beta = weights @ window.value
+    return Reading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
+
+
+def _noises(signals: Mapping[str, Signal], t_purge: float | None) -> dict[str, Noise]:
+    """Noise of each pressure sensor from before the opening; the purge line's from before it sags."""
+    still = {name: -0.02 for name in signals}
+    if "p_purge" in still and t_purge is not None:
+        still["p_purge"] = t_purge - 0.1
+    return pool({name: Noise.of(s, s.between(-20.0, still[name])) for name, s in signals.items()})
+
+
+def _on(signal: Signal, time: Array) -> Array:
+    """A signal on another clock: block means where it is finer than the clock, else linear between its samples."""
+    reduced = signal.between(time[0] - 1.0, time[-1] + 1.0).reduced(FINEST)
+    return reduced.at(time)

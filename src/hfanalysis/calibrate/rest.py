@@ -1,0 +1,114 @@
+"""The tank at rest: do pressure, loaded mass and volume fit a saturated tank, and how cold is the liquid really?
+
+A tank that was filled and heated is hotter above than below; its gauge shows the warm top. When the valve opens the pressure
+falls to what the bulk of the liquid can sustain, and from there on mass and temperature are tied by the saturated blowdown. So
+the blowdown says which bulk temperature it started from, and also, without a load cell, which mass.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.engine.tank import mass_along_blowdown, split
+from hfanalysis.quantity import Quantity
+from hfanalysis.thermo.saturation import Property, Saturation
+
+Array = NDArray[np.float64]
+
+STRATIFIED = 2.0
+"""Difference [K] between the gauge's and the bulk's saturation temperature that is worth a word."""
+
+MODEL_MASS_SPREAD = 0.05
+"""Relative standard deviation of the blowdown's own mass from heat and stratification that an adiabatic tank lacks."""
+
+
+@dataclass(frozen=True)
+class Rest:
+    """What is known of the tank before and just after the opening; quantities in SI, ``remarks`` in words."""
+
+    pressure: Quantity
+    temperature: Quantity
+    bulk_temperature: Quantity
+    liquid_fraction: Quantity
+    blowdown_mass: Quantity
+    liquid_phase_heat: Quantity
+    load_cell_mass: Quantity
+    remarks: tuple[str, ...]
+
+    def to_json(self) -> dict[str, Any]:
+        """The ``rest`` block of calibration.json."""
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
+
+@dataclass(frozen=True)
+class BulkFit:
+    """Temperature of the saturated liquid [K] against the mass that has left [kg], taken back to the opening."""
+
+    temperature: float
+    std: float
+
+
+def fit_bulk(left: Array, temperature: Array) -> BulkFit | None:
+    """Extrapolate T_sat(p_tank) to the moment when nothing had left, over samples from t_feed to t_v.
+
+    ``left`` [kg] increases; the temperature of a saturated blowdown is close to a quadratic in it. None for too few samples.
+    """
+    if left.size < 12:
+        return None
+    scale = left[-1]
+    coefficients, covariance = np.polyfit(left / scale, temperature, 2, cov=True)
+    return BulkFit(float(coefficients[-1]), float(np.sqrt(covariance[-1, -1])))
+
+
+def blowdown_mass(saturation: Saturation, volume: float, bulk: float, t_v_temperature: float) -> float | None:
+    """Mass [kg] that a saturated adiabatic tank of ``volume`` [m^3] held at ``bulk`` [K] if it ran dry at the other [K]."""
+    if not t_v_temperature < bulk < saturation.t_max:
+        return None
+    return float(mass_along_blowdown(saturation, volume, t_v_temperature, np.array([bulk]))[0])
+
+
+def liquid_phase_heat(saturation: Saturation, volume: float, mass: float, bulk: float, t_end: float) -> float:
+    """Heat [J] that the tank received from the opening to t_v: Q = U_v - U_0 + integral of h_l dm.
+
+    ``mass`` [kg] at ``bulk`` [K] leaves as saturated liquid until only vapour at ``t_end`` [K] is left; the liquid's enthalpy is
+    taken along a straight line of T against mass.
+    """
+    parts = split(saturation, volume, mass, bulk)
+    u_l, u_v = (float(saturation.energy(p, bulk)[0]) for p in (Property.LIQUID_ENERGY, Property.VAPOR_ENERGY))
+    start = parts.liquid * u_l + parts.vapor * u_v
+    vapor = volume * float(saturation.vapor_density(t_end))
+    end = vapor * float(saturation.energy(Property.VAPOR_ENERGY, t_end)[0])
+    h = saturation.energy(Property.LIQUID_ENTHALPY, np.linspace(bulk, t_end, 101))[0]
+    return end - start + float(h.mean()) * (mass - vapor)
+
+
+def state_remarks(saturation: Saturation, volume: float, mass: float, pressure: float) -> tuple[float | None, list[str]]:
+    """Liquid share of the volume at rest, and in words where pressure, mass and volume do not fit a saturated tank."""
+    t = float(saturation.temperature(pressure))
+    if not np.isfinite(t):
+        limit = saturation.pressure_range[1]
+        return None, [
+            f"at rest the tank stands at {pressure / 1e5:.1f} bar, above nitrous oxide's critical pressure "
+            f"({limit / 1e5:.1f} bar): it is supercharged or its gauge is off, and no saturated tank"
+        ]
+    parts = split(saturation, volume, mass, t)
+    share = parts.liquid / float(saturation.liquid_density(t)) / volume
+    where = f"{mass:.2f} kg in {volume * 1e3:.1f} L at {pressure / 1e5:.1f} bar ({t - 273.15:.1f} degC if saturated)"
+    if parts.vapor < 0.0:
+        fits = _coldest_fit(saturation, volume, mass)
+        return share, [f"{where}: more than the tank holds as saturated liquid; it fits only below {fits - 273.15:.0f} degC, so the "
+                       "bulk is colder than the gauge says, the mass is too large, or the tank is supercharged"]  # fmt: skip
+    if parts.liquid < 0.0:
+        return share, [f"{where}: less than the saturated vapour alone would weigh; mass, volume or pressure is off"]
+    return share, []
+
+
+def _coldest_fit(saturation: Saturation, volume: float, mass: float) -> float:
+    """Temperature [K] below which the mass fits as liquid alone."""
+    t = np.linspace(saturation.t_min, saturation.t_max, 400)
+    density = saturation.liquid_density(t)
+    return float(np.interp(mass / volume, density[::-1], t[::-1]))

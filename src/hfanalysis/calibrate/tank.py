@@ -1,0 +1,245 @@
+"""The tank's calibration from log, phases and test.toml: assembles inputs, reduces, draws, and judges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, reduce
+from hfanalysis.calibrate.diagnostics import CoefficientHistory, coefficient_history, rest_of
+from hfanalysis.calibrate.histories import Histories, Reading, read_at_break
+from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
+from hfanalysis.calibrate.rest import Rest
+from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
+from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
+from hfanalysis.errors import AbsentError
+from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
+from hfanalysis.segment.phases import Segments
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import TestLog
+from hfanalysis.thermo.nitrous import saturation as saturation_of
+from hfanalysis.thermo.saturation import Saturation
+
+Array = NDArray[np.float64]
+
+VAPOR_PRESSURE_SHARE = 0.6
+"""Without nitrogen the vapour phase is followed until the tank has this share of its pressure at t_v."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Result of the tank calibration: quantities by their names in calibration.json."""
+
+    quantities: dict[str, Quantity]
+    rest: Rest | None
+    history: CoefficientHistory | None
+    inputs: Inputs | None
+    warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    settings: dict[str, Any] = field(default_factory=dict)
+
+    def to_json(self) -> dict[str, Any]:
+        """The content of calibration.json."""
+        return {
+            **self.quantities,
+            "rest": self.rest.to_json() if self.rest else None,
+            "C_i_history": self.history.to_json() if self.history else None,
+            "notes": list(self.notes),
+            "warnings": list(self.warnings),
+            "settings": self.settings,
+        }
+
+
+NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase",
+         "vapor_mass_at_t_v")  # fmt: skip
+
+
+def calibrate(log: TestLog, segments: Segments, definition: TestDefinition, samples: int) -> Calibration:
+    """Calibrate the tank of one test; ``samples`` repetitions give the intervals.
+
+    Raises AbsentError where neither C_i nor anything else can be had because p_tank, p_run or t_v is missing.
+    """
+    t_v = segments.time("t_v")
+    if t_v is None:
+        raise AbsentError(f"test {definition.test.id}: no end of the liquid to calibrate with: {segments.events['t_v'].reason}")
+    return _Work(log, segments, definition, t_v).result(samples)
+
+
+class _Work:
+    """One calibration under way: the inputs with where they come from, and what has been noticed."""
+
+    def __init__(self, log: TestLog, segments: Segments, definition: TestDefinition, t_v: float) -> None:
+        self.log, self.segments, self.definition, self.t_v = log, segments, definition, t_v
+        self.saturation: Saturation = saturation_of(definition.model.properties)
+        self.notes: list[str] = []
+        self.warnings: list[str] = []
+        self.histories = Histories.of(log, segments, definition, self._last(t_v))
+        self.notes.extend(self.histories.assumed)
+        self.t_feed = segments.time("t_feed") or 0.0
+        self.volume = definition.tank.volume if definition.tank else None
+        self.area = definition.injector.area if definition.injector else None
+        self.at_v = self._read(t_v, 0.3, self._after_t_v())
+        self.t_end, self.t_end_std, self.end_reason = self._vapor_end()
+        self.at_end = self._read(self.t_end, self.t_end - t_v, 0.3) if np.isfinite(self.t_end) else None
+
+    def result(self, samples: int) -> Calibration:
+        """Reduce, draw, judge."""
+        losses_only = self._losses()
+        blocked = self._blocked()
+        mass = loaded_mass(self.log, self.segments, self.definition, self.saturation, self.histories, self.at_v.value)
+        if blocked or mass is None or self.volume is None or self.area is None:
+            reason = blocked or "tank volume, loaded mass or injector area is not stated"
+            quantities = {n: Quantity.absent(reason, verdict=NOT_IDENTIFIABLE) for n in NAMES} | losses_only
+            return Calibration(quantities, None, None, None, tuple(self.warnings), tuple(self.notes))
+        return self._reduced(mass, samples)
+
+    def _reduced(self, mass: LoadedMass, samples: int) -> Calibration:
+        assert self.volume is not None
+        assert self.area is not None
+        p_end = self.at_end.value if self.at_end else float("nan")
+        times = (self.t_feed, self.t_v, self.t_end)
+        inputs = Inputs(mass.value, self.volume.value, self.area.value, *times, self.at_v.value, p_end)
+        tables = Tables.of(self.histories, self.saturation)
+        nominal = reduce(tables, self.saturation, inputs)
+        draws = draw(tables, self.saturation, inputs, self._spread(mass), samples)
+        self.notes.append(f"loaded mass: {mass.source}")
+        left = self._mass_left(nominal, inputs)
+        rest, remarks = rest_of(self.log, self.segments, self.saturation, self.histories, inputs, nominal, left, mass)
+        self.warnings.extend(remarks)
+        history = coefficient_history(self.saturation, self.histories, inputs, left)
+        quantities = self._quantities(nominal, draws, inputs, left)
+        return Calibration(quantities, rest, history, inputs, tuple(self.warnings), tuple(self.notes))
+
+    def _quantities(self, r: Reduction, draws: Draws, inputs: Inputs, left: Array) -> dict[str, Quantity]:
+        discharge = judge_discharge(r, draws, self._excluded_share())
+        known = np.isfinite(r.C_i) and 0.0 < r.C_i < 10.0
+        out = {"C_i": discharge, "m": judge_exponent(r, draws, inputs, self.end_reason, self.saturation)}
+        out["Z"] = judged("Z", r.Z, "", draws)
+        out["K_loss"] = judged("K_loss", r.K_loss, "1/m^4", draws, unphysical_below=0.0)
+        out["p_loss_liquid"] = judged("loss_liquid", r.loss_liquid, "Pa", draws, unphysical_below=0.0)
+        out["p_loss_vapor"] = (
+            judged("loss_vapor", r.loss_vapor, "Pa", draws, unphysical_below=0.0)
+            if np.isfinite(r.loss_vapor)
+            else Quantity.absent(self.end_reason or "the vapour phase holds no samples", verdict=NOT_IDENTIFIABLE)
+        )
+        out["vapor_mass_at_t_v"] = judged("vapor_mass", r.vapor_mass, "kg", draws)
+        flow = self._flow_peak(left) if known else None
+        if flow is None:
+            out["oxidizer_flow_peak"] = Quantity.absent("no C_i to take it from", verdict=NOT_IDENTIFIABLE)
+        else:
+            relative = (discharge.std or 0.0) / r.C_i
+            out["oxidizer_flow_peak"] = Quantity(flow, "kg/s", flow * relative, verdict=discharge.verdict)
+        liquid = inputs.mass - r.vapor_mass
+        spread = float(np.hypot(draws.std("vapor_mass"), self._mass_std))
+        out["oxidizer_mass_liquid_phase"] = Quantity(liquid, "kg", spread, verdict=discharge.verdict)
+        return out
+
+    def _spread(self, mass: LoadedMass) -> Spread:
+        assert self.volume is not None
+        assert self.area is not None
+        self._mass_std = mass.std
+        return Spread(
+            mass.std,
+            self.volume.std or 0.0,
+            self.area.std or 0.0,
+            self.segments.std("t_feed"),
+            self.segments.std("t_v"),
+            self.t_end_std,
+            self._reading_factor(),
+            (self.at_v.slope, self.at_end.slope if self.at_end else 0.0),
+            (self._bias("p_tank"), self._bias("p_run"), self._bias("p_chamber")),
+        )
+
+    def _reading_factor(self) -> Array:
+        """Lower factor of the covariance of the pressures read at t_v and at the end of the vapour phase."""
+        noise, first = self.histories.noises["p_tank"], self.at_v
+        last = self.at_end or first
+        common = noise.common(first.weights, first.time, last.weights, last.time) if self.at_end else 0.0
+        covariance = np.diag([noise.std_of(r.weights, r.time) ** 2 for r in (first, last)])
+        covariance[0, 1] = covariance[1, 0] = min(common, 0.99 * float(np.sqrt(np.prod(np.diag(covariance)))))
+        return np.linalg.cholesky(covariance + 1e-9 * np.eye(2))
+
+    def _bias(self, name: str) -> float:
+        channel = self.log.get(name)
+        if channel is None:
+            return self.definition.ambient_pressure.std or 0.0
+        if channel.zero_std is None:
+            return channel.accuracy
+        still = self.histories.signals[name].between(-30.0, -0.02).time
+        rest = (float(still[0]), -0.02) if still.size > 1 else (-1.0, -0.02)
+        return float(np.hypot(channel.zero_std, self.histories.noises[name].difference_std(rest, (0.0, self.t_v))))
+
+    def _mass_left(self, r: Reduction, inputs: Inputs) -> Array:
+        """Mass that has left through the injector at the histories' times [kg]."""
+        h = self.histories
+        density = self.saturation.liquid_density(h.tank_temperature(self.saturation))
+        flow = r.C_i * inputs.area * np.sqrt(2.0 * density * np.maximum(h.run - h.chamber, 0.0))
+        steps = 0.5 * (flow[1:] + flow[:-1]) * np.diff(h.time)
+        return np.concatenate(([0.0], np.cumsum(steps)))
+
+    def _flow_peak(self, left: Array) -> float | None:
+        h = self.histories
+        liquid = h.time < self.t_v
+        n = max(int(0.1 / max(float(np.median(np.diff(h.time))), 1e-6)), 1)
+        if liquid.sum() <= n + 1:
+            return None
+        t, x = h.time[liquid], left[liquid]
+        return float(((x[n:] - x[:-n]) / (t[n:] - t[:-n])).max())
+
+    def _read(self, instant: float, before: float, after: float) -> Reading:
+        tank = self.histories.signals["p_tank"]
+        least = 8.0 * tank.step
+        return read_at_break(tank, instant, min(max(before, least), 0.4 + least), min(max(after, least), 0.4 + least))
+
+    def _after_t_v(self) -> float:
+        t_purge = self.segments.time("t_purge")
+        return 0.3 if t_purge is None or t_purge <= self.t_v else t_purge - self.t_v
+
+    def _last(self, t_v: float) -> float:
+        t_purge = self.segments.time("t_purge")
+        return max(t_v, t_purge if t_purge is not None else t_v + 10.0) + 0.5
+
+    def _vapor_end(self) -> tuple[float, float, str | None]:
+        """End of the pure vapour phase [s], its standard deviation, and the reason where there is none."""
+        t_purge = self.segments.time("t_purge")
+        if t_purge is not None and t_purge <= self.t_v:
+            return np.nan, 0.0, f"nitrogen is in the tank from {t_purge:.2f} s on, before the liquid is gone ({self.t_v:.2f} s)"
+        if t_purge is not None:
+            return t_purge, self.segments.std("t_purge"), None
+        h = self.histories
+        low = (h.time > self.t_v) & (h.tank < VAPOR_PRESSURE_SHARE * self.at_v.value)
+        if not low.any():
+            return np.nan, 0.0, "the log ends before the vapour phase has gone far enough"
+        self.notes.append("no nitrogen is seen: m is shot to the time at which the tank has lost 40 % of its pressure at t_v")
+        return float(h.time[low][0]), 0.0, None
+
+    def _blocked(self) -> str | None:
+        """Why the injector equation cannot be inverted at all, or None."""
+        share = self._excluded_share()
+        if share > 0.1:
+            return (
+                f"p_run is not above p_chamber over {100.0 * share:.0f} % of the liquid phase: the injector equation has no "
+                "flow there; one of the two sensors is off, or p_run is not measured before the injector"
+            )
+        return None
+
+    def _excluded_share(self) -> float:
+        h = self.histories
+        liquid = (h.time >= self.t_feed) & (h.time < self.t_v)
+        return float((h.run[liquid] <= h.chamber[liquid]).mean()) if liquid.any() else 1.0
+
+    def _losses(self) -> dict[str, Quantity]:
+        h = self.histories
+        error = float(np.hypot(self._bias("p_tank"), self._bias("p_run")))
+        out = {}
+        for name, start, end in (("p_loss_liquid", self.t_feed, self.t_v), ("p_loss_vapor", self.t_v, self.t_end)):
+            value = h.mean(h.tank - h.run, start, end) if np.isfinite(end) else np.nan
+            out[name] = (
+                Quantity(value, "Pa", error, verdict="identified")
+                if np.isfinite(value)
+                else Quantity.absent(self.end_reason or "no samples in this phase", verdict=NOT_IDENTIFIABLE)
+            )
+        return out

@@ -1,0 +1,91 @@
+"""How uncertain the reduction is: it is repeated with every input drawn from what is known of it.
+
+Drawn together, so that their common effect on C_i, m and the losses is kept: the biases of the sensors (stated accuracy, or
+what a zero at ambient leaves), the slow wander of each sensor over a phase, the loaded mass and the volume, the phase times
+and the pressures read at them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.calibrate.blowdown import Inputs, Reduction, Shift, Tables, reduce
+from hfanalysis.thermo.saturation import Saturation
+
+Array = NDArray[np.float64]
+SEED = 20230101
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Standard deviations of the inputs: [kg], [m^3], [m^2], [s], [Pa].
+
+    ``reading`` is the lower factor (2, 2) of the covariance of p_v and p_end, ``slopes`` [Pa/s] how they move with their times;
+    ``bias`` that of p_tank, p_run, p_c over the run.
+    """
+
+    mass: float
+    volume: float
+    area: float
+    t_feed: float
+    t_v: float
+    t_end: float
+    reading: Array
+    slopes: tuple[float, float]
+    bias: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Draws:
+    """The repeated reductions: one array per quantity, NaN where a draw has no answer."""
+
+    values: dict[str, Array]
+
+    def std(self, name: str) -> float:
+        """Standard deviation over the draws that have an answer (NaN where fewer than ten do)."""
+        good = self.good(name)
+        return float(good.std(ddof=1)) if good.size >= 10 else float("nan")
+
+    def interval(self, name: str, value: float) -> tuple[float, float]:
+        """The 95 % interval: the draws' quantiles about their median, moved to the value itself."""
+        good = self.good(name)
+        low, middle, high = np.quantile(good, (0.025, 0.5, 0.975))
+        return float(value + low - middle), float(value + high - middle)
+
+    def answered(self, name: str) -> float:
+        """Part of the draws that have an answer."""
+        return self.good(name).size / max(self.values[name].size, 1)
+
+    def good(self, name: str) -> Array:
+        """The draws that have an answer."""
+        values = self.values[name]
+        return values[np.isfinite(values)]
+
+
+def draw(tables: Tables, saturation: Saturation, inputs: Inputs, spread: Spread, samples: int) -> Draws:
+    """Repeat the reduction ``samples`` times with inputs drawn from normal distributions (same seed each time)."""
+    generator = np.random.default_rng(SEED)
+    z = generator.standard_normal((samples, 11))
+    results = [reduce(tables, saturation, *_drawn(inputs, spread, row)) for row in z]
+    names = [n for n in Reduction.__dataclass_fields__]
+    return Draws({n: np.array([getattr(r, n) for r in results]) for n in names})
+
+
+def _drawn(inputs: Inputs, spread: Spread, z: Array) -> tuple[Inputs, Shift]:
+    later, later_end = spread.t_v * z[4], spread.t_end * z[5]
+    reading = spread.reading @ z[6:8]
+    drawn = replace(
+        inputs,
+        mass=inputs.mass + spread.mass * z[0],
+        volume=inputs.volume + spread.volume * z[1],
+        area=inputs.area + spread.area * z[2],
+        t_feed=inputs.t_feed + spread.t_feed * z[3],
+        t_v=inputs.t_v + later,
+        t_end=inputs.t_end + later_end,
+        p_v=inputs.p_v + float(reading[0]) + spread.slopes[0] * later,
+        p_end=inputs.p_end + float(reading[1]) + spread.slopes[1] * later_end,
+    )
+    return drawn, Shift(*(b * x for b, x in zip(spread.bias, z[8:11], strict=True)))

@@ -1,0 +1,87 @@
+"""What a calibrated number is worth: identified, not identifiable, or unphysical, and why."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hfanalysis.calibrate.blowdown import EXPONENTS, Inputs, Reduction
+from hfanalysis.calibrate.uncertainty import Draws
+from hfanalysis.engine.blowdown import implied_heat
+from hfanalysis.quantity import IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+from hfanalysis.thermo.saturation import Saturation
+
+PHYSICAL_C_I = (0.05, 1.0)
+"""A hole passes no more than the ideal flow, and drilled plates pass 0.2 to 0.9 of it."""
+
+PHYSICAL_M = (1.0, 1.3)
+"""Polytropic exponents of expanding nitrous oxide vapour near saturation without heat and with some."""
+
+LEAST_ANSWERED = 0.9
+WIDEST_M = 0.5
+"""Standard deviation of m from which on the phase says nothing about it."""
+
+
+def judged(name: str, value: float, unit: str, draws: Draws, unphysical_below: float | None = None) -> Quantity:
+    """A quantity with its deviation and interval from the draws; unphysical where the interval lies below a bound."""
+    if not np.isfinite(value) or not np.isfinite(draws.std(name)):
+        return Quantity.absent("the reduction has no answer", verdict=NOT_IDENTIFIABLE)
+    interval = draws.interval(name, value)
+    if unphysical_below is not None and interval[1] < unphysical_below:
+        why = "negative: the two pressure sensors disagree in sign"
+        return Quantity(value, unit, draws.std(name), interval, verdict=UNPHYSICAL, why=why)
+    return Quantity(value, unit, draws.std(name), interval, verdict=IDENTIFIED)
+
+
+def judge_discharge(r: Reduction, draws: Draws, reversed_share: float) -> Quantity:
+    """C_i with its verdict."""
+    quantity = judged("C_i", r.C_i, "", draws)
+    if quantity.value is None or quantity.interval is None:
+        return quantity
+    low, high = quantity.interval
+    verdict, why = IDENTIFIED, None
+    if r.C_i <= 0.0:
+        verdict, why = UNPHYSICAL, "the loaded mass is less than the vapour left at t_v: mass, volume or t_v is off"
+    elif low > PHYSICAL_C_I[1] or high < PHYSICAL_C_I[0]:
+        verdict = UNPHYSICAL
+        why = f"outside {PHYSICAL_C_I[0]} to {PHYSICAL_C_I[1]}: loaded mass, hole area or a pressure is off"
+    elif reversed_share > 0.01:
+        why = f"p_run is not above p_chamber in {100.0 * reversed_share:.1f} % of the samples; these count as no flow"
+    return Quantity(r.C_i, "", quantity.std, quantity.interval, verdict=verdict, why=why)
+
+
+def judge_exponent(
+    r: Reduction, draws: Draws, inputs: Inputs, end_reason: str | None, saturation: Saturation
+) -> Quantity:
+    """m with its verdict; an exponent outside the physical range with the heat that it would take."""
+    if end_reason is not None:
+        return Quantity.absent(end_reason, verdict=NOT_IDENTIFIABLE)
+    duration = inputs.t_end - inputs.t_v
+    if not np.isfinite(r.m) or draws.answered("m") < LEAST_ANSWERED:
+        return Quantity.absent(_no_root(r, inputs, duration, draws), verdict=NOT_IDENTIFIABLE)
+    std = draws.std("m")
+    if std > WIDEST_M:
+        reason = (
+            f"the vapour phase lasts {duration:.3f} s and loses {(inputs.p_v - inputs.p_end) / 1e5:.2f} bar: too little to tell m "
+            f"({r.m:.2f} +/- {std:.2f})"
+        )
+        return Quantity.absent(reason, verdict=NOT_IDENTIFIABLE)
+    low, high = draws.interval("m", r.m)
+    heat = implied_heat(saturation, r.m, r.vapor_mass, r.vapor_mass_end, r.temperature_v, r.Z)
+    t_end = r.temperature_v * (r.vapor_mass_end / r.vapor_mass) ** (r.m - 1.0)
+    implies = f"it implies {heat / duration / 1e3:+.1f} kW into the vapour and {t_end - 273.15:.0f} degC at its end"
+    outside = high < PHYSICAL_M[0] or low > PHYSICAL_M[1]
+    verdict = UNPHYSICAL if outside else IDENTIFIED
+    lead = f"outside {PHYSICAL_M[0]} to {PHYSICAL_M[1]}, no property of nitrous oxide: " if outside else ""
+    return Quantity(r.m, "", std, (low, high), verdict=verdict, why=lead + implies)
+
+
+def _no_root(r: Reduction, inputs: Inputs, duration: float, draws: Draws) -> str:
+    if np.isfinite(r.m):
+        part = 100.0 * (1.0 - draws.answered("m"))
+        return f"within the uncertainties {part:.0f} % of the repetitions have no exponent: {duration:.3f} s of vapour are too short"
+    if inputs.p_end >= inputs.p_v:
+        return "the tank pressure does not fall over the vapour phase: something feeds it"
+    return (
+        f"no exponent between {EXPONENTS[0]:.2f} and {EXPONENTS[-1]:.1f} takes the tank from {inputs.p_v / 1e5:.1f} to "
+        f"{inputs.p_end / 1e5:.1f} bar in {duration:.3f} s"
+    )
