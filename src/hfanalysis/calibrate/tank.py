@@ -54,7 +54,7 @@ class Calibration:
 
 
 NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase",
-         "vapor_mass_at_t_v")  # fmt: skip
+         "vapor_mass_at_t_v", "mass_at_t_feed")  # fmt: skip
 
 
 def calibrate(log: TestLog, segments: Segments, definition: TestDefinition, samples: int) -> Calibration:
@@ -132,6 +132,8 @@ class _Work:
         else:
             relative = (discharge.std or 0.0) / r.C_i
             out["oxidizer_flow_peak"] = Quantity(flow, "kg/s", flow * relative, verdict=discharge.verdict)
+        at_feed = inputs.mass - float(np.interp(self.t_feed, self.histories.time, left))
+        out["mass_at_t_feed"] = Quantity(at_feed, "kg", self._mass_std, verdict=discharge.verdict)
         liquid = inputs.mass - r.vapor_mass
         spread = float(np.hypot(draws.std("vapor_mass"), self._mass_std))
         out["oxidizer_mass_liquid_phase"] = Quantity(liquid, "kg", spread, verdict=discharge.verdict)

@@ -1,0 +1,21 @@
+"""segment: when what happens - the phases of the test, from the physics of its signals.
+
+Reads ``ingest.h5``; writes ``segments.json``.
+"""
+
+from __future__ import annotations
+
+from hfanalysis.stages.base import Context, Stage
+
+
+def run(context: Context) -> None:
+    """Find the phases of the test."""
+    from hfanalysis.segment.phases import find_phases
+    from hfanalysis.testdata.log import read_log
+
+    log = read_log(context.product("ingest.h5"))
+    segments = find_phases(log, context.definition)
+    context.write_json("segments.json", segments.to_json())
+
+
+STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run)

@@ -1,0 +1,1 @@
+"""The calibrated model against the measurement: residuals by channel, mode and phase."""

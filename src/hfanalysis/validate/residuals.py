@@ -1,0 +1,102 @@
+"""Residuals of a model run: per sample with noise level and phase, on disk and in figures."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+PHASES = ("before", "filling", "liquid", "vapor", "nitrogen")
+"""Phases by their number in ``residuals.h5``: before the opening, line filling, liquid, pure vapour, with nitrogen."""
+
+LONG_NAMES = {
+    "time": "time after the valve opening",
+    "measured": "measured",
+    "model": "model",
+    "residual": "measured minus model",
+    "noise_std": "standard deviation of a sample's noise",
+}
+
+
+@dataclass(frozen=True)
+class Residual:
+    """One channel in one mode: arrays of one length; ``unit`` of all but ``time`` [s]; ``phase`` indexes PHASES."""
+
+    channel: str
+    unit: str
+    time: Array
+    measured: Array
+    model: Array
+    noise_std: Array
+    phase: NDArray[np.int8]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def residual(self) -> Array:
+        """Measured minus model."""
+        return self.measured - self.model
+
+
+def phases_of(time: Array, t_feed: float, t_v: float | None, t_purge: float | None) -> NDArray[np.int8]:
+    """The phase of each sample; nitrogen counts from t_purge, also where the liquid is not gone yet."""
+    phase = np.where(time < 0.0, 0, np.where(time < t_feed, 1, 2))
+    if t_v is not None:
+        phase = np.where(time >= t_v, 3, phase)
+    if t_purge is not None:
+        phase = np.where(time >= t_purge, 4, phase)
+    return phase.astype(np.int8)
+
+
+def gaps(residuals: Sequence[Residual]) -> dict[str, Any]:
+    """Per channel and phase: root mean square, bias and noise floor of the residual, in the channel's unit."""
+    out: dict[str, Any] = {}
+    for r in residuals:
+        phases = {}
+        for number, name in enumerate(PHASES):
+            part = (r.phase == number) & np.isfinite(r.residual)
+            if not part.any():
+                continue
+            x = r.residual[part]
+            phases[name] = {
+                "rms": float(np.sqrt(np.mean(x**2))),
+                "bias": float(x.mean()),
+                "noise": float(np.sqrt(np.mean(r.noise_std[part] ** 2))),
+                "samples": int(part.sum()),
+                "unit": r.unit,
+            }
+        out[r.channel] = phases
+    return out
+
+
+def write_residuals(path: Path, modes: Mapping[str, Sequence[Residual]], provenance: Mapping[str, Any]) -> None:
+    """Write residuals.h5: a group per mode and channel, readable by h5py, xarray and MATLAB; byte-identical each time."""
+    import h5py
+
+    with h5py.File(path, "w", libver="latest", track_order=False) as file:
+        file.attrs["title"] = "residuals: measured minus model"
+        file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
+        for mode, residuals in modes.items():
+            for residual in residuals:
+                _write_channel(file.create_group(f"{mode}/{residual.channel}"), residual)
+
+
+def _write_channel(group: Any, residual: Residual) -> None:
+    time = group.create_dataset("time", data=residual.time, track_times=False)
+    time.make_scale("time")
+    time.attrs.update(units="s", long_name=LONG_NAMES["time"])
+    for name in ("measured", "model", "residual", "noise_std"):
+        data = group.create_dataset(name, data=getattr(residual, name), track_times=False)
+        data.dims[0].attach_scale(time)
+        data.attrs.update(units=residual.unit, long_name=f"{residual.channel}: {LONG_NAMES[name]}")
+    phase = group.create_dataset("phase", data=residual.phase, track_times=False)
+    phase.dims[0].attach_scale(time)
+    phase.attrs.update(
+        long_name="phase of the test", flag_values=np.arange(len(PHASES), dtype=np.int8), flag_meanings=" ".join(PHASES)
+    )
