@@ -39,6 +39,10 @@ def stage(name: str, request: Request) -> None:
             request.root, request.test, request.out, progress=progress, settings=_settings(request.settings)
         )
         context = run_to(ORDER[-1] if name == "run" else name, context, force=request.force)
+    if name in ("report", "run"):
+        from hfanalysis.report.index import write_index
+
+        write_index(context.out.parent)
     _show(name, context, request)
     for text in _warnings(context, name):
         tell(f"warning: {text}")

@@ -13,17 +13,15 @@ from markupsafe import Markup
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
 from hfanalysis.report import wording
 from hfanalysis.report.charts import figures
-from hfanalysis.report.material import EVENTS, Material
+from hfanalysis.report.material import EVENTS, Material, phase_list
 from hfanalysis.report.wording import in_words, is_quantity, quantities, shown
-
-_CARDS = 6
 
 
 @functools.cache
 def _environment() -> Environment:
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.globals |= {"style": Markup(_resource("style.css")), "source_words": _source_words}
-    environment.filters |= {"in_words": in_words, "tidy": _tidy}
+    environment.filters |= {"fixed": wording.fixed, "in_words": in_words, "tidy": _tidy}
     return environment
 
 
@@ -48,6 +46,7 @@ def page(material: Material) -> str:
         warnings=warnings(material),
         absent=material.absent or {},
         figures=figures(material),
+        phases=phase_list(material),
         events=_events(material),
         engineer=(material.segments or {}).get("engineer", []),
         notes=(material.segments or {}).get("notes", []),
@@ -105,13 +104,10 @@ def _listed(names: list[str]) -> str:
 
 
 def warnings(material: Material) -> list[str]:
-    """What every product warns of, each once."""
-    products = (material.ingest, material.segments or {}, material.calibration or {})
-    texts = [
-        *material.definition.warnings,
-        *(str(text) for product in products for text in product.get("warnings", [])),
-    ]
-    return list(dict.fromkeys(texts))
+    """What every product warns of, each once; what bears on the results first."""
+    products = (material.calibration or {}, material.segments or {}, material.ingest)
+    texts = [str(text) for product in products for text in product.get("warnings", [])]
+    return list(dict.fromkeys([*texts, *material.definition.warnings]))
 
 
 def _events(material: Material) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from hfanalysis.report.envelope import Envelope, Floats
 from hfanalysis.report.wording import fixed
 
 WIDTH = 960.0
-LEFT, RIGHT, TOP, BOTTOM = 58.0, 104.0, 44.0, 46.0
+LEFT, RIGHT, TOP, BOTTOM = 58.0, 104.0, 60.0, 46.0
 """Margins: for the values, the names at the lines' ends, the events, and the time."""
 
 _LETTER = 6.6
@@ -102,7 +102,7 @@ def axes(plot: Plot, x_label: str, y_label: str) -> None:
     plot.parts += _x_ticks(plot, bottom)
     plot.parts.append(f'<path class="axis" d="M{LEFT:.1f} {TOP:.1f}V{bottom:.1f}H{right:.1f}"/>')
     plot.parts.append(_text(0.5 * (LEFT + right), plot.height - 8, x_label, "label", "middle"))
-    plot.parts.append(_text(4, 16, y_label, "label", "start"))
+    plot.parts.append(_text(4, 14, y_label, "label", "start"))
 
 
 def _y_ticks(plot: Plot, right: float) -> Iterator[str]:

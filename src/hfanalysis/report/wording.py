@@ -42,6 +42,8 @@ SOURCES: dict[str, str] = {
 KINDS: dict[str, str] = {"hot_fire": "hot fire", "cold_flow": "cold flow", "misfire": "misfire"}
 
 _PEOPLE: dict[str, tuple[float, str]] = {"Pa": (1e-5, "bar"), "m^2": (1e6, "mm²"), "m^3": (1e3, "L")}
+_FINEST: dict[str, int] = {"s": 4}
+"""Decimals beyond which nobody reads."""
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MINUS = "\N{MINUS SIGN}"
 
@@ -88,11 +90,11 @@ def shown(quantity: Mapping[str, Any]) -> Shown:
         return Shown("–", "", "", "", verdict or "absent", str(quantity.get("reason") or ""))
     factor, unit = people_unit(str(quantity.get("unit") or ""))
     value, std = factor * quantity["value"], factor * (quantity.get("std") or 0.0)
-    exponent = _exponent(value)
+    exponent = 0 if unit == "s" else _exponent(value)
     if exponent:
-        factor, unit = factor / 10.0**exponent, f"10{str(exponent).translate(_SUPERSCRIPT)} {unit}".strip()
+        factor, unit = factor / 10.0**exponent, f"×10{str(exponent).translate(_SUPERSCRIPT)} {unit}".strip()
         value, std = value / 10.0**exponent, std / 10.0**exponent
-    decimals = decimals_for(value, std)
+    decimals = min(decimals_for(value, std), _FINEST.get(unit, 8))
     interval = [fixed(factor * end, decimals) for end in quantity.get("ci95") or ()]
     return Shown(
         fixed(value, decimals),

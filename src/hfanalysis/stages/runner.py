@@ -27,7 +27,7 @@ from hfanalysis.testdata import products
 from hfanalysis.testdata.products import HashCache
 
 RUN_LOG = "run.log"
-_REFUSED = {errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOSPC, errno.EDQUOT}
+_REFUSED = {errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOSPC, errno.EDQUOT}
 _ATTEMPTS = 3
 
 
