@@ -9,6 +9,8 @@ BIN   := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 STAGES := ingest segment calibrate validate report run
 
+# The name goes to hfa as it was typed, whatever is in it.
+override TEST := $(value TEST)
 export TEST
 
 .DEFAULT_GOAL := help

@@ -109,7 +109,7 @@ def test_the_verdict_names_what_is_known_and_what_is_not(tmp_path: Path) -> None
     said = sentence(material(tmp_path), quantities(CALIBRATION))
     assert said.startswith("Identified: injector coefficient, feed loss coefficient and feed loss, liquid phase.")
     assert "Outside its physical range: polytropic exponent." in said
-    assert "Not identifiable from this test: compressibility of the vapour." in said
+    assert "Not identifiable from this test: vapour compressibility." in said
 
 
 def test_reasons_and_values_are_on_the_page(text: str) -> None:

@@ -15,8 +15,16 @@ from hfanalysis.report.wording import Shown, in_words, quantities, shown
 from hfanalysis.stages import ORDER
 from hfanalysis.stages.base import Context
 
-_NARROWEST = 100
+_NARROWEST = 124
 """Columns assumed where nobody says (a pipe), so that tables do not break."""
+
+_WIDE = 116
+"""Columns from which on the quantities' names in words fit."""
+
+_MAY_WRAP = ("symbol", "", "flags", "column", "verdict")
+"""Columns that give way where the terminal is narrow; numbers never do."""
+
+_NUMBERS = ("value", "± std", "samples", "rate", "least", "largest", "rms", "bias", "noise")
 
 _STYLES = {IDENTIFIED: "green", UNPHYSICAL: "red"}
 
@@ -43,17 +51,17 @@ def _headline(context: Context) -> Text:
 def _table(*columns: str, title: str) -> Table:
     table = Table(title=title, title_justify="left", title_style="", box=None, pad_edge=False, header_style="dim")
     for column in columns:
-        right = column in ("value", "± std", "samples", "rate", "least", "largest")
-        table.add_column(column, justify="right" if right else "left", no_wrap=column != "flags")
+        right = column in _NUMBERS
+        table.add_column(column, overflow="fold", justify="right" if right else "left", no_wrap=column not in _MAY_WRAP)
     return table
 
 
-def _quantities(found: Mapping[str, Mapping[str, Any]], title: str) -> Table:
-    table = _table("", "", "value", "± std", "95 % interval", "unit", "verdict", title=title)
+def _quantities(found: Mapping[str, Mapping[str, Any]], title: str, wide: bool) -> Table:
+    table = _table("symbol", *[""] * wide, "value", "± std", "95 % interval", "unit", "verdict", title=title)
     for name, quantity in found.items():
         text = shown(quantity)
         verdict = Text(text.verdict, style=_STYLES.get(text.verdict, "yellow"))
-        table.add_row(name, in_words(name), text.value, text.std, text.interval, text.unit, verdict)
+        table.add_row(name, *[in_words(name)] * wide, text.value, text.std, text.interval, text.unit, verdict)
     return table
 
 
@@ -61,12 +69,12 @@ def _notes(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
     """Why a quantity is missing, or judged as it is, where that is not plain."""
     for name, quantity in found.items():
         text: Shown = shown(quantity)
-        if text.why and text.verdict != IDENTIFIED:
+        if text.why and text.verdict not in (IDENTIFIED, ""):
             yield f"{name}: {text.verdict}: {text.why}"
 
 
 def _print(console: Console, found: Mapping[str, Mapping[str, Any]], title: str) -> None:
-    console.print(_quantities(found, title))
+    console.print(_quantities(found, title, console.width >= _WIDE))
     for note in _notes(found):
         console.print(Text(f"  {note}"), soft_wrap=True)
 
@@ -100,7 +108,14 @@ def _calibrate(context: Context, console: Console) -> None:
 
 
 def _validate(context: Context, console: Console) -> None:
-    console.print(Text(f"residuals: {context.product('residuals.h5')}"), soft_wrap=True)
+    table = _table("run", "channel", "phase", "rms", "bias", "noise", "unit", title="measured minus model")
+    for run, channels in context.read_json("validation.json").get("gap", {}).items():
+        for channel, phases in channels.items():
+            for phase, gap in phases.items():
+                factor, unit = wording.people_unit(gap["unit"])
+                numbers = (wording.tidy(factor * gap[key], 3) for key in ("rms", "bias", "noise"))
+                table.add_row(run, channel, phase, *numbers, unit)
+    console.print(table)
 
 
 def _report(context: Context, console: Console) -> None:

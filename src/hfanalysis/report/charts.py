@@ -10,8 +10,8 @@ from markupsafe import Markup
 
 from hfanalysis.report import svg
 from hfanalysis.report.envelope import Envelope, Floats, envelope
-from hfanalysis.report.material import Material, event_list, phase_list, window
-from hfanalysis.report.wording import people_unit, shown
+from hfanalysis.report.material import Material, Residuals, event_list, phase_list, window
+from hfanalysis.report.wording import people_unit, shown, tidy
 from hfanalysis.testdata.channels import LONG_NAMES
 from hfanalysis.testdata.log import Channel
 
@@ -126,8 +126,8 @@ def _with_raw(material: Material, channel: Channel, heading: str, y_label: str) 
 def _zero_words(channel: Channel) -> str:
     if channel.raw is None:
         return "As logged: no zero was taken."
-    drift = f"; drift of {channel.drift:.3g} {channel.unit} removed, linear in time" if channel.drift else ""
-    return f"Zero of {channel.zero:.3g} {channel.unit} subtracted{drift}."
+    drift = f"; drift of {tidy(channel.drift, 3)} {channel.unit} removed, linear in time" if channel.drift else ""
+    return f"Zero of {tidy(channel.zero, 3)} {channel.unit} subtracted{drift}."
 
 
 def _injector(material: Material) -> Figure | None:
@@ -174,28 +174,46 @@ def _like(values: object, time: Floats) -> Floats:
     return np.broadcast_to(np.asarray(values, dtype=float), time.shape)
 
 
+def _shown_residuals(material: Material) -> Residuals | None:
+    """The residuals up to where nitrogen enters, which the tank model alone does not know, within the page's window."""
+    found = material.residuals
+    if found is None:
+        return None
+    start, end = window(material)
+    purge = material.event("t_purge")
+    last = end if purge is None else min(end, purge)
+    found = found.between(start, last)
+    return found if found.time.size > 1 else None
+
+
 def _tank_free(material: Material) -> Figure | None:
     """The tank model alone against the measurement."""
-    found = material.residuals
-    if found is None or found.time.size < 2:
+    found = _shown_residuals(material)
+    if found is None:
         return None
-    span = (float(found.time[0]), float(found.time[-1]))
-    measured, model = (envelope(found.time, values * 1e-5, *span) for values in (found.measured, found.model))
-    plot = _drawn(material, [(measured, "p_tank", "measured"), (model, "model", "model")], "p_tank [bar]", 320.0)
-    rms = float(np.sqrt(np.nanmean(found.residual**2))) * 1e-5
-    noise = float(np.sqrt(np.nanmean(found.noise_std**2))) * 1e-5
-    words = f"Root mean square of the residual {rms:.2f} bar, of the noise {noise:.2f} bar."
+    measured, model = (_spread(found, values * 1e-5) for values in (found.measured, found.model))
+    lines = [(measured, "p_tank", "measured"), (model, "model", "model")]
+    plot = _drawn(material, lines, "p_tank [bar]", 320.0)
+    words = f"Root mean square of the residual {_rms(found.residual)} bar, of the noise {_rms(found.noise_std)} bar."
     chart = svg.render(plot, "tank-free", "Tank model against measured tank pressure", words)
-    return Figure("Tank model against measurement", chart, f"Only the measured chamber pressure goes in. {words}")
+    known = "Only the measured chamber pressure goes in; drawn until nitrogen enters, which this model leaves out."
+    return Figure("Tank model against measurement", chart, f"{known} {words}")
+
+
+def _spread(found: Residuals, values: Floats) -> Envelope:
+    return envelope(found.time, values, float(found.time[0]), float(found.time[-1]))
+
+
+def _rms(values: Floats) -> str:
+    return f"{float(np.sqrt(np.nanmean(values**2))) * 1e-5:.2f}"
 
 
 def _residual(material: Material) -> Figure | None:
-    found = material.residuals
-    if found is None or found.time.size < 2:
+    found = _shown_residuals(material)
+    if found is None:
         return None
-    span = (float(found.time[0]), float(found.time[-1]))
-    residual = envelope(found.time, found.residual * 1e-5, *span)
-    noise = envelope(found.time, found.noise_std * 1e-5, *span).mean
+    residual = _spread(found, found.residual * 1e-5)
+    noise = _spread(found, found.noise_std * 1e-5).mean
     plot = _drawn(material, [(residual, "residual", "residual")], "measured − model [bar]", 260.0)
     svg.band(plot, residual.time, -1.96 * noise, 1.96 * noise, "noise")
     svg.level(plot, 0.0, "zero")

@@ -30,6 +30,11 @@ class Residuals:
     residual: Floats
     noise_std: Floats
 
+    def between(self, start: float, end: float) -> Residuals:
+        """The part between two instants."""
+        part = (self.time >= start) & (self.time <= end)
+        return Residuals(*(values[part] for values in vars(self).values()))
+
 
 @dataclass(frozen=True)
 class Material:

@@ -21,7 +21,7 @@ from hfanalysis.report.wording import in_words, is_quantity, quantities, shown
 def _environment() -> Environment:
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.globals |= {"style": Markup(_resource("style.css")), "source_words": _source_words}
-    environment.filters |= {"fixed": wording.fixed, "in_words": in_words, "tidy": _tidy}
+    environment.filters |= {"fixed": wording.fixed, "in_words": in_words, "tidy": _scaled}
     return environment
 
 
@@ -66,9 +66,9 @@ def _kind(material: Material) -> str:
     return wording.KINDS.get(kind, str(kind))
 
 
-def _tidy(value: float | None, factor: float = 1.0) -> str:
+def _scaled(value: float | None, factor: float = 1.0) -> str:
     """A number of a sensor table."""
-    return "–" if value is None else f"{value * factor:.4g}".replace("-", "−")
+    return "–" if value is None else wording.tidy(value * factor)
 
 
 def verdicts(calibration: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -10,7 +10,7 @@ from typing import Any
 NAMES: dict[str, str] = {
     "C_i": "injector coefficient",
     "m": "polytropic exponent",
-    "Z": "compressibility of the vapour",
+    "Z": "vapour compressibility",
     "K_loss": "feed loss coefficient",
     "p_loss_liquid": "feed loss, liquid phase",
     "p_loss_vapor": "feed loss, vapour phase",
@@ -24,7 +24,8 @@ NAMES: dict[str, str] = {
     "n": "regression exponent",
     "oxidizer_flow_peak": "peak oxidizer flow",
     "oxidizer_mass_liquid_phase": "oxidizer used as liquid",
-    "vapor_mass_at_t_v": "vapour left when the liquid is gone",
+    "mass_at_t_feed": "oxidizer at t_feed",
+    "vapor_mass_at_t_v": "vapour left at t_v",
 }
 """The quantities of the products, in the order in which they are shown."""
 
@@ -129,6 +130,15 @@ def fixed(value: float, decimals: int) -> str:
     """
     text = f"{value:.{decimals}f}"
     return text.replace("-", _MINUS) if float(text) else text.replace("-", "")
+
+
+def tidy(value: float, digits: int = 4) -> str:
+    """A number without uncertainty, to a few digits.
+
+    >>> tidy(-0.001234567)
+    '−0.001235'
+    """
+    return f"{value:.{digits}g}".replace("-", _MINUS)
 
 
 def is_quantity(data: Any) -> bool:

@@ -32,6 +32,9 @@ _HINTS: tuple[tuple[str, str], ...] = (
 )
 """Canonical channel and what its column may be called; the first that fits and whose unit agrees is the guess."""
 
+_MARKS = {"p": "pressure", "t": "temperature"}
+"""What a unit says about a column whose name does not."""
+
 _OFTEN = {
     "p_run": ('# zero = "ambient"   # if it is open to the air before ignition',),
     "p_chamber": ('# zero = "ambient"   # if it is open to the air before ignition',),
@@ -195,7 +198,8 @@ def guess_channel(column: Column) -> str | None:
     >>> guess_channel(Column("PT-TANK (psia)", "PT-TANK", "psia")), guess_channel(Column("mode", "mode", ""))
     ('p_tank', None)
     """
-    name = re.sub(r"[^0-9a-z]+", " ", column.name.casefold()).strip()
+    said = next((mark for mark, dimension in _MARKS.items() if _fits(column.unit, dimension)), "")
+    name = f"{said} {re.sub(r'[^0-9a-z]+', ' ', column.name.casefold())}".strip()
     for channel, hint in _HINTS:
         if re.search(hint, name) and (not column.unit or _fits(column.unit, CANONICAL[channel])):
             return channel

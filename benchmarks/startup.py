@@ -1,0 +1,65 @@
+"""Start-up beside the bare import of the stack: `hfa calibrate` done anew and found fresh, each in a new process.
+
+Usage: startup.py [--test HF5] [--repeat 7]
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+STACK = "import numpy, scipy.optimize, scipy.interpolate, h5py, numba, pydantic, typer, rich.table"
+IMPORTED = "import sys; from hfanalysis.cli import main\ntry: main()\nexcept SystemExit: pass\nprint(*sys.modules)"
+HEAVY = ("pandas", "xarray", "matplotlib", "CoolProp", "pint", "numba", "scipy", "h5py", "pydantic", "numpy")
+
+
+def median_wall(command: Sequence[str], repeat: int) -> float:
+    """Median wall time [s] of a command, after one run that warms the caches."""
+    times = []
+    for _ in range(repeat + 1):
+        start = time.perf_counter()
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=ROOT)
+        times.append(time.perf_counter() - start)
+    return statistics.median(times[1:])
+
+
+def imported(arguments: Sequence[str]) -> list[str]:
+    """Which heavy libraries the command really loads."""
+    code = IMPORTED.replace("main()", f"sys.argv = {['hfa', *arguments]!r}; main()", 1)
+    found = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=ROOT)
+    modules = set(found.stdout.splitlines()[-1].split())
+    return [name for name in HEAVY if name in modules]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--test", default="HF5")
+    parser.add_argument("--repeat", type=int, default=7)
+    options = parser.parse_args()
+    hfa = str(Path(sys.executable).with_name("hfa"))
+    with tempfile.TemporaryDirectory() as out:
+        calibrate = [hfa, "calibrate", options.test, "--out", out]
+        rows = [
+            ("bare interpreter", [sys.executable, "-c", ""]),
+            ("bare import of the stack", [sys.executable, "-c", STACK]),
+            ("hfa --version", [hfa, "--version"]),
+            ("hfa --help", [hfa, "--help"]),
+            (f"hfa calibrate {options.test} --force", [*calibrate, "--force"]),
+            (f"hfa calibrate {options.test}, nothing changed", calibrate),
+        ]
+        print(f"wall time, median of {options.repeat} fresh processes, warm caches")
+        for name, command in rows:
+            print(f"  {name:<42} {median_wall(command, options.repeat):7.3f} s", flush=True)
+        for name, arguments in (("redone", [*calibrate[1:], "--force"]), ("nothing changed", calibrate[1:])):
+            print(f"  heavy libraries loaded, {name}: {', '.join(imported(arguments)) or 'none'}")
+
+
+if __name__ == "__main__":
+    main()

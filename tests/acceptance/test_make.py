@@ -1,0 +1,82 @@
+"""make as people use it: help, clear messages, and real files that are made once."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).parents[2]
+VENV = Path(sys.prefix)
+
+pytestmark = pytest.mark.skipif(
+    shutil.which("make") is None or not (VENV / "bin" / "hfa").exists(), reason="needs make and the project's .venv"
+)
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What make works on: the rules, the source and one test, with the environment at hand."""
+    folder = tmp_path_factory.mktemp("checkout")
+    for name in ("Makefile", "pyproject.toml", "requirements.lock"):
+        shutil.copy(REPOSITORY / name, folder)
+    shutil.copytree(REPOSITORY / "pipeline", folder / "pipeline")
+    shutil.copytree(REPOSITORY / "src", folder / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(REPOSITORY / "raw_tests" / "HF5", folder / "raw_tests" / "HF5")
+    return folder
+
+
+def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run make there; the environment counts as set up."""
+    clean = {
+        name: value for name, value in os.environ.items() if name not in ("TEST", "MAKEFLAGS", "MFLAGS", "MAKELEVEL")
+    }
+    command = ["make", "--no-print-directory", f"VENV={VENV}", "-o", f"{VENV}/.set-up", *arguments]
+    return subprocess.run(command, cwd=folder, env=clean, capture_output=True, text=True, check=False)
+
+
+def test_make_alone_prints_what_there_is_to_do(checkout: Path) -> None:
+    ended = make(checkout)
+    assert ended.returncode == 0
+    for target in ("calibrate", "report", "all", "test", "setup", "benchmark", "recovery", "lock", "clean"):
+        assert f"  {target} " in ended.stdout
+
+
+def test_a_missing_test_is_asked_for(checkout: Path) -> None:
+    ended = make(checkout, "calibrate")
+    assert ended.returncode == 2
+    assert "make calibrate: which test? For example: make calibrate TEST=HF5" in ended.stderr
+    assert "There are: HF5" in ended.stderr
+
+
+@pytest.mark.parametrize("name", ["../x", "HF6", "a b", "$(shell touch stray)", "';touch stray;'", "-x"])
+def test_a_name_that_is_no_test_ends_with_one_clear_message(checkout: Path, name: str) -> None:
+    ended = make(checkout, "calibrate", f"TEST={name}")
+    assert ended.returncode == 2
+    assert len([line for line in ended.stderr.splitlines() if line.startswith("hfa: ")]) == 1
+    assert not (checkout / "stray").exists()
+    assert "Traceback" not in ended.stderr
+
+
+def test_products_are_real_files_made_once(checkout: Path) -> None:
+    product = "processed/HF5/segments.json"
+    log = checkout / "processed/HF5/run.log"
+    assert make(checkout, product).returncode == 0
+    runs = len(log.read_text().splitlines())
+    assert runs == 2
+    assert "is up to date" in make(checkout, product).stdout
+    (checkout / "raw_tests/HF5/log.csv").touch()
+    assert make(checkout, product).returncode == 0
+    assert len(log.read_text().splitlines()) == runs
+    assert "is up to date" in make(checkout, product).stdout
+
+
+def test_make_calibrate_prints_the_result_every_time(checkout: Path) -> None:
+    for _ in range(2):
+        ended = make(checkout, "calibrate", "TEST=HF5")
+        assert ended.returncode == 0
+        assert "C_i" in ended.stdout

@@ -1,0 +1,175 @@
+"""The command line as users and scripts hold on to it: what it prints where, and its exit status."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import hfanalysis
+from hfanalysis.cli import main
+from hfanalysis.cli import perform as performing
+from hfanalysis.errors import AbsentError
+from hfanalysis.testdata.products import sha256_tree
+
+REPOSITORY = Path(__file__).parents[2]
+
+Run = Callable[..., "Ended"]
+
+
+class Ended:
+    """How a command ended."""
+
+    def __init__(self, status: int, out: str, err: str) -> None:
+        self.status, self.out, self.err = status, out, err
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A root with the replica HF5."""
+    root = tmp_path_factory.mktemp("root")
+    shutil.copytree(REPOSITORY / "raw_tests" / "HF5", root / "raw_tests" / "HF5")
+    return root
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Run ``hfa`` in this process."""
+
+    def run(*arguments: object) -> Ended:
+        monkeypatch.setattr(sys, "argv", ["hfa", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        said = capsys.readouterr()
+        return Ended(int(ended.value.code or 0), said.out, said.err)
+
+    return run
+
+
+def test_the_version(run: Run) -> None:
+    assert run("--version").out == f"hfa {hfanalysis.__version__}\n"
+
+
+def test_calibrate_prints_a_table_for_people(run: Run, root: Path) -> None:
+    ended = run("calibrate", "HF5", "--root", root)
+    assert ended.status == 0
+    for name in ("C_i", "m", "K_loss", "p_loss_liquid", "p_loss_vapor", "t_feed", "t_v", "t_purge", "bar", "95 %"):
+        assert name in ended.out
+    assert "REPLICA: generated, not measured" in ended.out
+
+
+def test_json_is_the_product_and_nothing_else(run: Run, root: Path) -> None:
+    ended = run("calibrate", "HF5", "--root", root, "--json")
+    assert ended.out == (root / "processed/HF5/calibration.json").read_text()
+    assert json.loads(ended.out)["test"] == "HF5"
+
+
+@pytest.mark.parametrize("stage", ["ingest", "segment", "calibrate", "validate", "report", "run"])
+def test_every_stage_speaks_json(run: Run, root: Path, stage: str) -> None:
+    ended = run(stage, "HF5", "--root", root, "--json")
+    assert ended.status == 0
+    assert isinstance(json.loads(ended.out), dict)
+
+
+def test_warnings_of_the_products_are_on_standard_error(run: Run, root: Path) -> None:
+    ended = run("calibrate", "HF5", "--root", root, "--quiet")
+    assert ended.out == ""
+    warned = json.loads((root / "processed/HF5/calibration.json").read_text())["warnings"]
+    assert warned
+    assert all(f"hfa: warning: {text}\n" in ended.err for text in warned)
+
+
+def test_run_does_every_stage_and_keeps_the_raw_files_as_they_are(run: Run, root: Path) -> None:
+    before = sha256_tree(root / "raw_tests")
+    assert run("run", "HF5", "--root", root).status == 0
+    made = {path.name for path in (root / "processed/HF5").iterdir()}
+    assert {"ingest.h5", "segments.json", "calibration.json", "residuals.h5", "report.html", "run.log"} <= made
+    assert (root / "processed/index.html").exists()
+    assert sha256_tree(root / "raw_tests") == before
+
+
+def test_products_go_to_another_folder(run: Run, root: Path, tmp_path: Path) -> None:
+    assert run("ingest", "HF5", "--root", root, "--out", tmp_path, "-q").status == 0
+    assert (tmp_path / "HF5/ingest.h5").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["calibrate", "HF6"], "HF5"),
+        (["calibrate", "../HF5"], "folder"),
+        (["calibrate", "/"], "folder"),
+        (["calibrate", ""], "folder"),
+        (["calibrate", "."], "folder"),
+        (["calibrate", "HF5", "--set", "calibrate.sample=3"], "calibrate.samples"),
+        (["calibrate", "HF5", "--set", "calibrate.samples=many"], "400"),
+        (["new", "HF5", "--log", "nowhere.csv"], "nowhere.csv"),
+        (["new", "../x", "--log", "nowhere.csv"], "../x"),
+    ],
+)
+def test_bad_input_ends_with_one_plain_message(run: Run, root: Path, arguments: list[str], message: str) -> None:
+    ended = run(*arguments, "--root", root)
+    assert ended.status == 2
+    assert ended.out == ""
+    assert ended.err.startswith("hfa: ")
+    assert ended.err.count("\n") == 1
+    assert message in ended.err
+    assert not (root / "processed/HF6").exists()
+
+
+@pytest.mark.parametrize("arguments", [["nonsense"], ["calibrate"], ["calibrate", "HF5", "--nonsense"], ["new", "X"]])
+def test_misuse_of_the_command_line_is_bad_input(run: Run, arguments: list[str]) -> None:
+    assert run(*arguments).status == 2
+
+
+def test_a_log_without_what_was_asked_ends_with_three(run: Run, root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def absent(*_: object, **__: object) -> None:
+        raise AbsentError("the log holds no firing")
+
+    monkeypatch.setattr(performing, "run_to", absent)
+    ended = run("calibrate", "HF5", "--root", root)
+    assert (ended.status, ended.out, ended.err) == (3, "", "hfa: the log holds no firing\n")
+
+
+def test_ctrl_c_ends_without_a_traceback(run: Run, root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(performing, "run_to", interrupted)
+    ended = run("calibrate", "HF5", "--root", root)
+    assert ended.status == 130
+    assert "Traceback" not in ended.err
+
+
+def test_only_a_defect_of_ours_shows_a_traceback(root: Path) -> None:
+    code = (
+        "import sys; from hfanalysis.cli import main, perform\n"
+        "def broken(*_, **__): raise ValueError('ours')\n"
+        f"perform.run_to = broken; sys.argv = ['hfa', 'ingest', 'HF5', '--root', {str(root)!r}]; main()"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert ended.returncode == 1
+    assert "ValueError: ours" in ended.stderr
+
+
+def test_help_and_fresh_results_load_nothing_heavy(run: Run, root: Path) -> None:
+    run("calibrate", "HF5", "--root", root, "-q")
+    for arguments in (["--help"], ["calibrate", "HF5", "--root", str(root)]):
+        code = (
+            f"import sys; sys.argv = {['hfa', *arguments]!r}; from hfanalysis.cli import main\n"
+            "try: main()\nexcept SystemExit as end: assert not end.code, end.code\n"
+            "print(*{name.split('.')[0] for name in sys.modules})"
+        )
+        ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        loaded = set(ended.stdout.splitlines()[-1].split())
+        assert not {"numpy", "scipy", "pandas", "xarray", "matplotlib", "CoolProp", "numba", "h5py", "pint"} & loaded
+
+
+def test_a_parameter_can_be_set_for_a_run(run: Run, root: Path, tmp_path: Path) -> None:
+    ended = run("calibrate", "HF5", "--root", root, "--out", tmp_path, "--set", "calibrate.samples=20", "--json")
+    assert json.loads(ended.out)["provenance"]["parameters"]["samples"] == 20
