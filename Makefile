@@ -15,7 +15,7 @@ export TEST
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) all test lint format benchmark recovery lock clean
+.PHONY: help setup $(STAGES) all test lint format benchmark recovery readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -62,6 +62,9 @@ benchmark: $(STAMP) ## start-up time beside the bare import of the stack; ingest
 
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 	$(BIN)/python benchmarks/recovery.py $(FLAGS)
+
+readme: $(STAMP) ## write the sample output in README.md anew
+	@$(BIN)/python pipeline/readme.py
 
 lock: $(STAMP) ## write requirements.lock anew from pyproject.toml
 	$(BIN)/uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --only-binary :all: --upgrade \

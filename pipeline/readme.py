@@ -1,0 +1,33 @@
+"""Writes the sample output in README.md anew, from what the command really prints: `make readme`."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BLOCK = re.compile(r"(<!-- sample: (?P<command>[^>]*?) \(written by `make readme`\) -->\n).*?(<!-- end of sample -->)", re.S)
+
+
+def sample(match: re.Match[str]) -> str:
+    """The block with the command's present output."""
+    arguments = match["command"].split()[1:]
+    hfa = [sys.executable, "-m", "hfanalysis", *arguments]
+    ended = subprocess.run(hfa, cwd=ROOT, capture_output=True, text=True, check=True)
+    lines = "\n".join(line.rstrip() for line in ended.stdout.splitlines())
+    return f"{match[1]}\n```text\n{lines}\n```\n\n{match[3]}"
+
+
+def main() -> None:
+    readme = ROOT / "README.md"
+    before = readme.read_text(encoding="utf-8")
+    after, count = BLOCK.subn(sample, before)
+    if not count:
+        sys.exit("README.md has no sample block")
+    readme.write_text(after, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
