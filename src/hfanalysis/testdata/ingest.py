@@ -1,14 +1,16 @@
 """From a log as the logger wrote it to channels in SI with a quality flag per sample.
 
-The files are read once, in chunks, into temporary columns; then one channel at a time is in memory.
+The files are read once, in chunks; then a few channels at a time are in memory, converted side by side.
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from collections import deque
+from collections.abc import Callable, Hashable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import closing
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,36 +18,21 @@ import numpy as np
 
 import hfanalysis
 from hfanalysis.errors import InputError
-from hfanalysis.testdata.channels import LONG_NAMES, default_accuracy
+from hfanalysis.testdata.channels import LONG_NAMES
 from hfanalysis.testdata.clocks import Clock, read_clock
-from hfanalysis.testdata.definition import ChannelSpec, Exclusion, TestDefinition, TimeSpec
-from hfanalysis.testdata.flags import flag_readings
-from hfanalysis.testdata.log import Channel, Flag, Flags, Floats
-from hfanalysis.testdata.quiet import REFERENCES, Firing, Trace, find_firing
-from hfanalysis.testdata.readers import Source, find_column, open_log
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import Channel
+from hfanalysis.testdata.plan import Plan, make_plans, open_files
+from hfanalysis.testdata.quiet import REFERENCES, Firing, find_firing
+from hfanalysis.testdata.readers import Source
+from hfanalysis.testdata.samples import Samples, make_channel, read_samples
 from hfanalysis.testdata.spool import Spool
 from hfanalysis.testdata.store import Store
-from hfanalysis.testdata.zero import Zero, ambient_zero, tare
-from hfanalysis.units import si_unit
 
 Progress = Callable[[str, float], None]
 """Called now and then with the file's name and the share of it that has been read."""
-
-
-@dataclass(frozen=True)
-class Plan:
-    """Where a channel's numbers are: file, column (from 0), time column (None: sample rate) and how to read it."""
-
-    spec: ChannelSpec
-    file: str
-    column: int
-    stamps: int | None
-    time: TimeSpec
-
-    @property
-    def clock(self) -> tuple[Any, ...]:
-        """What channels on one clock share."""
-        return (self.file, self.stamps, self.time)
+WORKERS = 2
+"""Channels converted at a time: bounds the memory."""
 
 
 def ingest(definition: TestDefinition, out: Path, progress: Progress = lambda name, share: None) -> None:
@@ -53,187 +40,106 @@ def ingest(definition: TestDefinition, out: Path, progress: Progress = lambda na
 
     Raises :class:`InputError` naming file and column where the log does not hold what test.toml says.
     """
-    with ExitStack() as stack:
-        run = _Ingest(definition, _plans(definition), out.parent)
-        stack.callback(run.close)
-        run.read(progress)
+    sources = open_files(definition)
+    plans = make_plans(definition, sources)
+    with ThreadPoolExecutor(WORKERS) as pool, closing(_Ingest(definition, plans, pool, out.parent)) as run:
+        hashes = {name: pool.submit(_sha256, definition.folder / name) for name in sources}
+        run.read(sources, progress)
+        firing = run.find_firing()
         with Store(out) as store:
-            run.write(store)
-
-
-def _plans(definition: TestDefinition) -> list[Plan]:
-    sources = {spec.file: open_log(definition.folder / spec.file, spec) for spec in definition.log.files}
-    return [_plan(definition, spec, sources) for spec in definition.channels.values()]
-
-
-def _plan(definition: TestDefinition, spec: ChannelSpec, sources: dict[str, Source]) -> Plan:
-    where = f"{definition.path}, channels.{spec.name}"
-    file = spec.file or _only_file(spec, sources, where)
-    source = sources[file]
-    column = find_column(source, spec.column, f"{where}.column")
-    time = spec.time or definition.log.named(file).time
-    if time is None:
-        stamps, time = source.stamps_of(column), TimeSpec(column=1)
-        if stamps is None:
-            raise InputError(f"{definition.path}, log.time: missing; expected the column of the time stamps of {file}")
-        return Plan(spec, file, column, stamps, time)
-    key = f"{where}.time.column" if spec.time else f"{definition.path}, log.time.column"
-    stamps = None if time.column is None else find_column(source, time.column, key)
-    return Plan(spec, file, column, stamps, time)
-
-
-def _only_file(spec: ChannelSpec, sources: dict[str, Source], where: str) -> str:
-    """The file that holds a channel that does not name one."""
-    if len(sources) == 1:
-        return next(iter(sources))
-    found = [name for name, source in sources.items() if spec.column in source.columns]
-    if len(found) != 1:
-        which = f"column {spec.column!r} is in {len(found)} of the files"
-        raise InputError(f"{where}: {which}; expected file = one of {', '.join(found or sources)}")
-    return found[0]
+            run.write(store, firing)
+            raw = {name: found.result() for name, found in hashes.items()}
+            store.about(run.warnings, _provenance(definition, raw))
 
 
 @dataclass
 class _Ingest:
-    """One run: plans, temporary columns, clocks."""
+    """One run: what is planned, the columns on their way, the clocks."""
 
     definition: TestDefinition
     plans: list[Plan]
+    pool: ThreadPoolExecutor
     folder: Path
-
-    def __post_init__(self) -> None:
-        self.spools: dict[str, Spool] = {}
-        self.clocks: dict[tuple[Any, ...], Clock] = {}
-        self.warnings: list[str] = list(self.definition.warnings)
+    spools: dict[str, Spool] = field(default_factory=dict)
+    clocks: dict[Hashable, Clock] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
 
     def close(self) -> None:
         for spool in self.spools.values():
             spool.close()
 
-    def read(self, progress: Progress) -> None:
+    def read(self, sources: dict[str, Source], progress: Progress) -> None:
         """Every file once, then the clocks."""
+        self.warnings += self.definition.warnings
         for file in dict.fromkeys(plan.file for plan in self.plans):
-            self._read_file(file, [plan for plan in self.plans if plan.file == file], progress)
+            self._read_file(file, sources[file], progress)
         for plan in self.plans:
             if plan.clock not in self.clocks:
                 self.clocks[plan.clock] = self._clock(plan)
 
-    def _read_file(self, file: str, plans: list[Plan], progress: Progress) -> None:
-        source = open_log(self.definition.folder / file, self.definition.log.named(file))
+    def _read_file(self, file: str, source: Source, progress: Progress) -> None:
+        plans = {plan.column: plan for plan in self.plans if plan.file == file}
+        stamps = sorted({plan.stamps for plan in plans.values() if plan.stamps is not None})
         spool = self.spools[file] = Spool(source, self.folder)
-        stamps = sorted({plan.stamps for plan in plans if plan.stamps is not None})
-        spool.fill(sorted({plan.column for plan in plans}), stamps, lambda share: progress(file, share))
+        spool.fill(sorted(plans), stamps, lambda share: progress(file, share))
+        for column, text in spool.text.items():
+            if column in plans:
+                cells = f"{text.count} cells hold text, the first {text.first!r} in line {text.line}"
+                self.warnings.append(f"channel {plans[column].spec.name}: {cells} of {file}")
 
     def _clock(self, plan: Plan) -> Clock:
-        spool = self.spools[plan.file]
-        rows = len(spool.take(plan.column))
+        spool, path = self.spools[plan.file], self.definition.folder / plan.file
+        rows = spool.rows(plan.column)
         if rows < 2:
-            raise InputError(f"{self.definition.folder / plan.file}: found {rows} samples; expected a log")
-        clock = read_clock(spool, plan.stamps, plan.time, rows, str(self.definition.folder / plan.file))
+            raise InputError(f"{path}: found {rows} rows of data; expected a log")
+        clock = read_clock(spool, plan.stamps, plan.time, rows, str(path))
         self.warnings += clock.warnings
         return clock
 
-    def write(self, store: Store) -> None:
-        """Clocks, then channel after channel."""
-        names = {key: f"time_{i}" if i else "time" for i, key in enumerate(self.clocks)}
-        for key, clock in self.clocks.items():
-            store.clock(names[key], clock.time)
-        firing = self._firing()
-        for plan in self.plans:
-            store.channel(self._channel(plan, firing), names[plan.clock], _long_name(plan.spec))
-        store.about(self.warnings, _provenance(self.definition))
+    def _samples(self, plan: Plan) -> Samples:
+        return read_samples(plan, self.spools[plan.file], self.clocks[plan.clock], self.definition)
 
-    def _firing(self) -> Firing | None:
-        stated = self.definition.segments.get("t_open")
+    def find_firing(self) -> Firing | None:
+        """When the log departs from rest; the engineer's t_open says so where it is given."""
         by_name = {plan.spec.name: plan for plan in self.plans}
-        traces = (({name: self._trace(*self._samples(by_name[name]))}) for name in REFERENCES if name in by_name)
-        found = next((firing for trace in traces if (firing := find_firing(trace))), None)
+        plans = [by_name[name] for name in REFERENCES if name in by_name]
+        found = next((f for plan in plans if (f := find_firing(plan.spec.name, self._samples(plan).trace))), None)
+        stated = self.definition.segments.get("t_open")
         if stated is None:
             return found
         return replace(found, start=stated.value) if found else Firing(stated.value, np.inf, "test.toml")
 
-    def _samples(self, plan: Plan) -> tuple[Floats, Floats, Flags]:
-        """Time [s], readings in SI (without zero and tare) and flags of a channel."""
-        clock, spec = self.clocks[plan.clock], plan.spec
-        readings = self.spools[plan.file].take(plan.column)
-        if clock.keep is not None:
-            readings = readings[clock.keep]
-        if not np.isfinite(readings).any():
-            raise InputError(self._no_numbers(plan))
-        flags = flag_readings(readings, spec.dimension, spec.missing)
-        flags[clock.stale] |= np.uint8(Flag.TIME)
-        _exclude(flags, clock.time, spec.name, self.definition.exclude)
-        readings[(flags & Flag.DROPOUT) != 0] = np.nan
-        scale, offset = spec.factor
-        readings *= scale
-        readings += offset + (self.definition.ambient_pressure.value if spec.gauge else 0.0)
-        return clock.time, readings, flags
+    def write(self, store: Store, firing: Firing | None) -> None:
+        """Clocks, then channel after channel."""
+        names = {key: f"time_{i}" if i else "time" for i, key in enumerate(self.clocks)}
+        for key, clock in self.clocks.items():
+            store.clock(names[key], clock.time)
+        for plan, (channel, warnings) in self._channels(firing):
+            self.warnings += warnings
+            store.channel(channel, names[plan.clock], LONG_NAMES.get(channel.name, channel.name))
+            self.spools[plan.file].drop(plan.column)
 
-    def _no_numbers(self, plan: Plan) -> str:
-        text = self.spools[plan.file].text.get(plan.column)
-        found = f"line {text.line} has {text.first!r}" if text else "the column is empty"
-        where = f"{self.definition.folder / plan.file}, column {plan.spec.column!r} ({plan.spec.name})"
-        return f"{where}: not one number: {found}; expected numbers"
+    def _channels(self, firing: Firing | None) -> Iterator[tuple[Plan, tuple[Channel, list[str]]]]:
+        """Channels in order, a few of them at work."""
 
-    def _trace(self, time: Floats, values: Floats, flags: Flags) -> Trace:
-        good = flags == 0
-        return Trace(time[good], values[good])
+        def work(plan: Plan) -> tuple[Channel, list[str]]:
+            return make_channel(plan, self._samples(plan), firing, self.definition)
 
-    def _channel(self, plan: Plan, firing: Firing | None) -> Channel:
-        time, values, flags = self._samples(plan)
-        spec = plan.spec
-        self.warnings += self._counted(plan, flags)
-        accuracy = spec.accuracy.value if spec.accuracy else default_accuracy(spec.dimension, _largest(values))
-        zero = self._zero(spec, self._trace(time, values, flags), firing, accuracy)
-        self.warnings += zero.warnings
-        corrected = values - zero.at(time) if zero.std is not None else values
-        return Channel(
-            spec.name, si_unit(spec.dimension), time, corrected, flags, accuracy, spec.accuracy is not None,
-            str(spec.column), zero.value, zero.std, zero.drift, values if zero.std is not None else None,
-            (*_history(self.definition, plan), *zero.history),
-        )  # fmt: skip
-
-    def _zero(self, spec: ChannelSpec, trace: Trace, firing: Firing | None, accuracy: float) -> Zero:
-        if spec.zero == "ambient":
-            return ambient_zero(spec, trace, firing, self.definition.ambient_pressure, accuracy)
-        return tare(spec, trace, firing, accuracy) if spec.tare != "none" else Zero()
-
-    def _counted(self, plan: Plan, flags: Flags) -> Iterator[str]:
-        """How many samples carry which flag."""
-        for flag in Flag:
-            count = int(np.count_nonzero(flags & flag))
-            if count and flag is not Flag.TIME:
-                yield f"channel {plan.spec.name}: {count} of {len(flags)} samples flagged {(flag.name or '').lower()}"
+        waiting: deque[tuple[Plan, Future[tuple[Channel, list[str]]]]] = deque()
+        for plan in self.plans:
+            waiting.append((plan, self.pool.submit(work, plan)))
+            if len(waiting) > WORKERS:
+                first, future = waiting.popleft()
+                yield first, future.result()
+        for plan, future in waiting:
+            yield plan, future.result()
 
 
-def _exclude(flags: Flags, time: Floats, name: str, exclusions: tuple[Exclusion, ...]) -> None:
-    for stretch in exclusions:
-        if not stretch.channels or name in stretch.channels:
-            flags[(time >= stretch.start.value) & (time <= stretch.end.value)] |= np.uint8(Flag.EXCLUDED)
-
-
-def _largest(values: Floats) -> float:
-    return float(np.nanmax(np.abs(values))) if np.isfinite(values).any() else 0.0
-
-
-def _long_name(spec: ChannelSpec) -> str:
-    return LONG_NAMES.get(spec.name, spec.name)
-
-
-def _history(definition: TestDefinition, plan: Plan) -> Iterator[str]:
-    spec = plan.spec
-    yield f"read: column {spec.column!r} of {plan.file} in {spec.unit or 'no unit'}"
-    if spec.scale != 1.0 or spec.offset:
-        yield f"scaled: {spec.scale:g} * reading + {spec.offset:g}"
-    if spec.gauge:
-        yield f"gauge: ambient pressure {definition.ambient_pressure.value:.6g} Pa added"
-
-
-def _provenance(definition: TestDefinition) -> dict[str, Any]:
+def _provenance(definition: TestDefinition, raw: dict[str, str]) -> dict[str, Any]:
     return {
         "test": definition.test.id,
         "source": definition.test.source,
-        "raw": {spec.file: _sha256(definition.folder / spec.file) for spec in definition.log.files},
+        "raw": raw,
         "test.toml": definition.sha256,
         "version": hfanalysis.__version__,
     }

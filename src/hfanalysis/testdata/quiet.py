@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +19,8 @@ LONGEST = 30.0
 """[s] of quiet time used at most, so that filling the tank does not count."""
 SHORTEST = 0.3
 """[s] of quiet time below which no zero is taken."""
+SETTLED = 1.0
+"""[s] of settled level needed after the firing."""
 SETTLING = 0.5
 """[s] after the firing before a zero may be taken."""
 REFERENCES = ("p_chamber", "thrust", "p_run", "p_tank")
@@ -57,12 +58,10 @@ class Firing:
     channel: str
 
 
-def find_firing(traces: Mapping[str, Trace]) -> Firing | None:
-    """The first sustained departure from rest, from the most telling channel that shows one."""
-    for name in REFERENCES:
-        if name in traces and (found := _departure(traces[name])):
-            return Firing(*found, name)
-    return None
+def find_firing(name: str, trace: Trace) -> Firing | None:
+    """The first sustained departure of a channel from rest; None where it shows none."""
+    found = _departure(trace)
+    return Firing(*found, name) if found else None
 
 
 def _departure(trace: Trace) -> tuple[float, float] | None:
@@ -149,24 +148,29 @@ def before(trace: Trace, firing: Firing) -> Trace:
 
 def after(trace: Trace, firing: Firing) -> Trace | None:
     """The longest stretch after a firing over which the channel is flat; None where there is none."""
+    if not len(trace.time):
+        return None
+    largest = float(np.percentile(np.abs(trace.values - np.median(trace.values)), 99))
     start, end = firing.end + SETTLING, float(trace.time[-1])
-    while end - start >= SHORTEST:
+    while end - start >= SETTLED:
         window = trace.between(start, min(end, start + LONGEST))
-        if is_flat(window):
+        if is_settled(window, largest):
             return window
         start += 0.25 * (end - start)
     return None
 
 
-def is_flat(trace: Trace) -> bool:
-    """Whether a stretch has no trend beyond its own scatter: its two halves agree within what block means scatter."""
-    first, last = (level(part) for part in _halves(trace))
-    if first is None or last is None:
+def is_settled(trace: Trace, largest: float) -> bool:
+    """Whether a stretch has no trend that matters against the channel's ``largest`` departure from rest [SI].
+
+    Either the trend carried on for ten seconds is within 1 % of it, or it is within its own scatter and that is small.
+    """
+    blocks = in_blocks(trace, 5 * BLOCK)
+    if len(blocks.time) < 5:
         return False
-    within = np.hypot(first.std, last.std)
-    return bool(abs(last.value - first.value) <= 3.0 * within)
-
-
-def _halves(trace: Trace) -> tuple[Trace, Trace]:
-    middle = len(trace.time) // 2
-    return Trace(trace.time[:middle], trace.values[:middle]), Trace(trace.time[middle:], trace.values[middle:])
+    reach = max(10.0, float(blocks.time[-1] - blocks.time[0]))
+    (slope, _), covariance = np.polyfit(blocks.time - blocks.time.mean(), blocks.values, 1, cov=True)
+    scatter = 3.0 * float(np.sqrt(covariance[0, 0]))
+    if abs(slope) * reach <= 0.01 * largest:
+        return True
+    return bool(abs(slope) <= scatter and scatter * reach <= 0.03 * largest)

@@ -1,23 +1,29 @@
-"""Delimited text in any reasonable dialect, in chunks by pandas' C parser."""
+"""Delimited text in any reasonable dialect, in segments that are parsed side by side."""
 
 from __future__ import annotations
 
+import io
+from collections import deque
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from hfanalysis.errors import InputError
 from hfanalysis.testdata.logspec import FileSpec
-from hfanalysis.testdata.readers.base import Chunk, Floats, Progress, Text
+from hfanalysis.testdata.readers import frames, plain_numbers
+from hfanalysis.testdata.readers.base import Chunk, Progress
 from hfanalysis.testdata.readers.dialect import WHITESPACE, Dialect, detect
 from hfanalysis.testdata.readers.stamps import StampParser
 
-CELLS = 2_000_000
-"""Numbers in a chunk: 16 MB, and a few times that while it is parsed."""
+SEGMENT = 1_000_000
+"""Bytes of text parsed at a time: small enough for memory to be used again rather than asked for anew."""
+WORKERS = 2
+CHUNK = 20_000
+"""Rows read at a time where text cannot be cut into segments."""
 
 
 @dataclass(frozen=True)
@@ -45,67 +51,60 @@ class Delimited:
 
     def chunks(self, columns: Sequence[int], stamps: Sequence[int], progress: Progress) -> Iterator[Chunk]:
         """See :class:`hfanalysis.testdata.readers.base.Source`."""
-        wanted = sorted({*columns, *stamps})
         parsers = {column: StampParser() for column in stamps}
         line, size = self.dialect.first + 1, max(self.path.stat().st_size, 1)
         with self.path.open("rb") as file:
-            for frame in self._frames(file, wanted):
-                yield _chunk(frame, parsers, self.dialect.decimal, line)
-                line += len(frame)
+            for part in self._parts(file, sorted({*columns, *stamps})):
+                chunk = part if isinstance(part, Chunk) else frames.chunk(part, parsers, self.dialect.decimal, line)
+                yield chunk
+                line += len(next(iter(chunk.columns.values())))
                 progress(min(1.0, file.tell() / size))
 
-    def _frames(self, file: Any, wanted: Sequence[int]) -> Iterator[pd.DataFrame]:
-        about = self.dialect
+    def _parts(self, file: Any, wanted: Sequence[int]) -> Iterator[Any]:
+        """Chunks, or frames where there is more than plain numbers."""
         try:
-            yield from pd.read_csv(
-                file,
-                sep=r"\s+" if about.delimiter == WHITESPACE else about.delimiter,
-                header=None,
-                names=list(range(about.width)),
-                usecols=list(wanted),
-                index_col=False,
-                skiprows=about.first,
-                decimal=about.decimal,
-                encoding=about.encoding,
-                encoding_errors="replace",
-                skipinitialspace=True,
-                chunksize=max(1, CELLS // max(about.width, 1)),
-                low_memory=False,
-                engine="c",
-            )
-        except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeError) as error:
+            if self._is_cuttable(file):
+                yield from self._side_by_side(file, wanted)
+            else:
+                file.seek(0)
+                yield from frames.read(file, self.dialect, wanted, skiprows=self.dialect.first, chunksize=CHUNK)
+        except (ValueError, UnicodeError) as error:  # pandas' parser errors are ValueErrors
             raise InputError(f"{self.path}: cannot be read as delimited text: {error}") from None
+
+    def _is_cuttable(self, file: Any) -> bool:
+        """Read past the header; False where lines cannot be told from bytes."""
+        if self.dialect.encoding.startswith(("utf-16", "utf-32")):
+            return False
+        head = b"".join(file.readline() for _ in range(self.dialect.first + 1))
+        file.seek(0)
+        for _ in range(self.dialect.first):
+            file.readline()
+        return b"\r" not in head.replace(b"\r\n", b"")
+
+    def _side_by_side(self, file: Any, wanted: Sequence[int]) -> Iterator[Any]:
+        """Segments in order, the next ones at work. (Letting pandas skip rows and chunk would be half as fast.)"""
+        waiting: deque[Future[Any]] = deque()
+        with ThreadPoolExecutor(WORKERS) as pool:
+            while segment := file.read(SEGMENT):
+                segment += file.readline()
+                if segment.strip():
+                    waiting.append(pool.submit(self._segment, segment, wanted))
+                if len(waiting) > WORKERS:
+                    yield waiting.popleft().result()
+            while waiting:
+                yield waiting.popleft().result()
+
+    def _segment(self, segment: bytes, wanted: Sequence[int]) -> Any:
+        about = self.dialect
+        if about.delimiter != WHITESPACE:
+            slots = np.full(about.width, -1)
+            slots[list(wanted)] = np.arange(len(wanted))
+            numbers = plain_numbers.parse(segment, about.delimiter, about.decimal, slots, len(wanted))
+            if numbers is not None:
+                return Chunk(dict(zip(wanted, numbers, strict=True)))
+        return frames.read(io.BytesIO(segment), about, wanted)
 
 
 def open_source(path: Path, spec: FileSpec) -> Delimited:
     """The text log with its dialect found."""
     return Delimited(path, detect(path, spec))
-
-
-def _chunk(frame: pd.DataFrame, parsers: dict[int, StampParser], decimal: str, line: int) -> Chunk:
-    columns: dict[int, Floats] = {}
-    text: dict[int, Text] = {}
-    written: set[int] = set()
-    for column, cells in ((int(str(name)), cells) for name, cells in frame.items()):
-        if cells.dtype.kind in "fiub":
-            columns[column] = cells.to_numpy(dtype=np.float64)
-            continue
-        columns[column] = _numbers(cells, decimal)
-        if column in parsers and _mostly_text(columns[column], cells):
-            columns[column] = parsers[column].seconds(cells)
-            written.add(column)
-        bad = np.flatnonzero(np.isnan(columns[column]) & cells.notna().to_numpy())
-        if len(bad):
-            text[column] = Text(len(bad), line + int(bad[0]), str(cells.iloc[bad[0]]))
-    return Chunk(columns, text, frozenset(written))
-
-
-def _mostly_text(numbers: Floats, cells: pd.Series[Any]) -> bool:
-    return bool(np.isnan(numbers).sum() * 2 > cells.notna().sum())
-
-
-def _numbers(cells: pd.Series[Any], decimal: str) -> Floats:
-    """The numbers among cells some of which are text, NaN for the others."""
-    strings = cells.where(cells.isna(), cells.astype(str))
-    plain = strings.str.replace(",", ".") if decimal == "," else strings
-    return np.array(pd.to_numeric(plain, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))

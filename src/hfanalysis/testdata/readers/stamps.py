@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from hfanalysis.testdata.readers.base import Floats
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DAY = 86400.0
 _FORMATS = ("ISO8601", "%m/%d/%Y %H:%M:%S.%f", "%m/%d/%Y %H:%M:%S", "%d.%m.%Y %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S",
@@ -64,6 +66,8 @@ class StampParser:
 
 def _parsed(text: pd.Series[Any]) -> pd.Series[Any]:
     """The reading, in the first format that fits most cells."""
+    import pandas as pd
+
     best = pd.to_datetime(text, format=_FORMATS[0], errors="coerce", utc=True)
     for form in _FORMATS[1:]:
         if best.notna().sum() * 2 >= text.notna().sum():
@@ -73,4 +77,6 @@ def _parsed(text: pd.Series[Any]) -> pd.Series[Any]:
 
 
 def _numbers(cells: pd.Series[Any]) -> Floats:
+    import pandas as pd
+
     return np.array(pd.to_numeric(cells, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))

@@ -1,0 +1,238 @@
+"""Compiled passes over a channel's samples, a few nanoseconds each."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.uint8]
+
+DROPOUT, STUCK, SATURATED, SPIKE = np.uint8(1), np.uint8(2), np.uint8(4), np.uint8(8)
+
+CONTEXT = 30
+"""Runs looked at on either side to tell how long this channel usually repeats itself."""
+STUCK_RUN, STUCK_FACTOR = 20, 20.0
+CLIPPED_RUN, CLIPPED_FACTOR = 4, 8.0
+NOISE_BLOCK = 256
+"""Samples over which noise is estimated."""
+WINDOW = 8
+"""Samples on either side of a spike that say where the channel is without it."""
+LONGEST_SPIKE = 3
+OUTLYING = 8.0
+"""Local standard deviations by which a spike stands out."""
+JUMP = 6.0
+"""Standard deviations by which a spike begins: a sample is worth a closer look only then."""
+ALONE = 16
+"""Samples around a spike in which there may be few others: many are a signal."""
+COMMON = 0.02
+"""Share of samples above which spikes are how this channel reads, not events."""
+
+
+@njit(cache=True, nogil=True)
+def not_finite(readings: Floats, flags: Flags) -> None:
+    """Flags NaN and infinity as dropped out."""
+    for i in range(len(readings)):
+        if not np.isfinite(readings[i]):
+            flags[i] |= DROPOUT
+
+
+@njit(cache=True, nogil=True)
+def outside(values: Floats, low: float, high: float, flags: Flags) -> None:
+    """Flags values outside low..high as dropped out."""
+    for i in range(len(values)):
+        if values[i] < low or values[i] > high:
+            flags[i] |= DROPOUT
+
+
+@njit(cache=True, nogil=True)
+def survey(readings: Floats, flags: Flags) -> tuple[int, float, float, int, int, int]:
+    """Of the samples without a flag: their number, the extremes, and how often the extremes and zero occur."""
+    count = lows = highs = zeros = 0
+    low, high = np.inf, -np.inf
+    for i in range(len(readings)):
+        if flags[i]:
+            continue
+        x = readings[i]
+        count += 1
+        zeros += x == 0.0
+        if x < low:
+            low, lows = x, 0
+        if x > high:
+            high, highs = x, 0
+        lows += x == low
+        highs += x == high
+    return count, low, high, lows, highs, zeros
+
+
+@njit(cache=True, nogil=True)
+def detached(readings: Floats, level: float, gap: float, edges: bool, flags: Flags) -> int:
+    """Flags runs of exactly ``level`` entered and left by jumps of more than ``gap``; returns how many samples.
+
+    Runs at the log's ends have one neighbour only and count where ``edges``.
+    """
+    n, count, i = len(readings), 0, 0
+    while i < n:
+        if readings[i] != level:
+            i += 1
+            continue
+        start = i
+        while i < n and readings[i] == level:
+            i += 1
+        before, after = start > 0, i < n
+        far = edges or (before and after)
+        if before and abs(readings[start - 1] - level) <= gap:
+            far = False
+        if after and abs(readings[i] - level) <= gap:
+            far = False
+        if far:
+            flags[start:i] |= DROPOUT
+            count += i - start
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _runs(values: Floats) -> NDArray[np.int64]:
+    """Where runs of exactly equal values start, and the end of the last."""
+    n = len(values)
+    count = 1
+    for i in range(1, n):
+        count += values[i] != values[i - 1]
+    starts = np.empty(count + 1, np.int64)
+    starts[0] = 0
+    k = 1
+    for i in range(1, n):
+        if values[i] != values[i - 1]:
+            starts[k] = i
+            k += 1
+    starts[count] = n
+    return starts
+
+
+@njit(cache=True, nogil=True)
+def _repeats_at_length(values: Floats, low: float, high: float) -> bool:
+    """Whether any run is long enough to be looked at."""
+    length = 1
+    for i in range(1, len(values)):
+        if values[i] != values[i - 1]:
+            length = 1
+            continue
+        length += 1
+        if length >= STUCK_RUN or (length >= CLIPPED_RUN and (values[i] == low or values[i] == high)):
+            return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _usual_run(starts: NDArray[np.int64], first: int, last: int) -> float:
+    """The length that nine in ten of the runs first..last-1 do not exceed."""
+    lengths = np.sort(starts[first + 1 : last + 1] - starts[first:last])
+    return float(lengths[int(0.9 * (len(lengths) - 1))])
+
+
+@njit(cache=True, nogil=True)
+def repeats(values: Floats, low: float, high: float, flags: Flags) -> None:
+    """Flags stuck runs, and clipped ones at the channel's exact extremes, against the runs around them.
+
+    A run needs enough others on both sides to be compared with: an idle channel before and after a firing is not stuck.
+    """
+    if not _repeats_at_length(values, low, high):
+        return
+    starts = _runs(values)
+    runs = len(starts) - 1
+    clipped_low = clipped_high = False
+    for k in range(5, runs - 5):
+        length = starts[k + 1] - starts[k]
+        extreme = values[starts[k]] == low or values[starts[k]] == high
+        if length < (CLIPPED_RUN if extreme else STUCK_RUN):
+            continue
+        usual = max(_usual_run(starts, max(0, k - CONTEXT), k), _usual_run(starts, k + 1, min(runs, k + 1 + CONTEXT)))
+        if extreme and length >= CLIPPED_FACTOR * usual:
+            clipped_low |= values[starts[k]] == low
+            clipped_high |= values[starts[k]] == high
+        elif length >= STUCK_FACTOR * usual:
+            flags[starts[k] : starts[k + 1]] |= STUCK
+    if clipped_low or clipped_high:
+        for i in range(len(values)):
+            if (clipped_low and values[i] == low) or (clipped_high and values[i] == high):
+                flags[i] |= SATURATED
+
+
+@njit(cache=True, nogil=True)
+def local_noise(values: Floats) -> Floats:
+    """Standard deviation of the noise, by blocks, from every fourth difference of neighbours."""
+    n = len(values)
+    blocks = (n + NOISE_BLOCK - 1) // NOISE_BLOCK
+    noise = np.empty(blocks)
+    for b in range(blocks):
+        end = min(n, (b + 1) * NOISE_BLOCK + 1)
+        start = max(0, min(b * NOISE_BLOCK, end - NOISE_BLOCK))
+        noise[b] = 1.0484 * np.median(np.abs(values[start + 1 : end : 4] - values[start : end - 1 : 4]))
+    return noise
+
+
+@njit(cache=True, nogil=True)
+def _middle(values: Floats) -> tuple[float, float]:
+    """Median, and standard deviation from the median absolute deviation."""
+    middle = np.median(values)
+    return middle, 1.4826 * np.median(np.abs(values - middle))
+
+
+@njit(cache=True, nogil=True)
+def _spike_length(values: Floats, i: int, noise: float) -> int:
+    """How many samples from ``i`` on stand out alone; 0 where they do not, or the level changes with them."""
+    n = len(values)
+    left, left_noise = _middle(values[max(0, i - WINDOW) : i])
+    for length in range(1, LONGEST_SPIKE + 1):
+        after = i + length
+        if after + 3 > n:
+            return 0
+        right, right_noise = _middle(values[after : min(n, after + WINDOW)])
+        base, usual = 0.5 * (left + right), max(noise, left_noise, right_noise)
+        height = np.inf
+        up = values[i] > base
+        for j in range(i, after):
+            height = min(height, values[j] - base if up else base - values[j])
+        back = abs(values[after] - base) < 0.5 * height
+        if height > OUTLYING * usual and back and abs(right - left) < 0.3 * height:
+            return length
+    return 0
+
+
+@njit(cache=True, nogil=True)
+def spikes(values: Floats, noise: Floats, quantum: float, flags: Flags) -> None:
+    """Flags groups of up to three samples that stand out of the level they return to, unless they are many."""
+    n = len(values)
+    places = np.empty(64, np.int64)
+    lengths = np.empty(64, np.int64)
+    count, i = 0, 3
+    while i < n:
+        usual = max(noise[i // NOISE_BLOCK], quantum)
+        end, jump = min(n, (i // NOISE_BLOCK + 1) * NOISE_BLOCK), JUMP * usual
+        while i < end and abs(values[i] - values[i - 1]) <= jump:
+            i += 1
+        if i == end:
+            continue
+        length = _spike_length(values, i, usual)
+        if length == 0:
+            i += 1
+            continue
+        if count == len(places):
+            places, lengths = np.append(places, places), np.append(lengths, lengths)
+        places[count], lengths[count] = i, length
+        count += 1
+        i += length
+    _flag_lonely(places[:count], lengths[:count], flags)
+
+
+@njit(cache=True, nogil=True)
+def _flag_lonely(places: NDArray[np.int64], lengths: NDArray[np.int64], flags: Flags) -> None:
+    if lengths.sum() > COMMON * len(flags):
+        return
+    for k in range(len(places)):
+        others = 0
+        for j in range(max(0, k - 4), min(len(places), k + 5)):
+            others += j != k and abs(places[j] - places[k]) <= ALONE
+        if others <= 2:
+            flags[places[k] : places[k] + lengths[k]] |= SPIKE
