@@ -173,3 +173,35 @@ def test_help_and_fresh_results_load_nothing_heavy(run: Run, root: Path) -> None
 def test_a_parameter_can_be_set_for_a_run(run: Run, root: Path, tmp_path: Path) -> None:
     ended = run("calibrate", "HF5", "--root", root, "--out", tmp_path, "--set", "calibrate.samples=20", "--json")
     assert json.loads(ended.out)["provenance"]["parameters"]["samples"] == 20
+
+
+QUIET = "time,p_tank,p_run\n" + "".join(f"{i / 100},{50 + (i % 7) / 100},1.0{i % 5}\n" for i in range(2000))
+TOML = """\
+schema = 1
+[test]
+id = "Q1"
+kind = "hot_fire"
+[log]
+files = ["log.csv"]
+time = { column = "time", unit = "s" }
+[channels.p_tank]
+column = "p_tank"
+unit = "bar"
+[channels.p_run]
+column = "p_run"
+unit = "bar"
+"""
+
+
+def test_a_log_with_no_firing_ends_with_three_and_still_gets_its_page(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "raw_tests" / "Q1"
+    folder.mkdir(parents=True)
+    (folder / "log.csv").write_text(QUIET)
+    (folder / "test.toml").write_text(TOML)
+    ended = run("run", "Q1", "--root", tmp_path, "-q")
+    assert ended.status == 3
+    assert ended.err.splitlines()[-1].startswith("hfa: ")
+    page = (tmp_path / "processed/Q1/report.html").read_text()
+    assert "No firing was found in this log" in page
+    assert run("report", "Q1", "--root", tmp_path, "-q").status == 0
+    assert run("calibrate", "Q1", "--root", tmp_path).status == 3

@@ -13,6 +13,7 @@ from sample import CALIBRATION, SEGMENTS, channel, material, quantity
 
 from hfanalysis.report.material import phase_list
 from hfanalysis.report.page import page, render, sentence, warnings
+from hfanalysis.report.svg import Event, events, new_plot, value_range
 from hfanalysis.report.wording import quantities
 from hfanalysis.testdata.log import TestLog
 
@@ -107,7 +108,7 @@ def test_a_replica_is_called_a_replica(tmp_path: Path, text: str) -> None:
 
 def test_the_verdict_names_what_is_known_and_what_is_not(tmp_path: Path) -> None:
     said = sentence(material(tmp_path), quantities(CALIBRATION))
-    assert said.startswith("Identified: injector coefficient, feed loss coefficient and feed loss, liquid phase.")
+    assert said.startswith("Identified: injector coefficient, feed loss coefficient and liquid-phase feed loss.")
     assert "Outside its physical range: polytropic exponent." in said
     assert "Not identifiable from this test: vapour compressibility." in said
 
@@ -184,3 +185,23 @@ def test_the_index_lists_every_test() -> None:
     text = render("index.html.j2", rows=rows)
     assert Reader(text).open == []
     assert "<script>" not in text
+
+
+def test_a_few_wild_readings_do_not_flatten_a_chart_but_are_told(tmp_path: Path) -> None:
+    made = material(tmp_path)
+    mass = made.log.channels["m_tank"]
+    wild = mass.values.copy()
+    wild[2000:2010] = 540.0
+    log = TestLog({"m_tank": replace(mass, values=wild)})
+    text = page(replace(made, log=log))
+    assert "A few readings lie outside the chart, as far as 540 kg." in text
+    low, high = value_range([wild])
+    assert low == 0.0
+    assert 8.0 < high < 20.0
+
+
+def test_names_of_events_never_overlap() -> None:
+    plot = new_plot((-2.0, 20.0), (0.0, 1.0))
+    events(plot, [Event(0.0, 0.0, "t_open"), Event(0.2, 0.0, "t_feed"), Event(0.4, 0.0, "t_v")])
+    heights = re.findall(r'class="event-name" x="[\d.]+" y="([\d.]+)"', "".join(plot.parts))
+    assert len(set(heights)) == 3

@@ -120,7 +120,15 @@ def _with_raw(material: Material, channel: Channel, heading: str, y_label: str) 
         return None
     plot = _drawn(material, lines, y_label, 280.0)
     words = _range_words(corrected, heading, channel.unit)
-    return Figure(heading, svg.render(plot, channel.name, heading, words), _zero_words(channel))
+    caption = f"{_zero_words(channel)}{_beyond(plot, corrected, channel.unit)}"
+    return Figure(heading, svg.render(plot, channel.name, heading, words), caption)
+
+
+def _beyond(plot: svg.Plot, data: Envelope, unit: str) -> str:
+    """What a few wild readings leave outside the chart."""
+    low, high = float(np.nanmin(data.low)), float(np.nanmax(data.high))
+    wild = [tidy(end, 3) for end, out in ((low, low < plot.y.low), (high, high > plot.y.high)) if out]
+    return f" A few readings lie outside the chart, as far as {' and '.join(wild)} {unit}." if wild else ""
 
 
 def _zero_words(channel: Channel) -> str:

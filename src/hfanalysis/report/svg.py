@@ -13,8 +13,11 @@ from hfanalysis.report.envelope import Envelope, Floats
 from hfanalysis.report.wording import fixed
 
 WIDTH = 960.0
-LEFT, RIGHT, TOP, BOTTOM = 58.0, 104.0, 60.0, 46.0
+LEFT, RIGHT, TOP, BOTTOM = 58.0, 104.0, 64.0, 46.0
 """Margins: for the values, the names at the lines' ends, the events, and the time."""
+
+_ROWS = 3
+"""Rows for the names of events above a chart."""
 
 _LETTER = 6.6
 """Width of a letter of the charts' text."""
@@ -74,12 +77,28 @@ def new_plot(times: tuple[float, float], values: tuple[float, float], height: fl
 
 
 def value_range(arrays: Iterable[Floats], with_zero: bool = True) -> tuple[float, float]:
-    """A range with a little air above and below all finite values."""
+    """A range with a little air around the finite values; a few wild ones (under 1 %) may be left outside.
+
+    Args:
+        arrays: what is to be drawn; NaN where there is nothing.
+        with_zero: whether zero belongs to the range.
+    """
     finite = [array[np.isfinite(array)] for array in arrays]
-    joined = np.concatenate([*finite, np.zeros(1 if with_zero else 0)])
-    low, high = (float(joined.min()), float(joined.max())) if joined.size else (0.0, 1.0)
+    joined = np.concatenate(finite) if finite else np.zeros(0)
+    low, high = _without_wild(joined) if joined.size else (0.0, 1.0)
+    if with_zero:
+        low, high = min(low, 0.0), max(high, 0.0)
     air = 0.04 * (high - low) or abs(high) * 0.1 or 1.0
     return (low - air if low < 0.0 or not with_zero else low, high + air)
+
+
+def _without_wild(values: Floats) -> tuple[float, float]:
+    """The extremes, but no further than the width of the inner 98 % beyond it on either side."""
+    low, high = (float(value) for value in np.percentile(values, [1.0, 99.0]))
+    width = high - low
+    if width == 0.0:
+        return float(values.min()), float(values.max())
+    return max(float(values.min()), low - width), min(float(values.max()), high + width)
 
 
 def nice_ticks(low: float, high: float, most: int = 7) -> list[float]:
@@ -151,16 +170,16 @@ def _clamped(axis: Axis, value: float) -> float:
 
 
 def events(plot: Plot, found: Sequence[Event]) -> None:
-    """A line per event with its 95 % interval, named above the chart, in two rows where they stand close."""
-    last = [-1e9, -1e9]
+    """A line per event with its 95 % interval, named above the chart, in rows where names stand close."""
+    ends = [-math.inf] * _ROWS
     for event in sorted(found, key=lambda item: item.time):
         if not plot.x.low <= event.time <= plot.x.high:
             continue
-        x = plot.x(event.time)
-        row = 0 if x - last[0] > _LETTER * len(event.name) + 8 else 1
-        last[row] = x
+        x, half = plot.x(event.time), 0.5 * _LETTER * len(event.name) + 3.0
+        row = next((row for row, end in enumerate(ends) if end < x - half), _ROWS - 1)
+        ends[row] = x + half
         plot.parts.append(_event(plot, event, x))
-        plot.parts.append(_text(x, TOP - 6 - 14 * row, event.name, "event-name", "middle"))
+        plot.parts.append(_text(x, TOP - 6 - 13 * row, event.name, "event-name", "middle"))
 
 
 def _event(plot: Plot, event: Event, x: float) -> str:
