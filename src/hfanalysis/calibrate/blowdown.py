@@ -25,6 +25,10 @@ EXPONENTS = np.geomspace(0.05, 6.0, 49)
 """Grid on which the root in m is bracketed; no gas expands outside it."""
 
 
+SETTLING = 2.0
+"""K_loss is taken from this many t_feed on: at t_feed itself the line still fills by the last 2 %."""
+
+
 @dataclass(frozen=True)
 class Inputs:
     """Everything the reduction takes besides the pressures; SI units.
@@ -101,6 +105,7 @@ def reduce(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift 
         tables.run - tables.chamber + (shift.run - shift.chamber),
         tables.loss + (shift.tank - shift.run),
         inputs.t_feed,
+        min(SETTLING * inputs.t_feed, 0.5 * (inputs.t_feed + inputs.t_v)),
         inputs.t_v,
     )
     C_i = (inputs.mass - vapor) / (inputs.area * flow_integral) if flow_integral > 0.0 else np.nan
@@ -117,9 +122,9 @@ def reduce(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift 
 
 @njit(cache=True)
 def _liquid_sums(
-    time: Array, density: Array, drop: Array, loss: Array, t_feed: float, t_v: float
+    time: Array, density: Array, drop: Array, loss: Array, t_feed: float, t_steady: float, t_v: float
 ) -> tuple[float, float, float, float]:
-    """Integral of sqrt(2 rho dp) over [0, t_v]; sums of loss * dp and dp * dp and the mean loss over [t_feed, t_v)."""
+    """Integral of sqrt(2 rho dp) over [0, t_v]; sums of loss * dp and dp * dp over [t_steady, t_v), mean loss over [t_feed, t_v)."""
     integral = 0.0
     products = squares = losses = 0.0
     count = 0
@@ -134,10 +139,11 @@ def _liquid_sums(
             break
         integral += 0.5 * (before + flow) * (time[i] - before_time)
         before_time, before = time[i], flow
-        if time[i] >= t_feed and drop[i] > 0.0:
+        if time[i] >= t_steady and drop[i] > 0.0:
             # both losses go with mdot^2 / rho = 2 (C A)^2 (p_run - p_c): least squares of the loss on that
             products += loss[i] * drop[i]
             squares += drop[i] * drop[i]
+        if time[i] >= t_feed:
             losses += loss[i]
             count += 1
     integral += before * max(t_v - before_time, 0.0)

@@ -19,7 +19,7 @@ from hfanalysis.segment.signals import Signal
 Array = NDArray[np.float64]
 Design = Callable[[Array, float], Array]
 
-RELAXATIONS = (0.0, 0.002, 0.005, 0.012, 0.03, 0.07, 0.15, 0.3, 0.6)
+RELAXATIONS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.008, 0.013, 0.02, 0.03, 0.05, 0.08, 0.13, 0.2, 0.3, 0.6)
 """Time constants tried for what follows a break [s]; 0 is a step."""
 
 
@@ -52,6 +52,18 @@ def kink(order: int = 2, before: int | None = None) -> Design:
         past, future = np.minimum(x, 0.0), np.maximum(x, 0.0)
         powers = [past**k for k in range(1, left + 1)] + [future**k for k in range(1, order + 1)]
         return np.stack([np.ones_like(x), *powers], axis=1)
+
+    return columns
+
+
+def rounded_kink(width: float) -> Design:
+    """One parabola on which the slope changes, not at once but evenly over ``width`` seconds about the break."""
+
+    def columns(time: Array, instant: float) -> Array:
+        x = time - instant
+        inside = np.clip(x + 0.5 * width, 0.0, width)
+        turned = inside**2 / (2.0 * width) + np.maximum(x - 0.5 * width, 0.0)
+        return np.stack([np.ones_like(x), x, x**2, turned], axis=1)
 
     return columns
 
@@ -92,7 +104,7 @@ def find_break(
     found = _summarise(candidates, log_likelihood, constant, (signal.name,), signal.step)
     if noise is None:
         return found
-    return replace(found, std=max(found.std, float(np.hypot(_linear_std(signal, designs[best], found.time, noise), 0.5 * signal.step))))
+    return replace(found, std=max(found.std, float(np.hypot(_linear_std(signal, designs[best], found.time, noise), signal.step / np.sqrt(12.0)))))
 
 
 def combine(breaks: Sequence[Break], step: float) -> Break:
@@ -105,13 +117,13 @@ def combine(breaks: Sequence[Break], step: float) -> Break:
 
 
 def _summarise(candidates: Array, log_likelihood: Array, constant: float, names: tuple[str, ...], step: float) -> Break:
-    """Mean and spread over the profile. No instant is dated better than half a sample interval: the log does not say when
-    within it a sample was taken."""
+    """Mean and spread over the profile. A change that is over within a sample interval is dated no better than that."""
+    unseen = step * min(1.0, step / max(constant, 1e-9))
     weight = np.exp(log_likelihood - log_likelihood.max()) * np.gradient(candidates)
     weight /= weight.sum()
     mean = float(weight @ candidates)
     spread = float(weight @ (candidates - mean) ** 2)
-    return Break(mean, float(np.sqrt(spread + step**2 / 4.0)), candidates, log_likelihood, constant, names)
+    return Break(mean, float(np.sqrt(spread + unseen**2 / 12.0)), candidates, log_likelihood, constant, names)
 
 
 def _sum_of_squares(signal: Signal, design: Design, instant: float) -> float:

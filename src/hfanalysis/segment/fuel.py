@@ -128,15 +128,15 @@ def _fall_at(response: _Response, t: float, t_v: float | None) -> float:
 
 
 def _thrust_falls(signals: Mapping[str, Signal], t: float) -> bool:
-    """Whether the thrust, where it is measured, falls at the same instant by a tenth of its size or three of its scatter."""
+    """Whether the thrust, where it is measured, falls at the same instant beyond its scatter."""
     if "thrust" not in signals:
         return True
     thrust = signals["thrust"]
     before, after = thrust.between(t - WINDOW, t - GAP).value, thrust.between(t + GAP, t + WINDOW).value
     if before.size < 4 or after.size < 4:
         return True
-    error = 3.0 * np.hypot(before.std() / np.sqrt(before.size), after.std() / np.sqrt(after.size))
-    return bool(before.mean() - after.mean() > max(0.1 * abs(before.mean()), error))
+    error = 2.0 * np.hypot(before.std() / np.sqrt(before.size), after.std() / np.sqrt(after.size))
+    return bool(before.mean() - after.mean() > max(0.03 * abs(before.mean()), error))
 
 
 def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> FuelEnd:

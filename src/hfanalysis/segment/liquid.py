@@ -15,7 +15,7 @@ import numpy as np
 from hfanalysis.engine.tank import mass_along_blowdown
 from hfanalysis.segment.breaks import Break
 from hfanalysis.segment.noise import Noise
-from hfanalysis.segment.refine import refine_kink, refine_step
+from hfanalysis.segment.refine import refine_knee, refine_step
 from hfanalysis.segment.signals import Array, Signal
 from hfanalysis.thermo.saturation import Saturation
 
@@ -24,6 +24,12 @@ STEEPER = 1.25
 
 DRY_PRESSURE_SPREAD = 0.2
 """Standard deviation of ln(p) within which real tanks run dry about the adiabatic value: heat, mass and stratification."""
+
+WIDE_KNEE = 0.9
+"""Seconds on either side of a knee that only the tank pressure shows."""
+
+LINE_REACH = 0.15
+"""Seconds over which the run line's slope is taken on either side of its fall."""
 
 SHARP = 0.04
 """Chamber and thrust count as sharp, and then date the event, where they relax faster than this [s]."""
@@ -64,12 +70,47 @@ def find_liquid_end(signals: Mapping[str, Signal], end: float, expected: float |
     rough = _rough_knee(tank, end, expected)
     if rough is None:
         return None
-    reach = max(0.12, 4.0 * tank.step)
+    noise = Noise.of(tank, tank.between(-3.0, -0.05))
     half = min(max(0.3, 15.0 * tank.step), max(0.8 * rough, 6.0 * tank.step))
-    knee = refine_kink(tank, rough, half + reach, half + reach, reach, noise=Noise.of(tank, tank.between(-3.0, -0.05)))
+    reach = max(0.12, 4.0 * tank.step)
+    knee = refine_knee(tank, rough, half + reach, half + reach, reach, noise)
     if knee is None:
         return LiquidEnd(rough, 0.5 * reach, ("p_tank",), {})
-    return _dated_by_steps(signals, knee, half)
+    dated = _dated_by_steps(signals, knee, half)
+    if dated.channels != ("p_tank",):
+        return dated
+    return _rounded(signals, knee, min(WIDE_KNEE, 0.8 * rough), noise, dated.apart)
+
+
+def _rounded(
+    signals: Mapping[str, Signal], knee: Break, wide: float, noise: Noise, apart: dict[str, float]
+) -> LiquidEnd:
+    """A knee without a sharp step: the last liquid leaves as froth, and tank and run line show it 0.1 to 0.2 s apart.
+
+    The run line, after a bump, falls the more sharply of the two; the middle between both is taken, and half their distance is
+    the least uncertainty.
+    """
+    tank = signals["p_tank"]
+    line = _run_line_fall(signals["p_run"], knee.time, wide) if "p_run" in signals else None
+    if line is None:
+        found = refine_knee(tank, knee.time, wide, wide, 0.5 * wide, noise) or knee
+        return LiquidEnd(found.time, found.std, ("p_tank",), apart)
+    near = max(0.35, 8.0 * tank.step)
+    found = refine_knee(tank, line, 2.0 * near, 2.0 * near, near, noise) or knee
+    std = max(found.std, 0.5 * abs(found.time - line), 0.5 * LINE_REACH)
+    return LiquidEnd(0.5 * (found.time + line), std, ("p_tank", "p_run"), {**apart, "p_run": line})
+
+
+def _run_line_fall(run: Signal, about: float, wide: float) -> float | None:
+    """Where the run line's slope drops most within [about - wide, about + wide/3]; None where it hardly does."""
+    width = max(LINE_REACH, 5.0 * run.step)
+    times = np.arange(max(about - wide, 1.5 * width), about + wide / 3.0, 0.2 * width)
+    if times.size == 0:
+        return None
+    drop = np.array([_slope(run, t - width, t) - _slope(run, t, t + width) for t in times])
+    usual = _slope(run, about - 2.0 * wide, about - wide)
+    best = int(np.nanargmax(drop)) if np.isfinite(drop).any() else 0
+    return float(times[best]) if np.isfinite(drop[best]) and drop[best] > 0.5 * abs(usual) else None
 
 
 def _rough_knee(tank: Signal, end: float, expected: float | None) -> float | None:

@@ -107,7 +107,7 @@ def _responds(signal: Signal, time: float) -> bool:
 
 def _refined(signals: list[Signal], rough: float) -> Opening:
     step = max(s.step for s in signals)
-    before, after = max(0.5, 12 * step), max(0.15, 6 * step)
+    before, after = max(0.5, 12 * step), max(0.08, 6 * step)
     found = refine_step(signals, rough, before, after, max(0.08, 3 * step), order=0)
     if found is None:
         return Opening(rough, step, tuple(s.name for s in signals))

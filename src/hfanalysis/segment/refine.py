@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from hfanalysis.segment.breaks import RELAXATIONS, Break, Design, combine, find_break, kink, relaxation
+from hfanalysis.segment.breaks import RELAXATIONS, Break, Design, combine, find_break, kink, relaxation, rounded_kink
 from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.signals import Array, Signal
 
 COARSE, FINE = 41, 61
+
+ROUNDINGS = (0.05, 0.1, 0.2, 0.35, 0.5, 0.7)
+"""Seconds over which a real knee may spread: the last liquid leaves as froth."""
 
 
 def refine_kink(
@@ -28,6 +32,18 @@ def refine_kink(
     """
     design = kink(order=2, before=0 if flat else 2)
     return _search([signal], rough, before, after, reach, [design], (0.0,), noise)
+
+
+def refine_knee(signal: Signal, rough: float, before: float, after: float, reach: float, noise: Noise) -> Break | None:
+    """A change of slope that may take its time: sharp, or spread over one of ROUNDINGS seconds.
+
+    The break's ``relaxation`` is that time; the instant is its middle and its deviation grows with it.
+    """
+    designs = [kink(order=2), *(rounded_kink(w) for w in ROUNDINGS)]
+    found = _search([signal], rough, before, after, reach, designs, (0.0, *ROUNDINGS), noise)
+    if found is None:
+        return None
+    return replace(found, std=float(np.hypot(found.std, found.relaxation / np.sqrt(12.0))))
 
 
 def refine_step(signals: Sequence[Signal], rough: float, before: float, after: float, reach: float, order: int = 1) -> Break | None:

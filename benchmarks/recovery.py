@@ -1,0 +1,151 @@
+"""Does the calibration find what is in a log, and do its intervals hold it? Two studies, each resumable.
+
+``own``: 400 logs of the virtual stand (random truth, noise, declared biases, line filling, purge), each taken through ingest,
+segment and calibrate. ``blind``: the cases without an effect of another generator, where its folder is given. Results are
+written as they come to .cache/recovery-*.jsonl; the table goes to docs/recovery.md.
+
+    python benchmarks/recovery.py --cases 400 [--blind FOLDER]
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import sys
+import tempfile
+from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.progress import track
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+CACHE = ROOT / ".cache"
+TABLE = ROOT / "docs" / "recovery.md"
+QUANTITIES = ("C_i", "m", "K_loss", "t_v", "t_purge", "t_open")
+
+
+def recover(folder: Path) -> dict[str, Any]:
+    """Take one test folder through ingest, segment and calibrate: value, std and interval by name."""
+    from hfanalysis.calibrate.tank import calibrate
+    from hfanalysis.segment.phases import find_phases
+    from hfanalysis.testdata.definition import load_definition
+    from hfanalysis.testdata.ingest import ingest
+    from hfanalysis.testdata.log import read_log
+
+    definition = load_definition(folder / "test.toml")
+    with tempfile.TemporaryDirectory() as scratch:
+        product = Path(scratch) / "ingest.h5"
+        ingest(definition, product)
+        log = read_log(product)
+    segments = find_phases(log, definition)
+    calibration = calibrate(log, segments, definition, 400)
+    found = {**calibration.quantities, **segments.events, "t_open": segments.t_open}
+    return {n: found[n].to_json() for n in QUANTITIES}
+
+
+def own_case(seed: int) -> dict[str, Any]:
+    """One log of the virtual stand and what is found in it."""
+    from benchmarks.virtual_stand import make_log
+
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch) / f"S{seed:04d}"
+        folder.mkdir()
+        truth = make_log(folder, seed)
+        found = recover(folder)
+    return {"case": seed, "truth": {n: getattr(truth, n) for n in QUANTITIES}, "found": found}
+
+
+def blind_case(folder: Path) -> dict[str, Any]:
+    """One practice case of another generator, scored against its answer."""
+    answer = json.loads((folder.parent.parent / "answers" / f"{folder.name}.json").read_text())
+    truth = {"C_i": answer["C_i"], "m": answer["m"], "t_v": answer["t_v"], "t_purge": answer["t_purge"], "t_open": 0.0}
+    return {"case": folder.name, "truth": truth, "found": recover(folder)}
+
+
+def run(name: str, cases: Iterable[Any], work: Any, processes: int) -> list[dict[str, Any]]:
+    """Work through the cases that have no result yet; every result is written as soon as it is there."""
+    CACHE.mkdir(exist_ok=True)
+    path = CACHE / f"recovery-{name}-{_code()}.jsonl"
+    done = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+    known = {str(r["case"]) for r in done}
+    todo = [c for c in cases if str(c if isinstance(c, int) else c.name) not in known]
+    with path.open("a") as file, ProcessPoolExecutor(processes) as pool:
+        for result in track(pool.map(work, todo), f"{name} logs", len(todo), console=Console(stderr=True)):
+            file.write(json.dumps(result) + "\n")
+            file.flush()
+            done.append(result)
+    return done
+
+
+def _code() -> str:
+    """Results are of one state of the code: any change to it starts the study anew."""
+    digest = hashlib.sha256()
+    for path in sorted([*ROOT.glob("src/**/*.py"), ROOT / "benchmarks" / "virtual_stand.py"]):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def table(results: list[dict[str, Any]]) -> str:
+    """Per quantity: cases, mean and scatter of (found - truth)/std, relative bias, and coverage with its 95 % limits."""
+    rows = ["| quantity | cases | answered | median relative or absolute error | mean z | std z | 95 % interval covers | 95 % limits |",
+            "|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    for name in QUANTITIES:
+        pairs = [(r["truth"][name], r["found"][name]) for r in results if name in r["truth"]]
+        answered = [(t, f) for t, f in pairs if f["value"] is not None]
+        if not answered:
+            continue
+        error = np.array([f["value"] - t for t, f in answered])
+        z = error / np.array([f["std"] for _, f in answered])
+        inside = np.array([f["ci95"][0] <= t <= f["ci95"][1] for t, f in answered])
+        low, high = _wilson(int(inside.sum()), inside.size)
+        size = f"{1e3 * np.median(error):+.2f} ms" if name.startswith("t_") else _percent(error, answered)
+        rows.append(
+            f"| {name} | {len(pairs)} | {len(answered)} | {size} | {z.mean():+.2f} | {z.std():.2f} | "
+            f"{100 * inside.mean():.1f} % | {100 * low:.1f} to {100 * high:.1f} % |"
+        )
+    return "\n".join(rows)
+
+
+def _percent(error: np.ndarray, answered: list[Any]) -> str:
+    return f"{100 * np.median(error / np.array([t for t, _ in answered])):+.2f} %"
+
+
+def _wilson(k: int, n: int) -> tuple[float, float]:
+    z, p = 1.96, k / n
+    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+    half = z * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)
+    return middle - half, middle + half
+
+
+def blind_folders(root: Path) -> list[Path]:
+    """The practice cases in which nothing is hidden."""
+    answers = sorted((root / "answers").glob("*.json"))
+    none = [a.stem for a in answers if json.loads(a.read_text()).get("effect") == "none"]
+    return [root / "raw_tests" / name for name in none]
+
+
+def main() -> None:
+    """Run the studies and write the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", type=int, default=400)
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--blind", type=Path)
+    arguments = parser.parse_args()
+    text = "# Recovery\n\nMade by `make recovery`. z is (found - truth) / stated standard deviation.\n"
+    own = run("own", range(arguments.cases), own_case, arguments.processes)
+    text += f"\n## {len(own)} logs of the project's own tank model\n\n{table(own)}\n"
+    if arguments.blind is not None and arguments.blind.is_dir():
+        blind = run("blind", blind_folders(arguments.blind), blind_case, arguments.processes)
+        text += f"\n## {len(blind)} cases without an effect from another generator\n\n{table(blind)}\n"
+    TABLE.write_text(text, encoding="utf-8")
+    print(text)
+
+
+if __name__ == "__main__":
+    main()
