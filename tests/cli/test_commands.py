@@ -205,3 +205,25 @@ def test_a_log_with_no_firing_ends_with_three_and_still_gets_its_page(run: Run, 
     assert "No firing was found in this log" in page
     assert run("report", "Q1", "--root", tmp_path, "-q").status == 0
     assert run("calibrate", "Q1", "--root", tmp_path).status == 3
+
+
+def shell(command: str) -> subprocess.CompletedProcess[str]:
+    """``hfa`` in a shell, as the status of the first command of a pipe."""
+    hfa = f"{sys.executable} -m hfanalysis"
+    script = f"set -o pipefail; {command.replace('hfa', hfa)}"
+    return subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("options", ["", "--json"])
+def test_a_reader_that_goes_away_is_no_fault(run: Run, root: Path, options: str) -> None:
+    run("calibrate", "HF5", "--root", root, "-q")
+    ended = shell(f"hfa calibrate HF5 --root {root} {options} | true")
+    assert ended.returncode == 0
+    assert "BrokenPipe" not in ended.stderr
+
+
+def test_a_terminal_without_special_signs_is_no_fault(run: Run, root: Path) -> None:
+    run("calibrate", "HF5", "--root", root, "-q")
+    ended = shell(f"PYTHONIOENCODING=ascii hfa calibrate HF5 --root {root}")
+    assert ended.returncode == 0
+    assert "C_i" in ended.stdout

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -27,3 +28,18 @@ def ending() -> Iterator[None]:
 def tell(text: str) -> None:
     """One line for people, on standard error."""
     print(f"hfa: {text}", file=sys.stderr)
+
+
+def nobody_reads() -> None:
+    """Whoever read standard output has gone (``hfa … | head``): what is still to be said goes nowhere, quietly."""
+    with open(os.devnull, "w") as nowhere:
+        os.dup2(nowhere.fileno(), sys.stdout.fileno())
+
+
+def put(text: str) -> None:
+    """Write to standard output at once."""
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        nobody_reads()

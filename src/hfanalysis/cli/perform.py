@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hfanalysis.cli.ending import tell
+from hfanalysis.cli.ending import put, tell
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages import ORDER
 from hfanalysis.stages.base import Context, Progress, load_stage, silent
@@ -96,7 +96,7 @@ def _watch(request: Request) -> Iterator[Progress]:
 
 def _show(name: str, context: Context, request: Request) -> None:
     if request.as_json:
-        sys.stdout.write(_json(name, context))
+        put(_json(name, context))
     elif not request.quiet:
         from hfanalysis.cli import tables
 

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from hfanalysis.cli.ending import nobody_reads
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
 from hfanalysis.report import wording
 from hfanalysis.report.wording import Shown, in_words, quantities, shown
@@ -29,9 +30,17 @@ _NUMBERS = ("value", "± std", "samples", "rate", "least", "largest", "rms", "bi
 _STYLES = {IDENTIFIED: "green", UNPHYSICAL: "red"}
 
 
+class _Paper(Console):
+    """A console whose reader may go away (``hfa … | head``)."""
+
+    def on_broken_pipe(self) -> None:
+        self.quiet = True
+        nobody_reads()
+
+
 def show(name: str, context: Context) -> None:
     """Print what a stage ("run": all of them) found, on standard output."""
-    console = Console(highlight=False)
+    console = _Paper(highlight=False)
     if not console.is_terminal:
         console.width = max(console.width, _NARROWEST)
     console.print(_headline(context))
