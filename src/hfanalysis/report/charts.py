@@ -59,17 +59,23 @@ def _drawn(
     lines: Sequence[tuple[Envelope, str, str]],
     y_label: str,
     height: float = 320.0,
-    with_zero: bool = True,
+    span: tuple[float, float] | None = None,
 ) -> svg.Plot:
-    """A chart of lines (data, style, name) over phases and events."""
+    """A chart of lines (data, style, name) over phases and events, within ``span`` or the page's window."""
     extremes = [array for data, _, _ in lines for array in (data.low, data.high)]
-    plot = svg.new_plot(window(material), svg.value_range(extremes, with_zero), height)
+    plot = svg.new_plot(span or window(material), svg.value_range(extremes), height)
     svg.phases(plot, phase_list(material))
     svg.axes(plot, _time_label(material), y_label)
     svg.events(plot, event_list(material))
     for data, style, name in lines:
         svg.line(plot, data, style, name)
     return plot
+
+
+def _around(time: Floats) -> tuple[float, float]:
+    """A little more than the stretch that ``time`` covers."""
+    air = 0.05 * float(time[-1] - time[0])
+    return float(time[0]) - air, float(time[-1]) + air
 
 
 def _range_words(data: Envelope, name: str, unit: str) -> str:
@@ -150,7 +156,7 @@ def _injector(material: Material) -> Figure | None:
     limits = np.nanpercentile(value[inner] if inner.any() else value, [1, 99])
     low, high = svg.value_range([np.asarray(limits)], with_zero=False)
     air = 0.5 * (high - low)
-    plot = svg.new_plot(window(material), (max(0.0, low - air), high + air), 280.0)
+    plot = svg.new_plot(_around(time), (max(0.0, low - air), high + air), 280.0)
     svg.phases(plot, phase_list(material))
     svg.axes(plot, _TIME, "C_i [-]")
     svg.events(plot, event_list(material))
@@ -201,7 +207,7 @@ def _tank_free(material: Material) -> Figure | None:
         return None
     measured, model = (_spread(found, values * 1e-5) for values in (found.measured, found.model))
     lines = [(measured, "p_tank", "measured"), (model, "model", "model")]
-    plot = _drawn(material, lines, "p_tank [bar]", 320.0)
+    plot = _drawn(material, lines, "p_tank [bar]", 320.0, _around(found.time))
     words = f"Root mean square of the residual {_rms(found.residual)} bar, of the noise {_rms(found.noise_std)} bar."
     chart = svg.render(plot, "tank-free", "Tank model against measured tank pressure", words)
     known = "Only the measured chamber pressure goes in; drawn until nitrogen enters, which this model leaves out."
@@ -222,7 +228,8 @@ def _residual(material: Material) -> Figure | None:
         return None
     residual = _spread(found, found.residual * 1e-5)
     noise = _spread(found, found.noise_std * 1e-5).mean
-    plot = _drawn(material, [(residual, "residual", "residual")], "measured − model [bar]", 260.0)
+    lines = [(residual, "residual", "residual")]
+    plot = _drawn(material, lines, "measured − model [bar]", 260.0, _around(found.time))
     svg.band(plot, residual.time, -1.96 * noise, 1.96 * noise, "noise")
     svg.level(plot, 0.0, "zero")
     words = "Residual of the tank pressure; the grey band is what noise alone would do in 95 % of the samples."
