@@ -91,7 +91,7 @@ class _Work:
         blocked = self._blocked()
         mass = loaded_mass(self.log, self.segments, self.definition, self.saturation, self.histories, self.at_v.value)
         if blocked or mass is None or self.volume is None or self.area is None:
-            reason = blocked or "tank volume, loaded mass or injector area is not stated"
+            reason = blocked or self._missing(mass)
             quantities = {n: Quantity.absent(reason, verdict=NOT_IDENTIFIABLE) for n in NAMES} | losses_only
             return Calibration(quantities, None, None, None, tuple(self.warnings), tuple(self.notes))
         return self._reduced(mass, samples)
@@ -227,6 +227,14 @@ class _Work:
                 "flow there; one of the two sensors is off, or p_run is not measured before the injector"
             )
         return None
+
+    def _missing(self, mass: LoadedMass | None) -> str:
+        known = {
+            "the tank's volume ([tank] volume)": self.volume,
+            "the injector's area ([injector] holes and hole_area)": self.area,
+            "the loaded mass ([tank] oxidizer_mass)": mass,
+        }
+        return "test.toml does not state " + " nor ".join(name for name, value in known.items() if value is None)
 
     def _excluded_share(self) -> float:
         h = self.histories

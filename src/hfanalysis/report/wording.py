@@ -40,7 +40,7 @@ SOURCES: dict[str, str] = {
 }
 """What is said of a test's source wherever its results show."""
 
-KINDS: dict[str, str] = {"hot_fire": "hot fire", "cold_flow": "cold flow", "misfire": "misfire"}
+KINDS: dict[str, str] = {"hot_fire": "hot fire", "cold_flow": "cold flow"}
 
 _PEOPLE: dict[str, tuple[float, str]] = {"Pa": (1e-5, "bar"), "m^2": (1e6, "mm²"), "m^3": (1e3, "L")}
 _FINEST: dict[str, int] = {"s": 4}

@@ -18,10 +18,11 @@ COLD_PRESSURE_SHARE = 0.18
 
 @dataclass(frozen=True)
 class Kind:
-    """``name``: hot_fire, cold_flow or misfire; ``why`` says from which figure."""
+    """``name``: hot_fire or cold_flow; ``why`` says from which figure; ``misfire``: stated as a fire that did not light."""
 
     name: str
     why: str
+    misfire: bool = False
 
 
 def recognise(
@@ -32,7 +33,7 @@ def recognise(
     mean_flow: float | None,
     throat_area: float | None,
 ) -> Kind:
-    """Decide from the chamber pressure over the liquid phase ``span`` [s after opening].
+    """Decide from the chamber pressure over the liquid phase ``span`` [s after opening], ``ambient`` as the chamber reads it [Pa].
 
     ``mean_flow`` is the oxidizer's mean flow [kg/s] where mass and times give it, ``throat_area`` [m^2].
     """
@@ -50,7 +51,7 @@ def recognise(
         burning, why = excess > ambient, f"the chamber stands {excess / 1e5:.1f} bar above ambient"
     if burning:
         return Kind("hot_fire", why)
-    return Kind("cold_flow" if stated == "cold_flow" else "misfire", why)
+    return Kind("cold_flow", why, misfire=stated == "hot_fire")
 
 
 def _by_velocity(pressure: float, flow: float, throat_area: float, choked: bool) -> tuple[bool, str]:

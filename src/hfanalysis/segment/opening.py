@@ -43,6 +43,18 @@ def find_opening(signals: Mapping[str, Signal]) -> Opening | None:
     return _refined(followers or [signals[lead]], time)
 
 
+def under_way(signals: Mapping[str, Signal]) -> str | None:
+    """The channel that shows a firing already under way in the first sample, where there is one."""
+    for name in ("thrust", "p_chamber"):
+        if name not in signals or signals[name].time.size < 8:
+            continue
+        value = _despiked(signals[name].value)
+        start, low, high = float(np.median(value[:5])), float(np.percentile(value, 2.0)), float(np.percentile(value, 99.5))
+        if start - low > 0.5 * (high - low) > 0.5 * SMALLEST_CHANGE[name]:
+            return name
+    return None
+
+
 def _valve(signal: Signal) -> Opening | None:
     low, high = np.percentile(signal.value, (1.0, 99.0))
     if high - low <= 0.0:
@@ -56,11 +68,12 @@ def _valve(signal: Signal) -> Opening | None:
 
 def _rough(signals: Mapping[str, Signal]) -> tuple[float, str] | None:
     """Start of the fastest large change in the first channel that has one, in order of how early it shows."""
+    tank = signals["p_tank"].reduced(COARSE_STEP) if "p_tank" in signals else None
     for name, sign in (("p_run", 1.0), ("p_chamber", 1.0), ("p_tank", -1.0), ("thrust", 1.0)):
         if name not in signals or signals[name].time.size < 8:
             continue
         coarse = signals[name].reduced(COARSE_STEP)
-        start = _start_of_change(coarse, sign, _threshold(coarse, name))
+        start = _start_of_change(coarse, sign, _threshold(coarse, name), tank)
         if start is not None:
             return start, name
     return None
@@ -71,10 +84,14 @@ def _threshold(coarse: Signal, name: str) -> float:
     return max(SMALLEST_CHANGE[name], 0.15 * span, 12.0 * coarse.noise)
 
 
-def _start_of_change(coarse: Signal, sign: float, threshold: float) -> float | None:
+def _start_of_change(coarse: Signal, sign: float, threshold: float, tank: Signal | None) -> float | None:
     value = sign * _despiked(coarse.value)
     later = np.interp(coarse.time + RISE_TIME, coarse.time, value)
     change = later - value
+    if tank is not None and sign > 0.0:
+        # what rises together with the tank is being filled, not fired
+        rise = tank.at(coarse.time + RISE_TIME) - tank.at(coarse.time)
+        change = np.where(rise > 0.25 * SMALLEST_CHANGE["p_tank"] + 6.0 * tank.noise, 0.0, change)
     top = int(np.argmax(change))
     if change[top] < threshold:
         return None

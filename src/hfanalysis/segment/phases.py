@@ -15,7 +15,7 @@ from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.fuel import find_fuel_end
 from hfanalysis.segment.kind import Kind, recognise
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
-from hfanalysis.segment.opening import Opening, find_opening
+from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.segment.signals import Signal
 from hfanalysis.testdata.definition import TestDefinition
@@ -25,6 +25,12 @@ from hfanalysis.thermo.nitrous import saturation
 EVENTS = ("t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
 LONGEST_RUN = 120.0
 """Seconds after the opening in which events are looked for."""
+
+SATURATION_MARGIN = 8.0
+"""Kelvin by which the top of a heated tank may be hotter than its thermometer says."""
+
+LARGEST_OFFSET = 3e5
+"""Reading of an open chamber this far from ambient [Pa] is no bias: the chamber was not open."""
 
 BY_HAND = "set by the engineer"
 
@@ -43,6 +49,7 @@ class Segments:
     found: dict[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    supercharged: bool = False
 
     def time(self, name: str) -> float | None:
         """An event's instant [s], None where the test does not have it."""
@@ -58,6 +65,8 @@ class Segments:
         return {
             "kind": self.kind.name,
             "kind_reason": self.kind.why,
+            "misfire": self.kind.misfire,
+            "supercharged": self.supercharged,
             "t_open": self.t_open,
             **self.events,
             "order": [name for _, name in order],
@@ -71,10 +80,11 @@ class Segments:
     def from_json(cls, data: Mapping[str, Any]) -> Segments:
         """The inverse of :meth:`to_json`."""
         events = {name: Quantity.from_json(data[name]) for name in EVENTS}
-        kind = Kind(data["kind"], data["kind_reason"])
+        kind = Kind(data["kind"], data["kind_reason"], data["misfire"])
         found = dict(data["found_where_engineer_set"])
         lists = (tuple(data["notes"]), tuple(data["warnings"]))
-        return cls(Quantity.from_json(data["t_open"]), events, kind, tuple(data["engineer"]), found, *lists)
+        opening = Quantity.from_json(data["t_open"])
+        return cls(opening, events, kind, tuple(data["engineer"]), found, *lists, supercharged=data["supercharged"])
 
 
 def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
@@ -95,6 +105,11 @@ def _opening(signals: Mapping[str, Signal], definition: TestDefinition) -> Openi
     if stated is not None:
         return Opening(stated.value, stated.std or 1e-3, (BY_HAND,))
     found = find_opening(signals)
+    if found is None and (name := under_way(signals)) is not None:
+        raise AbsentError(
+            f"test {definition.test.id}: the log starts in the middle of the firing ({name} is high from its first sample): there is "
+            "no opening to count from; set [segments] t_open in test.toml, if it is known"
+        )
     if found is None:
         looked = ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals) or "no channel"
         raise AbsentError(
@@ -117,6 +132,7 @@ class _Search:
         self.found: dict[str, float] = {}
         self.notes: list[str] = []
         self.warnings: list[str] = []
+        self.supercharged = False
 
     def run(self) -> Segments:
         """Every event in an order in which each can use the ones before."""
@@ -124,12 +140,14 @@ class _Search:
         self._take("t_feed", self._line_full())
         self._take("t_purge", self._nitrogen())
         kind = self._kind()
+        self._note_supercharge()
         self._take("t_end", self._unchoking(kind))
         self._take("t_fuel_out", self._fuel_end(kind))
         self._check_order()
         events = {name: self.events[name] for name in EVENTS}
         nothing = Quantity.absent("set by the caller")
-        return Segments(nothing, events, kind, (), self.found, tuple(self.notes), tuple(self.warnings))
+        found = (self.found, tuple(self.notes), tuple(self.warnings))
+        return Segments(nothing, events, kind, (), *found, supercharged=self.supercharged)
 
     def _take(self, name: str, found: tuple[float, float] | str) -> None:
         stated = self.definition.segments.get(name)
@@ -183,15 +201,22 @@ class _Search:
         if "p_chamber" not in self.signals:
             return "the log has no p_chamber"
         if kind.name != "hot_fire":
-            return f"nothing burns ({kind.name}): {kind.why}"
-        return find_unchoking(self.signals["p_chamber"], self.ambient, self._time("t_feed") or 0.3)
+            return f"nothing burns: {kind.why}"
+        return find_unchoking(self.signals["p_chamber"], self.ambient + self._chamber_offset(), self._time("t_feed") or 0.3)
+
+    def _chamber_offset(self) -> float:
+        """How far the open chamber reads from ambient before the opening [Pa]: a bias to allow for, where it is one."""
+        quiet = self.signals["p_chamber"].between(-5.0, -0.05).value
+        offset = float(np.median(quiet)) - self.ambient if quiet.size > 7 else 0.0
+        return offset if abs(offset) < LARGEST_OFFSET else 0.0
 
     def _fuel_end(self, kind: Kind) -> tuple[float, float] | str:
         if kind.name != "hot_fire":
-            return f"nothing burns ({kind.name}): {kind.why}"
+            return f"nothing burns: {kind.why}"
         if "p_chamber" not in self.signals:
             return "the log has no p_chamber"
-        found = find_fuel_end(self.signals, self.ambient, self._time("t_feed") or 0.3, self._time("t_v"), self.last)
+        ambient = self.ambient + self._chamber_offset()
+        found = find_fuel_end(self.signals, ambient, self._time("t_feed") or 0.3, self._time("t_v"), self.last)
         if isinstance(found, str):
             return found
         if found.duration > 0.2:
@@ -205,10 +230,34 @@ class _Search:
         if t_v and tank is not None and tank.oxidizer_mass is not None:
             flow = 0.8 * tank.oxidizer_mass.value / t_v  # about a fifth of a load is still there as vapour
         area = np.pi * nozzle.throat_radius.value**2 if nozzle is not None and nozzle.throat_radius is not None else None
-        kind = recognise(self.signals, self.definition.test.kind, self.ambient, span, flow, area)
-        if kind.name == "misfire":
-            self.warnings.append(f"stated as a hot fire, but nothing burns: {kind.why}")
+        ambient = self.ambient + (self._chamber_offset() if "p_chamber" in self.signals else 0.0)
+        kind = recognise(self.signals, self.definition.test.kind, ambient, span, flow, area)
+        if kind.misfire:
+            self.warnings.append(f"stated as a hot fire, but nothing burns, a cold flow: {kind.why}")
         return kind
+
+    def _note_supercharge(self) -> None:
+        """Say where the tank stands above what nitrous oxide alone can be at."""
+        if "p_tank" not in self.signals:
+            return
+        source = saturation(self.definition.model.properties)
+        rest = self.signals["p_tank"].mean(-3.0, -0.05)
+        limit, why = source.pressure_range[1], "the critical pressure"
+        warmth = self._tank_temperature()
+        if warmth is not None and source.t_min < warmth < source.t_max:
+            limit, why = float(source.pressure(warmth + SATURATION_MARGIN)), f"saturation at {warmth - 273.15:.0f} degC"
+        if rest > limit:
+            self.supercharged = True
+            self.warnings.append(
+                f"the tank stands at {rest / 1e5:.1f} bar before the opening, above {why} ({limit / 1e5:.1f} bar): it is supercharged"
+            )
+
+    def _tank_temperature(self) -> float | None:
+        if "T_tank" in self.signals:
+            quiet = self.signals["T_tank"].between(-30.0, -0.05).value
+            return float(np.median(quiet)) if quiet.size else None
+        tank = self.definition.tank
+        return tank.temperature.value if tank is not None and tank.temperature is not None else None
 
     def _check_order(self) -> None:
         t_v, t_purge = self._time("t_v"), self._time("t_purge")
