@@ -20,6 +20,7 @@ from hfanalysis.report.wording import fixed, people_unit, pretty_unit, quantitie
         (quantity(6.371e8, "1/m^4", 2.1e7), "6.37", "0.21", "5.96 … 6.78", "×10⁸ 1/m⁴"),
         (quantity(-3.1, "", 0.4), "−3.10", "0.40", "−3.88 … −2.32", ""),
         (quantity(3.6e-9, "s", 1e-9), "0.0000", "0.0000", "0.0000 … 0.0000", "s"),
+        (quantity(1e-9, "N", 1.0), "0.0", "1.0", "−2.0 … 2.0", "N"),
         (quantity(1.32e-4, "m/s", 2e-6), "1.320", "0.020", "1.281 … 1.359", "×10⁻⁴ m/s"),
     ],
 )

@@ -45,6 +45,7 @@ KINDS: dict[str, str] = {"hot_fire": "hot fire", "cold_flow": "cold flow"}
 _PEOPLE: dict[str, tuple[float, str]] = {"Pa": (1e-5, "bar"), "m^2": (1e6, "mm²"), "m^3": (1e3, "L")}
 _FINEST: dict[str, int] = {"s": 4}
 """Decimals beyond which nobody reads."""
+_NOTHING = 1e-200
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MINUS = "\N{MINUS SIGN}"
 
@@ -91,7 +92,7 @@ def shown(quantity: Mapping[str, Any]) -> Shown:
         return Shown("–", "", "", "", verdict or "absent", str(quantity.get("reason") or ""))
     factor, unit = people_unit(str(quantity.get("unit") or ""))
     value, std = factor * quantity["value"], factor * (quantity.get("std") or 0.0)
-    exponent = 0 if unit == "s" else _exponent(value)
+    exponent = 0 if unit == "s" else _exponent(max(abs(value), std))
     if exponent:
         factor, unit = factor / 10.0**exponent, f"×10{str(exponent).translate(_SUPERSCRIPT)} {unit}".strip()
         value, std = value / 10.0**exponent, std / 10.0**exponent
@@ -107,11 +108,11 @@ def shown(quantity: Mapping[str, Any]) -> Shown:
     )
 
 
-def _exponent(value: float) -> int:
+def _exponent(size: float) -> int:
     """The power of ten to take out of numbers that are awkward to read: 0 for most."""
-    if value == 0.0 or 1e-3 <= abs(value) < 1e5:
+    if size < _NOTHING or 1e-3 <= size < 1e5:
         return 0
-    return math.floor(math.log10(abs(value)))
+    return math.floor(math.log10(size))
 
 
 def decimals_for(value: float, std: float) -> int:
