@@ -286,11 +286,11 @@ def _pint_unit(unit: str) -> Any | None:
 
 def _in_pint(unit: str, dimension: str, where: str) -> tuple[float, float]:
     found, wanted = _pint_unit(unit), _registry().Unit(DIMENSIONS[dimension].pint)
+    offer = near(unit, sorted(TABLE[dimension].keys() | ALIASES.get(dimension, {}).keys()))
     if found is None:
-        known = TABLE[dimension].keys() | ALIASES.get(dimension, {}).keys()
-        raise _not_a(unit, dimension, where, f"is not a known unit{near(unit, known)}")
+        raise _not_a(unit, dimension, where, f"is not a known unit{offer}")
     if found.dimensionality != wanted.dimensionality:
-        raise _not_a(unit, dimension, where, f"is a unit of {_spoken(found)}")
+        raise _not_a(unit, dimension, where, f"is a unit of {_spoken(found)}{offer}")
     zero, one = (_registry().Quantity(x, found).to(wanted).magnitude for x in (0.0, 1.0))
     return float(one - zero), float(zero)
 

@@ -67,6 +67,16 @@ def survey(readings: Floats, flags: Flags) -> tuple[int, float, float, int, int,
 
 
 @njit(cache=True, nogil=True)
+def nearest(readings: Floats, level: float, flags: Flags) -> float:
+    """The distance from ``level`` to the nearest other value without a flag."""
+    least = np.inf
+    for i in range(len(readings)):
+        if not flags[i] and readings[i] != level:
+            least = min(least, abs(readings[i] - level))
+    return least
+
+
+@njit(cache=True, nogil=True)
 def detached(readings: Floats, level: float, gap: float, edges: bool, flags: Flags) -> int:
     """Flags runs of exactly ``level`` entered and left by jumps of more than ``gap``; returns how many samples.
 
@@ -135,12 +145,15 @@ def _usual_run(starts: NDArray[np.int64], first: int, last: int) -> float:
 def repeats(values: Floats, low: float, high: float, flags: Flags) -> None:
     """Flags stuck runs, and clipped ones at the channel's exact extremes, against the runs around them.
 
-    A run needs enough others on both sides to be compared with: an idle channel before and after a firing is not stuck.
+    A run needs enough others on both sides to be compared with: an idle channel before and after a firing is not
+    stuck. Nor is a channel whose noise its resolution swallows: its resolution is its least change.
     """
     if not _repeats_at_length(values, low, high):
         return
     starts = _runs(values)
     runs = len(starts) - 1
+    steps = np.abs(np.diff(values[starts[:runs]]))
+    resolution = steps.min() if runs > 1 else 0.0
     clipped_low = clipped_high = False
     for k in range(5, runs - 5):
         length = starts[k + 1] - starts[k]
@@ -148,6 +161,8 @@ def repeats(values: Floats, low: float, high: float, flags: Flags) -> None:
         if length < (CLIPPED_RUN if extreme else STUCK_RUN):
             continue
         usual = max(_usual_run(starts, max(0, k - CONTEXT), k), _usual_run(starts, k + 1, min(runs, k + 1 + CONTEXT)))
+        if np.median(steps[max(0, k - CONTEXT) : k + CONTEXT]) < 2.0 * resolution:
+            continue
         if extreme and length >= CLIPPED_FACTOR * usual:
             clipped_low |= values[starts[k]] == low
             clipped_high |= values[starts[k]] == high

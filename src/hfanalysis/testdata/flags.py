@@ -56,13 +56,20 @@ def _flag_unread(readings: Floats, flags: Flags) -> None:
         if not count or low == high or not levels:
             return
         gap = _gap(readings, flags)
-        sentinels = (level in SENTINELS for level in levels)
-        if not sum(flag_kernels.detached(readings, x, gap, s, flags) for x, s in zip(levels, sentinels, strict=True)):
+        if not sum(_flag_detached(readings, level, gap, flags) for level in levels):
             return
 
 
 def _may_be_none(level: float, count: int) -> bool:
     return count >= 3 or (count > 0 and (level == 0.0 or level in SENTINELS))
+
+
+def _flag_detached(readings: Floats, level: float, gap: float, flags: Flags) -> int:
+    """Flags runs of ``level``; a mere extreme must stand apart from every other reading, not only from those next."""
+    sentinel = level in SENTINELS
+    if not sentinel and level != 0.0 and flag_kernels.nearest(readings, level, flags) <= gap:
+        return 0
+    return int(flag_kernels.detached(readings, level, gap, sentinel, flags))
 
 
 def _gap(readings: Floats, flags: Flags) -> float:
@@ -71,6 +78,7 @@ def _gap(readings: Floats, flags: Flags) -> float:
     sample = readings[::every][flags[::every] == 0]
     some = readings[:20_000]
     steps = np.abs(np.diff(some[np.isfinite(some)]))
+    steps = steps[steps > 0]
     low, high = np.percentile(sample, (5, 95)) if len(sample) else (0.0, 0.0)
     return float(max(DETACHED * (high - low), 10.0 * np.median(steps) if len(steps) else 0.0, 1e-300))
 

@@ -92,8 +92,12 @@ class FileSpec:
     encoding: str | None = key(_encoding, None)
 
     def check(self, where: Where) -> None:
-        if self.delimiter is not None and self.delimiter == self.decimal:
-            raise InputError(f"{where}: delimiter and decimal are both {self.decimal!r}; expected two different marks")
+        _two_marks(self.delimiter, self.decimal, where)
+
+
+def _two_marks(delimiter: str | None, decimal: str | None, where: Where) -> None:
+    if delimiter is not None and delimiter == decimal:
+        raise InputError(f"{where}: delimiter and decimal are both {decimal!r}; expected two different marks")
 
 
 def _file(found: Any, where: Where) -> FileSpec:
@@ -121,6 +125,8 @@ class LogSpec:
         filled = tuple(
             replace(spec, **{n: getattr(self, n) for n in shared if getattr(spec, n) is None}) for spec in self.files
         )
+        for spec in filled:
+            _two_marks(spec.delimiter, spec.decimal, where)
         object.__setattr__(self, "files", filled)
 
     def named(self, file: str) -> FileSpec:

@@ -23,6 +23,8 @@ SETTLED = 1.0
 """[s] of settled level needed after the firing."""
 SETTLING = 0.5
 """[s] after the firing before a zero may be taken."""
+LEAST = {"thrust": 10.0}
+"""[SI] a departure must reach to be a firing (pressures: 0.3 bar)."""
 REFERENCES = ("p_chamber", "thrust", "p_run", "p_tank")
 """Channels that say when the firing is, the most telling first."""
 
@@ -60,17 +62,19 @@ class Firing:
 
 def find_firing(name: str, trace: Trace) -> Firing | None:
     """The first sustained departure of a channel from rest; None where it shows none."""
-    found = _departure(trace)
+    found = _departure(trace, LEAST.get(name, 30e3))
     return Firing(*found, name) if found else None
 
 
-def _departure(trace: Trace) -> tuple[float, float] | None:
-    """First and last time [s] a channel is away from rest; None where it never leaves."""
+def _departure(trace: Trace, least: float) -> tuple[float, float] | None:
+    """First and last time [s] a channel is away from rest; None where it never leaves by ``least`` [SI]."""
     blocks = in_blocks(trace, BLOCK)
     if len(blocks.time) < 10:
         return None
     low = float(np.percentile(blocks.values, 5))
     top = float(_smoothed(blocks.values).max())
+    if top - low < max(least, 10.0 * spread(np.diff(blocks.values))):
+        return None
     rest = blocks.values[blocks.values < low + 0.1 * (top - low)]
     base, noise = float(np.median(rest)), spread(rest)
     threshold = base + max(0.05 * (top - base), 6.0 * noise)

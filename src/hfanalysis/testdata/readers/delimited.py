@@ -66,20 +66,22 @@ class Delimited:
             if self._is_cuttable(file):
                 yield from self._side_by_side(file, wanted)
             else:
-                file.seek(0)
-                yield from frames.read(file, self.dialect, wanted, skiprows=self.dialect.first, chunksize=CHUNK)
+                with self.path.open(encoding=self.dialect.encoding, errors="replace") as text:
+                    for _ in range(self.dialect.first):
+                        text.readline()
+                    yield from frames.read(text, self.dialect, wanted, chunksize=CHUNK)
         except (ValueError, UnicodeError) as error:  # pandas' parser errors are ValueErrors
             raise InputError(f"{self.path}: cannot be read as delimited text: {error}") from None
 
     def _is_cuttable(self, file: Any) -> bool:
-        """Read past the header; False where lines cannot be told from bytes."""
-        if self.dialect.encoding.startswith(("utf-16", "utf-32")):
-            return False
+        """Read past the header; False, the file at its beginning, where lines cannot be told from bytes."""
         head = b"".join(file.readline() for _ in range(self.dialect.first + 1))
         file.seek(0)
+        if self.dialect.encoding.startswith(("utf-16", "utf-32")) or b"\r" in head.replace(b"\r\n", b""):
+            return False
         for _ in range(self.dialect.first):
             file.readline()
-        return b"\r" not in head.replace(b"\r\n", b"")
+        return True
 
     def _side_by_side(self, file: Any, wanted: Sequence[int]) -> Iterator[Any]:
         """Segments in order, the next ones at work. (Letting pandas skip rows and chunk would be half as fast.)"""

@@ -114,13 +114,16 @@ def _merit(lines: Sequence[str], mark: str) -> tuple[bool, float]:
 
 
 def _first(rows: Sequence[Sequence[str]]) -> int:
-    """The number of lines before the data: the first two rows in a sequence that are mostly numbers."""
+    """The number of lines before the data: up to the first two rows, blank ones aside, that are mostly numbers."""
     width = Counter(len(row) for row in rows if any(row)).most_common(1)[0][0]
-    looks = [_is_data(row, width) for row in rows]
-    for i, is_data in enumerate(looks):
-        if is_data and (i + 1 >= len(rows) or looks[i + 1] or not any(rows[i + 1]) or i + 2 >= len(rows)):
-            return i
-    return len(rows)
+    filled = [i for i, row in enumerate(rows) if any(row)]
+    looks = [_is_data(rows[i], width) for i in filled]
+    return next((i for i, two in zip(filled, _twice(looks), strict=True) if two), len(rows))
+
+
+def _twice(looks: Sequence[bool]) -> list[bool]:
+    """Which are true and followed by another, or last."""
+    return [look and (k + 1 == len(looks) or looks[k + 1]) for k, look in enumerate(looks)]
 
 
 def _is_data(row: Sequence[str], width: int) -> bool:

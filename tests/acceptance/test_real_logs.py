@@ -1,0 +1,56 @@
+"""The McGill stand's published logs are read by the definitions kept here; the logs are not in the repository."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hfanalysis.testdata.definition import find_definition, load_definition
+from hfanalysis.testdata.ingest import ingest
+from hfanalysis.testdata.log import TestLog, read_log
+
+HERE = Path(__file__).parent / "real"
+LOGS = Path(os.environ.get("HFA_REAL_TESTS", Path(__file__).parents[3] / "shared" / "real_tests"))
+TESTS = sorted(path.parent.name for path in HERE.glob("*/test.toml"))
+
+
+def read(root: Path, test: str) -> TestLog:
+    """The test ingested from a copy of its definition and log."""
+    if not (LOGS / test / "log.csv").is_file():
+        pytest.skip(f"no log of {test} in {LOGS}")
+    folder = root / "raw_tests" / test
+    folder.mkdir(parents=True)
+    shutil.copy(HERE / test / "test.toml", folder)
+    shutil.copy(LOGS / test / "log.csv", folder)
+    ingest(load_definition(find_definition(root, test)), root / "ingest.h5")
+    return read_log(root / "ingest.h5")
+
+
+@pytest.mark.parametrize("test", TESTS)
+def test_a_real_log_is_read_whole(test: str, tmp_path: Path) -> None:
+    log = read(tmp_path, test)
+    for name in ("p_tank", "p_run", "p_chamber", "p_purge", "thrust", "m_tank"):
+        channel = log[name]
+        assert channel.good.mean() > 0.97, name
+        assert (np.diff(channel.time[channel.good]) > 0).all()
+    assert 20e5 < np.nanmax(log["p_tank"].values) < 80e5
+    assert log["p_chamber"].zero_std is not None
+    assert log["thrust"].zero_std is not None
+
+
+def test_the_cell_that_does_not_return_to_zero_is_told(tmp_path: Path) -> None:
+    log = read(tmp_path, "MRT-HF3.1")
+    assert log["thrust"].drift == pytest.approx(190.0, abs=10.0)
+    assert any("thrust: does not return to zero" in warning for warning in log.warnings)
+
+
+def test_peaks_are_those_of_the_teams_own_table(tmp_path: Path) -> None:
+    log = read(tmp_path, "MRT-HF3.4")
+    psi = 6894.757
+    assert np.nanmax(log["p_tank"].values) / psi == pytest.approx(977, abs=3)
+    assert np.nanmax(log["p_chamber"].values) / psi == pytest.approx(582, abs=5)
+    assert np.nanmax(log["thrust"].values) == pytest.approx(6204, abs=30)
