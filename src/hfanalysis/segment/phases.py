@@ -202,7 +202,8 @@ class _Search:
             return "the log has no p_chamber"
         if kind.name != "hot_fire":
             return f"nothing burns: {kind.why}"
-        return find_unchoking(self.signals["p_chamber"], self.ambient + self._chamber_offset(), self._time("t_feed") or 0.3)
+        start = self._time("t_feed") or 0.3
+        return find_unchoking(self.signals["p_chamber"], self.ambient, start, self._chamber_offset())
 
     def _chamber_offset(self) -> float:
         """How far the open chamber reads from ambient before the opening [Pa]: a bias to allow for, where it is one."""
