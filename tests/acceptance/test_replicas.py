@@ -1,0 +1,137 @@
+"""The two replicas of the report's tests: the whole way through gives the values that raw_tests/README.md states.
+
+Those are what the report's reductions give on the noise-free traces of the replicas, with the tolerances stated there.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.runner import run_to
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# value of the replica and tolerance, absolute or relative (raw_tests/README.md)
+PHASES = {
+    "HF4": {"t_feed": (0.89, 0.1), "t_v": (6.164, 0.03), "t_purge": (6.704, 0.05)},
+    "HF5": {"t_feed": (0.87, 0.1), "t_v": (5.272, 0.03), "t_purge": (5.992, 0.05)},
+}
+COEFFICIENTS = {
+    "HF4": {"C_i": (0.2559, 0.02), "m": (0.745, 0.06), "p_loss_liquid": (6.12e5, 0.03), "p_loss_vapor": (3.35e5, 0.06)},
+    "HF5": {"C_i": (0.2926, 0.02), "m": (0.749, 0.06), "p_loss_liquid": (11.43e5, 0.03), "p_loss_vapor": (6.42e5, 0.06)},
+}
+
+
+def _run(root: Path, name: str, stage: str) -> Path:
+    return run_to(stage, open_test(root, name)).out
+
+
+@pytest.fixture(scope="module")
+def products(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
+    """The JSON products of both replicas, and where they are."""
+    root = tmp_path_factory.mktemp("replicas")
+    shutil.copytree(ROOT / "raw_tests", root / "raw_tests")
+    out = {}
+    for name in ("HF4", "HF5"):
+        folder = _run(root, name, "validate")
+        out[name] = {p.stem: json.loads(p.read_text()) for p in folder.glob("*.json")} | {"folder": folder}
+    return out
+
+
+@pytest.mark.parametrize(("name", "event"), [(n, e) for n in PHASES for e in PHASES[n]])
+def test_phase_times(products: dict[str, Any], name: str, event: str) -> None:
+    expected, tolerance = PHASES[name][event]
+    assert products[name]["segments"][event]["value"] == pytest.approx(expected, abs=tolerance)
+
+
+@pytest.mark.parametrize(("name", "quantity"), [(n, q) for n in COEFFICIENTS for q in COEFFICIENTS[n]])
+def test_coefficients(products: dict[str, Any], name: str, quantity: str) -> None:
+    expected, tolerance = COEFFICIENTS[name][quantity]
+    assert products[name]["calibration"][quantity]["value"] == pytest.approx(expected, rel=tolerance)
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_the_tank_loses_11_bar_while_the_line_fills(products: dict[str, Any], name: str) -> None:
+    """10.8 bar by t_feed (report: about 11): seen as the difference between rest and the start of the tank-alone run."""
+    import h5py
+
+    rest = products[name]["calibration"]["rest"]["pressure"]["value"]
+    with h5py.File(products[name]["folder"] / "residuals.h5") as file:
+        start = file["tank_free/p_tank/measured"][:100].mean()
+    assert (rest - start) / 1e5 == pytest.approx(10.8, abs=0.5)
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_an_exponent_below_one_is_called_unphysical_with_its_heat(products: dict[str, Any], name: str) -> None:
+    m = products[name]["calibration"]["m"]
+    assert m["verdict"] == "unphysical"
+    assert "kW" in m["why"]
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_the_tank_alone_follows_the_liquid_phase(products: dict[str, Any], name: str) -> None:
+    """The report finds "overall excellent agreement"; within 1.5 bar of 40 in the liquid phase, but above the noise."""
+    gap = products[name]["validation"]["gap"]["tank_free"]["p_tank"]["liquid"]
+    assert gap["noise"] < gap["rms"] < 1.5e5
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_replicas_are_called_replicas(products: dict[str, Any], name: str) -> None:
+    assert all(products[name][p]["source"] == "replica" for p in ("segments", "calibration", "validation"))
+
+
+def test_the_same_log_in_other_units_and_at_50_hz_gives_the_same_C_i(tmp_path: Path) -> None:
+    """psig, lbf and degF at 1 kHz against bar, N and K at 50 Hz: C_i within 0.5 %."""
+    first, second = tmp_path / "raw_tests" / "FAST", tmp_path / "raw_tests" / "SLOW"
+    _write_imperial(first)
+    _write_metric(second)
+    found = [json.loads((_run(tmp_path, n, "calibrate") / "calibration.json").read_text()) for n in ("FAST", "SLOW")]
+    fast, slow = (f["C_i"]["value"] for f in found)
+    assert slow == pytest.approx(fast, rel=0.005)
+    assert fast == pytest.approx(0.2926, rel=0.02)
+
+
+def _source() -> pd.DataFrame:
+    return pd.read_csv(ROOT / "raw_tests" / "HF5" / "log.csv")
+
+
+def _write_imperial(folder: Path) -> None:
+    """HF5 as a gauge-pressure log: psig, lbf and a tank thermometer in degF, at 1 kHz."""
+    table = _source()
+    for column in table.columns[1:5]:
+        table[column] -= 1.013e5 / 6894.757293168361
+    table["TT-TANK (degF)"] = 68.0
+    _write(folder, table, "psig", "lbf", "degF", ",", ".")
+
+
+def _write_metric(folder: Path) -> None:
+    """The same in bar, newton and kelvin, means over 20 ms, with semicolons and decimal commas."""
+    table = _source()
+    for column in table.columns[1:5]:
+        table[column] *= 0.06894757293168361
+    table[table.columns[5]] *= 4.4482216152605
+    table["TT-TANK (degF)"] = 293.15
+    rows = len(table) // 20 * 20
+    means = table.iloc[:rows].groupby(np.arange(rows) // 20).mean()
+    _write(folder, means, "bar", "N", "K", ";", ",")
+
+
+def _write(folder: Path, table: pd.DataFrame, pressure: str, force: str, temperature: str, sep: str, decimal: str) -> None:
+    folder.mkdir(parents=True)
+    table.columns = pd.Index(["time", "tank", "run", "chamber", "purge", "thrust", "mass", "T"])
+    table.to_csv(folder / "log.csv", index=False, sep=sep, decimal=decimal, float_format="%.6f")
+    text = (ROOT / "raw_tests" / "HF5" / "test.toml").read_text().replace('"HF5"', f'"{folder.name}"')
+    for old, new in (("Time (s)", "time"), ("PT-TANK (psia)", "tank"), ("PT-RUN (psia)", "run"), ("PT-CC (psia)", "chamber"),
+                     ("PT-PURGE (psia)", "purge"), ("LC-THRUST (lbf)", "thrust"), ("LC-TANK (kg)", "mass"),
+                     ('unit = "psi"', f'unit = "{pressure}"'), ('unit = "lbf"', f'unit = "{force}"')):  # fmt: skip
+        text = text.replace(old, new)
+    text += f'\n[channels.T_tank]\ncolumn = "T"\nunit = "{temperature}"\n'
+    (folder / "test.toml").write_text(text)
