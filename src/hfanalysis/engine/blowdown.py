@@ -22,8 +22,8 @@ Table = tuple[Array, float, float, float]
 class FeedSystem:
     """Tank volume [m^3], effective injector area C_i N_i A_i [m^2], and the feed loss.
 
-    The loss is K_loss mdot^2 / rho with ``loss_factor`` [1/m^4], or, where ``constant_losses`` is given, the report's constant
-    pressure losses (liquid phase, vapour phase) [Pa].
+    The loss is K_loss mdot^2 / rho with ``loss_factor`` [1/m^4], or, where ``constant_losses`` is given, the report's
+    constant pressure losses (liquid phase, vapour phase) [Pa].
     """
 
     volume: float
@@ -65,8 +65,8 @@ def blow_down(
 ) -> Blowdown:
     """Empty a saturated tank (report, eq. 3.1 to 3.17) from ``mass`` [kg] and ``temperature`` [K].
 
-    ``time`` [s] is increasing, ``chamber_pressure`` [Pa] is given at these times and taken linear between them. After the
-    liquid is gone p = p_v (M/M_v)^m with Z held. ``heat`` [W] goes into the saturated tank.
+    ``time`` [s] is increasing, ``chamber_pressure`` [Pa] is given at these times and taken linear between them. After
+    the liquid is gone p = p_v (M/M_v)^m with Z held. ``heat`` [W] goes into the saturated tank.
     """
     t = np.ascontiguousarray(time, dtype=np.float64)
     p_c = np.ascontiguousarray(chamber_pressure, dtype=np.float64)
@@ -78,7 +78,7 @@ def blow_down(
 
 @njit(cache=True)
 def _liquid_flow(table: Table, feed: tuple[float, float, float, float, float, bool], t_k: float, p_c: float) -> float:
-    volume, area, factor, loss, _, constant = feed
+    _, area, factor, loss, _, constant = feed
     pressure = np.exp(evaluate(*table, LN_PRESSURE, t_k)[0])
     density = 1.0 / evaluate(*table, LIQUID_VOLUME, t_k)[0]
     if constant:
@@ -198,8 +198,8 @@ def implied_heat(
 ) -> float:
     """Heat [J] that a polytropic vapour blowdown needs from outside (negative: must give away).
 
-    From ``mass_start`` to ``mass_end`` [kg] at T = T_v (M/M_v)^(m-1), with u = u_v(T_v) + c_v (T - T_v) and h = u + Z R T:
-    Q = [M u] + integral of h over the mass that leaves. The polytropic law itself does not conserve energy.
+    From ``mass_start`` to ``mass_end`` [kg] at T = T_v (M/M_v)^(m-1), with u = u_v(T_v) + c_v (T - T_v) and h = u + Z R
+    T: Q = [M u] + integral of h over the mass that leaves. The polytropic law itself does not conserve energy.
     """
     c_v = float(saturation.heat_capacities(temperature)[0])
     u_v = float(saturation.energy(Property.VAPOR_ENERGY, temperature)[0])

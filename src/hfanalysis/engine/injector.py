@@ -20,13 +20,11 @@ def mass_flow(area: float, density: float, pressure_drop: float) -> float:
 
 
 @njit(cache=True)
-def mass_flow_with_feed(
-    area: float, feed_loss_factor: float, density: float, pressure_drop: float
-) -> float:
+def mass_flow_with_feed(area: float, feed_loss_factor: float, density: float, pressure_drop: float) -> float:
     """mdot [kg/s] through a feed line that loses K_loss mdot^2 / rho and the injector behind it.
 
-    ``pressure_drop`` is p_T - p_c [Pa], ``feed_loss_factor`` K_loss [1/m^4]. Both losses are quadratic in mdot, so that the
-    two resistances add: mdot^2 = rho dp / (K_loss + 1 / (2 (C_i N_i A_i)^2)).
+    ``pressure_drop`` is p_T - p_c [Pa], ``feed_loss_factor`` K_loss [1/m^4]. Both losses are quadratic in mdot, so that
+    the two resistances add: mdot^2 = rho dp / (K_loss + 1 / (2 (C_i N_i A_i)^2)).
     """
     if pressure_drop <= 0.0:
         return 0.0

@@ -1,8 +1,8 @@
 """The self-pressurising oxidizer tank: liquid and vapour in equilibrium, then vapour alone.
 
 Report, section 3.1.2 ("Self-Pressurizing Oxidizer Tank"). The saturated tank is written in its total mass M and its
-temperature T; with M and T given, the volume fixes how much of it is liquid (eq. 3.5). The report's three linear equations
-(mass, volume, energy) then have the closed form of :func:`temperature_rate`.
+temperature T; with M and T given, the volume fixes how much of it is liquid (eq. 3.5). The report's three linear
+equations (mass, volume, energy) then have the closed form of :func:`temperature_rate`.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ class TankSplit:
 def split(saturation: Saturation, volume: float, mass: float, temperature: float) -> TankSplit:
     """Liquid and vapour mass [kg] of a saturated tank: V = m_l v_l + m_v v_v (report, eq. 3.5).
 
-    ``volume`` [m^3], total ``mass`` [kg], ``temperature`` [K]. A negative liquid mass means superheated vapour, a negative
-    vapour mass a tank so full that the liquid is compressed.
+    ``volume`` [m^3], total ``mass`` [kg], ``temperature`` [K]. A negative liquid mass means superheated vapour, a
+    negative vapour mass a tank so full that the liquid is compressed.
     """
     liquid = liquid_mass(saturation.kernel_table, volume, mass, temperature)
     return TankSplit(liquid, mass - liquid)
@@ -52,11 +52,11 @@ def compressibility(pressure: float, volume: float, mass: float, temperature: fl
 
 
 def mass_along_blowdown(saturation: Saturation, volume: float, t_empty: float, temperatures: Array) -> Array:
-    """Total mass [kg] that an adiabatic saturated tank held at each temperature [K] before its liquid ran out at t_empty.
+    """Total mass [kg] that an adiabatic saturated tank held at each temperature [K] before it ran dry at t_empty.
 
     Integrates dM/dT = U_T / (h_l - U_M), which follows from dU = h_l dM, upwards from M = V / v_v(t_empty). No flow
-    measurement enters: the thermodynamics alone tie mass to temperature. Shape as ``temperatures``, which must not fall below
-    ``t_empty``.
+    measurement enters: the thermodynamics alone tie mass to temperature. Shape as ``temperatures``, which must not fall
+    below ``t_empty``.
     """
     return _mass_along_blowdown(saturation.kernel_table, volume, t_empty, np.asarray(temperatures, dtype=np.float64))
 
@@ -66,7 +66,7 @@ def liquid_mass(table: tuple[Array, float, float, float], volume: float, mass: f
     """m_l = (M v_v - V) / (v_v - v_l)."""
     v_l, _ = evaluate(*table, LIQUID_VOLUME, temperature)
     v_v = np.exp(evaluate(*table, LN_VAPOR_VOLUME, temperature)[0])
-    return (mass * v_v - volume) / (v_v - v_l)
+    return float((mass * v_v - volume) / (v_v - v_l))
 
 
 @njit(cache=True)

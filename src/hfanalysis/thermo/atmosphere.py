@@ -36,10 +36,10 @@ def pressure(altitude: float) -> float:
     """
     t = temperature(altitude)
     if altitude < 11_000.0:
-        return 101_290.0 * (t / 288.08) ** 5.256
+        return float(101_290.0 * (t / 288.08) ** 5.256)
     if altitude < 25_000.0:
         return 22_650.0 * math.exp(1.73 - 0.000157 * altitude)
-    return 2488.0 * (t / 216.6) ** -11.388
+    return float(2488.0 * (t / 216.6) ** -11.388)
 
 
 def density(altitude: float) -> float:

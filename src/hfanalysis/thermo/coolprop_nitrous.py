@@ -7,6 +7,7 @@ correlations cannot. Importing CoolProp takes longer than a whole calibration, s
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 
@@ -75,5 +76,6 @@ def _store(path: Path, values: Array) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         np.save(temporary, values)
         temporary.replace(path)
-    except OSError:
-        temporary.unlink(missing_ok=True)  # a read-only home costs time at each start, nothing else
+    except OSError:  # a read-only home costs time at each start, nothing else
+        with suppress(OSError):
+            temporary.unlink()

@@ -21,8 +21,7 @@ PRESSURE = (96.512, -4045.0, -12.277, 2.886e-5, 2.0)
 LIQUID_VOLUME = (2.781, 0.27244, 309.57, 0.2882)
 
 # T [K], nu_v [m^3/kmol], u_l, h_l, u_v, h_v [kJ/mol], c_v, c_p of the vapour [kJ/(mol K)]
-TABLE = np.array(
-    """
+_TABLE = """
     182.33 16.823 -0.18142 -0.17830 14.931 16.411 0.025545 0.034993
     185 14.503 0.020258 0.023954 14.984 16.481 0.025844 0.035439
     190 11.089 0.39840 0.40340 15.082 16.610 0.026427 0.036334
@@ -50,9 +49,8 @@ TABLE = np.array(
     300 0.21691 9.9960 10.354 15.145 16.422 0.045376 0.20883
     305 0.17210 10.768 11.205 14.661 15.791 0.047733 0.40691
     309.52 0.097371 12.745 13.450 12.745 13.450 nan nan
-    """.split(),
-    dtype=np.float64,
-).reshape(-1, 8)
+"""
+TABLE = np.array(_TABLE.split(), dtype=np.float64).reshape(-1, 8)
 
 
 def saturation_pressure(temperature: Array | float) -> Array:
@@ -121,6 +119,8 @@ def _spline(values: Array, theta: Array) -> Array:
 
 
 def _spline_to_last(values: Array, theta: Array) -> Array:
-    """Heat capacities have no entry at the critical point: beyond the last one (305 K) the last value is kept."""
+    """Heat capacities have no entry at the critical point: beyond the last (305 K) ln c goes on straight in theta."""
     known = _theta(TABLE[-2::-1, 0])
-    return np.asarray(CubicSpline(known, values[::-1])(np.maximum(theta, known[0])))
+    spline = CubicSpline(known, values[::-1])
+    beyond = np.minimum(theta - known[0], 0.0)
+    return np.asarray(spline(np.maximum(theta, known[0])) + beyond * spline(known[0], 1))

@@ -44,9 +44,10 @@ LIQUID_ENERGY, VAPOR_ENERGY, LIQUID_ENTHALPY = 3, 4, 5
 class Saturation:
     """Saturated nitrous oxide from one source, in specific SI units.
 
-    ``coefficients`` has the shape (properties, intervals, 4): cubics in theta - node, ascending power. ``theta_start`` and
-    ``theta_step`` give the uniform grid, ``critical_temperature`` the T_c in theta [K], ``t_min`` and ``t_max`` the range of
-    validity [K]. The methods take temperatures of any shape and return arrays of that shape (NaN outside the range).
+    ``coefficients`` has the shape (properties, intervals, 4): cubics in theta - node, ascending power. ``theta_start``
+    and ``theta_step`` give the uniform grid, ``critical_temperature`` the T_c in theta [K], ``t_min`` and ``t_max`` the
+    range of validity [K]. The methods take temperatures of any shape and return arrays of that shape (NaN outside the
+    range).
     """
 
     source: str
@@ -167,7 +168,7 @@ def saturation_temperature(
     for _ in range(30):
         value, slope = evaluate(table, theta_start, theta_step, critical, 0, t)
         step = (target - value) / (slope * t * t)
-        new = min(max(1.0 / (1.0 / t - step), t_min), t_max)
+        new = float(min(max(1.0 / (1.0 / t - step), t_min), t_max))
         if abs(new - t) < 1e-10 * t:
             return new
         t = new
