@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import resource
 import subprocess
 import sys
@@ -52,6 +53,8 @@ def _write_log(path: Path, size: int) -> None:
             burning = 0.45 * size < log.tell() < 0.5 * size
             log.write("".join(f"{(start + i) / 1000:.3f},{row}" for i, row in enumerate(blocks[burning])))
             start += BLOCK
+        log.flush()
+        os.fsync(log.fileno())
 
 
 def _rows(rng: np.random.Generator, level: np.ndarray) -> list[str]:

@@ -63,6 +63,8 @@ class _Ingest:
     spools: dict[str, Spool] = field(default_factory=dict)
     clocks: dict[Hashable, Clock] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+    kept: tuple[Plan, Samples] | None = None
+    """The samples looked at last for the firing, to be used again."""
 
     def close(self) -> None:
         for spool in self.spools.values():
@@ -102,8 +104,12 @@ class _Ingest:
     def find_firing(self) -> Firing | None:
         """When the log departs from rest; the engineer's t_open says so where it is given."""
         by_name = {plan.spec.name: plan for plan in self.plans}
-        plans = [by_name[name] for name in REFERENCES if name in by_name]
-        found = next((f for plan in plans if (f := find_firing(plan.spec.name, self._samples(plan).trace))), None)
+        found = None
+        for plan in (by_name[name] for name in REFERENCES if name in by_name):
+            self.kept = (plan, self._samples(plan))
+            found = find_firing(plan.spec.name, self.kept[1].trace)
+            if found:
+                break
         stated = self.definition.segments.get("t_open")
         if stated is None:
             return found
@@ -123,7 +129,8 @@ class _Ingest:
         """Channels in order, a few of them at work."""
 
         def work(plan: Plan) -> tuple[Channel, list[str]]:
-            return make_channel(plan, self._samples(plan), firing, self.definition)
+            samples = self.kept[1] if self.kept and self.kept[0] is plan else self._samples(plan)
+            return make_channel(plan, samples, firing, self.definition)
 
         waiting: deque[tuple[Plan, Future[tuple[Channel, list[str]]]]] = deque()
         for plan in self.plans:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from hfanalysis.testdata.readers import Source, Text
 
 Floats = NDArray[np.float64]
-IN_MEMORY = 1 << 30
+IN_MEMORY = 1 << 26
 """Bytes of one log file's columns that may stay in memory."""
 BLOCK = 1 << 20
 """Samples of a column kept together: large enough for the system to hand out memory in large pages."""

@@ -17,6 +17,7 @@ NEWLINE, RETURN, SPACE, TAB = 10, 13, 32, 9
 PLUS, MINUS, ZERO, NINE, LARGE_E, SMALL_E = 43, 45, 48, 57, 69, 101
 EXACT = 2**53
 """Whole numbers up to this are exact in a double, and so is their product with a power of ten up to 22."""
+DECLINED, FULL = -1, -2
 POWERS = 10.0 ** np.arange(23)
 
 
@@ -25,86 +26,91 @@ def parse(text: bytes, delimiter: str, decimal: str, slots: NDArray[np.int64], w
 
     ``slots``: for each column of the text the row of the result, -1 where it is not wanted.
     """
-    data = np.frombuffer(text, dtype=np.uint8)
-    out = np.full((wanted, text.count(b"\n") + 1), np.nan)
+    closed = text if text.endswith(b"\n") else text + b"\n"
+    data = np.frombuffer(closed, dtype=np.uint8)
+    guess = int(1.2 * len(closed) / (closed.index(b"\n") + 1)) + 16
+    out = np.empty((wanted, guess))
     rows = _parse(data, ord(delimiter), ord(decimal), slots, out)
+    if rows == FULL:
+        out = np.empty((wanted, closed.count(b"\n") + 1))
+        rows = _parse(data, ord(delimiter), ord(decimal), slots, out)
     return None if rows < 0 else out[:, :rows]
 
 
 @njit(cache=True, nogil=True)
 def _parse(data: Bytes, delimiter: int, decimal: int, slots: NDArray[np.int64], out: Floats) -> int:
-    """Number of rows filled, -1 where a wanted cell is not a plain number."""
-    n, i, row, column = len(data), 0, 0, 0
-    blank = True
+    """Number of rows filled from lines that all end; DECLINED for a cell that is no plain number, FULL for no room."""
+    n, i, row = len(data), 0, 0
     while i < n:
-        slot = slots[column] if column < len(slots) else -1
-        if slot >= 0:
-            i, value = _number(data, i, delimiter, decimal)
-            if i < 0:
-                return -1
-            out[slot, row] = value
-            blank = blank and np.isnan(value)
-        else:
-            start = i
-            i = _skip(data, i, delimiter)
-            if i < 0:
-                return -1
-            blank = blank and i == start
-        if i < n and data[i] == delimiter:
-            column += 1
+        if data[i] == NEWLINE or data[i] == RETURN:
             i += 1
             continue
-        if not (blank and column == 0):
-            row += 1
-        column, blank = 0, True
-        while i < n and (data[i] == RETURN or data[i] == NEWLINE):
+        if row == out.shape[1]:
+            return FULL
+        out[:, row] = np.nan
+        column, start = 0, i
+        while True:
+            slot = slots[column] if column < len(slots) else -1
+            if slot >= 0:
+                i, out[slot, row] = _number(data, i, delimiter, decimal)
+            else:
+                i = _skip(data, i, delimiter)
+            if i < 0:
+                return DECLINED
+            if data[i] != delimiter:
+                break
+            column += 1
             i += 1
+        row += column > 0 or not _is_blank(data, start, i)
     return row
+
+
+@njit(cache=True, nogil=True)
+def _is_blank(data: Bytes, start: int, end: int) -> bool:
+    while start < end and (data[start] == SPACE or data[start] == TAB):
+        start += 1
+    return start == end
 
 
 @njit(cache=True, nogil=True)
 def _skip(data: Bytes, i: int, delimiter: int) -> int:
     """The end of a cell that is not wanted; -1 where it is quoted."""
-    while i < len(data) and data[i] != delimiter and data[i] != NEWLINE and data[i] != RETURN:
+    while data[i] != delimiter and data[i] != NEWLINE and data[i] != RETURN:
         if data[i] == 34:
             return -1
         i += 1
     return i
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True)
 def _number(data: Bytes, i: int, delimiter: int, decimal: int) -> tuple[int, float]:
     """The end of a cell and its number, NaN for an empty one; end -1 where it is not a plain number."""
-    n = len(data)
-    while i < n and data[i] == SPACE:
+    while data[i] == SPACE:
         i += 1
-    if i == n or data[i] == delimiter or data[i] == NEWLINE or data[i] == RETURN:
+    if data[i] == delimiter or data[i] == NEWLINE or data[i] == RETURN:
         return i, np.nan
     negative = data[i] == MINUS
-    if negative or data[i] == PLUS:
+    i += negative or data[i] == PLUS
+    start, mantissa, places = i, np.int64(0), 0
+    while ZERO <= data[i] <= NINE:
+        mantissa = mantissa * 10 + (data[i] - ZERO)
         i += 1
-    mantissa, digits, places = np.int64(0), 0, 0
-    point = False
-    while i < n and (ZERO <= data[i] <= NINE or (data[i] == decimal and not point)):
-        if data[i] == decimal:
-            point = True
-        else:
+    digits = i - start
+    if data[i] == decimal:
+        i += 1
+        start = i
+        while ZERO <= data[i] <= NINE:
             mantissa = mantissa * 10 + (data[i] - ZERO)
-            digits += 1
-            places += point
-        i += 1
-        if digits > 18:
-            return -1, 0.0
-    if digits == 0 or mantissa > EXACT:
+            i += 1
+        places = i - start
+    if not 0 < digits + places <= 18 or mantissa > EXACT:
         return -1, 0.0
-    if i < n and (data[i] == SMALL_E or data[i] == LARGE_E):
+    if data[i] == SMALL_E or data[i] == LARGE_E:
         i, exponent = _exponent(data, i + 1)
         places -= exponent
-    while i >= 0 and i < n and data[i] == SPACE and delimiter != SPACE:
+    while i >= 0 and data[i] == SPACE and delimiter != SPACE:
         i += 1
-    if i < 0 or abs(places) > 22:
-        return -1, 0.0
-    if i < n and data[i] != delimiter and data[i] != NEWLINE and data[i] != RETURN:
+    if i < 0 or abs(places) > 22 or (data[i] != delimiter and data[i] != NEWLINE and data[i] != RETURN):
         return -1, 0.0
     value = mantissa / POWERS[places] if places >= 0 else mantissa * POWERS[-places]
     return i, -value if negative else value
@@ -113,12 +119,10 @@ def _number(data: Bytes, i: int, delimiter: int, decimal: int) -> tuple[int, flo
 @njit(cache=True, nogil=True)
 def _exponent(data: Bytes, i: int) -> tuple[int, int]:
     """The end of an exponent and its value; end -1 where there is none."""
-    n = len(data)
-    negative = i < n and data[i] == MINUS
-    if i < n and (data[i] == MINUS or data[i] == PLUS):
-        i += 1
+    negative = data[i] == MINUS
+    i += negative or data[i] == PLUS
     start, value = i, 0
-    while i < n and ZERO <= data[i] <= NINE and i - start < 4:
+    while ZERO <= data[i] <= NINE and i - start < 4:
         value = value * 10 + (data[i] - ZERO)
         i += 1
     return (i if i > start else -1), (-value if negative else value)
