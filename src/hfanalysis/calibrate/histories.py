@@ -12,7 +12,7 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.segment.breaks import kink
 from hfanalysis.segment.noise import Noise, pool
 from hfanalysis.segment.phases import Segments
-from hfanalysis.segment.signals import Signal
+from hfanalysis.segment.signals import Signal, live_signals
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
 from hfanalysis.thermo.saturation import Saturation
@@ -45,15 +45,13 @@ class Histories:
     def of(cls, log: TestLog, segments: Segments, definition: TestDefinition, end: float) -> Histories:
         """From the opening to ``end`` [s]. Raises AbsentError where the log has no p_tank or no p_run."""
         origin = segments.t_open.value or 0.0
-        signals = {
-            name: Signal.of(log.channels[name]).shifted(origin)
-            for name in ("p_tank", "p_run", "p_chamber", "p_purge")
-            if name in log.channels and log.channels[name].good.sum() > 7
-        }
+        wanted = ("p_tank", "p_run", "p_chamber", "p_purge")
+        signals = {name: signal.shifted(origin) for name, signal in live_signals(log).items() if name in wanted}
         noises = _noises(signals, segments.time("t_purge"))
-        for name in ("p_tank", "p_run"):
+        burning = segments.kind.name == "hot_fire"
+        for name in ("p_tank", "p_run", *(("p_chamber",) if burning else ())):
             if name not in signals:
-                raise AbsentError(f"the log has no {name}")
+                raise AbsentError(f"test {definition.test.id}: the log has no {name} to calibrate with")
         blocks = signals["p_tank"].between(0.0, end).reduced(FINEST)
         if blocks.time.size < 8:
             raise AbsentError("too few good samples of p_tank after the opening")
@@ -62,12 +60,22 @@ class Histories:
         if "p_chamber" in signals:
             return cls(time, blocks.value, run, _on(signals["p_chamber"], time), signals, noises)
         ambient = np.full(time.size, definition.ambient_pressure.value)
-        return cls(time, blocks.value, run, ambient, signals, noises, ("p_chamber is not in the log: ambient pressure taken",))
+        return cls(time, blocks.value, run, ambient, signals, noises, ("p_chamber is not in the log of this cold flow: ambient pressure taken",))
 
     def mean(self, values: Array, start: float, end: float) -> float:
         """Mean of values on this clock over [start, end)."""
         part = (self.time >= start) & (self.time < end)
         return float(values[part].mean()) if part.any() else float("nan")
+
+    def gap(self, start: float, end: float) -> tuple[str, float]:
+        """The channel with the longest stretch without a good sample between two instants, and that stretch [s]."""
+        longest = ("", 0.0)
+        for name in ("p_tank", "p_run", "p_chamber"):
+            if name not in self.signals:
+                continue
+            time = np.concatenate(([start], self.signals[name].between(start, end).time, [end]))
+            longest = max(longest, (name, float(np.diff(time).max())), key=lambda item: item[1])
+        return longest
 
     def tank_temperature(self, saturation: Saturation) -> Array:
         """T_sat(p_tank) [K]; pressures beyond the critical point count as just below it."""

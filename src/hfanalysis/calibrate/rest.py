@@ -57,7 +57,7 @@ def fit_bulk(left: Array, temperature: Array) -> BulkFit | None:
 
     ``left`` [kg] increases; the temperature of a saturated blowdown is close to a quadratic in it. None for too few samples.
     """
-    if left.size < 12:
+    if left.size < 12 or not np.isfinite(temperature).all() or not left[-1] > 0.0 or np.ptp(temperature) == 0.0:
         return None
     scale = left[-1]
     coefficients, covariance = np.polyfit(left / scale, temperature, 2, cov=True)

@@ -15,7 +15,7 @@ from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
 from hfanalysis.calibrate.rest import Rest
 from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
-from hfanalysis.errors import AbsentError
+from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.segment.phases import Segments
 from hfanalysis.testdata.definition import TestDefinition
@@ -52,6 +52,12 @@ class Calibration:
             "settings": self.settings,
         }
 
+
+LONGEST_GAP = 0.1
+"""Part of the liquid phase that one channel may miss in one piece; good samples around it are joined linearly."""
+
+FULLEST = 1.05
+"""Loaded mass over what the tank holds as liquid at the bulk's temperature, from which on the input is refused."""
 
 NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase",
          "vapor_mass_at_t_v", "mass_at_t_feed")  # fmt: skip
@@ -102,6 +108,7 @@ class _Work:
         p_end = self.at_end.value if self.at_end else float("nan")
         times = (self.t_feed, self.t_v, self.t_end)
         inputs = Inputs(mass.value, self.volume.value, self.area.value, *times, self.at_v.value, p_end)
+        self._check_fit(inputs)
         tables = Tables.of(self.histories, self.saturation)
         nominal = reduce(tables, self.saturation, inputs)
         draws = draw(tables, self.saturation, inputs, self._spread(mass), samples)
@@ -112,6 +119,18 @@ class _Work:
         history = coefficient_history(self.saturation, self.histories, inputs, left)
         quantities = self._quantities(nominal, draws, inputs, left)
         return Calibration(quantities, rest, history, inputs, tuple(self.warnings), tuple(self.notes))
+
+    def _check_fit(self, inputs: Inputs) -> None:
+        """Raise InputError where the loaded mass cannot be in the tank, not even as liquid as cold as the blowdown shows."""
+        h = self.histories
+        start = h.mean(h.tank, self.t_feed, self.t_feed + 0.2 * (self.t_v - self.t_feed))
+        bulk = float(self.saturation.temperature(np.clip(start, *self.saturation.pressure_range)))
+        most = inputs.volume * float(self.saturation.liquid_density(bulk))
+        if inputs.mass > FULLEST * most:
+            raise InputError(
+                f"{self.definition.path}: [tank] oxidizer_mass and volume: found {inputs.mass:.2f} kg in {inputs.volume * 1e3:.1f} L; "
+                f"expected no more than {most:.2f} kg, the tank full of liquid at the {bulk - 273.15:.0f} degC of its blowdown"
+            )
 
     def _quantities(self, r: Reduction, draws: Draws, inputs: Inputs, left: Array) -> dict[str, Quantity]:
         discharge = judge_discharge(r, draws, self._excluded_share())
@@ -133,10 +152,9 @@ class _Work:
             relative = (discharge.std or 0.0) / r.C_i
             out["oxidizer_flow_peak"] = Quantity(flow, "kg/s", flow * relative, verdict=discharge.verdict)
         at_feed = inputs.mass - float(np.interp(self.t_feed, self.histories.time, left))
-        out["mass_at_t_feed"] = Quantity(at_feed, "kg", self._mass_std, verdict=discharge.verdict)
-        liquid = inputs.mass - r.vapor_mass
+        out["mass_at_t_feed"] = _mass(at_feed, self._mass_std, discharge)
         spread = float(np.hypot(draws.std("vapor_mass"), self._mass_std))
-        out["oxidizer_mass_liquid_phase"] = Quantity(liquid, "kg", spread, verdict=discharge.verdict)
+        out["oxidizer_mass_liquid_phase"] = _mass(inputs.mass - r.vapor_mass, spread, discharge)
         return out
 
     def _spread(self, mass: LoadedMass) -> Spread:
@@ -209,6 +227,9 @@ class _Work:
         t_purge = self.segments.time("t_purge")
         if t_purge is not None and t_purge <= self.t_v:
             return np.nan, 0.0, f"nitrogen is in the tank from {t_purge:.2f} s on, before the liquid is gone ({self.t_v:.2f} s)"
+        name, gap = self.histories.gap(self.t_v, t_purge if t_purge is not None else self.t_v + 0.2)
+        if gap > max(0.1, 4.0 * self.histories.signals["p_tank"].step):
+            return np.nan, 0.0, f"{name} has no good samples for {gap:.2f} s of the vapour phase"
         if t_purge is not None:
             return t_purge, self.segments.std("t_purge"), None
         h = self.histories
@@ -220,6 +241,9 @@ class _Work:
 
     def _blocked(self) -> str | None:
         """Why the injector equation cannot be inverted at all, or None."""
+        name, gap = self.histories.gap(0.0, self.t_v)
+        if gap > LONGEST_GAP * self.t_v:
+            return f"{name} has no good samples for {gap:.2f} s of the {self.t_v:.2f} s from the opening to t_v"
         share = self._excluded_share()
         if share > 0.1:
             return (
@@ -253,3 +277,10 @@ class _Work:
                 else Quantity.absent(self.end_reason or "no samples in this phase", verdict=NOT_IDENTIFIABLE)
             )
         return out
+
+
+def _mass(value: float, std: float, discharge: Quantity) -> Quantity:
+    """A mass [kg] that is worth what C_i is worth."""
+    if not (np.isfinite(value) and np.isfinite(std)):
+        return Quantity.absent("the reduction has no answer", verdict=NOT_IDENTIFIABLE)
+    return Quantity(value, "kg", std, verdict=discharge.verdict)

@@ -20,7 +20,10 @@ from hfanalysis.segment.signals import Array, Signal
 from hfanalysis.thermo.saturation import Saturation
 
 STEEPER = 1.25
-"""A knee is a fall at least this much steeper after than before."""
+"""A knee is a fall at least this much steeper after than before, and more where mass and energy do not expect it."""
+
+LEAST_LOSS = 0.05
+"""By the end of the liquid a tank has lost at least this part of its pressure."""
 
 DRY_PRESSURE_SPREAD = 0.2
 """Standard deviation of ln(p) within which real tanks run dry about the adiabatic value: heat, mass and stratification."""
@@ -116,18 +119,21 @@ def _run_line_fall(run: Signal, about: float, wide: float) -> float | None:
 def _rough_knee(tank: Signal, end: float, expected: float | None) -> float | None:
     coarse = tank.reduced(max(0.01, tank.step))
     width = float(np.clip(0.05 * end, max(0.1, 5 * tank.step), max(0.4, 8 * tank.step)))
-    times = np.arange(0.5 * width, end, 0.25 * width)
+    times = np.arange(0.5 * width, end - 0.4 * width, 0.25 * width)
+    if times.size == 0:
+        return None
     before = np.array([_slope(coarse, t - width if t > 1.2 * width else 0.2 * width, t) for t in times])
     after = np.array([_slope(coarse, t, t + width) for t in times])
     fall = before - after
     pressure = np.maximum(coarse.at(times), 1.0)
-    weight = np.ones_like(times)
+    lost = coarse.at(np.zeros(1))[0] - coarse.at(times + 0.4 * width) > LEAST_LOSS * pressure
+    unlikely = np.ones_like(times)
     if expected is not None:
-        weight = np.exp(-0.5 * (np.log(pressure / expected) / DRY_PRESSURE_SPREAD) ** 2)
+        unlikely = np.exp(0.5 * (np.log(pressure / expected) / DRY_PRESSURE_SPREAD) ** 2)
     typical = float(np.nanmedian(np.abs(before[np.isfinite(before)]))) if np.isfinite(before).any() else 0.0
     uncertain = 6.0 * tank.noise * np.sqrt(2.0 * tank.step / width) / width
-    steeper = after < STEEPER * np.minimum(before, -0.2 * typical)
-    score = np.where(steeper & (before < 0.0) & (fall > uncertain), fall * weight, 0.0)
+    steeper = after < STEEPER * unlikely * np.minimum(before, -0.2 * typical)
+    score = np.where(steeper & lost & (before < 0.0) & (fall > uncertain), fall / unlikely, 0.0)
     best = int(np.nanargmax(score)) if np.isfinite(score).any() else 0
     return float(times[best]) if np.isfinite(score[best]) and score[best] > 0.0 else None
 

@@ -44,13 +44,19 @@ def find_opening(signals: Mapping[str, Signal]) -> Opening | None:
 
 
 def under_way(signals: Mapping[str, Signal]) -> str | None:
-    """The channel that shows a firing already under way in the first sample, where there is one."""
-    for name in ("thrust", "p_chamber"):
-        if name not in signals or signals[name].time.size < 8:
+    """The channel that shows a firing already under way in the first sample, where there is one.
+
+    The chamber pressure tells; the thrust only where nothing else is measured, for its sign and zero may be anything.
+    """
+    alone = not {"p_chamber", "p_run", "p_tank"} & set(signals)
+    first = min((float(s.time[0]) for s in signals.values()), default=0.0)
+    for name in ("p_chamber", *(("thrust",) if alone else ())):
+        if name not in signals or signals[name].time[0] > first + 0.2:
             continue
         value = _despiked(signals[name].value)
-        start, low, high = float(np.median(value[:5])), float(np.percentile(value, 2.0)), float(np.percentile(value, 99.5))
-        if start - low > 0.5 * (high - low) > 0.5 * SMALLEST_CHANGE[name]:
+        start, end = float(np.median(value[:5])), float(np.median(value[-5:]))
+        span = float(np.ptp(np.percentile(value, (2.0, 99.5))))
+        if start - end > 0.5 * span > 0.5 * SMALLEST_CHANGE[name]:
             return name
     return None
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hfanalysis.errors import AbsentError
+from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.quantity import Quantity
 from hfanalysis.segment.ending import find_unchoking
 from hfanalysis.segment.feed import find_line_full
@@ -17,7 +17,7 @@ from hfanalysis.segment.kind import Kind, recognise
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
-from hfanalysis.segment.signals import Signal
+from hfanalysis.segment.signals import Signal, live_signals
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
 from hfanalysis.thermo.nitrous import saturation
@@ -89,27 +89,48 @@ class Segments:
 
 def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
     """All events of a log. Raises AbsentError where nothing opens: a log with no firing in it."""
-    signals = {name: Signal.of(channel) for name, channel in log.channels.items() if channel.good.sum() > 7}
+    signals = live_signals(log)
+    _check_stated(definition, signals)
     opening = _opening(signals, definition)
     origin = opening.time
     shifted = {name: s.between(origin - 60.0, origin + LONGEST_RUN).shifted(origin) for name, s in signals.items()}
+    dead = [f"{n} never changes or has no good samples: left out" for n in log.channels if n not in signals]
     search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std)
     result = search.run()
+    result = replace(result, warnings=(*dead, *result.warnings))
     t_open = Quantity(opening.time, "s", max(opening.std, 1e-9), why=f"from {', '.join(opening.channels)}")
     engineer = tuple(name for name in ("t_open", *EVENTS) if name in definition.segments)
     return replace(result, t_open=t_open, engineer=engineer)
+
+
+def _check_stated(definition: TestDefinition, signals: Mapping[str, Signal]) -> None:
+    """What the engineer sets must lie in the log and in order; raises InputError naming the key."""
+    stated = definition.segments
+    if not signals or not stated:
+        return
+    first = min(float(s.time[0]) for s in signals.values())
+    last = max(float(s.time[-1]) for s in signals.values())
+    where = f"{definition.path}: [segments]"
+    opening = stated.get("t_open")
+    if opening is not None and not first <= opening.value < last:
+        raise InputError(f"{where} t_open: found {opening.value:g} s; expected a log time between {first:g} and {last:g} s")
+    for name, value in stated.items():
+        if name != "t_open" and not 0.0 < value.value < last - first:
+            raise InputError(f"{where} {name}: found {value.value:g} s; expected a time after the opening within the log")
+    if {"t_feed", "t_v"} <= set(stated) and stated["t_feed"].value >= stated["t_v"].value:
+        raise InputError(f"{where} t_feed: found {stated['t_feed'].value:g} s; expected less than t_v")
 
 
 def _opening(signals: Mapping[str, Signal], definition: TestDefinition) -> Opening:
     stated = definition.segments.get("t_open")
     if stated is not None:
         return Opening(stated.value, stated.std or 1e-3, (BY_HAND,))
-    found = find_opening(signals)
-    if found is None and (name := under_way(signals)) is not None:
+    if (name := under_way(signals)) is not None:
         raise AbsentError(
             f"test {definition.test.id}: the log starts in the middle of the firing ({name} is high from its first sample): there is "
             "no opening to count from; set [segments] t_open in test.toml, if it is known"
         )
+    found = find_opening(signals)
     if found is None:
         looked = ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals) or "no channel"
         raise AbsentError(
@@ -262,6 +283,9 @@ class _Search:
 
     def _check_order(self) -> None:
         t_v, t_purge = self._time("t_v"), self._time("t_purge")
+        t_feed = self._time("t_feed")
+        if t_feed is not None and t_v is not None and t_feed >= t_v:
+            self.events["t_feed"] = Quantity.absent(f"{t_feed:.2f} s would be after the end of the liquid")
         if t_v is None or t_purge is None:
             return
         early = t_v - t_purge

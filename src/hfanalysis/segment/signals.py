@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.testdata.log import Channel
+from hfanalysis.testdata.log import Channel, TestLog
 
 Array = NDArray[np.float64]
 MAD_TO_STD = 1.4826
@@ -36,6 +36,11 @@ class Signal:
         time, value = time[keep], value[keep]
         step = float(np.median(np.diff(time))) if time.size > 1 else np.nan
         return cls(channel.name, time, value, sample_noise(value), step)
+
+    @property
+    def dead(self) -> bool:
+        """Whether the channel holds too few samples to say anything, or never changes at all."""
+        return self.time.size < 8 or float(np.ptp(self.value)) == 0.0
 
     def between(self, start: float, end: float) -> Signal:
         """The samples with start <= time < end."""
@@ -76,6 +81,12 @@ class Signal:
     @property
     def _level(self) -> float:
         return float(self.value[0]) if self.value.size else 0.0
+
+
+def live_signals(log: TestLog) -> dict[str, Signal]:
+    """The channels of a log that say something; dead ones are left out."""
+    signals = {name: Signal.of(channel) for name, channel in log.channels.items()}
+    return {name: signal for name, signal in signals.items() if not signal.dead}
 
 
 def sample_noise(value: Array) -> float:
