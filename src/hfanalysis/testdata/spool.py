@@ -18,8 +18,38 @@ from numpy.typing import NDArray
 from hfanalysis.testdata.readers import Source, Text
 
 Floats = NDArray[np.float64]
-IN_MEMORY = 1 << 25
+IN_MEMORY = 1 << 30
 """Bytes of one log file's columns that may stay in memory."""
+BLOCK = 1 << 23
+"""Samples of a column kept together: so many that the system hands out memory in large pages, as it is touched."""
+
+
+@dataclass
+class Growing:
+    """A column in memory: its first part as it came, the rest in blocks."""
+
+    blocks: list[Floats] = field(default_factory=list)
+    size: int = 0
+    room: int = 0
+
+    def append(self, part: Floats) -> None:
+        """Add numbers at the end."""
+        self.size += len(part)
+        if not self.blocks:
+            self.blocks.append(part)
+            return
+        while len(part):
+            if not self.room:
+                self.blocks.append(np.empty(BLOCK))
+                self.room = BLOCK
+            count = min(self.room, len(part))
+            start = BLOCK - self.room
+            self.blocks[-1][start : start + count] = part[:count]
+            part, self.room = part[count:], self.room - count
+
+    def parts(self) -> list[Floats]:
+        """The numbers, in order."""
+        return [*self.blocks[:-1], *(block[: len(block) - self.room] for block in self.blocks[-1:])]
 
 
 @dataclass
@@ -33,7 +63,7 @@ class Spool:
     """Columns of stamps that are dates or times of day, here in seconds."""
     idle: NDArray[np.bool_] | None = None
     """Rows in which every column reads exactly zero; None where that says nothing."""
-    _parts: dict[int, list[Floats]] = field(default_factory=dict)
+    _columns: dict[int, Growing] = field(default_factory=dict)
     _files: dict[int, IO[bytes]] = field(default_factory=dict)
 
     def fill(self, columns: Sequence[int], stamps: Sequence[int], progress: Callable[[float], None]) -> None:
@@ -43,7 +73,7 @@ class Spool:
         for chunk in self.source.chunks(columns, stamps, progress):
             idle.append(_all_zero([chunk.columns[c] for c in columns]))
             for column, numbers in chunk.columns.items():
-                self._parts.setdefault(column, []).append(numbers)
+                self._columns.setdefault(column, Growing()).append(numbers)
                 size += numbers.nbytes
             if size > IN_MEMORY:
                 self._to_disk()
@@ -58,17 +88,17 @@ class Spool:
             self.text[column] = replace(before, count=before.count + text.count) if before else text
 
     def _to_disk(self) -> None:
-        for column, parts in self._parts.items():
+        for column, grown in self._columns.items():
             if column not in self._files:
                 self._files[column] = tempfile.TemporaryFile(dir=self.folder)  # noqa: SIM115
-            for part in parts:
+            for part in grown.parts():
                 self._files[column].write(np.ascontiguousarray(part).data)
-        self._parts.clear()
+        self._columns.clear()
 
     def rows(self, column: int) -> int:
         """How many numbers a column has."""
         on_disk = self._files[column].seek(0, 2) // 8 if column in self._files else 0
-        return on_disk + sum(map(len, self._parts.get(column, ())))
+        return on_disk + (self._columns[column].size if column in self._columns else 0)
 
     def take(self, column: int) -> Floats:
         """The numbers of a column, a fresh array."""
@@ -77,20 +107,20 @@ class Spool:
         if column in self._files:
             self._files[column].seek(0)
             start = self._files[column].readinto(numbers.view(np.uint8)) // 8  # type: ignore[attr-defined]
-        for part in self._parts.get(column, ()):
+        for part in self._columns[column].parts() if column in self._columns else ():
             numbers[start : start + len(part)] = part
             start += len(part)
         return numbers
 
     def drop(self, column: int) -> None:
         """Give back what holds a column."""
-        self._parts.pop(column, None)
+        self._columns.pop(column, None)
         if column in self._files:
             self._files.pop(column).close()
 
     def close(self) -> None:
         """Give back everything."""
-        for column in [*self._parts, *self._files]:
+        for column in [*self._columns, *self._files]:
             self.drop(column)
 
 
