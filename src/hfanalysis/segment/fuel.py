@@ -35,6 +35,9 @@ CLEAR_FALL = 8.0
 FADE_FALL = 0.3
 """Least fall of ln of the response over a fade in the liquid phase."""
 
+FADE_THRUST = 0.1
+"""Least part of the thrust that has to go with it: a third of what the pressure loses, for its cell drifts with heat."""
+
 CLEAR = 0.08e5
 """Chamber pressure above ambient [Pa] below which nothing can be said of the fire."""
 
@@ -71,13 +74,15 @@ def find_fuel_end(
     if response is None:
         return "the chamber pressure is not above ambient for long enough"
     sudden = _sudden(response, t_feed, t_v)
-    if sudden is not None and _thrust_falls(signals, sudden):
+    if sudden is not None and _thrust_falls(signals, (sudden - WINDOW, sudden - GAP), (sudden + GAP, sudden + WINDOW), 0.03):
         dated = _dated(signals, sudden, t_v)
         if dated.duration <= SUDDEN:
             return dated
     fade = _fade(response, t_feed, t_v) if t_v is not None else None
-    if fade is not None:
-        return fade
+    if fade is not None and t_v is not None:
+        start = t_v - 0.1 - fade.duration
+        if _thrust_falls(signals, (start - WINDOW, start), (t_v - 0.1 - GAP, t_v - GAP), FADE_THRUST):
+            return fade
     last = float(response.time[-1])
     return f"chamber pressure and thrust do not fall against the feed up to {last:.1f} s, where the chamber nears ambient"
 
@@ -127,16 +132,18 @@ def _fall_at(response: _Response, t: float, t_v: float | None) -> float:
     return float(fall / error) if clear else 0.0
 
 
-def _thrust_falls(signals: Mapping[str, Signal], t: float) -> bool:
-    """Whether the thrust, where it is measured, falls at the same instant beyond its scatter."""
+def _thrust_falls(
+    signals: Mapping[str, Signal], early: tuple[float, float], late: tuple[float, float], share: float
+) -> bool:
+    """Whether the thrust, where it is measured, falls by this share between two intervals [s], and beyond its scatter."""
     if "thrust" not in signals:
         return True
     thrust = signals["thrust"]
-    before, after = thrust.between(t - WINDOW, t - GAP).value, thrust.between(t + GAP, t + WINDOW).value
+    before, after = thrust.between(*early).value, thrust.between(*late).value
     if before.size < 4 or after.size < 4:
         return True
     error = 2.0 * np.hypot(before.std() / np.sqrt(before.size), after.std() / np.sqrt(after.size))
-    return bool(before.mean() - after.mean() > max(0.03 * abs(before.mean()), error))
+    return bool(before.mean() - after.mean() > max(share * abs(before.mean()), error))
 
 
 def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> FuelEnd:

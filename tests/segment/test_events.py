@@ -1,0 +1,280 @@
+"""The single events, each from the signals that show it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from benchmarks.virtual_stand import noise
+from stand import AMBIENT, Stand, Trial, fire, signal
+
+from hfanalysis.engine.tank import mass_along_blowdown
+from hfanalysis.segment.ending import CRITICAL_RATIO, find_unchoking
+from hfanalysis.segment.feed import find_line_full
+from hfanalysis.segment.fuel import find_fuel_end
+from hfanalysis.segment.kind import recognise
+from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
+from hfanalysis.segment.purge import find_nitrogen
+from hfanalysis.segment.signals import Array, Signal
+from hfanalysis.thermo.nitrous import SOURCES, saturation
+
+RATE = 500.0
+TIME = np.arange(-4.0, 10.0, 1.0 / RATE)
+
+
+def noisy(name: str, value: Array, white: float = 5e3, seed: int = 0) -> Signal:
+    return signal(name, TIME, value + noise(np.random.default_rng(seed), TIME.size, RATE, white, 1e4))
+
+
+def since(instant: float) -> Array:
+    return np.maximum(TIME - instant, 0.0)
+
+
+def signals_of(test: Trial, white: float = 5e3) -> dict[str, Signal]:
+    rate = 1.0 / float(np.median(np.diff(test.time)))
+    generator = np.random.default_rng(1)
+    scale = {"thrust": 2e-3}
+    return {
+        n: signal(n, test.time, v + scale.get(n, 1.0) * noise(generator, v.size, rate, white, 1e4))
+        for n, v in test.values.items()
+    }
+
+
+# --- the line is full -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("fill", [0.1, 0.25])
+def test_the_line_is_full_at_98_per_cent_of_its_highest_pressure(fill: float) -> None:
+    """p_run = p_a + 40 bar (1 - e^(-t/fill)) exceeds 98 % of its maximum at -fill ln(0.02 (1 + p_a/40 bar))."""
+    run = noisy("p_run", AMBIENT + 40e5 * (1.0 - np.exp(-since(0.0) / fill)))
+    found = find_line_full(run, 6.0)
+    assert not isinstance(found, str)
+    expected = -fill * np.log(0.02 * (1.0 + AMBIENT / 40e5))
+    assert found[0] == pytest.approx(expected, abs=max(0.03, 3.0 * found[1]))
+    assert found[1] < 0.1
+
+
+def test_only_the_time_before_the_liquid_is_gone_counts() -> None:
+    """A nitrogen pressure above that of the liquid phase is no filling line."""
+    rise = AMBIENT + 40e5 * (1.0 - np.exp(-since(0.0) / 0.1)) + 30e5 * (TIME > 7.0)
+    found = find_line_full(noisy("p_run", rise), 6.0)
+    assert not isinstance(found, str)
+    assert found[0] < 0.6
+
+
+def test_a_line_that_is_full_at_once_shows_no_filling() -> None:
+    run = noisy("p_run", np.where(TIME >= 0.0, 40e5 - 2e5 * TIME, AMBIENT))
+    assert "no filling to see" in str(find_line_full(run, 6.0))
+
+
+def test_a_line_with_hardly_a_sample_shows_nothing() -> None:
+    run = noisy("p_run", AMBIENT + 40e5 * (1.0 - np.exp(-since(0.0) / 0.1)))
+    assert find_line_full(run, 0.01) == "too few good samples of p_run before the liquid is gone"
+
+
+def test_a_line_that_stays_at_ambient_is_never_full() -> None:
+    assert isinstance(find_line_full(noisy("p_run", np.full(TIME.size, AMBIENT)), 6.0), str)
+
+
+# --- the liquid is gone -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_a_tank_runs_dry_at_the_pressure_that_its_mass_and_energy_allow(source: str) -> None:
+    test = fire(Stand(source=source))
+    expected = dry_pressure(saturation(source), test.stand.volume, test.stand.mass, float(test.values["p_tank"][0]))
+    assert expected == pytest.approx(test.p_v, rel=2e-3)
+
+
+def test_a_tank_that_cannot_be_saturated_has_no_such_pressure() -> None:
+    nitrous = saturation()
+    assert dry_pressure(nitrous, 16.5e-3, 10.0, 80e5) is None
+    least = float(mass_along_blowdown(nitrous, 16.5e-3, 292.0, np.array([293.15]))[0])
+    assert dry_pressure(nitrous, 16.5e-3, 0.5 * least, 50e5) is None
+
+
+def test_the_knee_of_the_tank_pressure_dates_the_end_of_the_liquid() -> None:
+    test = fire(rate=RATE)
+    only_tank = {"p_tank": signals_of(test)["p_tank"]}
+    found = find_liquid_end(only_tank, test.t_purge, test.p_v)
+    assert found is not None
+    assert found.channels == ("p_tank",)
+    assert found.time == pytest.approx(test.t_v, abs=3.0 * found.std)
+    assert found.std < 0.05
+
+
+def test_chamber_and_thrust_fall_with_the_liquid_and_date_it_best() -> None:
+    test = fire(rate=RATE)
+    found = find_liquid_end(signals_of(test), test.t_purge, test.p_v)
+    assert found is not None
+    assert set(found.channels) == {"p_tank", "p_chamber", "thrust"}
+    assert found.time == pytest.approx(test.t_v, abs=3.0 * found.std)
+    assert found.std < 0.002
+
+
+def test_a_tank_without_a_knee_shows_no_end_of_the_liquid() -> None:
+    slow = noisy("p_tank", 50e5 - 2e5 * since(0.0))
+    assert find_liquid_end({"p_tank": slow}, 9.0, None) is None
+
+
+def test_of_two_knees_the_one_at_the_dry_pressure_is_taken() -> None:
+    """The later one is sharper: there the supply was shut. Mass and energy tell that the liquid went at the first."""
+    pressure = 50e5 - 3e5 * since(0.0) - 9e5 * since(4.0) + 6e5 * since(4.5) - 14e5 * since(5.5)
+    tank = noisy("p_tank", np.maximum(pressure, AMBIENT))
+    first = find_liquid_end({"p_tank": tank}, 6.5, 38e5)
+    later = find_liquid_end({"p_tank": tank}, 6.5, 27e5)
+    assert first is not None
+    assert later is not None
+    assert first.time == pytest.approx(4.0, abs=0.1)
+    assert later.time == pytest.approx(5.5, abs=0.1)
+
+
+# --- nitrogen enters --------------------------------------------------------------------------------------------------
+
+
+def sagging(instant: float, level: float = 30e5) -> Array:
+    return np.asarray(level * (1.0 - 0.25 * (1.0 - np.exp(-since(instant) / 1.5))))
+
+
+def test_nitrogen_enters_when_its_line_starts_to_sag() -> None:
+    found = find_nitrogen(noisy("p_purge", sagging(6.3)), 9.9, noisy("p_tank", np.full(TIME.size, 25e5)))
+    assert not isinstance(found, str)
+    assert found[0] == pytest.approx(6.3, abs=max(4.0 * found[1], 0.01))
+    assert found[1] < 0.02
+
+
+def test_valve_hammer_is_no_nitrogen() -> None:
+    purge = sagging(6.3)
+    purge[(TIME > 2.0) & (TIME < 2.05)] -= 10e5
+    purge[(TIME > 4.0) & (TIME < 4.002)] -= 25e5
+    found = find_nitrogen(noisy("p_purge", purge), 9.9, None)
+    assert not isinstance(found, str)
+    assert found[0] == pytest.approx(6.3, abs=0.02)
+
+
+def test_a_line_that_keeps_its_pressure_lets_no_nitrogen_in() -> None:
+    found = find_nitrogen(noisy("p_purge", np.full(TIME.size, 30e5)), 9.9, None)
+    assert found == "the purge line keeps its pressure to the end of the log"
+
+
+def test_nothing_enters_a_tank_that_stands_above_the_line() -> None:
+    found = find_nitrogen(noisy("p_purge", sagging(6.3)), 9.9, noisy("p_tank", np.full(TIME.size, 45e5)))
+    assert isinstance(found, str)
+    assert "(45.0 bar) stands above it (30.0 bar): no nitrogen can enter" in found
+
+
+def test_without_a_quiet_time_before_the_opening_the_line_says_nothing() -> None:
+    purge = noisy("p_purge", sagging(6.3)).between(0.0, 10.0)
+    assert find_nitrogen(purge, 9.9, None) == "the log has no quiet purge line before the opening"
+
+
+# --- the fuel is gone -------------------------------------------------------------------------------------------------
+
+
+def test_a_sudden_end_of_the_fuel_is_dated() -> None:
+    test = fire(Stand(t_fuel_out=3.4), rate=RATE)
+    found = find_fuel_end(signals_of(test), AMBIENT, 0.1, test.t_v, 9.0)
+    assert not isinstance(found, str)
+    assert found.time == pytest.approx(3.4, abs=3.0 * found.std)
+    assert found.std < 0.02
+    assert found.duration < 0.1
+
+
+def test_a_fall_that_the_thrust_does_not_share_is_no_end_of_the_fuel() -> None:
+    test = fire(Stand(t_fuel_out=3.4), rate=RATE)
+    signals = signals_of(test)
+    signals["thrust"] = signals_of(fire(rate=RATE))["thrust"]
+    found = find_fuel_end(signals, AMBIENT, 0.1, test.t_v, 9.0)
+    assert isinstance(found, str)
+
+
+def test_the_end_of_the_liquid_is_not_taken_for_that_of_the_fuel() -> None:
+    test = fire(rate=RATE)
+    found = find_fuel_end(signals_of(test), AMBIENT, 0.1, test.t_v, 9.0)
+    assert isinstance(found, str)
+    assert "do not fall against the feed" in found
+
+
+def test_fuel_that_thins_out_before_the_liquid_is_gone_is_dated_by_the_middle_of_its_fade() -> None:
+    run = noisy("p_run", np.full(TIME.size, 35e5))
+    level = np.interp(TIME, [-4.0, 0.0, 0.05, 4.0, 5.2, 10.0], [0.0, 0.0, 12e5, 12e5, 4e5, 4e5])
+    signals = {"p_run": run, "p_chamber": noisy("p_chamber", AMBIENT + level)}
+    found = find_fuel_end(signals, AMBIENT, 0.1, 5.3, 5.3)
+    assert not isinstance(found, str)
+    assert 4.3 < found.time < 5.1
+    assert 0.6 < found.duration < 1.5
+    shared = find_fuel_end({**signals, "thrust": noisy("thrust", 2e-3 * level, 5.0)}, AMBIENT, 0.1, 5.3, 5.3)
+    assert shared == found
+    not_shared = {**signals, "thrust": noisy("thrust", np.full(TIME.size, 2400.0), 5.0)}
+    assert isinstance(find_fuel_end(not_shared, AMBIENT, 0.1, 5.3, 5.3), str)
+
+
+def test_without_the_run_line_the_fuel_cannot_be_told_from_the_feed() -> None:
+    test = fire(Stand(t_fuel_out=3.4), rate=RATE)
+    signals = {n: s for n, s in signals_of(test).items() if n != "p_run"}
+    assert "without p_run" in str(find_fuel_end(signals, AMBIENT, 0.1, test.t_v, 9.0))
+
+
+def test_a_chamber_at_ambient_says_nothing_of_the_fuel() -> None:
+    signals = {
+        "p_run": noisy("p_run", np.full(TIME.size, 35e5)),
+        "p_chamber": noisy("p_chamber", np.full(TIME.size, AMBIENT)),
+    }
+    assert "not above ambient for long enough" in str(find_fuel_end(signals, AMBIENT, 0.1, 5.0, 9.0))
+
+
+# --- the chamber unchokes ---------------------------------------------------------------------------------------------
+
+
+def test_the_burn_ends_where_the_nozzle_unchokes() -> None:
+    """p_c = p_a + 12 bar e^(-t/2) reaches 1.8 p_a at 2 ln(12 bar / 0.8 p_a)."""
+    chamber = noisy("p_chamber", AMBIENT + 12e5 * np.exp(-since(0.0) / 2.0) * (TIME > 0.0))
+    found = find_unchoking(chamber, AMBIENT, 0.1)
+    assert not isinstance(found, str)
+    expected = 2.0 * np.log(12e5 / ((CRITICAL_RATIO - 1.0) * AMBIENT))
+    assert found[0] == pytest.approx(expected, abs=3.0 * found[1])
+    assert 0.005 < found[1] < 0.3
+
+
+def test_a_nozzle_that_never_chokes_has_no_end_of_the_burn() -> None:
+    cold = noisy("p_chamber", AMBIENT + 0.5e5 * (TIME > 0.0), white=1e3)
+    assert find_unchoking(cold, AMBIENT, 0.1) == "the chamber pressure never chokes the nozzle"
+
+
+def test_a_log_that_ends_with_the_nozzle_choked_says_so() -> None:
+    hot = noisy("p_chamber", AMBIENT + 12e5 * (TIME > 0.0))
+    assert "still choked (13.0 bar in the chamber)" in str(find_unchoking(hot, AMBIENT, 0.1))
+    assert "the log ends before" in str(find_unchoking(hot.between(-4.0, 0.1), AMBIENT, 0.1))
+
+
+# --- what kind of run it was ------------------------------------------------------------------------------------------
+
+
+def standing(chamber: float, run: float = 35e5) -> dict[str, Signal]:
+    return {
+        "p_chamber": noisy("p_chamber", np.full(TIME.size, AMBIENT + chamber), 1e3),
+        "p_run": noisy("p_run", np.full(TIME.size, run), 1e3),
+    }
+
+
+@pytest.mark.parametrize("geometry", [(1.5, 1.7e-3), (None, None)], ids=["by c*", "by its share of the feed"])
+@pytest.mark.parametrize(
+    ("chamber", "stated", "kind", "misfire"),
+    [
+        (14e5, "hot_fire", "hot_fire", False),
+        (14e5, "cold_flow", "hot_fire", False),
+        (1.5e5, "cold_flow", "cold_flow", False),
+        (1.5e5, "hot_fire", "cold_flow", True),
+    ],
+)
+def test_a_fire_is_told_from_a_cold_flow(
+    geometry: tuple[float | None, float | None], chamber: float, stated: str, kind: str, misfire: bool
+) -> None:
+    found = recognise(standing(chamber), stated, AMBIENT, (0.1, 5.0), *geometry)
+    assert (found.name, found.misfire) == (kind, misfire)
+    assert found.why
+
+
+def test_without_a_chamber_pressure_the_kind_is_as_stated() -> None:
+    signals = {"p_run": standing(0.0)["p_run"]}
+    assert recognise(signals, "cold_flow", AMBIENT, (0.1, 5.0), None, None).name == "cold_flow"
+    assert "as stated" in recognise(signals, "hot_fire", AMBIENT, (0.1, 5.0), None, None).why

@@ -1,0 +1,190 @@
+"""A whole test's phases: found, absent with the reason, or set by the engineer."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from stand import AMBIENT, Stand, Trial, definition, fire, log_of
+
+from hfanalysis.quantity import Quantity
+from hfanalysis.segment.kind import Kind
+from hfanalysis.segment.phases import EVENTS, Segments, find_phases
+from hfanalysis.testdata.log import Flag, TestLog
+from hfanalysis.units import Value
+
+T_OPEN = 100.0
+
+
+def found_in(test: Trial, white: float = 5e3, **change: Any) -> Segments:
+    """The phases of a test's noisy log; ``without`` channels, other keys go to the definition."""
+    without = change.pop("without", ())
+    log = log_of(test, T_OPEN, white, 1e4, without=without)
+    return find_phases(log, definition(test.stand, **change))
+
+
+def filled(test: Trial, fill: float = 0.15) -> Trial:
+    """The same test with a run line that takes its time to fill."""
+    share = 1.0 - np.exp(-np.maximum(test.time, 0.0) / fill)
+    run = AMBIENT + (test.values["p_run"] - AMBIENT) * share
+    return replace(test, values={**test.values, "p_run": run})
+
+
+@pytest.fixture(scope="module")
+def burn() -> Trial:
+    return filled(fire(rate=500.0))
+
+
+@pytest.fixture(scope="module")
+def segments(burn: Trial) -> Segments:
+    return found_in(burn)
+
+
+def test_the_events_of_a_burn_are_where_they_happened(burn: Trial, segments: Segments) -> None:
+    assert segments.t_open.value == pytest.approx(T_OPEN, abs=0.005)
+    for name, truth in (("t_v", burn.t_v), ("t_purge", burn.t_purge)):
+        assert segments.time(name) == pytest.approx(truth, abs=max(4.0 * segments.std(name), 0.003))
+        assert 0.0 < segments.std(name) < 0.03
+    assert 0.3 < (segments.time("t_feed") or 0.0) < 0.8
+    assert segments.kind.name == "hot_fire"
+    assert segments.warnings == ()
+
+
+def test_events_are_listed_in_their_order(segments: Segments) -> None:
+    assert segments.to_json()["order"] == ["t_feed", "t_v", "t_purge", "t_end"]
+
+
+def test_a_phase_that_a_test_does_not_have_is_absent_with_the_reason(segments: Segments) -> None:
+    assert segments.time("t_fuel_out") is None
+    assert "do not fall against the feed" in str(segments.events["t_fuel_out"].reason)
+    assert segments.std("t_fuel_out") == 0.0
+
+
+def test_fuel_that_goes_before_the_liquid_is_seen() -> None:
+    segments = found_in(fire(Stand(t_fuel_out=3.4), rate=500.0))
+    assert segments.time("t_fuel_out") == pytest.approx(3.4, abs=0.03)
+    assert segments.to_json()["order"][0] == "t_fuel_out"
+
+
+@pytest.mark.parametrize(
+    ("channel", "event", "reason"),
+    [
+        ("p_tank", "t_v", "no p_tank"),
+        ("p_run", "t_feed", "no p_run"),
+        ("p_purge", "t_purge", "no p_purge"),
+        ("p_chamber", "t_end", "no p_chamber"),
+        ("p_chamber", "t_fuel_out", "no p_chamber"),
+        ("p_run", "t_fuel_out", "without p_run"),
+    ],
+)
+def test_a_missing_channel_takes_only_its_own_event(burn: Trial, channel: str, event: str, reason: str) -> None:
+    segments = found_in(burn, without=(channel,))
+    assert segments.time(event) is None
+    assert reason in str(segments.events[event].reason)
+    if channel != "p_tank":
+        assert segments.time("t_v") == pytest.approx(burn.t_v, abs=0.05)
+
+
+def test_the_engineers_instant_wins_and_what_was_found_is_shown(burn: Trial) -> None:
+    segments = found_in(burn, segments={"t_v": Value(5.0, 0.02)})
+    assert segments.events["t_v"].value == 5.0
+    assert segments.std("t_v") == 0.02
+    assert segments.events["t_v"].why == "set by the engineer"
+    assert segments.engineer == ("t_v",)
+    assert segments.found["t_v"] == pytest.approx(burn.t_v, abs=0.02)
+    (note,) = (n for n in segments.notes if n.startswith("t_v is"))
+    assert note.startswith("t_v is set by the engineer at 5.000 s; the search finds 5.7")
+
+
+def test_the_engineers_opening_moves_the_origin(burn: Trial) -> None:
+    segments = found_in(burn, segments={"t_open": Value(T_OPEN - 0.2)})
+    assert segments.t_open.value == T_OPEN - 0.2
+    assert segments.engineer == ("t_open",)
+    assert segments.time("t_v") == pytest.approx(burn.t_v + 0.2, abs=0.02)
+
+
+def test_an_instant_that_only_the_engineer_sees_is_taken_with_the_reason_why_the_search_does_not(burn: Trial) -> None:
+    segments = found_in(burn, segments={"t_fuel_out": Value(3.3)})
+    assert segments.time("t_fuel_out") == 3.3
+    assert any("t_fuel_out is set by the engineer at 3.300 s; the search found none" in n for n in segments.notes)
+    assert "t_fuel_out" not in segments.found
+
+
+def test_an_opening_uncertain_by_50_ms_makes_every_event_so(burn: Trial) -> None:
+    segments = found_in(burn, segments={"t_open": Value(T_OPEN, 0.05)})
+    assert segments.std("t_v") == pytest.approx(0.05, rel=0.05)
+    assert segments.std("t_purge") == pytest.approx(0.05, rel=0.05)
+
+
+def without_fire(test: Trial) -> Trial:
+    """Cold nitrous oxide through the same nozzle."""
+    cold = AMBIENT + 0.12 * (test.values["p_chamber"] - AMBIENT)
+    return replace(test, values={**test.values, "p_chamber": cold, "thrust": 0.12 * test.values["thrust"]})
+
+
+def test_a_cold_flow_is_recognised_and_has_no_end_of_a_burn(burn: Trial) -> None:
+    segments = found_in(without_fire(burn), kind="cold_flow")
+    assert segments.kind.name == "cold_flow"
+    assert segments.warnings == ()
+    for name in ("t_end", "t_fuel_out"):
+        assert "nothing burns" in str(segments.events[name].reason)
+    assert segments.time("t_v") == pytest.approx(burn.t_v, abs=0.03)
+
+
+def test_a_firing_that_does_not_light_is_a_cold_flow_with_a_warning(burn: Trial) -> None:
+    segments = found_in(without_fire(burn), kind="hot_fire")
+    assert segments.kind.name == "cold_flow"
+    assert segments.kind.misfire
+    assert any("nothing burns" in w for w in segments.warnings)
+
+
+def test_nitrogen_may_come_before_the_liquid_is_gone(burn: Trial) -> None:
+    early = 3.0
+    since = np.maximum(burn.time - early, 0.0)
+    sag = burn.values["p_purge"][0] * (1.0 - 0.25 * (1.0 - np.exp(-since / 1.5)))
+    level = 1.3 * burn.values["p_tank"].max() / sag[0]
+    segments = found_in(replace(burn, values={**burn.values, "p_purge": level * sag}))
+    assert segments.time("t_purge") == pytest.approx(early, abs=0.03)
+    assert any("before the liquid is gone: there is no vapour-only phase" in n for n in segments.notes)
+
+
+def test_flagged_samples_are_not_looked_at(burn: Trial) -> None:
+    """A wild stretch of the tank pressure, flagged, moves nothing."""
+    clean = log_of(burn, T_OPEN, 5e3, 1e4)
+    tank = clean["p_tank"]
+    wild = (tank.time > T_OPEN + 2.0) & (tank.time < T_OPEN + 2.4)
+    values = np.where(wild, 1e5, tank.values)
+    flags = np.where(wild, np.uint8(Flag.SPIKE), tank.flags)
+    spoilt = TestLog({**clean.channels, "p_tank": replace(tank, values=values, flags=flags)})
+    segments = find_phases(spoilt, definition(burn.stand))
+    assert segments.time("t_v") == pytest.approx(burn.t_v, abs=0.005)
+    unflagged = TestLog({**clean.channels, "p_tank": replace(tank, values=values)})
+    assert find_phases(unflagged, definition(burn.stand)).time("t_v") != segments.time("t_v")
+
+
+def test_segments_survive_their_product(segments: Segments) -> None:
+    def plain(x: Any) -> Any:
+        return x.to_json() if isinstance(x, Quantity) else x
+
+    product = json.loads(json.dumps(segments.to_json(), default=plain))
+    again = Segments.from_json(product)
+    for name in EVENTS:
+        one, other = segments.events[name], again.events[name]
+        assert (one.value, one.std, one.reason, one.interval) == (other.value, other.std, other.reason, other.interval)
+    assert again.kind == segments.kind
+    assert (again.notes, again.warnings, again.engineer, again.found) == (
+        segments.notes,
+        segments.warnings,
+        segments.engineer,
+        segments.found,
+    )
+
+
+def test_a_misfire_survives_its_product() -> None:
+    absent = {n: Quantity.absent("nothing") for n in EVENTS}
+    segments = Segments(Quantity(1.0, "s", 0.1), absent, Kind("cold_flow", "no fire", misfire=True))
+    product = {n: v.to_json() if isinstance(v, Quantity) else v for n, v in segments.to_json().items()}
+    assert Segments.from_json(product).kind == segments.kind
