@@ -47,7 +47,7 @@ class Histories:
         origin = segments.t_open.value or 0.0
         wanted = ("p_tank", "p_run", "p_chamber", "p_purge")
         signals = {name: signal.shifted(origin) for name, signal in live_signals(log).items() if name in wanted}
-        noises = _noises(signals, segments.time("t_purge"))
+        noises = _noises(signals, segments)
         burning = segments.kind.name == "hot_fire"
         for name in ("p_tank", "p_run", *(("p_chamber",) if burning else ())):
             if name not in signals:
@@ -105,12 +105,21 @@ def read_at_break(signal: Signal, instant: float, before: float, after: float) -
     return Reading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
 
 
-def _noises(signals: Mapping[str, Signal], t_purge: float | None) -> dict[str, Noise]:
-    """Noise of each pressure sensor from before the opening; the purge line's from before it sags."""
-    still = {name: -0.02 for name in signals}
-    if "p_purge" in still and t_purge is not None:
-        still["p_purge"] = t_purge - 0.1
-    return pool({name: Noise.of(s, s.between(-20.0, still[name])) for name, s in signals.items()})
+def _noises(signals: Mapping[str, Signal], segments: Segments) -> dict[str, Noise]:
+    """Noise of each pressure sensor from before the opening; the purge line's from before it sags.
+
+    The tank's falls so smoothly while the liquid lasts that its wander shows there, too, and for longer.
+    """
+    t_v, t_purge = segments.time("t_v"), segments.time("t_purge")
+    noises = {}
+    for name, signal in signals.items():
+        end = t_purge - 0.1 if name == "p_purge" and t_purge is not None else -0.02
+        stretches = [signal.between(-20.0, end)]
+        if name == "p_tank" and t_v is not None:
+            start = 2.0 * (segments.time("t_feed") or 0.1)
+            stretches.append(signal.between(start, t_v - 0.05))
+        noises[name] = Noise.of(signal, *stretches)
+    return pool(noises)
 
 
 def _on(signal: Signal, time: Array) -> Array:

@@ -53,6 +53,9 @@ class Calibration:
         }
 
 
+SPAN_SHARE = 0.25
+"""Part of a sensor's accuracy that a zero at ambient does not take away: its error of span."""
+
 LONGEST_GAP = 0.1
 """Part of the liquid phase that one channel may miss in one piece; good samples around it are joined linearly."""
 
@@ -190,7 +193,8 @@ class _Work:
             return channel.accuracy
         still = self.histories.signals[name].between(-30.0, -0.02).time
         rest = (float(still[0]), -0.02) if still.size > 1 else (-1.0, -0.02)
-        return float(np.hypot(channel.zero_std, self.histories.noises[name].difference_std(rest, (0.0, self.t_v))))
+        since = self.histories.noises[name].difference_std(rest, (0.0, self.t_v))
+        return float(np.sqrt(channel.zero_std**2 + since**2 + (SPAN_SHARE * channel.accuracy) ** 2))
 
     def _mass_left(self, r: Reduction, inputs: Inputs) -> Array:
         """Mass that has left through the injector at the histories' times [kg]."""

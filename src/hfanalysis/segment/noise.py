@@ -19,6 +19,9 @@ Array = NDArray[np.float64]
 REFERENCE_TIME = 20.0
 """Wander slower than this [s] counts as the sensor's bias, which the stated accuracy covers."""
 
+LONG = 1500
+"""Samples of a stretch from which on a cubic may be taken out without taking the wander with it."""
+
 SHORTEST = 8
 """Samples per block from which on the wander is looked for; below, white noise hides it."""
 
@@ -32,10 +35,16 @@ class Noise:
     step: float
 
     @classmethod
-    def of(cls, signal: Signal, quiet: Signal) -> Noise:
-        """From a stretch of the signal in which nothing happens."""
-        white = sample_noise(quiet.value) if quiet.value.size > 20 else signal.noise
-        return cls(white, _flicker(quiet.value, white), signal.step)
+    def of(cls, signal: Signal, *quiet: Signal) -> Noise:
+        """From stretches of the signal in which nothing happens; slow trends (cubics) in them are no noise."""
+        stretches = [_detrended(q) for q in quiet if q.value.size > 20]
+        if not stretches:
+            return cls(signal.noise, 0.0, signal.step)
+        longest = max(stretches, key=len)
+        white = sample_noise(longest)
+        sizes = [s.size for s in stretches]
+        flicker = float(np.average([_flicker(s, white) for s in stretches], weights=sizes))
+        return cls(white, flicker, signal.step)
 
     def covariance(self, time: Array) -> Array:
         """Covariance of samples (or of means over their spacing) at the given times [s]: shape (n, n)."""
@@ -61,6 +70,12 @@ class Noise:
         wander = 2.0 * _mean_log(first, second) - _mean_log(first, first) - _mean_log(second, second)
         white = sum(self.white**2 * self.step / max(b - a, self.step) for a, b in (first, second))
         return float(np.sqrt(max(self.flicker * wander, 0.0) + white))
+
+
+def _detrended(signal: Signal) -> Array:
+    x = (signal.time - signal.time.mean()) / max(float(np.ptp(signal.time)), 1e-9)
+    order = 3 if signal.value.size > LONG else 0
+    return np.asarray(signal.value - np.polyval(np.polyfit(x, signal.value, order), x))
 
 
 def pool(noises: Mapping[str, Noise]) -> dict[str, Noise]:
