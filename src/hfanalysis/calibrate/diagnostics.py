@@ -63,6 +63,8 @@ def coefficient_history(
         if part.sum() < 6 or ideal[part].mean() <= 0.0:
             continue
         slope, error = _slope(h.time[part], t[part])
+        by_wander = h.noises["p_tank"].std_of(_slope_weights(h.time[part]), h.time[part])
+        error = max(error, by_wander / float(saturation.pressure_slope(t[part].mean())))
         mass = inputs.mass - float(left[part].mean())
         by_mass, by_temperature, h_l = energy_derivatives(
             saturation.kernel_table, inputs.volume, mass, float(t[part].mean())
@@ -73,6 +75,11 @@ def coefficient_history(
         return None
     table = np.array(rows)
     return CoefficientHistory(table[:, 0], table[:, 1], table[:, 2])
+
+
+def _slope_weights(time: Array) -> Array:
+    x = time - time.mean()
+    return np.asarray(x / (x @ x))
 
 
 def _slope(time: Array, value: Array) -> tuple[float, float]:
