@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.errors import AbsentError
 from hfanalysis.segment.breaks import kink
-from hfanalysis.segment.noise import Noise, pool
+from hfanalysis.segment.noise import LONG, Noise, pool
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal, live_signals
 from hfanalysis.testdata.definition import TestDefinition
@@ -117,7 +117,8 @@ def _noises(signals: Mapping[str, Signal], segments: Segments) -> dict[str, Nois
         stretches = [signal.between(-20.0, end)]
         if name == "p_tank" and t_v is not None:
             start = 2.0 * (segments.time("t_feed") or 0.1)
-            stretches.append(signal.between(start, t_v - 0.05))
+            liquid = signal.between(start, t_v - 0.05)
+            stretches += [liquid] if liquid.time.size > LONG else []  # in a shorter one its fall passes for wander
         noises[name] = Noise.of(signal, *stretches)
     return pool(noises)
 

@@ -74,16 +74,18 @@ def blowdown_mass(saturation: Saturation, volume: float, bulk: float, t_v_temper
 def liquid_phase_heat(saturation: Saturation, volume: float, mass: float, bulk: float, t_end: float) -> float:
     """Heat [J] that the tank received from the opening to t_v: Q = U_v - U_0 + integral of h_l dm.
 
-    ``mass`` [kg] at ``bulk`` [K] leaves as saturated liquid until only vapour at ``t_end`` [K] is left; the liquid's enthalpy is
-    taken along a straight line of T against mass.
+    ``mass`` [kg] at ``bulk`` [K] leaves as saturated liquid until only vapour at ``t_end`` [K] is left; how its temperature
+    falls with the mass that has gone is taken from the adiabatic tank.
     """
     parts = split(saturation, volume, mass, bulk)
     u_l, u_v = (float(saturation.energy(p, bulk)[0]) for p in (Property.LIQUID_ENERGY, Property.VAPOR_ENERGY))
     start = parts.liquid * u_l + parts.vapor * u_v
     vapor = volume * float(saturation.vapor_density(t_end))
     end = vapor * float(saturation.energy(Property.VAPOR_ENERGY, t_end)[0])
-    h = saturation.energy(Property.LIQUID_ENTHALPY, np.linspace(bulk, t_end, 101))[0]
-    return end - start + float(h.mean()) * (mass - vapor)
+    temperatures = np.linspace(t_end, bulk, 101)
+    held = mass_along_blowdown(saturation, volume, t_end, temperatures)
+    h = saturation.energy(Property.LIQUID_ENTHALPY, temperatures)[0]
+    return end - start + float(np.trapezoid(h, held) / (held[-1] - held[0])) * (mass - vapor)
 
 
 def state_remarks(saturation: Saturation, volume: float, mass: float, pressure: float) -> tuple[float | None, list[str]]:
