@@ -23,6 +23,9 @@ RELAXATIONS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.008, 0.013, 0.02, 0.03, 0.05, 
 """Time constants tried for what follows a break [s]; 0 is a step."""
 
 
+SHAPE = 0.3
+"""Part of the sample interval that the shape of an onset leaves open, whatever the noise."""
+
 WANDER_POINTS = 120
 """Block means over a window that are enough to carry the wander into the instant."""
 
@@ -117,8 +120,9 @@ def combine(breaks: Sequence[Break], step: float) -> Break:
 
 
 def _summarise(candidates: Array, log_likelihood: Array, constant: float, names: tuple[str, ...], step: float) -> Break:
-    """Mean and spread over the profile. A change that is over within a sample interval is dated no better than that."""
-    unseen = step * min(1.0, step / max(constant, 1e-9))
+    """Mean and spread over the profile. A change that is over within a sample interval is dated no better than that, and a
+    slower one no better than SHAPE of it: real onsets are not exactly of the shapes that are tried."""
+    unseen = step * min(1.0, max((step / max(constant, 1e-9)) ** 2, SHAPE))
     weight = np.exp(log_likelihood - log_likelihood.max()) * np.gradient(candidates)
     weight /= weight.sum()
     mean = float(weight @ candidates)
