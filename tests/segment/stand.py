@@ -14,6 +14,9 @@ import numpy as np
 from benchmarks.virtual_stand import noise
 
 from hfanalysis.engine.blowdown import FeedSystem, blow_down
+from hfanalysis.quantity import Quantity
+from hfanalysis.segment.kind import Kind
+from hfanalysis.segment.phases import EVENTS, Segments
 from hfanalysis.segment.signals import Array, Signal, sample_noise
 from hfanalysis.testdata.definition import LogSpec, Test, TestDefinition
 from hfanalysis.testdata.log import Channel, TestLog
@@ -153,3 +156,10 @@ def definition(stand: Stand | None = None, **change: Any) -> TestDefinition:
     sections.update(change)
     log = LogSpec((), None)  # type: ignore[arg-type]  # nothing is read from disk
     return TestDefinition(Path("T/test.toml"), "0" * 64, Test("T", kind), log, {}, **sections)
+
+
+def segments_of(test: Trial, t_open: float = 100.0, std: float = 1e-4, **change: Quantity) -> Segments:
+    """The true phases of a test; single events may be given otherwise."""
+    absent = {name: Quantity.absent("this test does not have it") for name in EVENTS}
+    known = {"t_v": Quantity(test.t_v, "s", std), "t_purge": Quantity(test.t_purge, "s", std)}
+    return Segments(Quantity(t_open, "s", 1e-6), absent | known | change, Kind("hot_fire", "it burns"))

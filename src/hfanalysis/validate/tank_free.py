@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 LONGEST = 60.0
 """Seconds after the opening up to which the model is compared."""
 
-SMOOTHING = 0.05
-"""Running mean [s] over the tank pressure that the run starts from."""
+SMOOTHING = 0.2
+"""Seconds of the tank pressure through which a straight line gives the pressure that the run starts from."""
 
 
 def run_tank_free(
@@ -58,8 +58,8 @@ def run_tank_free(
         notes = ("m is not identified: the tank-alone run ends with the liquid",)
     phase = phases_of(part.time, start, segments.time("t_v"), segments.time("t_purge"))
     noise = np.full(part.time.size, tank.noise)
-    columns = (part.time, part.value, run.pressure, noise)
-    return Residual("p_tank", "Pa", *(c[keep] for c in columns), phase[keep], notes)
+    time, measured, model, scatter = (c[keep] for c in (part.time, part.value, run.pressure, noise))
+    return Residual("p_tank", "Pa", time, measured, model, scatter, phase[keep], notes)
 
 
 def _effective_area(calibration: Mapping[str, Any], definition: TestDefinition) -> float:
@@ -103,7 +103,8 @@ def _start(
 
     The temperature is that of the measured pressure; the mass is the loaded one less what the calibrated injector passed before.
     """
-    pressure = tank.mean(start, start + SMOOTHING + 3.0 * tank.step)
+    head = tank.between(start, start + SMOOTHING + 8.0 * tank.step)
+    pressure = float(np.polyfit(head.time - start, head.value, 1)[1]) if head.time.size > 3 else tank.mean(start, np.inf)
     temperature = float(saturation.temperature(min(pressure, 0.9999 * saturation.pressure_range[1])))
     mass = float(calibration["mass_at_t_feed"]["value"])
     if split(saturation, feed.volume, mass, temperature).vapor < 0.0:
