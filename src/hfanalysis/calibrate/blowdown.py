@@ -1,10 +1,12 @@
 """C_i, K_loss, Z and m from the measured pressures: the report's tank calibration (chapter 4.2) in compiled form.
 
-C_i is that of which the flow, integrated from the opening to t_v, leaves just the saturated vapour at the tank pressure of t_v:
+C_i is that of which the flow, integrated from the opening to t_v, leaves just the saturated vapour at the tank pressure
+of t_v:
 
     C_i = (m_o - V rho_v(T_v)) / integral of N_i A_i sqrt(2 rho_l (p_run - p_c)) dt
 
-which is the report's iteration on C_i in closed form. m is found by shooting the vapour phase to the pressure at t_purge.
+which is the report's iteration on C_i in closed form. m is found by shooting the vapour phase to the pressure at
+t_purge.
 """
 
 from __future__ import annotations
@@ -33,9 +35,9 @@ SETTLING = 2.0
 class Inputs:
     """Everything the reduction takes besides the pressures; SI units.
 
-    ``mass``: oxidizer loaded [kg]; ``volume``: tank and line [m^3]; ``area``: all injector holes [m^2]; ``t_feed``, ``t_v``,
-    ``t_end``: line full, liquid gone, end of the pure vapour phase [s] (NaN: there is none); ``p_v``, ``p_end``: tank
-    pressure at the last two [Pa].
+    ``mass``: oxidizer loaded [kg]; ``volume``: tank and line [m^3]; ``area``: all injector holes [m^2]; ``t_feed``,
+    ``t_v``, ``t_end``: line full, liquid gone, end of the pure vapour phase [s] (NaN: there is none); ``p_v``,
+    ``p_end``: tank pressure at the last two [Pa].
     """
 
     mass: float
@@ -115,7 +117,17 @@ def reduce(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift 
     loss = tables.loss + (shift.tank - shift.run)
     chamber = tables.chamber + shift.chamber
     m, end_mass, loss_vapor = _shoot(
-        tables.time, loss, chamber, inputs.t_v, inputs.t_end, p_v, inputs.p_end + shift.tank, vapor, inputs.volume, area, EXPONENTS
+        tables.time,
+        loss,
+        chamber,
+        inputs.t_v,
+        inputs.t_end,
+        p_v,
+        inputs.p_end + shift.tank,
+        vapor,
+        inputs.volume,
+        area,
+        EXPONENTS,
     )
     return Reduction(C_i, m, z, factor, loss_mean, loss_vapor, vapor, end_mass, t_v)
 
@@ -157,7 +169,16 @@ def _specific_flow(density: float, drop: float) -> float:
 
 @njit(cache=True)
 def _vapor_end(
-    time: Array, loss: Array, chamber: Array, t_v: float, t_end: float, p_v: float, mass: float, volume: float, area: float, m: float
+    time: Array,
+    loss: Array,
+    chamber: Array,
+    t_v: float,
+    t_end: float,
+    p_v: float,
+    mass: float,
+    volume: float,
+    area: float,
+    m: float,
 ) -> float:
     """Vapour mass at t_end [kg] for a polytropic exponent m (report, eq. 3.11 with measured p_loss and p_c)."""
     left = mass

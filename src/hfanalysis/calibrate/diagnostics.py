@@ -47,8 +47,9 @@ def coefficient_history(
 ) -> CoefficientHistory | None:
     """C_i(t) from mdot = U_T / (h_l - U_M) dT/dt of the saturated tank over the injector's ideal flow.
 
-    Heat into the tank makes it too small, nitrogen too; where it drifts, the tank or the injector does something that the model
-    lacks. ``left`` is the mass gone [kg] at the histories' times. None for a liquid phase shorter than two windows.
+    Heat into the tank makes it too small, nitrogen too; where it drifts, the tank or the injector does something that
+    the model lacks. ``left`` is the mass gone [kg] at the histories' times. None for a liquid phase shorter than two
+    windows.
     """
     start, end = max(inputs.t_feed, 0.1), inputs.t_v - 0.02
     if end - start < 2.0 * window:
@@ -129,7 +130,9 @@ def _bulk_quantity(bulk: Any, error: float) -> Quantity:
     return Quantity(bulk.temperature, "K", float(np.hypot(bulk.std, error)))
 
 
-def _masses_and_heat(saturation: Saturation, inputs: Inputs, r: Reduction, bulk: float | None) -> tuple[Quantity, Quantity]:
+def _masses_and_heat(
+    saturation: Saturation, inputs: Inputs, r: Reduction, bulk: float | None
+) -> tuple[Quantity, Quantity]:
     own = blowdown_mass(saturation, inputs.volume, bulk, r.temperature_v) if bulk is not None else None
     if bulk is None or own is None:
         reason = "the blowdown does not cool as a saturated tank does"
@@ -161,7 +164,10 @@ def _stratified(rest: Rest) -> list[str]:
 def _mass_remarks(rest: Rest, mass: LoadedMass) -> list[str]:
     out = []
     cell, own = rest.load_cell_mass, rest.blowdown_mass
-    if cell.value is not None and abs(cell.value - mass.value) > 3.0 * np.hypot(cell.std or 0.0, mass.std) + 0.02 * mass.value:
+    if (
+        cell.value is not None
+        and abs(cell.value - mass.value) > 3.0 * np.hypot(cell.std or 0.0, mass.std) + 0.02 * mass.value
+    ):
         out.append(f"the load cell reads {cell.value:.2f} kg at rest, the calibration works with {mass.value:.2f} kg")
     if own.value is not None and abs(own.value - mass.value) > 3.0 * np.hypot(own.std or 0.0, mass.std):
         out.append(

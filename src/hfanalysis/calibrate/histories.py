@@ -60,7 +60,15 @@ class Histories:
         if "p_chamber" in signals:
             return cls(time, blocks.value, run, _on(signals["p_chamber"], time), signals, noises)
         ambient = np.full(time.size, definition.ambient_pressure.value)
-        return cls(time, blocks.value, run, ambient, signals, noises, ("p_chamber is not in the log of this cold flow: ambient pressure taken",))
+        return cls(
+            time,
+            blocks.value,
+            run,
+            ambient,
+            signals,
+            noises,
+            ("p_chamber is not in the log of this cold flow: ambient pressure taken",),
+        )
 
     def mean(self, values: Array, start: float, end: float) -> float:
         """Mean of values on this clock over [start, end)."""

@@ -28,7 +28,12 @@ class LoadedMass:
 
 
 def loaded_mass(
-    log: TestLog, segments: Segments, definition: TestDefinition, saturation: Saturation, histories: Histories, p_v: float
+    log: TestLog,
+    segments: Segments,
+    definition: TestDefinition,
+    saturation: Saturation,
+    histories: Histories,
+    p_v: float,
 ) -> LoadedMass | None:
     """The stated mass, else the load cell's quiet reading, else what the blowdown itself says; None where none can be had."""
     tank = definition.tank
@@ -68,4 +73,6 @@ def _from_blowdown(
     if mass is None:
         return None
     std = 2.0 * MODEL_MASS_SPREAD * mass
-    return LoadedMass(mass, std, f"{mass:.2f} +/- {std:.2f} kg from the blowdown itself; none is stated and there is no load cell")
+    return LoadedMass(
+        mass, std, f"{mass:.2f} +/- {std:.2f} kg from the blowdown itself; none is stated and there is no load cell"
+    )

@@ -1,8 +1,9 @@
 """The tank at rest: do pressure, loaded mass and volume fit a saturated tank, and how cold is the liquid really?
 
-A tank that was filled and heated is hotter above than below; its gauge shows the warm top. When the valve opens the pressure
-falls to what the bulk of the liquid can sustain, and from there on mass and temperature are tied by the saturated blowdown. So
-the blowdown says which bulk temperature it started from, and also, without a load cell, which mass.
+A tank that was filled and heated is hotter above than below; its gauge shows the warm top. When the valve opens the
+pressure falls to what the bulk of the liquid can sustain, and from there on mass and temperature are tied by the
+saturated blowdown. So the blowdown says which bulk temperature it started from, and also, without a load cell, which
+mass.
 """
 
 from __future__ import annotations
@@ -55,7 +56,8 @@ class BulkFit:
 def fit_bulk(left: Array, temperature: Array) -> BulkFit | None:
     """Extrapolate T_sat(p_tank) to the moment when nothing had left, over samples from t_feed to t_v.
 
-    ``left`` [kg] increases; the temperature of a saturated blowdown is close to a quadratic in it. None for too few samples.
+    ``left`` [kg] increases; the temperature of a saturated blowdown is close to a quadratic in it. None for too few
+    samples.
     """
     if left.size < 12 or not np.isfinite(temperature).all() or not left[-1] > 0.0 or np.ptp(temperature) == 0.0:
         return None
@@ -74,8 +76,8 @@ def blowdown_mass(saturation: Saturation, volume: float, bulk: float, t_v_temper
 def liquid_phase_heat(saturation: Saturation, volume: float, mass: float, bulk: float, t_end: float) -> float:
     """Heat [J] that the tank received from the opening to t_v: Q = U_v - U_0 + integral of h_l dm.
 
-    ``mass`` [kg] at ``bulk`` [K] leaves as saturated liquid until only vapour at ``t_end`` [K] is left; how its temperature
-    falls with the mass that has gone is taken from the adiabatic tank.
+    ``mass`` [kg] at ``bulk`` [K] leaves as saturated liquid until only vapour at ``t_end`` [K] is left; how its
+    temperature falls with the mass that has gone is taken from the adiabatic tank.
     """
     parts = split(saturation, volume, mass, bulk)
     u_l, u_v = (float(saturation.energy(p, bulk)[0]) for p in (Property.LIQUID_ENERGY, Property.VAPOR_ENERGY))
@@ -88,7 +90,9 @@ def liquid_phase_heat(saturation: Saturation, volume: float, mass: float, bulk: 
     return end - start + float(np.trapezoid(h, held) / (held[-1] - held[0])) * (mass - vapor)
 
 
-def state_remarks(saturation: Saturation, volume: float, mass: float, pressure: float) -> tuple[float | None, list[str]]:
+def state_remarks(
+    saturation: Saturation, volume: float, mass: float, pressure: float
+) -> tuple[float | None, list[str]]:
     """Liquid share of the volume at rest, and in words where pressure, mass and volume do not fit a saturated tank."""
     t = float(saturation.temperature(pressure))
     if not np.isfinite(t):

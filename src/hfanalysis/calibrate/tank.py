@@ -73,7 +73,9 @@ def calibrate(log: TestLog, segments: Segments, definition: TestDefinition, samp
     """
     t_v = segments.time("t_v")
     if t_v is None:
-        raise AbsentError(f"test {definition.test.id}: no end of the liquid to calibrate with: {segments.events['t_v'].reason}")
+        raise AbsentError(
+            f"test {definition.test.id}: no end of the liquid to calibrate with: {segments.events['t_v'].reason}"
+        )
     return _Work(log, segments, definition, t_v).result(samples)
 
 
@@ -230,7 +232,11 @@ class _Work:
         """End of the pure vapour phase [s], its standard deviation, and the reason where there is none."""
         t_purge = self.segments.time("t_purge")
         if t_purge is not None and t_purge <= self.t_v:
-            return np.nan, 0.0, f"nitrogen is in the tank from {t_purge:.2f} s on, before the liquid is gone ({self.t_v:.2f} s)"
+            return (
+                np.nan,
+                0.0,
+                f"nitrogen is in the tank from {t_purge:.2f} s on, before the liquid is gone ({self.t_v:.2f} s)",
+            )
         name, gap = self.histories.gap(self.t_v, t_purge if t_purge is not None else self.t_v + 0.2)
         if gap > max(0.1, 4.0 * self.histories.signals["p_tank"].step):
             return np.nan, 0.0, f"{name} has no good samples for {gap:.2f} s of the vapour phase"
@@ -240,7 +246,9 @@ class _Work:
         low = (h.time > self.t_v) & (h.tank < VAPOR_PRESSURE_SHARE * self.at_v.value)
         if not low.any():
             return np.nan, 0.0, "the log ends before the vapour phase has gone far enough"
-        self.notes.append("no nitrogen is seen: m is shot to the time at which the tank has lost 40 % of its pressure at t_v")
+        self.notes.append(
+            "no nitrogen is seen: m is shot to the time at which the tank has lost 40 % of its pressure at t_v"
+        )
         return float(h.time[low][0]), 0.0, None
 
     def _blocked(self) -> str | None:

@@ -1,8 +1,8 @@
 """How uncertain the reduction is: it is repeated with every input drawn from what is known of it.
 
-Drawn together, so that their common effect on C_i, m and the losses is kept: the biases of the sensors (stated accuracy, or
-what a zero at ambient leaves), the slow wander of each sensor over a phase, the loaded mass and the volume, the phase times
-and the pressures read at them.
+Drawn together, so that their common effect on C_i, m and the losses is kept: the biases of the sensors (stated
+accuracy, or what a zero at ambient leaves), the slow wander of each sensor over a phase, the loaded mass and the
+volume, the phase times and the pressures read at them.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ SEED = 20230101
 class Spread:
     """Standard deviations of the inputs: [kg], [m^3], [m^2], [s], [Pa].
 
-    ``reading`` is the lower factor (2, 2) of the covariance of p_v and p_end, ``slopes`` [Pa/s] how they move with their times;
-    ``bias`` that of p_tank, p_run, p_c over the run.
+    ``reading`` is the lower factor (2, 2) of the covariance of p_v and p_end, ``slopes`` [Pa/s] how they move with
+    their times; ``bias`` that of p_tank, p_run, p_c over the run.
     """
 
     mass: float

@@ -1,8 +1,8 @@
 """Where a signal breaks: kinks and sudden relaxations, found by least squares over the instant of the break.
 
-For every candidate instant the signal is fitted by a smooth curve on either side that meets at the break. The sum of squares
-against the instant gives its likelihood; the noise is judged from the residuals, with their autocorrelation counted, so that
-a wandering sensor does not pass for a precise one.
+For every candidate instant the signal is fitted by a smooth curve on either side that meets at the break. The sum of
+squares against the instant gives its likelihood; the noise is judged from the residuals, with their autocorrelation
+counted, so that a wandering sensor does not pass for a precise one.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ WANDER_POINTS = 120
 class Break:
     """An instant of a break [s, time of the signal] with its standard deviation.
 
-    ``candidates`` and ``log_likelihood`` are the profile it comes from; ``relaxation`` is the best time constant [s] of what
-    follows.
+    ``candidates`` and ``log_likelihood`` are the profile it comes from; ``relaxation`` is the best time constant [s] of
+    what follows.
     """
 
     time: float
@@ -94,8 +94,8 @@ def find_break(
 ) -> Break:
     """The most likely instant of a break in a signal (a window around it), over the candidate instants.
 
-    ``designs`` are the shapes tried; each instant takes its best. ``constants`` are their time constants, for the record.
-    ``noise`` is the sensor's, with its slow wander, which the residuals of so short a window do not show.
+    ``designs`` are the shapes tried; each instant takes its best. ``constants`` are their time constants, for the
+    record. ``noise`` is the sensor's, with its slow wander, which the residuals of so short a window do not show.
     """
     sums = np.array([[_sum_of_squares(signal, design, c) for c in candidates] for design in designs])
     best = int(np.argmin(sums.min(axis=1)))
@@ -107,7 +107,13 @@ def find_break(
     found = _summarise(candidates, log_likelihood, constant, (signal.name,), signal.step)
     if noise is None:
         return found
-    return replace(found, std=max(found.std, float(np.hypot(_linear_std(signal, designs[best], found.time, noise), signal.step / np.sqrt(12.0)))))
+    return replace(
+        found,
+        std=max(
+            found.std,
+            float(np.hypot(_linear_std(signal, designs[best], found.time, noise), signal.step / np.sqrt(12.0))),
+        ),
+    )
 
 
 def combine(breaks: Sequence[Break], step: float) -> Break:

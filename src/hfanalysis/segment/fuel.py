@@ -65,8 +65,9 @@ def find_fuel_end(
 ) -> FuelEnd | str:
     """When the fuel is gone, from signals with time counted from the opening; else the reason why it does not show.
 
-    The chamber's response to the feed is (p_c - p_a) / sqrt(p_run - p_c): steady while the fire burns, two to five times
-    smaller without it. At the end of the liquid (``t_v``) the feed itself changes, and windows do not reach across.
+    The chamber's response to the feed is (p_c - p_a) / sqrt(p_run - p_c): steady while the fire burns, two to five
+    times smaller without it. At the end of the liquid (``t_v``) the feed itself changes, and windows do not reach
+    across.
     """
     if "p_run" not in signals:
         return "without p_run a fall of the chamber pressure cannot be told from one of the feed"
@@ -74,7 +75,9 @@ def find_fuel_end(
     if response is None:
         return "the chamber pressure is not above ambient for long enough"
     sudden = _sudden(response, t_feed, t_v)
-    if sudden is not None and _thrust_falls(signals, (sudden - WINDOW, sudden - GAP), (sudden + GAP, sudden + WINDOW), 0.03):
+    if sudden is not None and _thrust_falls(
+        signals, (sudden - WINDOW, sudden - GAP), (sudden + GAP, sudden + WINDOW), 0.03
+    ):
         dated = _dated(signals, sudden, t_v)
         if dated.duration <= SUDDEN:
             return dated
@@ -84,7 +87,9 @@ def find_fuel_end(
         if _thrust_falls(signals, (start - WINDOW, start), (t_v - 0.1 - GAP, t_v - GAP), FADE_THRUST):
             return fade
     last = float(response.time[-1])
-    return f"chamber pressure and thrust do not fall against the feed up to {last:.1f} s, where the chamber nears ambient"
+    return (
+        f"chamber pressure and thrust do not fall against the feed up to {last:.1f} s, where the chamber nears ambient"
+    )
 
 
 def _response(signals: Mapping[str, Signal], ambient: float, end: float) -> _Response | None:

@@ -64,4 +64,7 @@ def _by_velocity(pressure: float, flow: float, throat_area: float, choked: bool)
 def _by_share(excess: float, run: float) -> tuple[bool, str]:
     share = excess / run if run > 0.0 else 0.0
     side = "above" if share > COLD_PRESSURE_SHARE else "below"
-    return share > COLD_PRESSURE_SHARE, f"chamber at {100 * share:.0f} % of the run-line pressure, {side} {100 * COLD_PRESSURE_SHARE:.0f} %"
+    return (
+        share > COLD_PRESSURE_SHARE,
+        f"chamber at {100 * share:.0f} % of the run-line pressure, {side} {100 * COLD_PRESSURE_SHARE:.0f} %",
+    )

@@ -1,8 +1,9 @@
 """t_v: the liquid is gone. The knee of the tank pressure, where it agrees with mass and energy of a saturated tank.
 
-While liquid boils off, the tank pressure falls slowly; once only vapour is left the same valve empties it several times faster.
-Valve openings, rebounds of late boiling, nitrogen and the end of the fuel bend the pressure too, so that every downward knee is
-a candidate and is weighed against the pressure at which an adiabatic saturated tank of this volume and load runs dry.
+While liquid boils off, the tank pressure falls slowly; once only vapour is left the same valve empties it several times
+faster. Valve openings, rebounds of late boiling, nitrogen and the end of the fuel bend the pressure too, so that every
+downward knee is a candidate and is weighed against the pressure at which an adiabatic saturated tank of this volume and
+load runs dry.
 """
 
 from __future__ import annotations
@@ -90,8 +91,8 @@ def _rounded(
 ) -> LiquidEnd:
     """A knee without a sharp step: the last liquid leaves as froth, and tank and run line show it 0.1 to 0.2 s apart.
 
-    The run line, after a bump, falls the more sharply of the two; the middle between both is taken, and half their distance is
-    the least uncertainty.
+    The run line, after a bump, falls the more sharply of the two; the middle between both is taken, and half their
+    distance is the least uncertainty.
     """
     tank = signals["p_tank"]
     line = _run_line_fall(signals["p_run"], knee.time, wide) if "p_run" in signals else None
@@ -179,5 +180,3 @@ def _sudden_fall(signal: Signal, knee: Break, half: float) -> Break | None:
         return None
     reach = max(0.15, 4 * knee.std, 3 * signal.step)
     return refine_step([signal], knee.time, min(half, 0.3) + reach, 0.15 + reach, reach)
-
-

@@ -1,7 +1,8 @@
 """A sensor's noise: white noise of single samples and a slow wander with a 1/f spectrum.
 
-Averaging beats white noise but hardly the wander, so that intervals from white noise alone are far too narrow. The wander is
-measured where nothing happens, by the Allan variance: between neighbouring block means it is the same at every block length.
+Averaging beats white noise but hardly the wander, so that intervals from white noise alone are far too narrow. The
+wander is measured where nothing happens, by the Allan variance: between neighbouring block means it is the same at
+every block length.
 """
 
 from __future__ import annotations
@@ -96,7 +97,9 @@ def _flicker(quiet: Array, white: float) -> float:
         length *= 2
     if not estimates:
         return 0.0
-    few = 1.0 + 4.0 / weights[0]  # a variance from few blocks is as likely too small as too large, but only the former misleads
+    few = (
+        1.0 + 4.0 / weights[0]
+    )  # a variance from few blocks is as likely too small as too large, but only the former misleads
     return max(float(np.average(estimates, weights=np.sqrt(weights))), 0.0) * few
 
 

@@ -30,8 +30,9 @@ class Opening:
 def find_opening(signals: Mapping[str, Signal]) -> Opening | None:
     """The opening of the main valve, or None where no channel shows one.
 
-    The run line fills from ambient within a second, and the tank falls at the same instant; chamber and thrust follow when the
-    line is full. Slow changes before (filling the tank, settling) and the end of the test are not as fast or not as large.
+    The run line fills from ambient within a second, and the tank falls at the same instant; chamber and thrust follow
+    when the line is full. Slow changes before (filling the tank, settling) and the end of the test are not as fast or
+    not as large.
     """
     if "valve" in signals and (found := _valve(signals["valve"])) is not None:
         return found
@@ -39,7 +40,9 @@ def find_opening(signals: Mapping[str, Signal]) -> Opening | None:
     if rough is None:
         return None
     time, lead = rough
-    followers = [signals[n] for n in dict.fromkeys((lead, "p_run", "p_tank")) if n in signals and _responds(signals[n], time)]
+    followers = [
+        signals[n] for n in dict.fromkeys((lead, "p_run", "p_tank")) if n in signals and _responds(signals[n], time)
+    ]
     return _refined(followers or [signals[lead]], time)
 
 

@@ -113,10 +113,14 @@ def _check_stated(definition: TestDefinition, signals: Mapping[str, Signal]) -> 
     where = f"{definition.path}: [segments]"
     opening = stated.get("t_open")
     if opening is not None and not first <= opening.value < last:
-        raise InputError(f"{where} t_open: found {opening.value:g} s; expected a log time between {first:g} and {last:g} s")
+        raise InputError(
+            f"{where} t_open: found {opening.value:g} s; expected a log time between {first:g} and {last:g} s"
+        )
     for name, value in stated.items():
         if name != "t_open" and not 0.0 < value.value < last - first:
-            raise InputError(f"{where} {name}: found {value.value:g} s; expected a time after the opening within the log")
+            raise InputError(
+                f"{where} {name}: found {value.value:g} s; expected a time after the opening within the log"
+            )
     if {"t_feed", "t_v"} <= set(stated) and stated["t_feed"].value >= stated["t_v"].value:
         raise InputError(f"{where} t_feed: found {stated['t_feed'].value:g} s; expected less than t_v")
 
@@ -132,7 +136,9 @@ def _opening(signals: Mapping[str, Signal], definition: TestDefinition) -> Openi
         )
     found = find_opening(signals)
     if found is None:
-        looked = ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals) or "no channel"
+        looked = (
+            ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals) or "no channel"
+        )
         raise AbsentError(
             f"test {definition.test.id}: the log holds no firing and no flow: nothing in {looked} responds to an opening "
             "valve; set [segments] t_open in test.toml if there is one"
@@ -192,7 +198,9 @@ class _Search:
         end = _discharged(tank, min(self.last, LONGEST_RUN))
         found = find_liquid_end(self.signals, end, self._dry_pressure(tank))
         if found is None:
-            return "the tank pressure shows no knee: it never falls faster than before, as it does when the liquid is gone"
+            return (
+                "the tank pressure shows no knee: it never falls faster than before, as it does when the liquid is gone"
+            )
         for name, time in found.apart.items():
             self.notes.append(f"{name} falls {time - found.time:+.2f} s from the tank's knee")
         return found.time, found.std
@@ -251,7 +259,9 @@ class _Search:
         flow = None
         if t_v and tank is not None and tank.oxidizer_mass is not None:
             flow = 0.8 * tank.oxidizer_mass.value / t_v  # about a fifth of a load is still there as vapour
-        area = np.pi * nozzle.throat_radius.value**2 if nozzle is not None and nozzle.throat_radius is not None else None
+        area = (
+            np.pi * nozzle.throat_radius.value**2 if nozzle is not None and nozzle.throat_radius is not None else None
+        )
         ambient = self.ambient + (self._chamber_offset() if "p_chamber" in self.signals else 0.0)
         kind = recognise(self.signals, self.definition.test.kind, ambient, span, flow, area)
         if kind.misfire:

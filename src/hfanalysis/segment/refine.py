@@ -28,7 +28,8 @@ def refine_kink(
 ) -> Break | None:
     """A change of slope near ``rough`` [s]: window [rough - before, rough + after], searched within ``reach`` of rough.
 
-    ``flat`` says that the signal is constant before the break; ``noise`` is that of its sensor. None where the window holds too few samples.
+    ``flat`` says that the signal is constant before the break; ``noise`` is that of its sensor. None where the window
+    holds too few samples.
     """
     design = kink(order=2, before=0 if flat else 2)
     return _search([signal], rough, before, after, reach, [design], (0.0,), noise)
@@ -46,7 +47,9 @@ def refine_knee(signal: Signal, rough: float, before: float, after: float, reach
     return replace(found, std=float(np.hypot(found.std, found.relaxation / np.sqrt(12.0))))
 
 
-def refine_step(signals: Sequence[Signal], rough: float, before: float, after: float, reach: float, order: int = 1) -> Break | None:
+def refine_step(
+    signals: Sequence[Signal], rough: float, before: float, after: float, reach: float, order: int = 1
+) -> Break | None:
     """A sudden change that relaxes, in one or several signals at the same instant; ``order`` of the curve before it."""
     designs = [relaxation(c, before=order) for c in RELAXATIONS]
     return _search(signals, rough, before, after, reach, designs, RELAXATIONS)

@@ -17,8 +17,8 @@ MAD_TO_STD = 1.4826
 class Signal:
     """Good samples of one channel in order of time.
 
-    ``time`` [s, log time], strictly increasing; ``value`` in the channel's SI unit; ``noise`` the standard deviation of a single
-    sample about a smooth curve; ``step`` the typical time between samples [s].
+    ``time`` [s, log time], strictly increasing; ``value`` in the channel's SI unit; ``noise`` the standard deviation of
+    a single sample about a smooth curve; ``step`` the typical time between samples [s].
     """
 
     name: str

@@ -33,8 +33,8 @@ def run_tank_free(
 ) -> Residual:
     """Measured and modelled tank pressure from t_feed on.
 
-    ``calibration`` is the content of calibration.json. Raises AbsentError where C_i, and with it the model, cannot be had. Where
-    m is not identified the run ends with the liquid.
+    ``calibration`` is the content of calibration.json. Raises AbsentError where C_i, and with it the model, cannot be
+    had. Where m is not identified the run ends with the liquid.
     """
     area = _effective_area(calibration, definition)
     saturation = saturation_of(definition.model.properties)
@@ -73,9 +73,7 @@ def _effective_area(calibration: Mapping[str, Any], definition: TestDefinition) 
     return float(discharge["value"]) * definition.injector.area.value
 
 
-def _feed_loss(
-    calibration: Mapping[str, Any], definition: TestDefinition
-) -> tuple[float, tuple[float, float] | None]:
+def _feed_loss(calibration: Mapping[str, Any], definition: TestDefinition) -> tuple[float, tuple[float, float] | None]:
     """K_loss; under the report's conventions its constant losses by phase instead."""
     if definition.model.conventions == "report":
         liquid = calibration["p_loss_liquid"]["value"] or 0.0
@@ -101,10 +99,13 @@ def _start(
 ) -> tuple[float, float]:
     """Mass [kg] and temperature [K] at t_feed.
 
-    The temperature is that of the measured pressure; the mass is the loaded one less what the calibrated injector passed before.
+    The temperature is that of the measured pressure; the mass is the loaded one less what the calibrated injector
+    passed before.
     """
     head = tank.between(start, start + SMOOTHING + 8.0 * tank.step)
-    pressure = float(np.polyfit(head.time - start, head.value, 1)[1]) if head.time.size > 3 else tank.mean(start, np.inf)
+    pressure = (
+        float(np.polyfit(head.time - start, head.value, 1)[1]) if head.time.size > 3 else tank.mean(start, np.inf)
+    )
     temperature = float(saturation.temperature(min(pressure, 0.9999 * saturation.pressure_range[1])))
     mass = float(calibration["mass_at_t_feed"]["value"])
     if split(saturation, feed.volume, mass, temperature).vapor < 0.0:
