@@ -83,7 +83,7 @@ class Tables:
 
 @dataclass(frozen=True)
 class Reduction:
-    """Result: C_i [-], m [-], Z [-], K_loss [1/m^4], mean losses [Pa], vapour mass at t_v [kg]; NaN where there is none."""
+    """Result: C_i [-], m [-], Z [-], K_loss [1/m^4], mean losses [Pa], vapour mass at t_v [kg]; NaN: there is none."""
 
     C_i: float
     m: float
@@ -96,7 +96,7 @@ class Reduction:
     temperature_v: float
 
 
-def reduce(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift = Shift()) -> Reduction:  # noqa: B008
+def reduce(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift = Shift()) -> Reduction:
     """One reduction with the given inputs and shifted pressures."""
     p_v = inputs.p_v + shift.tank
     t_v = float(saturation.temperature(p_v))
@@ -136,7 +136,7 @@ def reduce(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift 
 def _liquid_sums(
     time: Array, density: Array, drop: Array, loss: Array, t_feed: float, t_steady: float, t_v: float
 ) -> tuple[float, float, float, float]:
-    """Integral of sqrt(2 rho dp) over [0, t_v]; sums of loss * dp and dp * dp over [t_steady, t_v), mean loss over [t_feed, t_v)."""
+    """Integral of sqrt(2 rho dp) up to t_v; sums of loss * dp and dp * dp from t_steady, mean loss from t_feed to t_v."""
     integral = 0.0
     products = squares = losses = 0.0
     count = 0
@@ -183,7 +183,7 @@ def _vapor_end(
     """Vapour mass at t_end [kg] for a polytropic exponent m (report, eq. 3.11 with measured p_loss and p_c)."""
     left = mass
     t = t_v
-    i = min(np.searchsorted(time, t_v), time.size - 1)
+    i = min(int(np.searchsorted(time, t_v)), time.size - 1)
     while t < t_end and i < time.size:
         step = min(time[i], t_end) - t
         back = loss[i] + chamber[i]
@@ -215,7 +215,7 @@ def _shoot(
     area: float,
     exponents: Array,
 ) -> tuple[float, float, float]:
-    """m at which the model reaches p_end at t_end; the vapour mass there; the mean loss over the phase. NaN: no root."""
+    """m at which the model reaches p_end at t_end; the vapour mass there; the mean loss over the phase. NaN: none."""
     if not (t_end > t_v and area > 0.0 and mass > 0.0):
         return np.nan, np.nan, np.nan
     total, count = 0.0, 0

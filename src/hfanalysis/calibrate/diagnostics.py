@@ -24,6 +24,7 @@ from hfanalysis.engine.tank import energy_derivatives
 from hfanalysis.quantity import Quantity
 from hfanalysis.segment.phases import Segments
 from hfanalysis.testdata.log import TestLog
+from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.saturation import Saturation
 
 Array = NDArray[np.float64]
@@ -40,6 +41,50 @@ class CoefficientHistory:
     def to_json(self) -> dict[str, Any]:
         """Lists, as calibration.json has them."""
         return {name: [round(float(x), 6) for x in getattr(self, name)] for name in ("time", "value", "std")}
+
+
+@dataclass(frozen=True)
+class TankHistory:
+    """What is in the tank over the liquid phase, from the pressures and the calibrated injector.
+
+    ``time`` [s], ``temperature`` of saturation [K], ``liquid`` and ``vapor`` [mol], ``flow`` through the injector [kg/s].
+    """
+
+    time: Array
+    temperature: Array
+    liquid: Array
+    vapor: Array
+    flow: Array
+
+    def to_json(self) -> dict[str, Any]:
+        """Lists, as calibration.json has them."""
+        return {name: [round(float(x), 6) for x in getattr(self, name)] for name in self.__dataclass_fields__}
+
+
+HISTORY_POINTS = 200
+"""Points of a stored history: block means over the liquid phase."""
+
+
+def tank_history(saturation: Saturation, histories: Histories, inputs: Inputs, left: Array) -> TankHistory | None:
+    """Moles of liquid and vapour, n_l + n_v = m/W and n_l v_l + n_v v_v = V (report, section 4.2.1), and the flow.
+
+    ``left`` is the mass gone [kg] at the histories' times. None for fewer than eight samples.
+    """
+    wet = histories.time < inputs.t_v
+    if wet.sum() < 8:
+        return None
+    time, gone = histories.time[wet], left[wet]
+    t = histories.tank_temperature(saturation)[wet]
+    v_l, v_v = saturation.liquid_volume(t)[0], saturation.vapor_volume(t)[0]
+    mass = inputs.mass - gone
+    liquid = (mass * v_v - inputs.volume) / (v_v - v_l)
+    per_mole = 1e3 / OXIDIZER_MOLAR_MASS
+    flow = np.gradient(gone, time)
+    block = np.minimum((np.arange(time.size) * HISTORY_POINTS) // time.size, HISTORY_POINTS - 1)
+    start = np.flatnonzero(np.r_[True, np.diff(block) > 0])
+    count = np.diff(np.r_[start, time.size])
+    columns = (time, t, liquid * per_mole, (mass - liquid) * per_mole, flow)
+    return TankHistory(*(np.add.reduceat(c, start) / count for c in columns))
 
 
 def coefficient_history(
@@ -156,8 +201,8 @@ def _stratified(rest: Rest) -> list[str]:
     if warmer < STRATIFIED:
         return []
     return [
-        f"the tank is stratified or late to boil: {rest.temperature.value - 273.15:.1f} degC by its pressure at rest, but the blowdown "
-        f"starts from {rest.bulk_temperature.value - 273.15:.1f} degC"
+        f"the tank is stratified or late to boil: {rest.temperature.value - 273.15:.1f} degC by its pressure at rest, but the "
+        f"blowdown starts from {rest.bulk_temperature.value - 273.15:.1f} degC"
     ]
 
 
@@ -171,7 +216,7 @@ def _mass_remarks(rest: Rest, mass: LoadedMass) -> list[str]:
         out.append(f"the load cell reads {cell.value:.2f} kg at rest, the calibration works with {mass.value:.2f} kg")
     if own.value is not None and abs(own.value - mass.value) > 3.0 * np.hypot(own.std or 0.0, mass.std):
         out.append(
-            f"the blowdown fits {own.value:.1f} kg, not {mass.value:.1f} kg: the mass is off by kilograms, or heat or nitrogen "
-            "carries the pressure; C_i scales with the mass that is right"
+            f"the blowdown fits {own.value:.1f} kg, not {mass.value:.1f} kg: the mass is off by kilograms, or heat or "
+            "nitrogen carries the pressure; C_i scales with the mass that is right"
         )
     return out

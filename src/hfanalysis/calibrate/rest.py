@@ -67,7 +67,7 @@ def fit_bulk(left: Array, temperature: Array) -> BulkFit | None:
 
 
 def blowdown_mass(saturation: Saturation, volume: float, bulk: float, t_v_temperature: float) -> float | None:
-    """Mass [kg] that a saturated adiabatic tank of ``volume`` [m^3] held at ``bulk`` [K] if it ran dry at the other [K]."""
+    """Mass [kg] that an adiabatic tank of ``volume`` [m^3] held saturated at ``bulk`` [K] if it ran dry at the other."""
     if not t_v_temperature < bulk < saturation.t_max:
         return None
     return float(mass_along_blowdown(saturation, volume, t_v_temperature, np.array([bulk]))[0])
@@ -106,8 +106,10 @@ def state_remarks(
     where = f"{mass:.2f} kg in {volume * 1e3:.1f} L at {pressure / 1e5:.1f} bar ({t - 273.15:.1f} degC if saturated)"
     if parts.vapor < 0.0:
         fits = _coldest_fit(saturation, volume, mass)
-        return share, [f"{where}: more than the tank holds as saturated liquid; it fits only below {fits - 273.15:.0f} degC, so the "
-                       "bulk is colder than the gauge says, the mass is too large, or the tank is supercharged"]  # fmt: skip
+        return share, [
+            f"{where}: more than the tank holds as saturated liquid; it fits only below {fits - 273.15:.0f} degC, so "
+            "the bulk is colder than the gauge says, the mass is too large, or the tank is supercharged"
+        ]
     if parts.liquid < 0.0:
         return share, [f"{where}: less than the saturated vapour alone would weigh; mass, volume or pressure is off"]
     return share, []

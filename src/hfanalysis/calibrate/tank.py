@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, reduce
-from hfanalysis.calibrate.diagnostics import CoefficientHistory, coefficient_history, rest_of
+from hfanalysis.calibrate.diagnostics import CoefficientHistory, TankHistory, coefficient_history, rest_of, tank_history
 from hfanalysis.calibrate.histories import Histories, Reading, read_at_break
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
 from hfanalysis.calibrate.rest import Rest
@@ -36,10 +36,9 @@ class Calibration:
     quantities: dict[str, Quantity]
     rest: Rest | None
     history: CoefficientHistory | None
-    inputs: Inputs | None
+    tank_history: TankHistory | None
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    settings: dict[str, Any] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         """The content of calibration.json."""
@@ -47,9 +46,9 @@ class Calibration:
             **self.quantities,
             "rest": self.rest.to_json() if self.rest else None,
             "C_i_history": self.history.to_json() if self.history else None,
+            "tank_history": self.tank_history.to_json() if self.tank_history else None,
             "notes": list(self.notes),
             "warnings": list(self.warnings),
-            "settings": self.settings,
         }
 
 
@@ -122,19 +121,21 @@ class _Work:
         rest, remarks = rest_of(self.log, self.segments, self.saturation, self.histories, inputs, nominal, left, mass)
         self.warnings.extend(remarks)
         history = coefficient_history(self.saturation, self.histories, inputs, left)
+        content = tank_history(self.saturation, self.histories, inputs, left)
         quantities = self._quantities(nominal, draws, inputs, left)
-        return Calibration(quantities, rest, history, inputs, tuple(self.warnings), tuple(self.notes))
+        return Calibration(quantities, rest, history, content, tuple(self.warnings), tuple(self.notes))
 
     def _check_fit(self, inputs: Inputs) -> None:
-        """Raise InputError where the loaded mass cannot be in the tank, not even as liquid as cold as the blowdown shows."""
+        """Raise InputError where the loaded mass cannot be in the tank, even as liquid as cold as the blowdown shows."""
         h = self.histories
         start = h.mean(h.tank, self.t_feed, self.t_feed + 0.2 * (self.t_v - self.t_feed))
         bulk = float(self.saturation.temperature(np.clip(start, *self.saturation.pressure_range)))
         most = inputs.volume * float(self.saturation.liquid_density(bulk))
         if inputs.mass > FULLEST * most:
             raise InputError(
-                f"{self.definition.path}: [tank] oxidizer_mass and volume: found {inputs.mass:.2f} kg in {inputs.volume * 1e3:.1f} L; "
-                f"expected no more than {most:.2f} kg, the tank full of liquid at the {bulk - 273.15:.0f} degC of its blowdown"
+                f"{self.definition.path}: [tank] oxidizer_mass and volume: found {inputs.mass:.2f} kg in "
+                f"{inputs.volume * 1e3:.1f} L; expected no more than {most:.2f} kg, the tank full of liquid at the "
+                f"{bulk - 273.15:.0f} degC of its blowdown"
             )
 
     def _quantities(self, r: Reduction, draws: Draws, inputs: Inputs, left: Array) -> dict[str, Quantity]:
@@ -185,7 +186,7 @@ class _Work:
         common = noise.common(first.weights, first.time, last.weights, last.time) if self.at_end else 0.0
         covariance = np.diag([noise.std_of(r.weights, r.time) ** 2 for r in (first, last)])
         covariance[0, 1] = covariance[1, 0] = min(common, 0.99 * float(np.sqrt(np.prod(np.diag(covariance)))))
-        return np.linalg.cholesky(covariance + 1e-9 * np.eye(2))
+        return np.asarray(np.linalg.cholesky(covariance + 1e-9 * np.eye(2)), dtype=np.float64)
 
     def _bias(self, name: str) -> float:
         channel = self.log.get(name)
@@ -259,8 +260,8 @@ class _Work:
         share = self._excluded_share()
         if share > 0.1:
             return (
-                f"p_run is not above p_chamber over {100.0 * share:.0f} % of the liquid phase: the injector equation has no "
-                "flow there; one of the two sensors is off, or p_run is not measured before the injector"
+                f"p_run is not above p_chamber over {100.0 * share:.0f} % of the liquid phase: the injector equation has "
+                "no flow there; one of the two sensors is off, or p_run is not measured before the injector"
             )
         return None
 

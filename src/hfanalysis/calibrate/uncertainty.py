@@ -70,8 +70,7 @@ def draw(tables: Tables, saturation: Saturation, inputs: Inputs, spread: Spread,
     generator = np.random.default_rng(SEED)
     z = generator.standard_normal((samples, 11))
     results = [reduce(tables, saturation, *_drawn(inputs, spread, row)) for row in z]
-    names = [n for n in Reduction.__dataclass_fields__]
-    return Draws({n: np.array([getattr(r, n) for r in results]) for n in names})
+    return Draws({n: np.array([getattr(r, n) for r in results]) for n in Reduction.__dataclass_fields__})
 
 
 def _drawn(inputs: Inputs, spread: Spread, z: Array) -> tuple[Inputs, Shift]:

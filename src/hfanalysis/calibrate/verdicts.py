@@ -61,8 +61,8 @@ def judge_exponent(
     std = draws.std("m")
     if std > WIDEST_M:
         reason = (
-            f"the vapour phase lasts {duration:.3f} s and loses {(inputs.p_v - inputs.p_end) / 1e5:.2f} bar: too little to tell m "
-            f"({r.m:.2f} +/- {std:.2f})"
+            f"the vapour phase lasts {duration:.3f} s and loses {(inputs.p_v - inputs.p_end) / 1e5:.2f} bar: too little to tell "
+            f"m ({r.m:.2f} +/- {std:.2f})"
         )
         return Quantity.absent(reason, verdict=NOT_IDENTIFIABLE)
     low, high = draws.interval("m", r.m)
@@ -78,7 +78,10 @@ def judge_exponent(
 def _no_root(r: Reduction, inputs: Inputs, duration: float, draws: Draws) -> str:
     if np.isfinite(r.m):
         part = 100.0 * (1.0 - draws.answered("m"))
-        return f"within the uncertainties {part:.0f} % of the repetitions have no exponent: {duration:.3f} s of vapour are too short"
+        return (
+            f"within the uncertainties {part:.0f} % of the repetitions have no exponent: "
+            f"{duration:.3f} s of vapour are too short"
+        )
     if inputs.p_end >= inputs.p_v:
         return "the tank pressure does not fall over the vapour phase: something feeds it"
     return (

@@ -14,6 +14,7 @@ from hfanalysis.report.material import Material, Residuals, event_list, phase_li
 from hfanalysis.report.wording import people_unit, shown, tidy
 from hfanalysis.testdata.channels import LONG_NAMES
 from hfanalysis.testdata.log import Channel
+from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 
 PRESSURES = ("p_tank", "p_run", "p_chamber", "p_purge")
 _TIME = "time after the valve opens [s]"
@@ -35,6 +36,8 @@ def figures(material: Material) -> list[Figure]:
         _pressures(material),
         _thrust(material),
         _mass(material),
+        _content(material),
+        _flow(material),
         _injector(material),
         _tank_free(material),
         _residual(material),
@@ -142,6 +145,46 @@ def _zero_words(channel: Channel) -> str:
         return "As logged: no zero was taken."
     drift = f"; drift of {tidy(channel.drift, 3)} {channel.unit} removed, linear in time" if channel.drift else ""
     return f"Zero of {tidy(channel.zero, 3)} {channel.unit} subtracted{drift}."
+
+
+MOLES_TO_KG = 1e-3 * OXIDIZER_MOLAR_MASS
+
+
+def _tank_history(material: Material, *names: str) -> list[Floats] | None:
+    history = (material.calibration or {}).get("tank_history") or {}
+    columns = [np.asarray(history.get(name, []), dtype=float) for name in ("time", *names)]
+    return columns if columns[0].size > 1 else None
+
+
+def _content(material: Material) -> Figure | None:
+    """Liquid and vapour in the tank while there is liquid."""
+    found = _tank_history(material, "liquid", "vapor")
+    if found is None:
+        return None
+    time, *masses = found
+    named = zip(masses, ("p_tank", "T_tank"), ("liquid", "vapour"), strict=True)
+    lines = [(envelope(time, m * MOLES_TO_KG, time[0], time[-1]), style, name) for m, style, name in named]
+    plot = _drawn(material, lines, "oxidizer in the tank [kg]", 260.0, _around(time))
+    words = "; ".join(_range_words(data, name, "kg") for data, _, name in lines)
+    chart = svg.render(plot, "content", "Oxidizer in the tank", words)
+    return Figure(
+        "Oxidizer in the tank",
+        chart,
+        "From the loaded mass, less what the calibrated injector passed, at the measured pressure.",
+    )
+
+
+def _flow(material: Material) -> Figure | None:
+    """The oxidizer's flow through the calibrated injector."""
+    found = _tank_history(material, "flow")
+    if found is None:
+        return None
+    time, flow = found
+    data = envelope(time, flow, time[0], time[-1])
+    plot = _drawn(material, [(data, "C_i", "flow")], "oxidizer flow [kg/s]", 260.0, _around(time))
+    words = _range_words(data, "flow", "kg/s")
+    chart = svg.render(plot, "flow", "Oxidizer flow", words)
+    return Figure("Oxidizer flow", chart, "Through the calibrated injector, from the measured pressure drop across it.")
 
 
 def _injector(material: Material) -> Figure | None:
