@@ -19,7 +19,7 @@ from sample import material
 from hfanalysis.report.page import page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-HOSTILE = "<script>document.title='owned'</script>"
+HOSTILE = '<script>document.title="owned"</script>'
 OPTIONS = (
     "--headless",
     "--no-sandbox",
@@ -64,7 +64,7 @@ def test_the_browser_sees_the_whole_page_and_complains_about_nothing(browse: Bro
 
 
 def test_hostile_text_is_shown_as_text(browse: Browse, tmp_path: Path) -> None:
-    done = browse(page(material(tmp_path, description=HOSTILE)), "--dump-dom")
+    done = browse(page(material(tmp_path, description=f"'{HOSTILE}'")), "--dump-dom")
     assert "<title>owned" not in done.stdout
     assert "&lt;script&gt;document.title" in done.stdout
 
