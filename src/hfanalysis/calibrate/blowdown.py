@@ -136,7 +136,7 @@ def reduce(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift 
 def _liquid_sums(
     time: Array, density: Array, drop: Array, loss: Array, t_feed: float, t_steady: float, t_v: float
 ) -> tuple[float, float, float, float]:
-    """Integral of sqrt(2 rho dp) up to t_v; sums of loss * dp and dp * dp from t_steady, mean loss from t_feed to t_v."""
+    """Integral of sqrt(2 rho dp) to t_v; sums of loss * dp and dp * dp from t_steady, mean loss from t_feed to t_v."""
     integral = 0.0
     products = squares = losses = 0.0
     count = 0

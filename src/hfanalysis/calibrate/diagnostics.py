@@ -47,7 +47,7 @@ class CoefficientHistory:
 class TankHistory:
     """What is in the tank over the liquid phase, from the pressures and the calibrated injector.
 
-    ``time`` [s], ``temperature`` of saturation [K], ``liquid`` and ``vapor`` [mol], ``flow`` through the injector [kg/s].
+    ``time`` [s], ``temperature`` of saturation [K], ``liquid`` and ``vapor`` [mol], ``flow`` of the injector [kg/s].
     """
 
     time: Array
@@ -201,8 +201,8 @@ def _stratified(rest: Rest) -> list[str]:
     if warmer < STRATIFIED:
         return []
     return [
-        f"the tank is stratified or late to boil: {rest.temperature.value - 273.15:.1f} degC by its pressure at rest, but the "
-        f"blowdown starts from {rest.bulk_temperature.value - 273.15:.1f} degC"
+        f"the tank is stratified or late to boil: {rest.temperature.value - 273.15:.1f} degC by its pressure at rest, "
+        f"but the blowdown starts from {rest.bulk_temperature.value - 273.15:.1f} degC"
     ]
 
 

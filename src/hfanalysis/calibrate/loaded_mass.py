@@ -35,7 +35,7 @@ def loaded_mass(
     histories: Histories,
     p_v: float,
 ) -> LoadedMass | None:
-    """The stated mass, else the load cell's quiet reading, else what the blowdown itself says; None: none can be had."""
+    """The stated mass, else the load cell's quiet reading, else what the blowdown itself says; else None."""
     tank = definition.tank
     if tank is not None and tank.oxidizer_mass is not None:
         stated = tank.oxidizer_mass

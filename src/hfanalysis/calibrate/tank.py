@@ -126,7 +126,7 @@ class _Work:
         return Calibration(quantities, rest, history, content, tuple(self.warnings), tuple(self.notes))
 
     def _check_fit(self, inputs: Inputs) -> None:
-        """Raise InputError where the loaded mass cannot be in the tank, even as liquid as cold as the blowdown shows."""
+        """Raise InputError where the loaded mass cannot be in the tank, even as liquid as cold as its blowdown."""
         h = self.histories
         start = h.mean(h.tank, self.t_feed, self.t_feed + 0.2 * (self.t_v - self.t_feed))
         bulk = float(self.saturation.temperature(np.clip(start, *self.saturation.pressure_range)))
@@ -260,8 +260,8 @@ class _Work:
         share = self._excluded_share()
         if share > 0.1:
             return (
-                f"p_run is not above p_chamber over {100.0 * share:.0f} % of the liquid phase: the injector equation has "
-                "no flow there; one of the two sensors is off, or p_run is not measured before the injector"
+                f"p_run is not above p_chamber over {100.0 * share:.0f} % of the liquid phase: the injector equation "
+                "has no flow there; one of the two sensors is off, or p_run is not measured before the injector"
             )
         return None
 

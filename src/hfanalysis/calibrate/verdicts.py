@@ -61,8 +61,8 @@ def judge_exponent(
     std = draws.std("m")
     if std > WIDEST_M:
         reason = (
-            f"the vapour phase lasts {duration:.3f} s and loses {(inputs.p_v - inputs.p_end) / 1e5:.2f} bar: too little to tell "
-            f"m ({r.m:.2f} +/- {std:.2f})"
+            f"the vapour phase lasts {duration:.3f} s and loses {(inputs.p_v - inputs.p_end) / 1e5:.2f} bar: "
+            f"too little to tell m ({r.m:.2f} +/- {std:.2f})"
         )
         return Quantity.absent(reason, verdict=NOT_IDENTIFIABLE)
     low, high = draws.interval("m", r.m)

@@ -47,7 +47,7 @@ class Break:
 
 
 def kink(order: int = 2, before: int | None = None) -> Design:
-    """Curves of the given polynomial order on both sides, equal at the break; ``before`` sets the left one's order apart."""
+    """Curves of the given polynomial order on both sides, equal at the break; ``before``: the left one's order."""
     left = order if before is None else before
 
     def columns(time: Array, instant: float) -> Array:
@@ -126,8 +126,11 @@ def combine(breaks: Sequence[Break], step: float) -> Break:
 
 
 def _summarise(candidates: Array, log_likelihood: Array, constant: float, names: tuple[str, ...], step: float) -> Break:
-    """Mean and spread over the profile. A change that is over within a sample interval is dated no better than that, and a
-    slower one no better than SHAPE of it: real onsets are not exactly of the shapes that are tried."""
+    """Mean and spread over the profile.
+
+    A change that is over within a sample interval is dated no better than that, and a slower one no better than SHAPE
+    of it: real onsets are not exactly of the shapes that are tried.
+    """
     unseen = step * min(1.0, max((step / max(constant, 1e-9)) ** 2, SHAPE))
     weight = np.exp(log_likelihood - log_likelihood.max()) * np.gradient(candidates)
     weight /= weight.sum()

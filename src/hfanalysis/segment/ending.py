@@ -7,13 +7,13 @@ import numpy as np
 from hfanalysis.segment.signals import Signal
 
 CRITICAL_RATIO = 1.80
-"""p_c / p_a at which a nozzle unchokes: ((gamma + 1)/2)^(gamma/(gamma - 1)) at gamma = 1.25 (1.78 to 1.85 over 1.2 to 1.3)."""
+"""p_c / p_a at which a nozzle unchokes, ((gamma + 1)/2)^(gamma/(gamma - 1)): 1.77 to 1.83 for gamma of 1.2 to 1.3."""
 
 RATIO_STD = 0.02
 
 
 def find_unchoking(chamber: Signal, ambient: float, t_feed: float, offset: float = 0.0) -> tuple[float, float] | str:
-    """t_end [s] and its standard deviation from the chamber pressure with time counted from the opening; else the reason.
+    """t_end [s] and its standard deviation from the chamber pressure with time from the opening; else the reason.
 
     ``offset`` [Pa] is how far the open chamber read from ambient.
     """

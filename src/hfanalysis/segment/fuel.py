@@ -1,4 +1,4 @@
-"""t_fuel_out: the solid fuel is gone, seen where chamber pressure and thrust fall together while the feed does not change."""
+"""t_fuel_out: the solid fuel is gone; chamber pressure and thrust fall together while the feed does not change."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ FADE_FALL = 0.3
 """Least fall of ln of the response over a fade in the liquid phase."""
 
 FADE_THRUST = 0.1
-"""Least part of the thrust that has to go with it: a third of what the pressure loses, for its cell drifts with heat."""
+"""Least part of the thrust that has to go with it: a third of the pressure's, for the cell drifts with heat."""
 
 CLEAR = 0.08e5
 """Chamber pressure above ambient [Pa] below which nothing can be said of the fire."""
@@ -140,7 +140,7 @@ def _fall_at(response: _Response, t: float, t_v: float | None) -> float:
 def _thrust_falls(
     signals: Mapping[str, Signal], early: tuple[float, float], late: tuple[float, float], share: float
 ) -> bool:
-    """Whether the thrust, where it is measured, falls by this share between two intervals [s], and beyond its scatter."""
+    """Whether the thrust, where it is measured, falls by this share between two intervals [s], beyond scatter."""
     if "thrust" not in signals:
         return True
     thrust = signals["thrust"]

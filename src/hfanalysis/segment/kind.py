@@ -13,12 +13,12 @@ COLDEST_FIRE = 700.0
 """Apparent c* [m/s] below which nothing burns: cold nitrous oxide gives 250 to 400, poor combustion 1000 and more."""
 
 COLD_PRESSURE_SHARE = 0.18
-"""Chamber over run-line pressure in the liquid phase (above ambient) below which the flow is taken as cold, geometry unknown."""
+"""Chamber over run-line pressure, above ambient, below which the flow is cold, where the geometry is unknown."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """``name``: hot_fire or cold_flow; ``why`` says from which figure; ``misfire``: stated as a fire that did not light."""
+    """``name``: hot_fire or cold_flow; ``why``: from which figure; ``misfire``: stated as a fire, but did not light."""
 
     name: str
     why: str
@@ -33,7 +33,7 @@ def recognise(
     mean_flow: float | None,
     throat_area: float | None,
 ) -> Kind:
-    """Decide from the chamber pressure over the liquid phase ``span`` [s after opening], ``ambient`` as the chamber reads it [Pa].
+    """Decide from the chamber pressure over the liquid phase ``span`` [s]; ``ambient`` [Pa] as the chamber reads it.
 
     ``mean_flow`` is the oxidizer's mean flow [kg/s] where mass and times give it, ``throat_area`` [m^2].
     """

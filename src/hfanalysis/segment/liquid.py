@@ -17,7 +17,7 @@ from hfanalysis.engine.tank import mass_along_blowdown
 from hfanalysis.segment.breaks import Break
 from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.refine import refine_knee, refine_step
-from hfanalysis.segment.signals import Array, Signal
+from hfanalysis.segment.signals import Signal
 from hfanalysis.thermo.saturation import Saturation
 
 STEEPER = 1.25
@@ -27,7 +27,7 @@ LEAST_LOSS = 0.05
 """By the end of the liquid a tank has lost at least this part of its pressure."""
 
 DRY_PRESSURE_SPREAD = 0.2
-"""Standard deviation of ln(p) within which real tanks run dry about the adiabatic value: heat, mass and stratification."""
+"""Standard deviation of ln(p) about the adiabatic value at which real tanks run dry: heat, mass, stratification."""
 
 WIDE_KNEE = 0.9
 """Seconds on either side of a knee that only the tank pressure shows."""
@@ -50,7 +50,7 @@ class LiquidEnd:
 
 
 def dry_pressure(saturation: Saturation, volume: float, mass: float, pressure: float) -> float | None:
-    """Tank pressure [Pa] at which the liquid of an adiabatic saturated tank runs out (None where it cannot be saturated).
+    """Tank pressure [Pa] at which an adiabatic saturated tank runs out of liquid (None where it cannot be saturated).
 
     ``pressure`` [Pa] is that of the full tank; found by following the blowdown upwards from trial end temperatures.
     """
@@ -66,7 +66,7 @@ def dry_pressure(saturation: Saturation, volume: float, mass: float, pressure: f
 
 
 def find_liquid_end(signals: Mapping[str, Signal], end: float, expected: float | None) -> LiquidEnd | None:
-    """t_v from signals whose time counts from the opening, searched up to ``end`` [s]; ``expected`` is the dry pressure [Pa].
+    """t_v from signals with time from the opening, searched up to ``end`` [s]; ``expected``: the dry pressure [Pa].
 
     None where the tank pressure shows no knee.
     """

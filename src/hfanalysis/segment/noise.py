@@ -29,7 +29,7 @@ SHORTEST = 8
 
 @dataclass(frozen=True)
 class Noise:
-    """``white``: standard deviation of a sample; ``flicker``: A of the wander's one-sided spectrum A/f [unit^2]; ``step`` [s]."""
+    """``white``: standard deviation of a sample; ``flicker``: A of the wander's spectrum A/f [unit^2]; ``step`` [s]."""
 
     white: float
     flicker: float
@@ -58,7 +58,7 @@ class Noise:
 
     def std_of(self, weights: Array, time: Array) -> float:
         """Standard deviation of a weighted sum of samples at the given times."""
-        return float(np.sqrt(max(weights @ self.covariance(time) @ weights, 0.0)))
+        return float(np.sqrt(max(float(weights @ self.covariance(time) @ weights), 0.0)))
 
     def common(self, weights: Array, time: Array, other_weights: Array, other_time: Array) -> float:
         """Covariance of two weighted sums of samples that lie apart: only the wander is common to them."""
@@ -97,18 +97,17 @@ def _flicker(quiet: Array, white: float) -> float:
         length *= 2
     if not estimates:
         return 0.0
-    few = (
-        1.0 + 4.0 / weights[0]
-    )  # a variance from few blocks is as likely too small as too large, but only the former misleads
-    return max(float(np.average(estimates, weights=np.sqrt(weights))), 0.0) * few
+    # a variance from few blocks is as likely too small as too large, but only the former misleads
+    few = 1.0 + 4.0 / weights[0]
+    return float(max(float(np.average(estimates, weights=np.sqrt(weights))), 0.0) * few)
 
 
 def _mean_log(first: tuple[float, float], second: tuple[float, float]) -> float:
     """Mean of ln|x - y| for x in the first interval and y in the second."""
     (a, b), (c, d) = first, second
     total = _twice_integrated_log(d - a) - _twice_integrated_log(c - a) - _twice_integrated_log(d - b)
-    return (total + _twice_integrated_log(c - b)) / ((b - a) * (d - c))
+    return float((total + _twice_integrated_log(c - b)) / ((b - a) * (d - c)))
 
 
 def _twice_integrated_log(u: float) -> float:
-    return 0.5 * u * u * np.log(abs(u)) - 0.75 * u * u if u != 0.0 else 0.0
+    return float(0.5 * u * u * np.log(abs(u)) - 0.75 * u * u) if u != 0.0 else 0.0

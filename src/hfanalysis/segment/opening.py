@@ -53,7 +53,8 @@ def under_way(signals: Mapping[str, Signal]) -> str | None:
     """
     alone = not {"p_chamber", "p_run", "p_tank"} & set(signals)
     first = min((float(s.time[0]) for s in signals.values()), default=0.0)
-    for name in ("p_chamber", *(("thrust",) if alone else ())):
+    names: tuple[str, ...] = ("p_chamber", "thrust") if alone else ("p_chamber",)
+    for name in names:
         if name not in signals or signals[name].time[0] > first + 0.2:
             continue
         value = _despiked(signals[name].value)

@@ -131,8 +131,8 @@ def _opening(signals: Mapping[str, Signal], definition: TestDefinition) -> Openi
         return Opening(stated.value, stated.std or 1e-3, (BY_HAND,))
     if (name := under_way(signals)) is not None:
         raise AbsentError(
-            f"test {definition.test.id}: the log starts in the middle of the firing ({name} is high from its first sample): there is "
-            "no opening to count from; set [segments] t_open in test.toml, if it is known"
+            f"test {definition.test.id}: the log starts in the middle of the firing ({name} is high from its first "
+            "sample): there is no opening to count from; set [segments] t_open in test.toml, if it is known"
         )
     found = find_opening(signals)
     if found is None:
@@ -140,8 +140,8 @@ def _opening(signals: Mapping[str, Signal], definition: TestDefinition) -> Openi
             ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals) or "no channel"
         )
         raise AbsentError(
-            f"test {definition.test.id}: the log holds no firing and no flow: nothing in {looked} responds to an opening "
-            "valve; set [segments] t_open in test.toml if there is one"
+            f"test {definition.test.id}: the log holds no firing and no flow: nothing in {looked} responds to an "
+            "opening valve; set [segments] t_open in test.toml if there is one"
         )
     return found
 
@@ -281,7 +281,8 @@ class _Search:
         if rest > limit:
             self.supercharged = True
             self.warnings.append(
-                f"the tank stands at {rest / 1e5:.1f} bar before the opening, above {why} ({limit / 1e5:.1f} bar): it is supercharged"
+                f"the tank stands at {rest / 1e5:.1f} bar before the opening, above {why} "
+                f"({limit / 1e5:.1f} bar): it is supercharged"
             )
 
     def _tank_temperature(self) -> float | None:

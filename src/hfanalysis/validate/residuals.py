@@ -76,7 +76,7 @@ def gaps(residuals: Sequence[Residual]) -> dict[str, Any]:
 
 
 def write_residuals(path: Path, modes: Mapping[str, Sequence[Residual]], provenance: Mapping[str, Any]) -> None:
-    """Write residuals.h5: a group per mode and channel, readable by h5py, xarray and MATLAB; byte-identical each time."""
+    """Write residuals.h5: a group per mode and channel, for h5py, xarray and MATLAB; byte-identical each time."""
     import h5py
 
     with h5py.File(path, "w", libver="latest", track_order=False) as file:

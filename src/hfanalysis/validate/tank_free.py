@@ -1,4 +1,4 @@
-"""tank_free: the tank model alone, from t_feed on, with nothing measured in but the chamber pressure (report, section 4.2.3)."""
+"""tank_free: the tank model alone from t_feed on, with only the chamber pressure measured in (report, 4.2.3)."""
 
 from __future__ import annotations
 
