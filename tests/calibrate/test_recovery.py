@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stand import HOLE_AREA, HOLES, Stand, Trial, definition, fire, log_of, segments_of
 
-from hfanalysis.calibrate.blowdown import Reduction
 from hfanalysis.calibrate.tank import Calibration, calibrate
 from hfanalysis.testdata.sections import Injector
+from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
 
@@ -123,11 +123,26 @@ def test_the_coefficient_over_time_is_flat_where_the_tank_does_nothing_else() ->
     assert history is not None
     assert history.time.size > 10
     np.testing.assert_allclose(history.value, test.stand.C_i, rtol=0.02)
-    assert (np.abs(history.value - test.stand.C_i) < 5.0 * history.std + 0.02 * test.stand.C_i).all()
+    assert (history.std > 0.0).all()
 
 
-def test_every_quantity_of_the_reduction_has_an_answer() -> None:
-    assert set(Reduction.__dataclass_fields__) >= {"C_i", "m", "Z", "K_loss", "vapor_mass"}
+def test_the_tanks_content_over_time_fills_it_and_weighs_what_it_should() -> None:
+    test = fire()
+    history = calibrated(test).tank_history
+    assert history is not None
+    nitrous = saturation()
+    liquid, vapor = (n * OXIDIZER_MOLAR_MASS / 1e3 for n in (history.liquid, history.vapor))
+    filled = liquid / nitrous.liquid_density(history.temperature) + vapor / nitrous.vapor_density(history.temperature)
+    np.testing.assert_allclose(filled, test.stand.volume, rtol=1e-4)
+    after = test.time >= 0.0
+    truth = np.interp(history.time, test.time[after], test.mass)
+    np.testing.assert_allclose(liquid + vapor, truth, rtol=3e-3)
+    assert history.liquid[-1] < 0.02 * history.liquid[0]
+    flow = np.interp(history.time, test.time[after], test.flow)
+    np.testing.assert_allclose(history.flow[1:], flow[1:], rtol=0.01)
+
+
+def test_every_quantity_of_a_good_test_has_an_answer() -> None:
     for name, quantity in calibrated(fire(rate=200.0)).quantities.items():
         assert quantity.value is not None, f"{name}: {quantity.reason}"
         assert quantity.verdict == "identified", name

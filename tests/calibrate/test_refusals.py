@@ -10,7 +10,7 @@ import pytest
 from stand import AMBIENT, Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.calibrate.tank import Calibration, calibrate
-from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.errors import AbsentError
 from hfanalysis.quantity import NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 from hfanalysis.segment.kind import Kind
 from hfanalysis.units import Value

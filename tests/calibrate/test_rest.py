@@ -30,6 +30,12 @@ def calibrated(test: Trial, scale: Any = None, **change: Any) -> Calibration:
     return calibrate(log, segments_of(test), definition(test.stand, **change), 20)
 
 
+def worked_with(found: Calibration) -> float:
+    """The loaded mass that a calibration took [kg]."""
+    parts = [found.quantities[n].value for n in ("oxidizer_mass_liquid_phase", "vapor_mass_at_t_v")]
+    return float(np.sum(np.array(parts, dtype=float)))
+
+
 def scale_of(test: Trial, mass: float) -> tuple[Any, Any]:
     return test.time, np.where(test.time < 0.0, mass, 0.0) + 1e-3 * np.sin(1e3 * test.time)
 
@@ -90,7 +96,7 @@ def test_the_heat_into_the_tank_is_found_again(watts: float) -> None:
     feed = FeedSystem(VOLUME, 2.2e-5, 4e8)
     run = blow_down(saturation(), feed, MASS, 293.15, time, np.full(time.size, 12e5), 1.0, watts)
     heat = liquid_phase_heat(saturation(), VOLUME, MASS, 293.15, run.temperature[-1])
-    assert heat / run.t_v == pytest.approx(watts, rel=0.05, abs=100.0)  # heated, the path is not quite the adiabatic one
+    assert heat / run.t_v == pytest.approx(watts, rel=0.05, abs=100.0)  # heated, its path is another
 
 
 def test_the_bulk_is_where_the_blowdown_started() -> None:
@@ -110,7 +116,7 @@ def test_a_tank_that_fits_itself_is_not_remarked(burn: Trial) -> None:
     assert found.rest.remarks == ()
     assert found.rest.blowdown_mass.value == pytest.approx(MASS, rel=0.01)
     assert found.rest.bulk_temperature.value == pytest.approx(burn.stand.temperature, abs=0.2)
-    assert abs(found.rest.liquid_phase_heat.value or np.nan) < 3e3  # against the 300 kW that it takes to boil the liquid
+    assert abs(found.rest.liquid_phase_heat.value or np.nan) < 3e3  # of the 300 kW that boil all liquid
 
 
 def test_a_warm_gauge_over_a_cold_bulk_is_stratified(burn: Trial) -> None:
@@ -132,7 +138,7 @@ def test_a_supercharged_tank_is_calibrated_with_a_remark(burn: Trial) -> None:
 
 
 def test_a_mass_that_does_not_fit_the_tank_at_all_is_an_error_of_the_input(burn: Trial) -> None:
-    with pytest.raises(InputError, match=r"oxidizer_mass and volume: found 18\.00 kg in 16\.5 L; expected no more than"):
+    with pytest.raises(InputError, match=r"oxidizer_mass and volume: found 18\.00 kg in 16\.5 L; expected no more"):
         calibrated(burn, mass=Value(18.0, 0.1))
 
 
@@ -146,8 +152,7 @@ def test_a_mass_off_by_kilograms_is_seen_by_the_blowdown(burn: Trial) -> None:
 
 def test_the_stated_mass_comes_first_and_a_scale_that_disagrees_is_named(burn: Trial) -> None:
     found = calibrated(burn, scale=scale_of(burn, 8.5), accuracy=0.02)
-    assert found.inputs is not None
-    assert found.inputs.mass == MASS
+    assert worked_with(found) == pytest.approx(MASS, rel=1e-12)
     assert "loaded mass: 10.000 +/- 0.020 kg as stated" in found.notes
     assert any("the load cell reads 8.50 kg at rest" in w for w in found.warnings)
 
@@ -158,15 +163,13 @@ def test_a_mass_stated_without_a_deviation_counts_as_known_to_one_per_cent(burn:
 
 def test_without_a_stated_mass_the_scale_weighs_it(burn: Trial) -> None:
     found = calibrated(burn, scale=scale_of(burn, 9.9), mass=None, accuracy=0.05)
-    assert found.inputs is not None
-    assert found.inputs.mass == pytest.approx(9.9, abs=1e-3)
+    assert worked_with(found) == pytest.approx(9.9, abs=1e-3)
     assert any("9.900 +/- 0.050 kg from the load cell" in n for n in found.notes)
 
 
 def test_without_either_the_blowdown_itself_weighs_it(burn: Trial) -> None:
     found = calibrated(burn, mass=None)
-    assert found.inputs is not None
-    assert found.inputs.mass == pytest.approx(MASS, rel=0.02)
+    assert worked_with(found) == pytest.approx(MASS, rel=0.02)
     assert any("from the blowdown itself" in n for n in found.notes)
     c = found.quantities["C_i"]
     assert c.value == pytest.approx(burn.stand.C_i, rel=0.03)
