@@ -47,7 +47,7 @@ def test_an_interval_holds_its_value(burn: Trial) -> None:
     ("more", "grows"),
     [
         pytest.param({"accuracy": 2e4}, NAMES, id="sensors off by 0.2 bar"),
-        pytest.param({"std": 0.02}, ("C_i", "m"), id="phases known to 20 ms"),
+        pytest.param({"std": 0.02}, ("m", "vapor_mass_at_t_v"), id="phases known to 20 ms"),
         pytest.param({"mass": Value(10.0, 0.3)}, ("C_i", "K_loss"), id="mass known to 0.3 kg"),
         pytest.param({"volume": Value(16.5e-3, 0.2e-3)}, ("C_i", "vapor_mass_at_t_v"), id="volume known to 0.2 L"),
         pytest.param({"injector": Injector(22, Value(3.142e-6, 0.1e-6))}, ("C_i",), id="holes known to 3 %"),

@@ -32,8 +32,7 @@ def true_calibration(test: Trial, **change: Any) -> dict[str, Any]:
     s = test.stand
     loss = test.values["p_tank"] - test.values["p_run"]
     liquid, vapor = (
-        float(loss[(test.time >= a) & (test.time < b)].mean())
-        for a, b in ((0.4, test.t_v), (test.t_v, test.t_purge))
+        float(loss[(test.time >= a) & (test.time < b)].mean()) for a, b in ((0.4, test.t_v), (test.t_v, test.t_purge))
     )
     values = {"C_i": s.C_i, "m": s.m, "K_loss": s.K_loss, "p_loss_liquid": liquid, "p_loss_vapor": vapor}
     values["mass_at_t_feed"] = mass_at(test, 0.4)
