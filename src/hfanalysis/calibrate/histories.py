@@ -19,6 +19,9 @@ from hfanalysis.thermo.saturation import Saturation
 
 Array = NDArray[np.float64]
 
+BREAK = 3.0
+"""Standard deviations by which the slopes on both sides of an instant must differ to count as a break."""
+
 READING_POINTS = 150
 """Block means over the window of a reading: few enough for a full covariance."""
 
@@ -101,16 +104,21 @@ class Reading:
     time: Array
 
 
-def read_at_break(signal: Signal, instant: float, before: float, after: float) -> Reading:
-    """A signal where its slope breaks, from smooth curves over ``before`` and ``after`` seconds on both sides."""
+def read_at_break(signal: Signal, noise: Noise, instant: float, before: float, after: float) -> Reading:
+    """A signal where its slope may break, from smooth curves over ``before`` and ``after`` seconds on both sides.
+
+    Where the slopes on both sides do not differ beyond what the noise does, one cubic through both reads better.
+    """
     window = signal.between(instant - before, instant + after).reduced((before + after) / READING_POINTS)
     if window.time.size < 8:
         nearest = np.array([float(np.interp(instant, signal.time, signal.value))])
         return Reading(float(nearest[0]), 0.0, np.ones(1), np.array([instant]))
-    x = kink(order=2)(window.time, instant)
-    weights = np.linalg.pinv(x, rcond=1e-9)
+    weights = np.linalg.pinv(kink(order=2)(window.time, instant), rcond=1e-9)
     beta = weights @ window.value
-    return Reading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
+    if abs(beta[3] - beta[1]) > BREAK * noise.std_of(weights[3] - weights[1], window.time):
+        return Reading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
+    weights = np.linalg.pinv(np.vander(window.time - instant, 4, increasing=True), rcond=1e-9)
+    return Reading(float(weights[0] @ window.value), float(weights[1] @ window.value), weights[0], window.time)
 
 
 def _noises(signals: Mapping[str, Signal], segments: Segments) -> dict[str, Noise]:

@@ -219,7 +219,8 @@ class _Work:
     def _read(self, instant: float, before: float, after: float) -> Reading:
         tank = self.histories.signals["p_tank"]
         least = 8.0 * tank.step
-        return read_at_break(tank, instant, min(max(before, least), 0.4 + least), min(max(after, least), 0.4 + least))
+        left, right = (min(max(span, least), 0.4 + least) for span in (before, after))
+        return read_at_break(tank, self.histories.noises["p_tank"], instant, left, right)
 
     def _after_t_v(self) -> float:
         t_purge = self.segments.time("t_purge")

@@ -23,7 +23,7 @@ REFERENCE_TIME = 20.0
 LONG = 1500
 """Samples of a stretch from which on a cubic may be taken out without taking the wander with it."""
 
-SHORTEST = 8
+SHORTEST = 16
 """Samples per block from which on the wander is looked for; below, white noise hides it."""
 
 
