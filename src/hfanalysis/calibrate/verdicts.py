@@ -17,7 +17,7 @@ PHYSICAL_M = (1.0, 1.3)
 """Polytropic exponents of expanding nitrous oxide vapour near saturation without heat and with some."""
 
 LEAST_ANSWERED = 0.9
-WIDEST_M = 0.5
+WIDEST_M = 0.2
 """Standard deviation of m from which on the phase says nothing about it."""
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hfanalysis.engine.tank import mass_along_blowdown
+from hfanalysis.engine.tank import mass_along_blowdown, split
 from hfanalysis.segment.breaks import Break
 from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.refine import refine_knee, refine_step
@@ -55,7 +55,7 @@ def dry_pressure(saturation: Saturation, volume: float, mass: float, pressure: f
     ``pressure`` [Pa] is that of the full tank; found by following the blowdown upwards from trial end temperatures.
     """
     start = float(saturation.temperature(pressure))
-    if not np.isfinite(start):
+    if not np.isfinite(start) or split(saturation, volume, mass, start).vapor < 0.0:
         return None
     ends = np.linspace(max(saturation.t_min, start - 60.0), start - 0.05, 60)
     masses = np.array([mass_along_blowdown(saturation, volume, e, np.array([start]))[0] for e in ends])

@@ -108,9 +108,11 @@ def _start(
     )
     temperature = float(saturation.temperature(min(pressure, 0.9999 * saturation.pressure_range[1])))
     mass = float(calibration["mass_at_t_feed"]["value"])
-    if split(saturation, feed.volume, mass, temperature).vapor < 0.0:
+    parts = split(saturation, feed.volume, mass, temperature)
+    if min(parts.liquid, parts.vapor) < 0.0:
+        side = "do not fit" if parts.vapor < 0.0 else "are less than the vapour of"
         raise AbsentError(
-            f"the tank cannot be saturated at {start:.2f} s: {mass:.2f} kg do not fit {feed.volume * 1e3:.1f} L at "
+            f"the tank cannot be saturated at {start:.2f} s: {mass:.2f} kg {side} {feed.volume * 1e3:.1f} L at "
             f"{pressure / 1e5:.1f} bar; there is no tank model to run"
         )
     return mass, temperature
