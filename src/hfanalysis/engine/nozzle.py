@@ -1,0 +1,169 @@
+"""The one-dimensional nozzle in all its regimes (report, section 3.1.4).
+
+From low to high chamber pressure: subsonic throughout, choked with a subsonic diverging part (one point), a normal shock in the
+diverging part, supersonic throughout. Areas, pressures and temperatures are stagnation values of the chamber gas; the heat
+capacity ratio is constant (frozen composition).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from hfanalysis.thermo.combustion import Gas
+
+SUBSONIC, SHOCK, SUPERSONIC = 0, 1, 2
+REGIMES = ("subsonic", "shock in the diverging part", "supersonic")
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Mass flow [kg/s], thrust [N], Mach number and pressure [Pa] at the exit, and the regime in words."""
+
+    mass_flow: float
+    thrust: float
+    exit_mach: float
+    exit_pressure: float
+    regime: str
+
+
+def nozzle_flow(gas: Gas, pressure: float, ambient: float, throat_area: float, exit_area: float) -> Flow:
+    """Flow through a nozzle of the given areas [m^2] from a chamber at ``pressure`` to ``ambient`` [Pa].
+
+    Raises ValueError where the exit is smaller than the throat.
+    """
+    if exit_area < throat_area:
+        raise ValueError(f"the exit ({exit_area} m^2) is smaller than the throat ({throat_area} m^2)")
+    flow = expand(
+        gas.gamma, gas.gas_constant * gas.temperature, pressure, ambient, throat_area, exit_area
+    )
+    return Flow(flow[0], flow[1], flow[2], flow[3], REGIMES[int(flow[4])])
+
+
+@njit(cache=True)
+def area_ratio(mach: float, gamma: float) -> float:
+    """A/A* = ((2/(g+1)) (1 + (g-1)/2 M^2))^((g+1)/(2(g-1))) / M (report, eq. 3.37).
+
+    >>> round(area_ratio(2.0, 1.4), 4)
+    1.6875
+    """
+    base = 2.0 / (gamma + 1.0) * (1.0 + 0.5 * (gamma - 1.0) * mach * mach)
+    return base ** (0.5 * (gamma + 1.0) / (gamma - 1.0)) / mach
+
+
+@njit(cache=True)
+def mach_at_area(ratio: float, gamma: float, supersonic: bool) -> float:
+    """Mach number at A/A* = ``ratio`` >= 1 on one branch: Newton on ln(A/A*) in ln M, kept on its side of M = 1."""
+    if ratio <= 1.0:
+        return 1.0
+    # near the throat A/A* - 1 is quadratic in M - 1; far from it the branches follow powers of the ratio
+    spread = np.sqrt(2.0 * np.log(ratio) * (gamma + 1.0) / 2.0)
+    x = min(spread, 2.5) if supersonic else max(-spread, -np.log(ratio) - 0.6)
+    target = np.log(ratio)
+    for _ in range(60):
+        mach = np.exp(x)
+        square = mach * mach
+        slope = (square - 1.0) / (1.0 + 0.5 * (gamma - 1.0) * square)
+        error = np.log(area_ratio(mach, gamma)) - target
+        if abs(error) < 1e-14:
+            break
+        step = error / slope if slope != 0.0 else 0.0
+        new = x - step
+        if supersonic and new <= 0.0:
+            new = 0.5 * x
+        if not supersonic and new >= 0.0:
+            new = 0.5 * x
+        if abs(new - x) < 1e-15:
+            break
+        x = new
+    return np.exp(x)
+
+
+@njit(cache=True)
+def pressure_ratio(mach: float, gamma: float) -> float:
+    """p/p_0 of isentropic flow at a Mach number (report, eq. 3.38).
+
+    >>> round(pressure_ratio(2.0, 1.4), 5)
+    0.1278
+    """
+    return (1.0 + 0.5 * (gamma - 1.0) * mach * mach) ** (-gamma / (gamma - 1.0))
+
+
+@njit(cache=True)
+def pressure_after_shock(mach: float, gamma: float) -> float:
+    """p_2/p_1 across a normal shock (report, eq. 3.41).
+
+    >>> round(pressure_after_shock(2.0, 1.4), 4)
+    4.5
+    """
+    return (2.0 * gamma * mach * mach - (gamma - 1.0)) / (gamma + 1.0)
+
+
+@njit(cache=True)
+def stagnation_after_shock(mach: float, gamma: float) -> float:
+    """p_0y/p_0x across a normal shock (report, eq. 3.43).
+
+    >>> round(stagnation_after_shock(2.0, 1.4), 4)
+    0.7209
+    """
+    square = mach * mach
+    first = (2.0 * gamma * square - (gamma - 1.0)) / (gamma + 1.0)
+    second = (gamma + 1.0) * square / (2.0 + (gamma - 1.0) * square)
+    return first ** (-1.0 / (gamma - 1.0)) * second ** (gamma / (gamma - 1.0))
+
+
+@njit(cache=True)
+def choked_flow_factor(gamma: float) -> float:
+    """mdot sqrt(R T) / (A p_0) of a choked throat."""
+    return np.sqrt(gamma) * (0.5 * (gamma + 1.0)) ** (-0.5 * (gamma + 1.0) / (gamma - 1.0))
+
+
+@njit(cache=True)
+def mach_at_pressure(ratio: float, gamma: float) -> float:
+    """Mach number at p/p_0 = ``ratio`` <= 1 (the inverse of :func:`pressure_ratio`)."""
+    return np.sqrt(2.0 / (gamma - 1.0) * (ratio ** (-(gamma - 1.0) / gamma) - 1.0))
+
+
+@njit(cache=True)
+def expand(
+    gamma: float, specific_temperature: float, pressure: float, ambient: float, throat_area: float, exit_area: float
+) -> tuple[float, float, float, float, int]:
+    """Mass flow [kg/s], thrust [N], exit Mach number, exit pressure [Pa], regime; no flow for p <= ambient.
+
+    ``specific_temperature`` is R T of the chamber gas [J/kg].
+    """
+    if not pressure > ambient:
+        return 0.0, 0.0, 0.0, ambient, SUBSONIC
+    ratio = exit_area / throat_area
+    first = mach_at_area(ratio, gamma, False)
+    if ambient >= pressure * pressure_ratio(first, gamma):
+        mach = mach_at_pressure(ambient / pressure, gamma)
+        return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, mach, ambient, SUBSONIC)
+    full = mach_at_area(ratio, gamma, True)
+    exit_pressure = pressure * pressure_ratio(full, gamma)
+    if ambient < exit_pressure * pressure_after_shock(full, gamma):
+        return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, full, exit_pressure, SUPERSONIC)
+    # behind a shock p_e M_e sqrt(1 + (g-1)/2 M_e^2) A_e carries the choked flow: p_e = p_a gives M_e in closed form
+    choked = choked_flow_factor(gamma) * throat_area * pressure / (exit_area * ambient)
+    square = (np.sqrt(1.0 + 2.0 * (gamma - 1.0) * choked * choked / gamma) - 1.0) / (gamma - 1.0)
+    return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, np.sqrt(square), ambient, SHOCK)
+
+
+@njit(cache=True)
+def _ejected(
+    gamma: float,
+    specific_temperature: float,
+    pressure: float,
+    ambient: float,
+    exit_area: float,
+    mach: float,
+    exit_pressure: float,
+    regime: int,
+) -> tuple[float, float, float, float, int]:
+    """Flow and thrust F = mdot v_e + (p_e - p_a) A_e from the exit's state; total temperature is conserved."""
+    exit_temperature = specific_temperature / (1.0 + 0.5 * (gamma - 1.0) * mach * mach)
+    velocity = mach * np.sqrt(gamma * exit_temperature)
+    flow = exit_pressure / exit_temperature * velocity * exit_area
+    return flow, flow * velocity + (exit_pressure - ambient) * exit_area, mach, exit_pressure, regime

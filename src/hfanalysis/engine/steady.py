@@ -1,0 +1,164 @@
+"""Steady-state design of a hybrid engine (report, chapter 2): constant oxidizer flow, ideal nozzle, constant thrust.
+
+Everything follows from oxidizer flow, chamber pressure, grain and exit: the burn time and the mean fuel flow have closed forms
+because with a constant flow the port opens as r^N, N = 2 n + 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi, sqrt
+
+from scipy.optimize import brentq
+
+from hfanalysis.engine.nozzle import choked_flow_factor, expand, mach_at_area, mach_at_pressure, area_ratio, pressure_ratio
+from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, apogee, gravity
+from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, Gas, equilibrium
+
+
+@dataclass(frozen=True)
+class Grain:
+    """Cylindrical port: length, outer radius [m], density [kg/m^3], regression a [m/s (kg/m^2/s)^-n] and n."""
+
+    length: float
+    outer_radius: float
+    density: float
+    a: float
+    n: float
+
+    def port_radius(self, mass: float) -> float:
+        """Initial port radius [m] of a grain of that mass [kg]; raises ValueError where it does not fit."""
+        square = self.outer_radius**2 - mass / (pi * self.density * self.length)
+        if square <= 0.0:
+            raise ValueError(f"a grain of {mass:.3f} kg does not fit {self.length} m by {self.outer_radius} m radius")
+        return sqrt(square)
+
+    def burn_time(self, oxidizer_flow: float, mass: float) -> float:
+        """t = (R^N - r_0^N) / (a N) (pi / mdot_o)^n [s] (report, eq. 2.3)."""
+        power = 2.0 * self.n + 1.0
+        opened = self.outer_radius**power - self.port_radius(mass) ** power
+        return opened / (self.a * power) * (pi / oxidizer_flow) ** self.n
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """What a steady design starts from: oxidizer flow [kg/s], pressures [Pa], exit radius [m] (None: ideally expanded)."""
+
+    oxidizer_flow: float
+    chamber_pressure: float
+    ambient: float
+    exit_radius: float | None
+    oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY
+
+
+@dataclass(frozen=True)
+class SteadyEngine:
+    """A steady design: SI units; ``of_ratio`` is the mean over the burn."""
+
+    burn_time: float
+    oxidizer_mass: float
+    fuel_mass: float
+    of_ratio: float
+    chamber_temperature: float
+    thrust: float
+    throat_radius: float
+    exit_radius: float
+    total_impulse: float
+    specific_impulse: float
+
+    @property
+    def propellant_flow(self) -> float:
+        """Mean flow through the nozzle [kg/s]."""
+        return (self.oxidizer_mass + self.fuel_mass) / self.burn_time
+
+    def thrust_to_weight(self, vehicle: Vehicle) -> float:
+        """Thrust over the weight of the loaded rocket on its pad."""
+        mass = vehicle.dry_mass + self.oxidizer_mass + self.fuel_mass
+        return self.thrust / (mass * gravity(vehicle.launch_altitude))
+
+
+def design(requirement: Requirement, grain: Grain, fuel_mass: float) -> SteadyEngine:
+    """The engine that burns ``fuel_mass`` [kg] of a grain under the requirement.
+
+    Raises ValueError for a grain that does not fit or an exit smaller than the throat.
+    """
+    time = grain.burn_time(requirement.oxidizer_flow, fuel_mass)
+    fuel_flow = fuel_mass / time
+    of_ratio = requirement.oxidizer_flow / fuel_flow
+    gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy)
+    flow = requirement.oxidizer_flow + fuel_flow
+    throat = flow * sqrt(gas.gas_constant * gas.temperature) / (
+        choked_flow_factor(gas.gamma) * requirement.chamber_pressure
+    )
+    thrust, exit_area = _thrust(gas, requirement, throat)
+    return SteadyEngine(
+        burn_time=time,
+        oxidizer_mass=requirement.oxidizer_flow * time,
+        fuel_mass=fuel_mass,
+        of_ratio=of_ratio,
+        chamber_temperature=gas.temperature,
+        thrust=thrust,
+        throat_radius=sqrt(throat / pi),
+        exit_radius=sqrt(exit_area / pi),
+        total_impulse=thrust * time,
+        specific_impulse=thrust / (flow * STANDARD_GRAVITY),
+    )
+
+
+def _thrust(gas: Gas, requirement: Requirement, throat: float) -> tuple[float, float]:
+    """Thrust [N] and exit area [m^2] of a supersonic nozzle on a choked throat."""
+    if requirement.exit_radius is None:
+        mach = mach_at_pressure(requirement.ambient / requirement.chamber_pressure, gas.gamma)
+        exit_area = throat * area_ratio(mach, gas.gamma)
+    else:
+        exit_area = pi * requirement.exit_radius**2
+        if exit_area < throat:
+            raise ValueError(f"the exit radius of {requirement.exit_radius} m is smaller than the throat's")
+        mach = mach_at_area(exit_area / throat, gas.gamma, True)
+    heat = gas.gas_constant * gas.temperature
+    velocity = mach * sqrt(gas.gamma * heat / (1.0 + 0.5 * (gas.gamma - 1.0) * mach**2))
+    exit_pressure = requirement.chamber_pressure * pressure_ratio(mach, gas.gamma)
+    flow = choked_flow_factor(gas.gamma) * throat * requirement.chamber_pressure / sqrt(heat)
+    return flow * velocity + (exit_pressure - requirement.ambient) * exit_area, exit_area
+
+
+def fuel_for_apogee(requirement: Requirement, grain: Grain, vehicle: Vehicle, target: float) -> float:
+    """Fuel mass [kg] with which the rocket reaches ``target`` [m] above its site.
+
+    Raises ValueError where no grain in this casing does.
+    """
+    full = 0.999 * pi * grain.outer_radius**2 * grain.length * grain.density
+
+    def miss(mass: float) -> float:
+        engine = design(requirement, grain, mass)
+        return apogee(vehicle, engine.thrust, engine.propellant_flow, engine.burn_time) - target
+
+    if miss(full) < 0.0:
+        raise ValueError(f"no grain in this casing reaches {target:.0f} m; a full one ends {-miss(full):.0f} m below")
+    return float(brentq(miss, 1e-3 * full, full, xtol=1e-7))
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """The mixture of highest ideally expanded specific impulse [s]."""
+
+    of_ratio: float
+    specific_impulse: float
+
+
+def ideal_specific_impulse(requirement: Requirement, of_ratio: float) -> float:
+    """Specific impulse [s] of the ideally expanded nozzle at a mixture."""
+    gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy)
+    thrust, _ = _thrust(gas, replace(requirement, exit_radius=None), 1.0)
+    flow = choked_flow_factor(gas.gamma) * requirement.chamber_pressure / sqrt(gas.gas_constant * gas.temperature)
+    return thrust / (flow * STANDARD_GRAVITY)
+
+
+def optimum(requirement: Requirement) -> Optimum:
+    """The best mixture at the chamber pressure, expanded to ambient."""
+    from scipy.optimize import minimize_scalar
+
+    found = minimize_scalar(
+        lambda of: -ideal_specific_impulse(requirement, of), bounds=(2.0, 15.0), method="bounded", options={"xatol": 1e-4}
+    )
+    return Optimum(float(found.x), -float(found.fun))

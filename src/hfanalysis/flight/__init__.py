@@ -1,0 +1,1 @@
+"""The rocket's flight in one dimension."""

@@ -1,0 +1,116 @@
+"""Equilibrium combustion of nitrous oxide and paraffin, by NASA's CEA (report, section 2.1.2; PROPEP there).
+
+Paraffin is n-eicosane, C20H42, liquid. The gas in the nozzle is taken frozen: its heat capacity ratio is that of the
+chamber's composition with no further reaction (an equilibrium ratio gives 249 s at O/F 7.0 where the report has 238 s at 6.34).
+Condensed carbon counts: it takes part in the mass and not in the gas law.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from hfanalysis.thermo.constants import GAS_CONSTANT, OXIDIZER_MOLAR_MASS
+
+FUEL_MOLAR_MASS = 282.5475
+"""n-eicosane [kg/kmol]."""
+
+FUEL_ENTHALPY = -554e6 / FUEL_MOLAR_MASS
+"""Heat of formation of liquid n-eicosane at 298.15 K [J/kg]; the report prints +557 MJ/kmol."""
+
+PROPEP_OXIDIZER_ENTHALPY = 82.05e6 / OXIDIZER_MOLAR_MASS
+"""What PROPEP, and with it the report, takes for nitrous oxide: the ideal gas at 298.15 K [J/kg]."""
+
+FORMATION_OFFSET = 61.385e6 / OXIDIZER_MOLAR_MASS
+"""Formation scale less the scale on which saturation properties are given [J/kg]: 0 for the liquid at its boiling point."""
+
+REFERENCE_TEMPERATURE = 298.15
+
+
+@dataclass(frozen=True)
+class Gas:
+    """Chamber gas: temperature [K], molar mass for the gas law [kg/kmol], frozen heat capacity ratio [-]."""
+
+    temperature: float
+    molar_mass: float
+    gamma: float
+
+    @property
+    def gas_constant(self) -> float:
+        """R_u / W [J/(kg K)]."""
+        return GAS_CONSTANT / self.molar_mass
+
+    @property
+    def characteristic_velocity(self) -> float:
+        """c* = sqrt(R T / gamma) ((gamma + 1)/2)^((gamma + 1)/(2 (gamma - 1))) [m/s]."""
+        g = self.gamma
+        return sqrt(self.gas_constant * self.temperature / g) * ((g + 1.0) / 2.0) ** ((g + 1.0) / (2.0 * (g - 1.0)))
+
+
+def equilibrium(
+    pressure: float, of_ratio: float, oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY, nitrogen_share: float = 0.0
+) -> Gas:
+    """Equilibrium at constant enthalpy and pressure [Pa].
+
+    ``of_ratio`` counts all that comes through the injector, of which ``nitrogen_share`` by mass is nitrogen at 298.15 K;
+    ``oxidizer_enthalpy`` is that of the nitrous oxide entering, on the formation scale [J/kg]. Raises ArithmeticError where the
+    equilibrium does not converge, ValueError for a pressure or ratio that is not positive.
+
+    >>> round(equilibrium(27.579e5, 4.29).temperature)
+    2666
+    """
+    if not (pressure > 0.0 and of_ratio > 0.0 and 0.0 <= nitrogen_share < 1.0):
+        raise ValueError(f"no mixture: {pressure=} Pa, {of_ratio=}, {nitrogen_share=}")
+    return _solver().solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
+
+
+class _Solver:
+    """CEA's equilibrium solver with the reactants set up once."""
+
+    def __init__(self) -> None:
+        import cea
+
+        fuel = cea.Reactant(
+            name="paraffin",
+            formula={"C": 20.0, "H": 42.0},
+            molecular_weight=FUEL_MOLAR_MASS,
+            enthalpy=0.0,
+            enthalpy_units="J/kg",
+            temperature=REFERENCE_TEMPERATURE,
+        )
+        oxidizer = cea.Reactant(
+            name="nitrous oxide",
+            formula={"N": 2.0, "O": 1.0},
+            molecular_weight=OXIDIZER_MOLAR_MASS,
+            enthalpy=0.0,
+            enthalpy_units="J/kg",
+            temperature=REFERENCE_TEMPERATURE,
+        )
+        reactants = cea.Mixture([fuel, oxidizer, "N2"])
+        products = cea.Mixture([fuel, oxidizer, "N2"], products_from_reactants=True)
+        self._cea: Any = cea
+        self._solver = cea.EqSolver(products, reactants=reactants)
+        self._solution = cea.EqSolution(self._solver)
+
+    def solve(self, pressure: float, of_ratio: float, oxidizer_enthalpy: float, nitrogen_share: float) -> Gas:
+        """One equilibrium; the nitrogen enters at 298.15 K, where its enthalpy is zero on the formation scale."""
+        weights = np.array([1.0, of_ratio * (1.0 - nitrogen_share), of_ratio * nitrogen_share])
+        weights /= weights.sum()
+        enthalpy = float(weights[0] * FUEL_ENTHALPY + weights[1] * oxidizer_enthalpy)
+        # CEA takes h/R with R in J/(kg K) on a kilogram of mixture, and the pressure in bar
+        self._solver.solve(self._solution, self._cea.HP, enthalpy / self._cea.R, pressure / 1e5, weights)
+        s = self._solution
+        if not s.converged or not s.T > 0.0:
+            raise ArithmeticError(f"no equilibrium at {pressure / 1e5:.3g} bar and O/F {of_ratio:.3g}")
+        cp = 1e3 * float(s.cp_fr)
+        molar_mass = float(s.M)
+        return Gas(float(s.T), molar_mass, cp / (cp - GAS_CONSTANT / molar_mass))
+
+
+@lru_cache(maxsize=1)
+def _solver() -> _Solver:
+    return _Solver()
