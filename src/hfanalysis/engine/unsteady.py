@@ -1,0 +1,236 @@
+"""The unsteady engine (report, chapter 3): tank, feed, grain, chamber, nozzle and the rocket's ascent in one system.
+
+State: tank mass, tank temperature, port radius, oxidizer and fuel stored in the chamber, altitude, speed, impulse. The chamber
+pressure follows from the stored masses by the gas law. Phases change by events of the solver: the liquid runs out, the fuel is
+gone. The right-hand side is compiled; CVODE (BDF) integrates, for the chamber's time constant is milliseconds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import pi, sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
+from hfanalysis.engine.nozzle import expand
+from hfanalysis.engine.tank import compressibility, liquid_mass, temperature_rate
+from hfanalysis.flight.constant_thrust import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle
+from hfanalysis.thermo.combustion_table import CombustionTable, Grid, chamber_pressure, gas_at
+from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
+from hfanalysis.thermo.saturation import LIQUID_VOLUME, LN_PRESSURE, Saturation, evaluate
+
+Array = NDArray[np.float64]
+Table = tuple[Array, float, float, float]
+
+STATES = ("tank_mass", "tank_temperature", "port_radius", "chamber_oxidizer", "chamber_fuel", "altitude", "speed", "impulse")
+TANK, TEMPERATURE, RADIUS, OXIDIZER, FUEL, ALTITUDE, SPEED, IMPULSE = range(8)
+OUTPUTS = ("tank_pressure", "chamber_pressure", "chamber_temperature_by_mass", "thrust", "oxidizer_flow", "fuel_flow", "nozzle_flow", "of_ratio")
+
+
+PAD = 1e-3
+"""Height [m] above which a rocket has left its pad."""
+
+
+@dataclass(frozen=True)
+class Engine:
+    """An engine in SI units: what an engine file states."""
+
+    saturation: Saturation
+    combustion: CombustionTable
+    feed: FeedSystem
+    oxidizer_mass: float
+    temperature: float
+    polytropic_exponent: float | None
+    fuel_mass: float
+    grain_length: float
+    outer_radius: float
+    fuel_density: float
+    a: float
+    n: float
+    dead_volume: float
+    throat_area: float
+    exit_area: float
+    vehicle: Vehicle
+
+    @property
+    def port_radius(self) -> float:
+        """Initial port radius [m]."""
+        return sqrt(self.outer_radius**2 - self.fuel_mass / (pi * self.fuel_density * self.grain_length))
+
+
+@dataclass(frozen=True)
+class Burn:
+    """Histories on the solver's steps: ``states`` (n, 8) as STATES, ``outputs`` (n, 8) as OUTPUTS; events in seconds."""
+
+    time: Array
+    states: Array
+    outputs: Array
+    liquid_out: float | None
+    burn_time: float
+    steps: int = field(default=0)
+
+    def output(self, name: str) -> Array:
+        """One of OUTPUTS over time."""
+        return self.outputs[:, OUTPUTS.index(name)]
+
+    def state(self, name: str) -> Array:
+        """One of STATES over time."""
+        return self.states[:, STATES.index(name)]
+
+
+@njit(cache=True)
+def air(altitude: float) -> tuple[float, float]:
+    """Pressure [Pa] and density [kg/m^3] of the atmosphere model below 11 km (report, appendix A.2)."""
+    t = -0.00649 * altitude + 288.19
+    p = 101_290.0 * (t / 288.08) ** 5.256
+    return p, p * AIR_MOLAR_MASS / (GAS_CONSTANT * t)
+
+
+@njit(cache=True)
+def rates(y: Array, liquid: bool, sat: Table, gas: Grid, c: Array, dy: Array, out: Array) -> None:
+    """Right-hand side; ``c`` holds the engine's constants in the order of :func:`_constants`."""
+    volume, area, factor, constant = c[0], c[1], c[2], c[4] >= 0.0
+    ambient, rho = air(y[5])
+    port = y[2]
+    chamber_volume = c[9] + pi * port * port * c[6]
+    mass = max(y[3] + y[4], 1e-9)
+    ratio = min(max(y[3], 1e-9) / max(y[4], 1e-9), 1e4)
+    p_c, rt, gamma = chamber_pressure(gas, mass, chamber_volume, np.log(ratio), ambient)
+    if liquid:
+        p_t = np.exp(evaluate(*sat, LN_PRESSURE, y[1])[0])
+        density = 1.0 / evaluate(*sat, LIQUID_VOLUME, y[1])[0]
+        loss = c[4]
+    else:
+        p_t = c[14] * (y[0] / c[15]) ** c[3]
+        density = y[0] / volume
+        loss = c[5]
+    flow = mass_flow(area, density, p_t - loss - p_c) if constant else mass_flow_with_feed(area, factor, density, p_t - p_c)
+    opening = c[7] * (flow / (pi * port * port)) ** c[8] if flow > 0.0 else 0.0
+    fuel_flow = c[10] * 2.0 * pi * port * c[6] * opening
+    nozzle, thrust, _, _, _ = expand(gamma, rt, p_c, ambient, c[11], c[12])
+    dy[0] = -flow
+    dy[1] = temperature_rate(sat, volume, y[0], y[1], flow, 0.0) if liquid else y[1] * (c[3] - 1.0) * -flow / y[0]
+    dy[2] = opening
+    dy[3] = flow - nozzle * y[3] / mass
+    dy[4] = fuel_flow - nozzle * y[4] / mass
+    total = c[16] + y[0] + c[10] * pi * c[6] * (c[13] * c[13] - port * port) + y[3] + y[4]
+    pull = total * STANDARD_GRAVITY * (EARTH_RADIUS / (EARTH_RADIUS + y[5])) ** 2 * c[18]
+    net = thrust - 0.5 * c[17] * rho * y[6] * abs(y[6]) - pull
+    dy[5] = y[6] * c[18]
+    # on its pad the rocket stands; what lifts it is the thrust alone
+    dy[6] = net / total if net > 0.0 or y[5] > c[19] + PAD else 0.0
+    dy[7] = thrust
+    out[0], out[1], out[2], out[3] = p_t, p_c, rt, thrust
+    out[4], out[5], out[6], out[7] = flow, fuel_flow, nozzle, ratio
+
+
+def _constants(e: Engine) -> Array:
+    liquid_loss, vapor_loss = e.feed.constant_losses or (-1.0, -1.0)
+    v = e.vehicle
+    return np.array(
+        [
+            e.feed.volume, e.feed.area, e.feed.loss_factor, e.polytropic_exponent or np.nan, liquid_loss, vapor_loss,
+            e.grain_length, e.a, e.n, e.dead_volume, e.fuel_density, e.throat_area, e.exit_area, e.outer_radius,
+            0.0, 0.0, v.dry_mass, v.drag_coefficient * v.frontal_area, np.cos(v.launch_angle),
+            v.launch_altitude,
+        ]
+    )  # fmt: skip
+
+
+def _initial(e: Engine, c: Array) -> Array:
+    """The chamber starts filled with equilibrium gas at ambient pressure and at the O/F that enters (0/0 in the report)."""
+    ambient, _ = air(e.vehicle.launch_altitude)
+    p_t = float(e.saturation.pressure(e.temperature))
+    density = float(e.saturation.liquid_density(e.temperature))
+    if c[4] >= 0.0:
+        flow = mass_flow(c[1], density, p_t - c[4] - ambient)
+    else:
+        flow = mass_flow_with_feed(c[1], c[2], density, p_t - ambient)
+    r = e.port_radius
+    fuel = e.fuel_density * 2.0 * pi * r * e.grain_length * e.a * (flow / (pi * r * r)) ** e.n
+    ratio = flow / fuel
+    rt, _ = gas_at(e.combustion.kernel, np.log(ambient), np.log(ratio))
+    mass = ambient * (e.dead_volume + pi * r * r * e.grain_length) / rt
+    stored = (mass * ratio / (1.0 + ratio), mass / (1.0 + ratio))
+    return np.array([e.oxidizer_mass, e.temperature, r, *stored, e.vehicle.launch_altitude, 0.0, 0.0])
+
+
+def burn(engine: Engine, longest: float = 120.0, rtol: float = 1e-8) -> Burn:
+    """From ignition until the fuel is gone (or ``longest`` seconds).
+
+    Raises ArithmeticError where the solver gives up.
+    """
+    c = _constants(engine)
+    y = _initial(engine, c)
+    sat, gas = engine.saturation.kernel_table, engine.combustion.kernel
+    times, states = [0.0], [y.copy()]
+    t, liquid_out, done = 0.0, None, False
+    liquid = liquid_mass(sat, c[0], y[0], y[1]) > 0.0
+    wet_until = 0
+    while not done:
+        part_t, part_y, event = _phase(y, t, longest, liquid, sat, gas, c, rtol)
+        times.extend(part_t[1:])
+        states.extend(part_y[1:])
+        t, y = float(part_t[-1]), np.array(part_y[-1])
+        if event == 0 and liquid:
+            liquid, liquid_out, wet_until = False, t, len(times)
+            _begin_vapor(engine, c, y)
+        else:
+            done = True
+    outputs = _outputs(np.array(states), wet_until if liquid_out is not None else len(times), liquid, sat, gas, c)
+    return Burn(np.array(times), np.array(states), outputs, liquid_out, t, len(times))
+
+
+def _begin_vapor(engine: Engine, c: Array, y: Array) -> None:
+    c[14], c[15] = float(engine.saturation.pressure(y[TEMPERATURE])), y[TANK]
+    if engine.polytropic_exponent is None:
+        cv, cp = engine.saturation.heat_capacities(y[TEMPERATURE])
+        c[3] = float(cp / cv)
+
+
+def _phase(
+    y: Array, start: float, longest: float, liquid: bool, sat: Table, gas: Grid, c: Array, rtol: float
+) -> tuple[Array, Array, int]:
+    """Integrate one phase; event 0: liquid gone, 1: fuel gone, -1: none."""
+    from sksundae.cvode import CVODE
+
+    out = np.empty(8)
+
+    def rhs(t: float, state: Array, dy: Array) -> None:
+        rates(state, liquid, sat, gas, c, dy, out)
+
+    def events(t: float, state: Array, values: Array) -> None:
+        values[0] = liquid_mass(sat, c[0], state[0], state[1]) if liquid else 1.0
+        values[1] = c[13] - state[2]
+
+    events.terminal = [True, True]  # type: ignore[attr-defined]
+    scale = np.array([1e-3, 1e-2, 1e-5, 1e-7, 1e-7, 1e-2, 1e-3, 1e-1])
+    solver = CVODE(rhs, method="BDF", rtol=rtol, atol=rtol * scale * 10.0, eventsfn=events, num_events=2, max_num_steps=100_000)
+    solution = solver.solve(np.array([start, longest]), y)
+    if not solution.success and solution.status < 0:
+        raise ArithmeticError(f"the engine cannot be integrated beyond {solution.t[-1]:.3f} s: {solution.message}")
+    hit = solution.i_events[-1] if solution.i_events is not None and len(solution.i_events) else None
+    event = -1 if hit is None else int(np.flatnonzero(hit)[0])
+    return solution.t, solution.y, event
+
+
+def _outputs(states: Array, wet_until: int, liquid: bool, sat: Table, gas: Grid, c: Array) -> Array:
+    out = np.empty((len(states), 8))
+    scratch = np.empty(8)
+    for i, y in enumerate(states):
+        rates(y, i < wet_until, sat, gas, c, scratch, out[i])
+    return out
+
+
+def vapor_compressibility(engine: Engine, burnt: Burn) -> float | None:
+    """Z of the vapour when the liquid runs out; None where it does not."""
+    if burnt.liquid_out is None:
+        return None
+    i = int(np.searchsorted(burnt.time, burnt.liquid_out))
+    y = burnt.states[i]
+    p = float(engine.saturation.pressure(y[TEMPERATURE]))
+    return compressibility(p, engine.feed.volume, float(y[TANK]), float(y[TEMPERATURE]))

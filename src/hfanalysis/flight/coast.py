@@ -1,0 +1,113 @@
+"""From burn-out to the ground: coasting ascent, drogue, main parachute, and the ballistic case (report, section 3.1.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import cos, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from hfanalysis.flight.constant_thrust import Vehicle, gravity
+from hfanalysis.thermo.atmosphere import HIGHEST, density, temperature
+from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
+
+Array = NDArray[np.float64]
+AIR_GAMMA = 1.4
+LONGEST = 3600.0
+
+
+@dataclass(frozen=True)
+class Parachute:
+    """Drag coefficient on its area [m^2]; ``deploy_altitude`` above ground [m] (None: at apogee)."""
+
+    drag_coefficient: float
+    area: float
+    deploy_altitude: float | None = None
+
+
+@dataclass(frozen=True)
+class Leg:
+    """One part of a flight: time [s], altitude above sea level [m], speed [m/s] (upwards positive on the descent)."""
+
+    time: Array
+    altitude: Array
+    speed: Array
+
+    @property
+    def end(self) -> tuple[float, float, float]:
+        """Last time, altitude and speed."""
+        return float(self.time[-1]), float(self.altitude[-1]), float(self.speed[-1])
+
+
+def speed_of_sound(altitude: float) -> float:
+    """Of air [m/s] at an altitude above sea level [m]."""
+    return sqrt(AIR_GAMMA * GAS_CONSTANT / AIR_MOLAR_MASS * temperature(altitude))
+
+
+def coast(vehicle: Vehicle, time: float, altitude: float, speed: float) -> Leg:
+    """Coast with the dry mass along the launch angle until the speed is gone. Raises ValueError above 30 km."""
+    climb = cos(vehicle.launch_angle)
+    area = vehicle.drag_coefficient * vehicle.frontal_area
+
+    def rates(_t: float, y: Array) -> list[float]:
+        drag = 0.5 * area * density(min(y[0], HIGHEST)) * y[1] * abs(y[1])
+        return [y[1] * climb, -drag / vehicle.dry_mass - gravity(y[0]) * climb]
+
+    leg = _until(rates, (time, altitude, speed), lambda y: y[1])
+    if leg.altitude[-1] >= HIGHEST:
+        raise ValueError(f"the rocket leaves the atmosphere model: above {HIGHEST:.0f} m")
+    return leg
+
+
+def fall(vehicle: Vehicle, drag_area: float, start: tuple[float, float, float], floor: float) -> Leg:
+    """Fall vertically from (time, altitude, speed) to an altitude with a drag area C_d A [m^2] besides the rocket's own."""
+    own = vehicle.drag_coefficient * vehicle.frontal_area
+
+    def rates(_t: float, y: Array) -> list[float]:
+        drag = 0.5 * (own + drag_area) * density(y[0]) * y[1] * abs(y[1])
+        return [y[1], -gravity(y[0]) - drag / vehicle.dry_mass]
+
+    return _until(rates, start, lambda y: y[0] - floor)
+
+
+def _until(rates: Callable[[float, Array], list[float]], start: tuple[float, float, float], gone: Callable[[Array], float]) -> Leg:
+    def event(_t: float, y: Array) -> float:
+        return gone(y)
+
+    event.terminal = True  # type: ignore[attr-defined]
+    event.direction = -1  # type: ignore[attr-defined]
+    span = (start[0], start[0] + LONGEST)
+    out = solve_ivp(rates, span, list(start[1:]), method="LSODA", events=event, rtol=1e-9, atol=1e-7, max_step=1.0)
+    return Leg(out.t, out.y[0], out.y[1])
+
+
+@dataclass(frozen=True)
+class Descent:
+    """Under parachutes and without: speeds [m/s] downwards positive, times [s], the main's opening load in g."""
+
+    time_of_main: float
+    drogue_speed: float
+    landing_speed: float
+    landing_time: float
+    main_load: float
+    ballistic_speed: float
+    legs: tuple[Leg, ...]
+
+
+def descend(vehicle: Vehicle, apogee: tuple[float, float, float], drogue: Parachute, main: Parachute) -> Descent:
+    """From apogee (time, altitude above sea level, speed) to the ground."""
+    ground = vehicle.launch_altitude
+    top = (apogee[0], apogee[1], 0.0)
+    deploy = ground + min(main.deploy_altitude or 0.0, apogee[1] - ground)
+    first = fall(vehicle, drogue.drag_coefficient * drogue.area, top, deploy)
+    second = fall(vehicle, main.drag_coefficient * main.area, first.end, ground)
+    ballistic = fall(vehicle, 0.0, top, ground)
+    drag = 0.5 * main.drag_coefficient * main.area * density(deploy) * first.end[2] ** 2
+    own = 0.5 * vehicle.drag_coefficient * vehicle.frontal_area * density(deploy) * first.end[2] ** 2
+    load = (drag + own) / vehicle.dry_mass - gravity(deploy)
+    return Descent(
+        first.end[0], -first.end[2], -second.end[2], second.end[0], load / 9.80665, -ballistic.end[2], (first, second, ballistic)
+    )
