@@ -18,7 +18,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.segment.kind import Kind
 from hfanalysis.segment.phases import EVENTS, Segments
 from hfanalysis.segment.signals import Array, Signal, sample_noise
-from hfanalysis.testdata.definition import LogSpec, Test, TestDefinition
+from hfanalysis.testdata.definition import FileSpec, LogSpec, Test, TestDefinition
 from hfanalysis.testdata.log import Channel, TestLog
 from hfanalysis.testdata.sections import Injector, Model, Nozzle, Purge, Site, Tank
 from hfanalysis.thermo.nitrous import saturation
@@ -154,8 +154,8 @@ def definition(stand: Stand | None = None, **change: Any) -> TestDefinition:
         "site": Site(ambient_pressure=Value(AMBIENT, 0.0)),
     }
     sections.update(change)
-    log = LogSpec((), None)  # type: ignore[arg-type]  # nothing is read from disk
-    return TestDefinition(Path("T/test.toml"), "0" * 64, Test("T", kind), log, {}, **sections)
+    log, path = LogSpec((FileSpec("log.csv"),)), Path("T/test.toml")  # neither is read from disk
+    return TestDefinition(Test("T", kind), log, {}, **sections, path=path, sha256="0" * 64)
 
 
 def segments_of(test: Trial, t_open: float = 100.0, std: float = 1e-4, **change: Quantity) -> Segments:

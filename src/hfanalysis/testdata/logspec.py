@@ -1,60 +1,73 @@
 """[log], [channels.*] and [[exclude]] of test.toml: where the numbers are and what they mean."""
 
-# ruff: noqa: RUF009  (key() makes dataclass fields, not defaults)
 from __future__ import annotations
 
 import codecs
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import KW_ONLY, field, replace
+from functools import cached_property
+from typing import Annotated, Any, Literal
 
-from hfanalysis.errors import InputError
+from pydantic import AfterValidator, BeforeValidator, Field, SkipValidation
+
 from hfanalysis.testdata.channels import CANONICAL
 from hfanalysis.testdata.schema import (
+    DERIVED,
     NOT_NEGATIVE,
-    NOT_ZERO,
     POSITIVE,
-    Where,
-    build,
-    column,
-    integer,
-    key,
-    list_of,
-    number,
-    one_of,
+    Column,
+    Instant,
+    ListOf,
+    Number,
+    Refused,
+    Section,
+    Text,
+    YesOrNo,
     quantity,
-    text,
-    yes_or_no,
+    read_quantity,
+    refusing,
+    section,
 )
 from hfanalysis.units import Value, dimension_of, is_gauge, near, unit_factor
 
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "pipe": "|", "space": " ", "whitespace": " "}
-FORMATS = ("csv", "mat", "lvm", "tdms")
 
 
-def _delimiter(found: Any, where: Where) -> str:
-    mark = DELIMITERS.get(found, found) if isinstance(found, str) else found
+def _delimiter(found: str) -> str:
+    mark = DELIMITERS.get(found, found)
     if mark not in DELIMITERS.values():
-        raise where.wrong(found, "one of , ; tab | or whitespace")
-    return str(mark)
+        raise ValueError("one of , ; tab | or whitespace")
+    return mark
 
 
-def _encoding(found: Any, where: Where) -> str:
+def _encoding(found: str) -> str:
     try:
-        return codecs.lookup(text(found, where)).name
+        return codecs.lookup(found).name
     except LookupError:
-        raise where.wrong(found, "a text encoding such as 'utf-8', 'utf-16' or 'cp1252'") from None
+        raise ValueError("a text encoding such as 'utf-8', 'utf-16' or 'cp1252'") from None
 
 
-def _time_unit(found: Any, where: Where) -> str:
+def _time_unit(found: str) -> str:
     if found not in ("datetime", "clock"):
-        unit_factor(text(found, where), "time", str(where))
-    return str(found)
+        with refusing():
+            unit_factor(found, "time", "")
+    return found
 
 
-@dataclass(frozen=True)
-class TimeSpec:
+def _not_zero(found: float) -> float:
+    if found == 0.0:
+        raise ValueError("a number that is not zero")
+    return found
+
+
+def _under(key: str) -> BeforeValidator:
+    """What is no table stands for the table's one key that is needed."""
+    return BeforeValidator(lambda found: found if isinstance(found, (Mapping, Section)) else {key: found})
+
+
+@section
+class TimeSpec(Section):
     """Where a file's or a channel's time stamps are.
 
     ``column``: name or number from 1; ``rate`` [Hz] stands for it in logs without stamps. ``unit``: of time, or
@@ -63,99 +76,93 @@ class TimeSpec:
     spread evenly up to the next one.
     """
 
-    column: str | int | None = key(column, None)
-    unit: str = key(_time_unit, "s")
-    offset: Value = key(quantity("time"), Value(0.0))
-    rate: Value | None = key(quantity("frequency", POSITIVE), None)
-    spread: bool = key(yes_or_no, False)
+    column: Column | None = None
+    unit: Annotated[Text, AfterValidator(_time_unit)] = "s"
+    offset: Instant = Value(0.0)
+    rate: Annotated[Value, quantity("frequency", POSITIVE)] | None = None
+    spread: YesOrNo = False
 
-    def check(self, where: Where) -> None:
+    def check(self) -> None:
         if (self.column is None) == (self.rate is None):
-            raise InputError(f"{where}: expected either 'column' (of the stamps) or 'rate' (of a log without them)")
+            raise Refused("expected either 'column' (of the stamps) or 'rate' (of a log without them)")
 
 
-def _time(found: Any, where: Where) -> TimeSpec:
-    """A table, or just the column."""
-    return build(TimeSpec, found if isinstance(found, Mapping) else {"column": found}, where)
+Time = Annotated[TimeSpec, _under("column")]
 
 
-@dataclass(frozen=True)
-class FileSpec:
-    """One log file and how to read it; None is detected from the file."""
+@section
+class Reading(Section):
+    """How to read a log file; None is detected from the file."""
 
-    file: str = key(text)
-    time: TimeSpec | None = key(_time, None)
-    format: str | None = key(one_of(*FORMATS), None)
-    delimiter: str | None = key(_delimiter, None)
-    decimal: str | None = key(one_of(".", ","), None)
-    header_rows: int | None = key(integer(0), None)
-    encoding: str | None = key(_encoding, None)
+    _: KW_ONLY
+    time: Time | None = None
+    format: Literal["csv", "mat", "lvm", "tdms"] | None = None
+    delimiter: Annotated[str, AfterValidator(_delimiter)] | None = None
+    decimal: Literal[".", ","] | None = None
+    header_rows: Annotated[int, Field(strict=True, ge=0)] | None = None
+    encoding: Annotated[Text, AfterValidator(_encoding)] | None = None
 
-    def check(self, where: Where) -> None:
-        _two_marks(self.delimiter, self.decimal, where)
-
-
-def _two_marks(delimiter: str | None, decimal: str | None, where: Where) -> None:
-    if delimiter is not None and delimiter == decimal:
-        raise InputError(f"{where}: delimiter and decimal are both {decimal!r}; expected two different marks")
+    def check(self) -> None:
+        if self.delimiter is not None and self.delimiter == self.decimal:
+            raise Refused(f"delimiter and decimal are both {self.decimal!r}; expected two different marks")
 
 
-def _file(found: Any, where: Where) -> FileSpec:
-    return build(FileSpec, found if isinstance(found, Mapping) else {"file": found}, where)
+@section
+class FileSpec(Reading):
+    """One log file and how to read it."""
+
+    file: Text
 
 
-@dataclass(frozen=True)
-class LogSpec:
+@section
+class LogSpec(Reading):
     """[log]: the files; what is given beside ``files`` holds for every file that does not say otherwise."""
 
-    files: tuple[FileSpec, ...] = key(list_of(_file))
-    time: TimeSpec | None = key(_time, None)
-    format: str | None = key(one_of(*FORMATS), None)
-    delimiter: str | None = key(_delimiter, None)
-    decimal: str | None = key(one_of(".", ","), None)
-    header_rows: int | None = key(integer(0), None)
-    encoding: str | None = key(_encoding, None)
+    files: ListOf[Annotated[FileSpec, _under("file")]]
 
-    def check(self, where: Where) -> None:
+    def check(self) -> None:
+        super().check()
         names = [spec.file for spec in self.files]
         for name in names:
             if names.count(name) > 1:
-                raise InputError(f"{where / 'files'}: {name!r} is named twice; expected every file once")
-        shared = ("time", "format", "delimiter", "decimal", "header_rows", "encoding")
-        filled = tuple(
-            replace(spec, **{n: getattr(self, n) for n in shared if getattr(spec, n) is None}) for spec in self.files
-        )
-        for spec in filled:
-            _two_marks(spec.delimiter, spec.decimal, where)
-        object.__setattr__(self, "files", filled)
+                raise Refused(f"{name!r} is named twice; expected every file once", "files")
+        object.__setattr__(self, "files", tuple(self._completed(spec) for spec in self.files))
+
+    def _completed(self, spec: FileSpec) -> FileSpec:
+        shared = (f for f in Reading.__dataclass_fields__ if getattr(spec, f) is None)
+        return replace(spec, **{name: getattr(self, name) for name in shared})
 
     def named(self, file: str) -> FileSpec:
         """The file's specification."""
         return next(spec for spec in self.files if spec.file == file)
 
 
-@dataclass(frozen=True)
-class ChannelSpec:
+@section
+class ChannelSpec(Section):
     """[channels.NAME]: SI = unit(scale * reading + offset).
 
     ``accuracy`` [SI], one standard deviation of the sensor's bias; None takes the class default. ``missing``: readings
-    that stand for none (999 of an open thermocouple), as logged. ``dimension`` and ``name`` come from the table's name
-    and unit.
+    that stand for none (999 of an open thermocouple), as logged. ``gauge``: the ambient pressure is still to be added,
+    as stated or as the unit says.
     """
 
-    column: str | int = key(column)
-    unit: str = key(lambda found, where: found if found == "" else text(found, where), "")
-    file: str | None = key(text, None)
-    time: TimeSpec | None = key(_time, None)
-    scale: float = key(number(NOT_ZERO), 1.0)
-    offset: float = key(number(), 0.0)
-    gauge: bool | None = key(yes_or_no, None)
-    accuracy: Value | None = key(lambda found, where: found, None)
-    zero: str | None = key(one_of("ambient", "none"), None)
-    tare: str = key(one_of("auto", "before", "before_after", "none"), "none")
-    missing: tuple[float, ...] = key(list_of(number()), ())
-    name: str = ""
-    dimension: str = "dimensionless"
+    column: Column
+    unit: str = ""
+    file: Text | None = None
+    time: Time | None = None
+    scale: Annotated[Number, AfterValidator(_not_zero)] = 1.0
+    offset: Number = 0.0
+    gauge: YesOrNo | None = None
+    accuracy: Annotated[Value | None, SkipValidation] = None
+    zero: Literal["ambient", "none"] | None = None
+    tare: Literal["auto", "before", "before_after", "none"] = "none"
+    missing: ListOf[Number] = ()
+    name: str = field(default="", metadata=DERIVED)
+
+    @cached_property
+    def dimension(self) -> str:
+        """The dimension of a canonical channel, else the unit's."""
+        return CANONICAL.get(self.name) or dimension_of(self.unit, "")
 
     @property
     def factor(self) -> tuple[float, float]:
@@ -163,98 +170,85 @@ class ChannelSpec:
         scale, offset = unit_factor(self.unit, self.dimension, self.name)
         return scale * self.scale, scale * self.offset + offset
 
+    def check(self) -> None:
+        self._unit_fits()
+        self._corrections_fit()
+        self._gauge_fits()
+        if self.accuracy is not None:
+            differs = self.dimension in ("pressure", "temperature")
+            dimension = f"{self.dimension}_difference" if differs else self.dimension
+            object.__setattr__(self, "accuracy", read_quantity(self.accuracy, dimension, NOT_NEGATIVE, "accuracy"))
+        object.__setattr__(self, "gauge", self.dimension == "pressure" and (is_gauge(self.unit) or bool(self.gauge)))
 
-@dataclass(frozen=True)
-class Exclusion:
-    """[[exclude]]: a bad stretch [s, log time] of some channels; of all where none is named."""
+    def _unit_fits(self) -> None:
+        if not self.unit.strip() and CANONICAL.get(self.name, "dimensionless") != "dimensionless":
+            raise Refused(f"key 'unit' is missing; expected a unit of {CANONICAL[self.name]}")
+        with refusing("unit"):
+            unit_factor(self.unit, self.dimension, "")
 
-    start: Value = key(quantity("time"))
-    end: Value = key(quantity("time"))
-    channels: tuple[str, ...] = key(list_of(text), ())
+    def _corrections_fit(self) -> None:
+        """Gauge and zero are for pressures, tare for cells that weigh or push."""
+        if self.dimension != "pressure":
+            for key in ("gauge", "zero"):
+                if getattr(self, key) not in (None, False, "none"):
+                    raise Refused(f"found on a {self.dimension} channel; expected on pressures only", key)
+        if self.tare != "none" and self.dimension not in ("force", "mass", "voltage", "dimensionless"):
+            raise Refused(f"found on a {self.dimension} channel; expected on forces and masses only", "tare")
 
-    def check(self, where: Where) -> None:
-        if not self.start.value < self.end.value:
-            raise InputError(
-                f"{where}: start {self.start.value:g} s is not before end {self.end.value:g} s; expected start < end"
-            )
+    def _gauge_fits(self) -> None:
+        """What is stated must not contradict the unit."""
+        absolute = self.unit.replace("(a)", "a").casefold() in ("psia", "bara", "kpaa", "mpaa")
+        if self.gauge and absolute:
+            raise Refused(f"unit {self.unit!r} is an absolute pressure but gauge = true; expected agreement")
+        if self.gauge is False and self.dimension == "pressure" and is_gauge(self.unit):
+            raise Refused(f"unit {self.unit!r} is a gauge pressure but gauge = false; expected them to agree")
 
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _RESERVED = re.compile(r"time(_\d+)?|.*_(flags|raw)")
 
 
-def channels(found: Any, where: Where) -> dict[str, ChannelSpec]:
-    """[channels]: canonical name -> specification."""
+def _named(found: Any) -> Any:
+    """Every table with its own name."""
     if not isinstance(found, Mapping) or not found:
-        raise where.wrong(found, "at least one table [channels.NAME] such as [channels.p_tank]")
-    made = {name: _channel(name, raw, where / name) for name, raw in found.items()}
-    _no_column_twice(made, where)
-    return made
+        raise ValueError("at least one table [channels.NAME] such as [channels.p_tank]")
+    for name, table in found.items():
+        if not _NAME.fullmatch(name) or _RESERVED.fullmatch(name):
+            expected = "a name of letters, digits and _ (not time, nor ending in _flags or _raw)"
+            raise Refused(f"found {name!r}; expected {expected}", name)
+        if isinstance(table, Mapping) and "name" in table:
+            raise Refused("unknown key 'name'; the table's own name is the channel's", name)
+    return {name: {**t, "name": name} if isinstance(t, Mapping) else t for name, t in found.items()}
 
 
-def _channel(name: str, found: Any, where: Where) -> ChannelSpec:
-    if not _NAME.fullmatch(name) or _RESERVED.fullmatch(name):
-        raise where.wrong(name, "a name of letters, digits and _ (not time, nor ending in _flags or _raw)")
-    spec = build(ChannelSpec, found, where)
-    if name in CANONICAL and CANONICAL[name] != "dimensionless" and not spec.unit:
-        raise InputError(f"{where}: key 'unit' is missing; expected a unit of {CANONICAL[name]}")
-    dimension = CANONICAL.get(name) or dimension_of(spec.unit, str(where / "unit"))
-    unit_factor(spec.unit, dimension, str(where / "unit"))
-    accuracy = _accuracy(spec.accuracy, dimension, where / "accuracy")
-    spec = replace(spec, name=name, dimension=dimension, accuracy=accuracy)
-    _fits_dimension(spec, where)
-    return replace(spec, gauge=_gauge(spec, where))
-
-
-def _accuracy(found: Any, dimension: str, where: Where) -> Value | None:
-    if found is None:
-        return None
-    difference = f"{dimension}_difference" if dimension in ("pressure", "temperature") else dimension
-    value: Value = quantity(difference, NOT_NEGATIVE)(found, where)
-    return value
-
-
-def _fits_dimension(spec: ChannelSpec, where: Where) -> None:
-    """Gauge and zero are for pressures, tare for cells that weigh or push."""
-    if spec.dimension != "pressure":
-        for name in ("gauge", "zero"):
-            if getattr(spec, name) not in (None, False, "none"):
-                raise InputError(f"{where / name}: found on a {spec.dimension} channel; expected on pressures only")
-    if spec.tare != "none" and spec.dimension not in ("force", "mass", "voltage", "dimensionless"):
-        raise InputError(f"{where / 'tare'}: found on a {spec.dimension} channel; expected on forces and masses only")
-
-
-def _gauge(spec: ChannelSpec, where: Where) -> bool:
-    """Whether the ambient pressure is still to be added: as stated, or as the unit says."""
-    if spec.dimension != "pressure":
-        return False
-    by_unit = is_gauge(spec.unit)
-    if by_unit and spec.gauge is False:
-        raise InputError(f"{where}: unit {spec.unit!r} is a gauge pressure but gauge = false; expected them to agree")
-    absolute = spec.unit.replace("(a)", "a").casefold() in ("psia", "bara", "kpaa", "mpaa")
-    if spec.gauge and absolute:
-        raise InputError(f"{where}: unit {spec.unit!r} is an absolute pressure but gauge = true; expected agreement")
-    return by_unit or bool(spec.gauge)
-
-
-def _no_column_twice(made: Mapping[str, ChannelSpec], where: Where) -> None:
+def _no_column_twice(made: dict[str, ChannelSpec]) -> dict[str, ChannelSpec]:
     seen: dict[tuple[Any, Any], str] = {}
     for name, spec in made.items():
         first = seen.setdefault((spec.file, spec.column), name)
         if first != name:
-            raise InputError(
-                f"{where / name}.column: column {spec.column!r} is already {first}; expected every column once"
-            )
-
-
-def exclusions(found: Any, where: Where, known: Mapping[str, ChannelSpec]) -> tuple[Exclusion, ...]:
-    """[[exclude]]; the channels named must exist."""
-    made: tuple[Exclusion, ...] = list_of(lambda raw, at: build(Exclusion, raw, at))(found, where)
-    for i, exclusion in enumerate(made):
-        for name in exclusion.channels:
-            if name not in known:
-                raise InputError(
-                    f"{where / i / 'channels'}: {name!r} is no channel of this test{near(name, known)}; "
-                    f"expected some of {', '.join(known)}"
-                )
+            raise Refused(f"column {spec.column!r} is already {first}; expected every column once", name, "column")
     return made
+
+
+Channels = Annotated[dict[str, ChannelSpec], BeforeValidator(_named), AfterValidator(_no_column_twice)]
+
+
+@section
+class Exclusion(Section):
+    """[[exclude]]: a bad stretch [s, log time] of some channels; of all where none is named."""
+
+    start: Instant
+    end: Instant
+    channels: ListOf[Text] = ()
+
+    def check(self) -> None:
+        start, end = self.start.value, self.end.value
+        if not start < end:
+            raise Refused(f"start {start:g} s is not before end {end:g} s; expected start < end")
+
+    def check_channels(self, known: Mapping[str, ChannelSpec], *keys: str | int) -> None:
+        """Refuses a channel that is not there."""
+        for name in self.channels:
+            if name not in known:
+                among = f"{near(name, known)}; expected some of {', '.join(known)}"
+                raise Refused(f"{name!r} is no channel of this test{among}", *keys, "channels")

@@ -1,41 +1,81 @@
-"""A section of a TOML file as a frozen dataclass whose fields know how to read themselves.
+"""The words in which sections of test.toml and engine files are declared, on top of pydantic.
 
-The messages are the point: each names the file, the dotted key, what was found and what was expected, and offers near
-misses for misspelt keys.
+A section is a frozen dataclass that pydantic fills and checks. A validator here raises ``ValueError`` with what was
+expected, or :class:`Refused` with the whole sentence; :mod:`hfanalysis.testdata.document` adds the file and the key.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, fields
+from typing import Annotated, Any, Self, TypeVar, cast, dataclass_transform
+
+from pydantic import BeforeValidator, ConfigDict, Field, PlainValidator, model_validator
+from pydantic.dataclasses import dataclass as validated
 
 from hfanalysis.errors import InputError
 from hfanalysis.units import Value, near, parse
 
 T = TypeVar("T")
-Read = Callable[[Any, "Where"], Any]
-Check = Callable[[float], bool]
 
 
-@dataclass(frozen=True)
-class Where:
-    """A place in a TOML file, for messages."""
+class Refused(ValueError):
+    """The whole sentence about the section at hand, or about the key reached from it through ``keys``."""
 
-    file: str
-    key: str = ""
+    def __init__(self, sentence: str, *keys: str | int) -> None:
+        super().__init__(sentence)
+        self.keys = keys
 
-    def __truediv__(self, key: str | int) -> Where:
-        step = f"[{key}]" if isinstance(key, int) else f".{key}"
-        return Where(self.file, f"{self.key}{step}".removeprefix("."))
 
-    def __str__(self) -> str:
-        return f"{self.file}, {self.key}" if self.key else self.file
+def unknown_key(name: str, known: Iterable[str]) -> Refused:
+    """The refusal of a key that no field has, with the keys that are meant."""
+    return Refused(f"unknown key {name!r}{near(name, known) or '; expected some of ' + ', '.join(known)}")
 
-    def wrong(self, found: Any, expected: str) -> InputError:
-        """The error that says what was found here and what was expected."""
-        return InputError(f"{self}: found {found!r}; expected {expected}")
+
+@contextmanager
+def refusing(*keys: str | int) -> Iterator[None]:
+    """What the unit system says about a value becomes a refusal."""
+    try:
+        yield
+    except InputError as error:
+        raise Refused(str(error).removeprefix(": "), *keys) from None
+
+
+@dataclass_transform(frozen_default=True)
+def section(cls: type[T]) -> type[T]:
+    """A table of a TOML file: frozen, validated, no key beside its fields; built when it is first needed."""
+    return cast(type[T], validated(frozen=True, config=ConfigDict(extra="forbid", defer_build=True))(cls))
+
+
+DERIVED = {"derived": True}
+"""Marks a field that no key of the file gives."""
+
+
+@section
+class Section:
+    """What every section has: near misses for misspelt keys, and a place for checks across its keys."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, found: Any) -> Any:
+        known = [field.name for field in fields(cls) if field.metadata != DERIVED]
+        for name in found if isinstance(found, Mapping) else ():
+            if name not in cls.__dataclass_fields__:
+                raise unknown_key(name, known)
+        return found
+
+    @model_validator(mode="after")
+    def _checked(self) -> Self:
+        self.check()
+        return self
+
+    def check(self) -> None:
+        """Refuses what single keys cannot tell."""
+
+    def _not_both(self, one: str, other: str) -> None:
+        if getattr(self, one) is not None and getattr(self, other) is not None:
+            raise Refused(f"both {one!r} and {other!r} are given; expected one of them")
 
 
 @dataclass(frozen=True)
@@ -43,12 +83,11 @@ class Range:
     """What a value may be, in words and as a test."""
 
     words: str
-    holds: Check
+    holds: Callable[[float], bool]
 
 
 POSITIVE = Range("more than zero", lambda x: x > 0)
 NOT_NEGATIVE = Range("zero or more", lambda x: x >= 0)
-NOT_ZERO = Range("not zero", lambda x: x != 0)
 ANY = Range("", lambda x: True)
 
 
@@ -57,124 +96,46 @@ def between(low: float, high: float, words: str) -> Range:
     return Range(words, lambda x: low <= x <= high)
 
 
-def key(read: Read, default: Any = MISSING) -> Any:
-    """A field read from the key of its own name; required where there is no default."""
-    if default is MISSING:
-        return field(metadata={"read": read})
-    return field(default=default, metadata={"read": read})
+def quantity(dimension: str, allowed: Range = ANY) -> PlainValidator:
+    """Reads a value with its unit, and +/- where stated, into SI."""
+    return PlainValidator(lambda found: read_quantity(found, dimension, allowed))
 
 
-def quantity(dimension: str, allowed: Range = ANY) -> Read:
-    """Reads a value with its unit into a :class:`Value` in SI."""
-
-    def read(found: Any, where: Where) -> Value:
-        value = parse(found, dimension, str(where))
-        if not allowed.holds(value.value):
-            raise where.wrong(found, f"a {dimension.replace('_', ' ')} that is {allowed.words}")
-        return value
-
-    return read
+def read_quantity(found: Any, dimension: str, allowed: Range, *keys: str) -> Value:
+    """What :func:`quantity` does, for a key whose dimension another key decides."""
+    with refusing(*keys):
+        value = found if isinstance(found, Value) else parse(found, dimension, "")
+    if not allowed.holds(value.value):
+        raise Refused(f"found {found!r}; expected a {dimension.replace('_', ' ')} that is {allowed.words}", *keys)
+    return value
 
 
-def number(allowed: Range = ANY) -> Read:
-    """Reads a plain finite number."""
-
-    def read(found: Any, where: Where) -> float:
-        if isinstance(found, bool) or not isinstance(found, (int, float)) or not math.isfinite(found):
-            raise where.wrong(found, "a finite number without quotes or unit")
-        if not allowed.holds(found):
-            raise where.wrong(found, f"a number that is {allowed.words}")
-        return float(found)
-
-    return read
-
-
-def integer(least: int) -> Read:
-    """Reads a whole number."""
-
-    def read(found: Any, where: Where) -> int:
-        if isinstance(found, bool) or not isinstance(found, int) or found < least:
-            raise where.wrong(found, f"a whole number of at least {least}")
-        return found
-
-    return read
-
-
-def text(found: Any, where: Where) -> str:
-    """Reads text that is not empty."""
-    if not isinstance(found, str) or not found.strip():
-        raise where.wrong(found, "text in quotes")
-    return found
-
-
-def yes_or_no(found: Any, where: Where) -> bool:
-    """Reads true or false."""
-    if not isinstance(found, bool):
-        raise where.wrong(found, "true or false")
-    return found
-
-
-def one_of(*choices: str) -> Read:
-    """Reads one of a few words."""
-
-    def read(found: Any, where: Where) -> str:
-        if found not in choices:
-            raise where.wrong(found, " or ".join(map(repr, choices)) + near(str(found), choices))
-        return str(found)
-
-    return read
-
-
-def column(found: Any, where: Where) -> str | int:
-    """Reads a column: its name in the log, or its number from 1."""
+def _column(found: Any) -> str | int:
     if isinstance(found, bool) or not isinstance(found, (str, int)) or found == "":
-        raise where.wrong(found, "a column's name in quotes, or its number counted from 1")
+        raise ValueError("a column's name in quotes, or its number counted from 1")
     if isinstance(found, int) and found < 1:
-        raise where.wrong(found, "a column number counted from 1")
+        raise ValueError("a column number counted from 1")
     return found
 
 
-def list_of(read: Read) -> Read:
-    """Reads a list that is not empty."""
+Text = Annotated[str, Field(pattern=r"\S")]
+YesOrNo = Annotated[bool, Field(strict=True)]
+Count = Annotated[int, Field(strict=True, ge=1)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[Number, Field(gt=0.0)]
+NotNegative = Annotated[Number, Field(ge=0.0)]
+UpToTwo = Annotated[NotNegative, Field(le=2.0)]
+Column = Annotated[str | int, BeforeValidator(_column)]
+ListOf = Annotated[tuple[T, ...], Field(min_length=1)]
 
-    def read_all(found: Any, where: Where) -> tuple[Any, ...]:
-        if not isinstance(found, Sequence) or isinstance(found, str) or not found:
-            raise where.wrong(found, "a list in square brackets with at least one entry")
-        return tuple(read(item, where / i) for i, item in enumerate(found))
-
-    return read_all
-
-
-def section(cls: type[T]) -> Callable[[Any, Where], T]:
-    """Reads a table into a dataclass whose fields were made with :func:`key`."""
-
-    def read(found: Any, where: Where) -> T:
-        return build(cls, found, where)
-
-    return read
-
-
-def build(cls: type[T], found: Any, where: Where) -> T:
-    """A table read into ``cls``; a method ``check(self, where)`` there may refuse the whole."""
-    if not isinstance(found, Mapping):
-        raise where.wrong(found, "a table of keys")
-    readers = {f.name: f for f in fields(cls) if "read" in f.metadata}  # type: ignore[arg-type]
-    _known_only(found, readers, where)
-    missing = [n for n, f in readers.items() if n not in found and f.default is MISSING]
-    if missing:
-        raise InputError(f"{where}: key {missing[0]!r} is missing; expected it beside {_listed(found)}")
-    made = cls(**{name: readers[name].metadata["read"](raw, where / name) for name, raw in found.items()})
-    if hasattr(made, "check"):
-        made.check(where)
-    return made
-
-
-def _known_only(found: Mapping[str, Any], known: Mapping[str, Any], where: Where) -> None:
-    for name in found:
-        if name not in known:
-            offer = near(name, known) or f"; expected one of {', '.join(known)}"
-            raise InputError(f"{where}: unknown key {name!r}{offer}")
-
-
-def _listed(found: Mapping[str, Any]) -> str:
-    return ", ".join(map(repr, found)) or "nothing: the table is empty"
+Length = Annotated[Value, quantity("length", POSITIVE)]
+Place = Annotated[Value, quantity("length", NOT_NEGATIVE)]
+Altitude = Annotated[Value, quantity("length", between(-500.0, 9000.0, "between -500 and 9000 m"))]
+Area = Annotated[Value, quantity("area", POSITIVE)]
+Mass = Annotated[Value, quantity("mass", POSITIVE)]
+Remainder = Annotated[Value, quantity("mass", NOT_NEGATIVE)]
+Volume = Annotated[Value, quantity("volume", POSITIVE)]
+Room = Annotated[Value, quantity("volume", NOT_NEGATIVE)]
+Duration = Annotated[Value, quantity("time", POSITIVE)]
+Instant = Annotated[Value, quantity("time")]
+PressureDifference = Annotated[Value, quantity("pressure_difference", NOT_NEGATIVE)]
