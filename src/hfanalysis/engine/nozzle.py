@@ -1,8 +1,8 @@
 """The one-dimensional nozzle in all its regimes (report, section 3.1.4).
 
-From low to high chamber pressure: subsonic throughout, choked with a subsonic diverging part (one point), a normal shock in the
-diverging part, supersonic throughout. Areas, pressures and temperatures are stagnation values of the chamber gas; the heat
-capacity ratio is constant (frozen composition).
+From low to high chamber pressure: subsonic throughout, choked with a subsonic diverging part (one point), a normal
+shock in the diverging part, supersonic throughout. Areas, pressures and temperatures are stagnation values of the
+chamber gas; the heat capacity ratio is constant (frozen composition).
 """
 
 from __future__ import annotations
@@ -36,9 +36,7 @@ def nozzle_flow(gas: Gas, pressure: float, ambient: float, throat_area: float, e
     """
     if exit_area < throat_area:
         raise ValueError(f"the exit ({exit_area} m^2) is smaller than the throat ({throat_area} m^2)")
-    flow = expand(
-        gas.gamma, gas.gas_constant * gas.temperature, pressure, ambient, throat_area, exit_area
-    )
+    flow = expand(gas.gamma, gas.gas_constant * gas.temperature, pressure, ambient, throat_area, exit_area)
     return Flow(flow[0], flow[1], flow[2], flow[3], REGIMES[int(flow[4])])
 
 

@@ -32,8 +32,8 @@ def size_for_ullage(
 ) -> TankSize:
     """Tank for ``mass`` [kg] at ``temperature`` [K] with U = V_vapour / V_liquid (report, first method).
 
-    The dip tube ends at the liquid's surface, so that its length is that of the ullage. Raises ValueError for an ullage that is
-    not positive.
+    The dip tube ends at the liquid's surface, so that its length is that of the ullage. Raises ValueError for an ullage
+    that is not positive.
     """
     if not ullage > 0.0:
         raise ValueError(f"an ullage has to be positive, not {ullage}")
@@ -53,11 +53,12 @@ def size_for_length(
     """
     v_l, v_v = float(saturation.liquid_volume(temperature)[0]), float(saturation.vapor_volume(temperature)[0])
     section, ring = 0.25 * pi * diameter**2, _ullage_area(diameter, tube)
-    # liquid fills the section below the dip tube's end, vapour the ring around it: mass is linear in the dip tube's length
+    # liquid fills the section below the dip tube's end, vapour the ring around it: mass is linear in the tube's length
     full = section * length / v_l
     dip = (full - mass) / (section / v_l - ring / v_v)
     if not 0.0 <= dip <= length:
-        raise ValueError(f"{mass:.3f} kg are no saturated tank of {length:.3f} m: it holds {ring * length / v_v:.3f} to {full:.3f} kg")
+        held = f"{ring * length / v_v:.3f} to {full:.3f} kg"
+        raise ValueError(f"{mass:.3f} kg are no saturated tank of {length:.3f} m: it holds {held}")
     liquid_volume, vapor_volume = section * (length - dip), ring * dip
     return TankSize(length, dip, liquid_volume + vapor_volume, liquid_volume / v_l, vapor_volume / v_v)
 

@@ -1,7 +1,7 @@
 """Steady-state design of a hybrid engine (report, chapter 2): constant oxidizer flow, ideal nozzle, constant thrust.
 
-Everything follows from oxidizer flow, chamber pressure, grain and exit: the burn time and the mean fuel flow have closed forms
-because with a constant flow the port opens as r^N, N = 2 n + 1.
+Everything follows from oxidizer flow, chamber pressure, grain and exit: the burn time and the mean fuel flow have
+closed forms because with a constant flow the port opens as r^N, N = 2 n + 1.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from math import pi, sqrt
 
 from scipy.optimize import brentq
 
-from hfanalysis.engine.nozzle import choked_flow_factor, expand, mach_at_area, mach_at_pressure, area_ratio, pressure_ratio
+from hfanalysis.engine.nozzle import area_ratio, choked_flow_factor, mach_at_area, mach_at_pressure, pressure_ratio
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, apogee, gravity
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, Gas, equilibrium
 
@@ -42,7 +42,7 @@ class Grain:
 
 @dataclass(frozen=True)
 class Requirement:
-    """What a steady design starts from: oxidizer flow [kg/s], pressures [Pa], exit radius [m] (None: ideally expanded)."""
+    """What a steady design starts from: oxidizer flow [kg/s], pressures [Pa], exit radius [m] (None: ideal)."""
 
     oxidizer_flow: float
     chamber_pressure: float
@@ -87,8 +87,8 @@ def design(requirement: Requirement, grain: Grain, fuel_mass: float) -> SteadyEn
     of_ratio = requirement.oxidizer_flow / fuel_flow
     gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy)
     flow = requirement.oxidizer_flow + fuel_flow
-    throat = flow * sqrt(gas.gas_constant * gas.temperature) / (
-        choked_flow_factor(gas.gamma) * requirement.chamber_pressure
+    throat = (
+        flow * sqrt(gas.gas_constant * gas.temperature) / (choked_flow_factor(gas.gamma) * requirement.chamber_pressure)
     )
     thrust, exit_area = _thrust(gas, requirement, throat)
     return SteadyEngine(
@@ -158,7 +158,8 @@ def optimum(requirement: Requirement) -> Optimum:
     """The best mixture at the chamber pressure, expanded to ambient."""
     from scipy.optimize import minimize_scalar
 
-    found = minimize_scalar(
-        lambda of: -ideal_specific_impulse(requirement, of), bounds=(2.0, 15.0), method="bounded", options={"xatol": 1e-4}
-    )
+    def loss(of_ratio: float) -> float:
+        return -ideal_specific_impulse(requirement, of_ratio)
+
+    found = minimize_scalar(loss, bounds=(2.0, 15.0), method="bounded", options={"xatol": 1e-4})
     return Optimum(float(found.x), -float(found.fun))

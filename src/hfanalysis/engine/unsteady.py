@@ -1,13 +1,14 @@
 """The unsteady engine (report, chapter 3): tank, feed, grain, chamber, nozzle and the rocket's ascent in one system.
 
-State: tank mass, tank temperature, port radius, oxidizer and fuel stored in the chamber, altitude, speed, impulse. The chamber
-pressure follows from the stored masses by the gas law. Phases change by events of the solver: the liquid runs out, the fuel is
-gone. The right-hand side is compiled; CVODE (BDF) integrates, for the chamber's time constant is milliseconds.
+State: tank mass, tank temperature, port radius, oxidizer and fuel stored in the chamber, altitude, speed, impulse. The
+chamber pressure follows from the stored masses by the gas law. Phases change by events of the solver: the liquid runs
+out, the fuel is gone. The right-hand side is compiled; CVODE (BDF) integrates, for the chamber's time constant is
+milliseconds.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
@@ -26,9 +27,20 @@ from hfanalysis.thermo.saturation import LIQUID_VOLUME, LN_PRESSURE, Saturation,
 Array = NDArray[np.float64]
 Table = tuple[Array, float, float, float]
 
-STATES = ("tank_mass", "tank_temperature", "port_radius", "chamber_oxidizer", "chamber_fuel", "altitude", "speed", "impulse")
+STATES = ("tank_mass", "tank_temperature", "port_radius", "chamber_oxidizer", "chamber_fuel", "altitude", "speed",
+          "impulse")  # fmt: skip
 TANK, TEMPERATURE, RADIUS, OXIDIZER, FUEL, ALTITUDE, SPEED, IMPULSE = range(8)
-OUTPUTS = ("tank_pressure", "chamber_pressure", "chamber_temperature_by_mass", "thrust", "oxidizer_flow", "fuel_flow", "nozzle_flow", "of_ratio")
+OUTPUTS = (
+    "tank_pressure",
+    "chamber_pressure",
+    "chamber_temperature_by_mass",
+    "thrust",
+    "oxidizer_flow",
+    "fuel_flow",
+    "nozzle_flow",
+    "of_ratio",
+    "acceleration",
+)
 
 
 PAD = 1e-3
@@ -64,14 +76,18 @@ class Engine:
 
 @dataclass(frozen=True)
 class Burn:
-    """Histories on the solver's steps: ``states`` (n, 8) as STATES, ``outputs`` (n, 8) as OUTPUTS; events in seconds."""
+    """Histories on the solver's steps: ``states`` (n, 8) as STATES, ``outputs`` (n, 9) as OUTPUTS; events in seconds.
+
+    ``burn_time`` is where the integration ended: the fuel is gone if ``fuel_out``.
+    """
 
     time: Array
     states: Array
     outputs: Array
     liquid_out: float | None
     burn_time: float
-    steps: int = field(default=0)
+    steps: int = 0
+    fuel_out: bool = True
 
     def output(self, name: str) -> Array:
         """One of OUTPUTS over time."""
@@ -108,7 +124,10 @@ def rates(y: Array, liquid: bool, sat: Table, gas: Grid, c: Array, dy: Array, ou
         p_t = c[14] * (y[0] / c[15]) ** c[3]
         density = y[0] / volume
         loss = c[5]
-    flow = mass_flow(area, density, p_t - loss - p_c) if constant else mass_flow_with_feed(area, factor, density, p_t - p_c)
+    if constant:
+        flow = mass_flow(area, density, p_t - loss - p_c)
+    else:
+        flow = mass_flow_with_feed(area, factor, density, p_t - p_c)
     opening = c[7] * (flow / (pi * port * port)) ** c[8] if flow > 0.0 else 0.0
     fuel_flow = c[10] * 2.0 * pi * port * c[6] * opening
     nozzle, thrust, _, _, _ = expand(gamma, rt, p_c, ambient, c[11], c[12])
@@ -126,6 +145,7 @@ def rates(y: Array, liquid: bool, sat: Table, gas: Grid, c: Array, dy: Array, ou
     dy[7] = thrust
     out[0], out[1], out[2], out[3] = p_t, p_c, rt, thrust
     out[4], out[5], out[6], out[7] = flow, fuel_flow, nozzle, ratio
+    out[8] = dy[6]
 
 
 def _constants(e: Engine) -> Array:
@@ -142,7 +162,7 @@ def _constants(e: Engine) -> Array:
 
 
 def _initial(e: Engine, c: Array) -> Array:
-    """The chamber starts filled with equilibrium gas at ambient pressure and at the O/F that enters (0/0 in the report)."""
+    """The chamber starts full of equilibrium gas at ambient pressure and at the O/F that enters (0/0 in the report)."""
     ambient, _ = air(e.vehicle.launch_altitude)
     p_t = float(e.saturation.pressure(e.temperature))
     density = float(e.saturation.liquid_density(e.temperature))
@@ -168,7 +188,7 @@ def burn(engine: Engine, longest: float = 120.0, rtol: float = 1e-8) -> Burn:
     y = _initial(engine, c)
     sat, gas = engine.saturation.kernel_table, engine.combustion.kernel
     times, states = [0.0], [y.copy()]
-    t, liquid_out, done = 0.0, None, False
+    t, liquid_out, done, fuel_out = 0.0, None, False, False
     liquid = liquid_mass(sat, c[0], y[0], y[1]) > 0.0
     wet_until = 0
     while not done:
@@ -180,9 +200,9 @@ def burn(engine: Engine, longest: float = 120.0, rtol: float = 1e-8) -> Burn:
             liquid, liquid_out, wet_until = False, t, len(times)
             _begin_vapor(engine, c, y)
         else:
-            done = True
+            done, fuel_out = True, event == 1
     outputs = _outputs(np.array(states), wet_until if liquid_out is not None else len(times), liquid, sat, gas, c)
-    return Burn(np.array(times), np.array(states), outputs, liquid_out, t, len(times))
+    return Burn(np.array(times), np.array(states), outputs, liquid_out, t, len(times), fuel_out)
 
 
 def _begin_vapor(engine: Engine, c: Array, y: Array) -> None:
@@ -198,7 +218,7 @@ def _phase(
     """Integrate one phase; event 0: liquid gone, 1: fuel gone, -1: none."""
     from sksundae.cvode import CVODE
 
-    out = np.empty(8)
+    out = np.empty(len(OUTPUTS))
 
     def rhs(t: float, state: Array, dy: Array) -> None:
         rates(state, liquid, sat, gas, c, dy, out)
@@ -209,7 +229,8 @@ def _phase(
 
     events.terminal = [True, True]  # type: ignore[attr-defined]
     scale = np.array([1e-3, 1e-2, 1e-5, 1e-7, 1e-7, 1e-2, 1e-3, 1e-1])
-    solver = CVODE(rhs, method="BDF", rtol=rtol, atol=rtol * scale * 10.0, eventsfn=events, num_events=2, max_num_steps=100_000)
+    options = {"eventsfn": events, "num_events": 2, "max_num_steps": 100_000}
+    solver = CVODE(rhs, method="BDF", rtol=rtol, atol=rtol * scale * 10.0, **options)
     solution = solver.solve(np.array([start, longest]), y)
     if not solution.success and solution.status < 0:
         raise ArithmeticError(f"the engine cannot be integrated beyond {solution.t[-1]:.3f} s: {solution.message}")
@@ -219,7 +240,7 @@ def _phase(
 
 
 def _outputs(states: Array, wet_until: int, liquid: bool, sat: Table, gas: Grid, c: Array) -> Array:
-    out = np.empty((len(states), 8))
+    out = np.empty((len(states), len(OUTPUTS)))
     scratch = np.empty(8)
     for i, y in enumerate(states):
         rates(y, i < wet_until, sat, gas, c, scratch, out[i])

@@ -1,4 +1,4 @@
-"""From burn-out to the ground: coasting ascent, drogue, main parachute, and the ballistic case (report, section 3.1.5)."""
+"""From burn-out to the ground: coasting ascent, drogue, main parachute, ballistic case (report, section 3.1.5)."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from hfanalysis.flight.constant_thrust import Vehicle, gravity
+from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, gravity
 from hfanalysis.thermo.atmosphere import HIGHEST, density, temperature
 from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
 
 Array = NDArray[np.float64]
+Rates = Callable[[float, Array], list[float]]
 AIR_GAMMA = 1.4
 LONGEST = 3600.0
 
@@ -63,7 +64,7 @@ def coast(vehicle: Vehicle, time: float, altitude: float, speed: float) -> Leg:
 
 
 def fall(vehicle: Vehicle, drag_area: float, start: tuple[float, float, float], floor: float) -> Leg:
-    """Fall vertically from (time, altitude, speed) to an altitude with a drag area C_d A [m^2] besides the rocket's own."""
+    """Fall from (time, altitude, speed) to an altitude with a drag area C_d A [m^2] beside the rocket's own."""
     own = vehicle.drag_coefficient * vehicle.frontal_area
 
     def rates(_t: float, y: Array) -> list[float]:
@@ -73,7 +74,7 @@ def fall(vehicle: Vehicle, drag_area: float, start: tuple[float, float, float], 
     return _until(rates, start, lambda y: y[0] - floor)
 
 
-def _until(rates: Callable[[float, Array], list[float]], start: tuple[float, float, float], gone: Callable[[Array], float]) -> Leg:
+def _until(rates: Rates, start: tuple[float, float, float], gone: Callable[[Array], float]) -> Leg:
     def event(_t: float, y: Array) -> float:
         return gone(y)
 
@@ -109,5 +110,11 @@ def descend(vehicle: Vehicle, apogee: tuple[float, float, float], drogue: Parach
     own = 0.5 * vehicle.drag_coefficient * vehicle.frontal_area * density(deploy) * first.end[2] ** 2
     load = (drag + own) / vehicle.dry_mass - gravity(deploy)
     return Descent(
-        first.end[0], -first.end[2], -second.end[2], second.end[0], load / 9.80665, -ballistic.end[2], (first, second, ballistic)
+        time_of_main=first.end[0],
+        drogue_speed=-first.end[2],
+        landing_speed=-second.end[2],
+        landing_time=second.end[0],
+        main_load=load / STANDARD_GRAVITY,
+        ballistic_speed=-ballistic.end[2],
+        legs=(first, second, ballistic),
     )

@@ -16,7 +16,7 @@ STANDARD_GRAVITY = 9.80665
 
 @dataclass(frozen=True)
 class Vehicle:
-    """Mass without propellant [kg], drag coefficient on the frontal area [m^2], angle from the vertical [rad], site [m]."""
+    """Mass without propellant [kg], drag coefficient on the frontal area [m^2], angle from vertical [rad], site [m]."""
 
     dry_mass: float
     drag_coefficient: float
@@ -31,7 +31,7 @@ def gravity(altitude: float) -> float:
 
 
 def apogee(vehicle: Vehicle, thrust: float, mass_flow: float, burn_time: float) -> float:
-    """Highest point above the launch site [m] with constant ``thrust`` [N] and ``mass_flow`` [kg/s] over ``burn_time`` [s].
+    """Highest point above the launch site [m] with ``thrust`` [N] and ``mass_flow`` [kg/s] over ``burn_time`` [s].
 
     Returns 0 for a rocket that does not leave the pad; raises ValueError where it leaves the atmosphere model (30 km).
     """

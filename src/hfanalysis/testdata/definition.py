@@ -30,7 +30,8 @@ WEATHER = 1000.0
 """[Pa] standard deviation of the ambient pressure about the altitude's mean."""
 
 
-def _version(found: Any) -> int:
+def check_version(found: Any) -> int:
+    """The version of the file's form, which has to be the one this package reads."""
     if found != SCHEMA:
         raise ValueError(f"schema = {SCHEMA} at the top of the file")
     return SCHEMA
@@ -95,7 +96,7 @@ class Statements(Section):
     test: Test
     log: LogSpec
     channels: Channels
-    schema: Annotated[int, BeforeValidator(_version)] = SCHEMA
+    schema: Annotated[int, BeforeValidator(check_version)] = SCHEMA
     model: Model = Model()
     tank: Tank | None = None
     injector: Injector | None = None

@@ -1,8 +1,8 @@
 """Equilibrium combustion of nitrous oxide and paraffin, by NASA's CEA (report, section 2.1.2; PROPEP there).
 
 Paraffin is n-eicosane, C20H42, liquid. The gas in the nozzle is taken frozen: its heat capacity ratio is that of the
-chamber's composition with no further reaction (an equilibrium ratio gives 249 s at O/F 7.0 where the report has 238 s at 6.34).
-Condensed carbon counts: it takes part in the mass and not in the gas law.
+chamber's composition with no further reaction (an equilibrium ratio gives 249 s at O/F 7.0 where the report has 238 s
+at 6.34). Condensed carbon counts: it takes part in the mass and not in the gas law.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PROPEP_OXIDIZER_ENTHALPY = 82.05e6 / OXIDIZER_MOLAR_MASS
 """What PROPEP, and with it the report, takes for nitrous oxide: the ideal gas at 298.15 K [J/kg]."""
 
 FORMATION_OFFSET = 61.385e6 / OXIDIZER_MOLAR_MASS
-"""Formation scale less the scale on which saturation properties are given [J/kg]: 0 for the liquid at its boiling point."""
+"""Formation scale less that of the saturation properties [J/kg], which is 0 for the liquid at its boiling point."""
 
 REFERENCE_TEMPERATURE = 298.15
 
@@ -56,9 +56,9 @@ def equilibrium(
 ) -> Gas:
     """Equilibrium at constant enthalpy and pressure [Pa].
 
-    ``of_ratio`` counts all that comes through the injector, of which ``nitrogen_share`` by mass is nitrogen at 298.15 K;
-    ``oxidizer_enthalpy`` is that of the nitrous oxide entering, on the formation scale [J/kg]. Raises ArithmeticError where the
-    equilibrium does not converge, ValueError for a pressure or ratio that is not positive.
+    ``of_ratio`` counts all that comes through the injector, of which ``nitrogen_share`` by mass is nitrogen at
+    298.15 K; ``oxidizer_enthalpy`` is that of the nitrous oxide entering, on the formation scale [J/kg]. Raises
+    ArithmeticError where the equilibrium does not converge, ValueError for a pressure or ratio that is not positive.
 
     >>> round(equilibrium(27.579e5, 4.29).temperature)
     2666

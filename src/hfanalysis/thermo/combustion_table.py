@@ -1,7 +1,7 @@
-"""Equilibrium combustion as a smooth table over pressure, mixture and nitrogen share, for compiled code.
+"""Equilibrium combustion as a smooth table over pressure and mixture, for compiled code.
 
-Tabulated are ln(R T) and gamma of the chamber gas, on uniform grids in ln p, ln(O/F) and the nitrogen share; between nodes bicubic
-Hermite polynomials with central slopes (continuous first derivatives) in the first two, linear in the share.
+Tabulated are ln(R T), gamma and ln(T) of the chamber gas, on uniform grids in ln p and ln(O/F); between nodes bicubic
+Hermite polynomials with central slopes (continuous first derivatives).
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ RATIOS = (0.4, 200.0)
 NODES = (20, 140)
 """Nodes in ln p and ln(O/F)."""
 
-ROWS = 2
-LN_RT, GAMMA = 0, 1
+ROWS = 3
+LN_RT, GAMMA, LN_T = 0, 1, 2
 
 Grid = tuple[Array, float, float, float, float]
 
@@ -51,13 +51,14 @@ def build(oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY) -> CombustionTabl
     for i, p in enumerate(np.exp(ln_p)):
         for j, r in enumerate(np.exp(ln_r)):
             gas = equilibrium(float(p), float(r), oxidizer_enthalpy)
-            values[:, i, j] = np.log(gas.gas_constant * gas.temperature), gas.gamma
+            ln_t = np.log(gas.temperature)
+            values[:, i, j] = np.log(gas.gas_constant) + ln_t, gas.gamma, ln_t
     return CombustionTable(values, float(ln_p[0]), float(ln_p[1] - ln_p[0]), float(ln_r[0]), float(ln_r[1] - ln_r[0]))
 
 
 @njit(cache=True)
 def _weights(x: float, count: int) -> tuple[int, float, float, float, float]:
-    """First of four nodes and their weights for a cubic through the middle two with central slopes; ends held constant."""
+    """First of four nodes and their weights for a cubic through the middle two with central slopes; ends held."""
     x = min(max(x, 0.0), count - 1.0)
     i = min(int(x), count - 2)
     t = x - i
@@ -88,7 +89,26 @@ def gas_at(table: Grid, ln_pressure: float, ln_ratio: float) -> tuple[float, flo
 
 
 @njit(cache=True)
-def chamber_pressure(table: Grid, mass: float, volume: float, ln_ratio: float, guess: float) -> tuple[float, float, float]:
+def temperatures(table: Grid, ln_pressure: Array, ln_ratio: Array) -> Array:
+    """Temperature [K] of the chamber gas along a history; the solver itself only needs R T."""
+    values, p0, dp, r0, dr = table
+    out = np.empty(ln_pressure.size)
+    last_i, last_j = values.shape[1] - 1, values.shape[2] - 1
+    for n in range(out.size):
+        i, *a = _weights((ln_pressure[n] - p0) / dp, values.shape[1])
+        j, *b = _weights((ln_ratio[n] - r0) / dr, values.shape[2])
+        total = 0.0
+        for k in range(4):
+            for m in range(4):
+                total += a[k] * b[m] * values[2, min(max(i + k, 0), last_i), min(max(j + m, 0), last_j)]
+        out[n] = np.exp(total)
+    return out
+
+
+@njit(cache=True)
+def chamber_pressure(
+    table: Grid, mass: float, volume: float, ln_ratio: float, guess: float
+) -> tuple[float, float, float]:
     """p, R T and gamma of a chamber of ``volume`` [m^3] holding ``mass`` [kg]: p V = m R T(p), by fixed-point steps.
 
     R T hardly depends on p, so that each step gains one and a half digits.
