@@ -1,8 +1,9 @@
-"""The report's unsteady model written down plainly (scipy, chemical equilibrium inside the right-hand side), beside ours.
+"""The report's unsteady model written down plainly (scipy, equilibrium inside the right-hand side), beside ours.
 
-Nothing is tabulated, compiled or rearranged: moles of vapour and liquid with the report's three linear equations, the chamber
-pressure as a state with the report's dp_c/dt, forward differences of T_c and W_c, the nozzle's equations solved iteratively.
-With ``hfanalysis.engine.unsteady`` it shares the properties of nitrous oxide and constants of nature, no equation.
+Nothing is tabulated, compiled or rearranged: moles of vapour and liquid with the report's three linear equations, the
+chamber pressure as a state with the report's dp_c/dt, forward differences of T_c and W_c, the nozzle's equations solved
+iteratively. With ``hfanalysis.engine.unsteady`` it shares the properties of nitrous oxide and constants of nature, no
+equation.
 
 Prints events, totals and states of both side by side, at times aligned by the events, and the ratio of the run times.
 """
@@ -28,7 +29,7 @@ from hfanalysis.flight.constant_thrust import Vehicle, gravity
 from hfanalysis.thermo import atmosphere
 from hfanalysis.thermo.combustion import Gas, equilibrium
 from hfanalysis.thermo.combustion_table import CombustionTable, build
-from hfanalysis.thermo.constants import GAS_CONSTANT, OXIDIZER_MOLAR_MASS
+from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property
 
@@ -38,7 +39,16 @@ STATES = ("n_v", "n_l", "T", "r_f", "m_o", "m_f", "p_c", "z", "v", "impulse", "e
 SCALE = np.array([1e-3, 1e-2, 1.0, 1e-3, 1e-4, 1e-4, 1e4, 1.0, 1.0, 100.0, 0.1])
 """What counts as small of each state: absolute tolerances are the relative one times this."""
 
-COMPARED = ("tank_mass", "tank_temperature", "port_radius", "chamber_oxidizer", "chamber_fuel", "altitude", "speed", "impulse")
+COMPARED = (
+    "tank_mass",
+    "tank_temperature",
+    "port_radius",
+    "chamber_oxidizer",
+    "chamber_fuel",
+    "altitude",
+    "speed",
+    "impulse",
+)
 
 
 def maelstrom(combustion: CombustionTable | None = None) -> Engine:
@@ -145,7 +155,9 @@ class Reference:
         rho = w / molar_volume
         most = e.feed.area * sqrt(2.0 * rho * drop)
         lost = brentq(
-            lambda flow: flow - e.feed.area * sqrt(2.0 * rho * max(drop - e.feed.loss_factor * flow**2 / rho, 0.0)), 0.0, most
+            lambda flow: flow - e.feed.area * sqrt(2.0 * rho * max(drop - e.feed.loss_factor * flow**2 / rho, 0.0)),
+            0.0,
+            most,
         )
         return float(lost) / w
 
@@ -230,7 +242,9 @@ def start(engine: Engine) -> Array:
     """Saturated tank; chamber filled with equilibrium gas at ambient pressure and the entering O/F."""
     r, e, w = engine.port_radius, engine, OXIDIZER_MOLAR_MASS
     s = e.saturation
-    volumes = np.array([[1.0, 1.0], [float(s.vapor_volume(e.temperature)[0]), float(s.liquid_volume(e.temperature)[0])]])
+    volumes = np.array(
+        [[1.0, 1.0], [float(s.vapor_volume(e.temperature)[0]), float(s.liquid_volume(e.temperature)[0])]]
+    )
     vapor, liquid = np.linalg.solve(volumes, np.array([e.oxidizer_mass, e.feed.volume]))
     p_a = atmosphere.pressure(e.vehicle.launch_altitude)
     x = np.array([vapor / w, liquid / w, e.temperature, r, 0, 0, p_a, e.vehicle.launch_altitude, 0, 0, 0], dtype=float)
@@ -255,7 +269,14 @@ def solve(engine: Engine, rtol: float = 1e-6, longest: float = 120.0) -> Run:
     dry.terminal = burnt.terminal = True  # type: ignore[attr-defined]
     while True:
         phase = solve_ivp(
-            reference, (t, longest), x, method="BDF", events=(dry, burnt), rtol=rtol, atol=rtol * SCALE, dense_output=True
+            reference,
+            (t, longest),
+            x,
+            method="BDF",
+            events=(dry, burnt),
+            rtol=rtol,
+            atol=rtol * SCALE,
+            dense_output=True,
         )
         if not phase.success:
             raise ArithmeticError(phase.message)
@@ -309,14 +330,19 @@ def main(repeats: int = 5) -> int:
         fast.append(perf_counter() - started)
     last = in_our_states(run.end)
     print(f"{'':28}{'engine':>14}{'reference':>14}{'difference':>12}")
-    rows = [("liquid out [s]", ours.liquid_out or np.nan, run.events[0]), ("burn time [s]", ours.burn_time, run.events[-1])]
+    rows = [
+        ("liquid out [s]", ours.liquid_out or np.nan, run.events[0]),
+        ("burn time [s]", ours.burn_time, run.events[-1]),
+    ]
     rows += [(f"{name}, end", ours.states[-1, i], last[i]) for i, name in enumerate(COMPARED)]
     for name, mine, theirs in rows:
         print(f"{name:28}{mine:14.6f}{theirs:14.6f}{mine / theirs - 1.0:12.1e}")
     print("\nlargest difference of a state over the burn, in its range")
     for name, worst in differences(ours, run).items():
         print(f"{name:28}{worst:12.1e}")
-    print(f"\nengine {1e3 * median(fast):.2f} ms, reference {median(slow):.2f} s ({run.calls} evaluations): {median(slow) / median(fast):.0f} times faster")
+    ratio = median(slow) / median(fast)
+    times = f"engine {1e3 * median(fast):.2f} ms, reference {median(slow):.2f} s"
+    print(f"\n{times} ({run.calls} evaluations): {ratio:.0f} times faster")
     return 0
 
 

@@ -20,6 +20,7 @@ from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
 from hfanalysis.engine.nozzle import expand
 from hfanalysis.engine.tank import compressibility, liquid_mass, temperature_rate
 from hfanalysis.flight.constant_thrust import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle
+from hfanalysis.thermo.atmosphere import HIGHEST
 from hfanalysis.thermo.combustion_table import CombustionTable, Grid, chamber_pressure, gas_at
 from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
 from hfanalysis.thermo.saturation import LIQUID_VOLUME, LN_PRESSURE, Saturation, evaluate
@@ -100,9 +101,17 @@ class Burn:
 
 @njit(cache=True)
 def air(altitude: float) -> tuple[float, float]:
-    """Pressure [Pa] and density [kg/m^3] of the atmosphere model below 11 km (report, appendix A.2)."""
-    t = -0.00649 * altitude + 288.19
-    p = 101_290.0 * (t / 288.08) ** 5.256
+    """Pressure [Pa] and density [kg/m^3] of the atmosphere model (report, appendix A.2), held above 30 km."""
+    z = min(altitude, HIGHEST)
+    if z < 11_000.0:
+        t = -0.00649 * z + 288.19
+        p = 101_290.0 * (t / 288.08) ** 5.256
+    elif z < 25_000.0:
+        t = 216.69
+        p = 22_650.0 * np.exp(1.73 - 0.000157 * z)
+    else:
+        t = 0.00299 * z + 141.94
+        p = 2488.0 * (t / 216.6) ** -11.388
     return p, p * AIR_MOLAR_MASS / (GAS_CONSTANT * t)
 
 
@@ -139,9 +148,10 @@ def rates(y: Array, liquid: bool, sat: Table, gas: Grid, c: Array, dy: Array, ou
     total = c[16] + y[0] + c[10] * pi * c[6] * (c[13] * c[13] - port * port) + y[3] + y[4]
     pull = total * STANDARD_GRAVITY * (EARTH_RADIUS / (EARTH_RADIUS + y[5])) ** 2 * c[18]
     net = thrust - 0.5 * c[17] * rho * y[6] * abs(y[6]) - pull
-    dy[5] = y[6] * c[18]
     # on its pad the rocket stands; what lifts it is the thrust alone
-    dy[6] = net / total if net > 0.0 or y[5] > c[19] + PAD else 0.0
+    stands = y[5] <= c[19] + PAD
+    dy[5] = 0.0 if stands and y[6] < 0.0 else y[6] * c[18]
+    dy[6] = 0.0 if stands and net <= 0.0 else net / total
     dy[7] = thrust
     out[0], out[1], out[2], out[3] = p_t, p_c, rt, thrust
     out[4], out[5], out[6], out[7] = flow, fuel_flow, nozzle, ratio
@@ -179,17 +189,52 @@ def _initial(e: Engine, c: Array) -> Array:
     return np.array([e.oxidizer_mass, e.temperature, r, *stored, e.vehicle.launch_altitude, 0.0, 0.0])
 
 
-def burn(engine: Engine, longest: float = 120.0, rtol: float = 1e-8) -> Burn:
+def check(engine: Engine) -> None:
+    """Raise ValueError, with the reason, for an engine that cannot be lit."""
+    e, s = engine, engine.saturation
+    sizes = {
+        "the tank's volume": e.feed.volume, "the injector's area": e.feed.area, "the oxidizer": e.oxidizer_mass,
+        "the fuel": e.fuel_mass, "the grain's length": e.grain_length, "the grain's radius": e.outer_radius,
+        "the fuel's density": e.fuel_density, "a": e.a, "the throat": e.throat_area, "the dry mass": e.vehicle.dry_mass,
+    }  # fmt: skip
+    for name, value in sizes.items():
+        if not 0.0 < value < np.inf:
+            raise ValueError(f"{name} has to be positive, not {value}")
+    if e.exit_area < e.throat_area:
+        raise ValueError(
+            f"the nozzle's exit ({e.exit_area:.3g} m^2) is smaller than the throat ({e.throat_area:.3g} m^2)"
+        )
+    if not s.t_min < e.temperature < s.t_max:
+        raise ValueError(
+            f"no saturated tank at {e.temperature} K: the properties hold from {s.t_min:.2f} to {s.t_max:.2f} K"
+        )
+    least, most = (
+        e.feed.volume * float(rho) for rho in (s.vapor_density(e.temperature), s.liquid_density(e.temperature))
+    )
+    if not least < e.oxidizer_mass < most:
+        raise ValueError(
+            f"a saturated tank holds {least:.3f} to {most:.3f} kg at {e.temperature} K, not {e.oxidizer_mass:.3f} kg"
+        )
+    full = pi * e.outer_radius**2 * e.grain_length * e.fuel_density
+    if e.fuel_mass >= full:
+        raise ValueError(f"{e.fuel_mass:.3f} kg of fuel do not fit a grain that is full at {full:.3f} kg")
+    loss = e.feed.constant_losses[0] if e.feed.constant_losses is not None else 0.0
+    pressure, ambient = float(s.pressure(e.temperature)) - loss, air(e.vehicle.launch_altitude)[0]
+    if pressure <= ambient:
+        raise ValueError(f"nothing flows: {pressure:.0f} Pa behind the feed line against {ambient:.0f} Pa outside")
+
+
+def burn(engine: Engine, longest: float = 120.0, rtol: float = 1e-7) -> Burn:
     """From ignition until the fuel is gone (or ``longest`` seconds).
 
-    Raises ArithmeticError where the solver gives up.
+    Raises ValueError for an engine that cannot be, ArithmeticError where the solver gives up.
     """
+    check(engine)
     c = _constants(engine)
     y = _initial(engine, c)
     sat, gas = engine.saturation.kernel_table, engine.combustion.kernel
     times, states = [0.0], [y.copy()]
-    t, liquid_out, done, fuel_out = 0.0, None, False, False
-    liquid = liquid_mass(sat, c[0], y[0], y[1]) > 0.0
+    t, liquid_out, done, fuel_out, liquid = 0.0, None, False, False, True
     wet_until = 0
     while not done:
         part_t, part_y, event = _phase(y, t, longest, liquid, sat, gas, c, rtol)
@@ -199,9 +244,10 @@ def burn(engine: Engine, longest: float = 120.0, rtol: float = 1e-8) -> Burn:
         if event == 0 and liquid:
             liquid, liquid_out, wet_until = False, t, len(times)
             _begin_vapor(engine, c, y)
+            done = fuel_out = bool(y[RADIUS] >= engine.outer_radius)
         else:
             done, fuel_out = True, event == 1
-    outputs = _outputs(np.array(states), wet_until if liquid_out is not None else len(times), liquid, sat, gas, c)
+    outputs = _outputs(np.array(states), wet_until if liquid_out is not None else len(times), sat, gas, c)
     return Burn(np.array(times), np.array(states), outputs, liquid_out, t, len(times), fuel_out)
 
 
@@ -239,11 +285,13 @@ def _phase(
     return solution.t, solution.y, event
 
 
-def _outputs(states: Array, wet_until: int, liquid: bool, sat: Table, gas: Grid, c: Array) -> Array:
+@njit(cache=True)
+def _outputs(states: Array, wet_until: int, sat: Table, gas: Grid, c: Array) -> Array:
+    """OUTPUTS of every state; the tank holds liquid in the first ``wet_until`` of them."""
     out = np.empty((len(states), len(OUTPUTS)))
     scratch = np.empty(8)
-    for i, y in enumerate(states):
-        rates(y, i < wet_until, sat, gas, c, scratch, out[i])
+    for i in range(len(states)):
+        rates(states[i], i < wet_until, sat, gas, c, scratch, out[i])
     return out
 
 
