@@ -48,7 +48,7 @@ def area_ratio(mach: float, gamma: float) -> float:
     1.6875
     """
     base = 2.0 / (gamma + 1.0) * (1.0 + 0.5 * (gamma - 1.0) * mach * mach)
-    return base ** (0.5 * (gamma + 1.0) / (gamma - 1.0)) / mach
+    return float(base ** (0.5 * (gamma + 1.0) / (gamma - 1.0)) / mach)
 
 
 @njit(cache=True)
@@ -76,7 +76,7 @@ def mach_at_area(ratio: float, gamma: float, supersonic: bool) -> float:
         if abs(new - x) < 1e-15:
             break
         x = new
-    return np.exp(x)
+    return float(np.exp(x))
 
 
 @njit(cache=True)
@@ -86,7 +86,7 @@ def pressure_ratio(mach: float, gamma: float) -> float:
     >>> round(pressure_ratio(2.0, 1.4), 5)
     0.1278
     """
-    return (1.0 + 0.5 * (gamma - 1.0) * mach * mach) ** (-gamma / (gamma - 1.0))
+    return float((1.0 + 0.5 * (gamma - 1.0) * mach * mach) ** (-gamma / (gamma - 1.0)))
 
 
 @njit(cache=True)
@@ -109,19 +109,19 @@ def stagnation_after_shock(mach: float, gamma: float) -> float:
     square = mach * mach
     first = (2.0 * gamma * square - (gamma - 1.0)) / (gamma + 1.0)
     second = (gamma + 1.0) * square / (2.0 + (gamma - 1.0) * square)
-    return first ** (-1.0 / (gamma - 1.0)) * second ** (gamma / (gamma - 1.0))
+    return float(first ** (-1.0 / (gamma - 1.0)) * second ** (gamma / (gamma - 1.0)))
 
 
 @njit(cache=True)
 def choked_flow_factor(gamma: float) -> float:
     """mdot sqrt(R T) / (A p_0) of a choked throat."""
-    return np.sqrt(gamma) * (0.5 * (gamma + 1.0)) ** (-0.5 * (gamma + 1.0) / (gamma - 1.0))
+    return float(np.sqrt(gamma) * (0.5 * (gamma + 1.0)) ** (-0.5 * (gamma + 1.0) / (gamma - 1.0)))
 
 
 @njit(cache=True)
 def mach_at_pressure(ratio: float, gamma: float) -> float:
     """Mach number at p/p_0 = ``ratio`` <= 1 (the inverse of :func:`pressure_ratio`)."""
-    return np.sqrt(2.0 / (gamma - 1.0) * (ratio ** (-(gamma - 1.0) / gamma) - 1.0))
+    return float(np.sqrt(2.0 / (gamma - 1.0) * (ratio ** (-(gamma - 1.0) / gamma) - 1.0)))
 
 
 @njit(cache=True)

@@ -37,7 +37,7 @@ class Grain:
         """t = (R^N - r_0^N) / (a N) (pi / mdot_o)^n [s] (report, eq. 2.3)."""
         power = 2.0 * self.n + 1.0
         opened = self.outer_radius**power - self.port_radius(mass) ** power
-        return opened / (self.a * power) * (pi / oxidizer_flow) ** self.n
+        return float(opened / (self.a * power) * (pi / oxidizer_flow) ** self.n)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Engine files: an engine that is no test, in the sections and units of test.toml; what a test would calibrate is given."""
+"""Engine files: an engine that is no test, in the words of test.toml; what a test would calibrate is given."""
 
 from __future__ import annotations
 

@@ -48,7 +48,9 @@ class Gas:
     def characteristic_velocity(self) -> float:
         """c* = sqrt(R T / gamma) ((gamma + 1)/2)^((gamma + 1)/(2 (gamma - 1))) [m/s]."""
         g = self.gamma
-        return sqrt(self.gas_constant * self.temperature / g) * ((g + 1.0) / 2.0) ** ((g + 1.0) / (2.0 * (g - 1.0)))
+        return float(
+            sqrt(self.gas_constant * self.temperature / g) * ((g + 1.0) / 2.0) ** ((g + 1.0) / (2.0 * (g - 1.0)))
+        )
 
 
 def equilibrium(

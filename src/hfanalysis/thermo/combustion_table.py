@@ -95,8 +95,9 @@ def temperatures(table: Grid, ln_pressure: Array, ln_ratio: Array) -> Array:
     out = np.empty(ln_pressure.size)
     last_i, last_j = values.shape[1] - 1, values.shape[2] - 1
     for n in range(out.size):
-        i, *a = _weights((ln_pressure[n] - p0) / dp, values.shape[1])
-        j, *b = _weights((ln_ratio[n] - r0) / dr, values.shape[2])
+        i, a0, a1, a2, a3 = _weights((ln_pressure[n] - p0) / dp, values.shape[1])
+        j, b0, b1, b2, b3 = _weights((ln_ratio[n] - r0) / dr, values.shape[2])
+        a, b = (a0, a1, a2, a3), (b0, b1, b2, b3)
         total = 0.0
         for k in range(4):
             for m in range(4):

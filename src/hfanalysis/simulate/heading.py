@@ -1,0 +1,26 @@
+"""What every product made from an engine file says of its making."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import hfanalysis
+from hfanalysis.quantity import Quantity
+from hfanalysis.simulate.build import Enthalpy
+from hfanalysis.testdata.engine_file import EngineFile
+
+
+def heading(file: EngineFile, command: str, enthalpy: Enthalpy) -> dict[str, Any]:
+    """Which engine, by which command, under which conventions, with which oxidizer enthalpy [J/kg]."""
+    return {
+        "engine": file.engine.id,
+        "command": command,
+        "conventions": file.model.conventions,
+        "properties": file.model.properties,
+        "oxidizer_enthalpy": {**Quantity(enthalpy.value, "J/kg").to_json(), "of": enthalpy.of},
+    }
+
+
+def provenance(file: EngineFile) -> dict[str, Any]:
+    """Package version, and the engine file by name and SHA-256."""
+    return {"hfanalysis": hfanalysis.__version__, "engine_toml": {file.path.name: file.sha256}}

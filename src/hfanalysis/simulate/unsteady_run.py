@@ -1,0 +1,128 @@
+"""What ``hfa simulate`` finds: the unsteady engine of an engine file, and the flight of its rocket."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.engine import unsteady
+from hfanalysis.engine.unsteady import Burn, Engine
+from hfanalysis.errors import InputError
+from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, gravity
+from hfanalysis.quantity import Quantity
+from hfanalysis.simulate import build, flown, heading
+from hfanalysis.testdata.engine_file import EngineFile, Needs
+from hfanalysis.thermo.combustion_table import temperatures
+
+Array = NDArray[np.float64]
+
+COMMAND = "hfa simulate"
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """An engine as built, its burn, the chamber's temperature [K] along it, and the JSON product."""
+
+    engine: Engine
+    burnt: Burn
+    chamber_temperature: Array
+    product: dict[str, Any]
+
+
+def simulate(file: EngineFile) -> Simulation:
+    """Run the unsteady model of an engine file.
+
+    Raises :class:`InputError` where the file lacks what the model needs, or states an engine that cannot be run.
+    """
+    needs = Needs(file, COMMAND)
+    tank = build.tank(needs)
+    engine = build.engine(needs, tank)
+    burnt = run(file, engine)
+    ln_p, ln_r = np.log(burnt.output("chamber_pressure")), np.log(burnt.output("of_ratio"))
+    hot = temperatures(engine.combustion.kernel, ln_p, ln_r)
+    product = {
+        **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
+        **_engine(engine, burnt, hot),
+        **_loaded(file, engine, burnt),
+        **_tank(tank),
+        "flight": _flight(file, engine, burnt),
+        "warnings": _warnings(burnt),
+        "provenance": heading.provenance(file),
+    }
+    return Simulation(engine, burnt, hot, product)
+
+
+def run(file: EngineFile, engine: Engine) -> Burn:
+    """The burn; an engine that cannot be integrated is refused with the reason."""
+    try:
+        return unsteady.burn(engine)
+    except ArithmeticError as error:
+        raise InputError(f"{file.path}: {error}") from None
+
+
+def _engine(engine: Engine, burnt: Burn, hot: Array) -> dict[str, Quantity]:
+    impulse = float(burnt.state("impulse")[-1])
+    loaded = engine.oxidizer_mass + engine.fuel_mass
+    burn_time = _burn_time(burnt)
+    known = burn_time.value is not None
+    dry = "the liquid does not run out within the burn"
+    return {
+        "burn_time": burn_time,
+        "total_impulse": Quantity(impulse, "N s"),
+        "specific_impulse": Quantity(impulse / (STANDARD_GRAVITY * loaded), "s"),
+        "peak_chamber_temperature": Quantity(float(hot.max()), "K"),
+        "peak_chamber_pressure": Quantity(float(burnt.output("chamber_pressure").max()), "Pa"),
+        "peak_thrust": Quantity(peak_thrust(burnt), "N"),
+        "average_thrust": Quantity(impulse / burnt.burn_time, "N") if known else burn_time,
+        "liquid_depletion_time": Quantity.absent(dry) if burnt.liquid_out is None else Quantity(burnt.liquid_out, "s"),
+        "residual_oxidizer_mass": Quantity(float(burnt.state("tank_mass")[-1]), "kg"),
+    }
+
+
+def _burn_time(burnt: Burn) -> Quantity:
+    if not burnt.fuel_out:
+        return Quantity.absent(f"the fuel is not gone after {burnt.burn_time:.0f} s")
+    return Quantity(burnt.burn_time, "s")
+
+
+def peak_thrust(burnt: Burn) -> float:
+    """Highest thrust [N]."""
+    return float(burnt.output("thrust").max())
+
+
+def _loaded(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity]:
+    """The loaded rocket on its pad."""
+    if file.rocket is None:
+        return {name: Quantity.absent("no [rocket] is given") for name in ("wet_mass", "pad_thrust_to_weight")}
+    mass = file.rocket.dry_mass.value + engine.oxidizer_mass + engine.fuel_mass
+    weight = mass * gravity(build.launch_altitude(file))
+    return {"wet_mass": Quantity(mass, "kg"), "pad_thrust_to_weight": Quantity(peak_thrust(burnt) / weight)}
+
+
+def _tank(tank: build.TankBuilt) -> dict[str, Quantity]:
+    size = tank.size
+    return {
+        "tank_length": Quantity(size.length, "m") if size else Quantity.absent(tank.reason),
+        "dip_tube_length": Quantity(size.dip_tube_length, "m") if size else Quantity.absent(tank.reason),
+        "tank_volume": Quantity(tank.volume, "m^3"),
+    }
+
+
+def _flight(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity]:
+    """As flight.json."""
+    vehicle = build.vehicle(file)
+    if not isinstance(vehicle, Vehicle):
+        found = flown.absent(vehicle)
+    elif not burnt.fuel_out:
+        found = flown.absent(str(_burn_time(burnt).reason))
+    else:
+        rail = file.rocket.rail_length if file.rocket else None
+        found = flown.flight(engine, burnt, rail.value if rail else None, build.parachutes(file))
+    return found | _loaded(file, engine, burnt)
+
+
+def _warnings(burnt: Burn) -> list[str]:
+    return [] if burnt.fuel_out else [f"{_burn_time(burnt).reason}; impulse and residual are those until then"]
