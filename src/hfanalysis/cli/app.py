@@ -90,6 +90,29 @@ for _name, _text in _STAGES.items():
     _add(_name, _text)
 
 
+EngineToml = Annotated[Path, typer.Argument(metavar="ENGINE.toml", help="An engine file, see engines/.")]
+Folder = Annotated[Path | None, typer.Option(help="Also write what was found to this folder.")]
+EngineJson = Annotated[bool, typer.Option("--json", help="Print the JSON product on standard output, nothing else.")]
+
+
+@app.command("simulate")
+def _simulate(engine: EngineToml, as_json: EngineJson = False, out: Folder = None, quiet: Quiet = False) -> None:
+    """Run the unsteady model of an engine: tank, injector, grain, chamber, nozzle and flight."""
+    with ending():
+        from hfanalysis.cli import engines
+
+        engines.simulate(engine, out, as_json, quiet)
+
+
+@app.command("design")
+def _design(engine: EngineToml, as_json: EngineJson = False, out: Folder = None, quiet: Quiet = False) -> None:
+    """Steady-state design of an engine; with --out also the parametric study and a .eng file."""
+    with ending():
+        from hfanalysis.cli import engines
+
+        engines.design(engine, out, as_json, quiet)
+
+
 @app.command("new")
 def _new(
     test: Annotated[str, typer.Argument(metavar="ID", help="Name of the new test.")],

@@ -12,7 +12,7 @@ from rich.text import Text
 from hfanalysis.cli.ending import nobody_reads
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
 from hfanalysis.report import wording
-from hfanalysis.report.wording import Shown, in_words, quantities, shown
+from hfanalysis.report.wording import Shown, in_words, is_quantity, quantities, shown
 from hfanalysis.stages import ORDER
 from hfanalysis.stages.base import Context
 
@@ -129,6 +129,38 @@ def _validate(context: Context, console: Console) -> None:
 
 def _report(context: Context, console: Console) -> None:
     console.print(Text(f"report: {context.product('report.html')}"), soft_wrap=True)
+
+
+def show_engine(product: Mapping[str, Any]) -> None:
+    """Print what an engine file comes to: every quantity of the product, and of the parts in it."""
+    console = _Paper(highlight=False)
+    if not console.is_terminal:
+        console.width = max(console.width, _NARROWEST)
+    words = (product["engine"], product["command"], f"conventions: {product['conventions']}")
+    console.print(Text("  ".join(words), style="bold"))
+    console.print(Text(f"oxidizer enthalpy: {product['oxidizer_enthalpy']['of']}"))
+    _values(
+        console, {name: data for name, data in quantities(product).items() if name != "oxidizer_enthalpy"}, "engine"
+    )
+    for name, part in product.items():
+        if isinstance(part, Mapping) and not is_quantity(part) and name != "provenance":
+            _values(console, quantities(part), in_words(name))
+
+
+def _values(console: Console, found: Mapping[str, Mapping[str, Any]], title: str) -> None:
+    """A table of values, and below it what cannot be had, by reason."""
+    table = _table("", "value", "unit", title=title)
+    absent: dict[str, list[str]] = {}
+    for name, quantity in found.items():
+        text = shown(quantity)
+        if quantity["value"] is None:
+            absent.setdefault(text.why, []).append(in_words(name))
+        else:
+            table.add_row(in_words(name), text.value, text.unit)
+    if table.row_count:
+        console.print(table)
+    for reason, names in absent.items():
+        console.print(Text(f"  without {', '.join(names)}: {reason}"))
 
 
 _SHOWN = {

@@ -7,6 +7,7 @@ at 6.34). Condensed carbon counts: it takes part in the mass and not in the gas 
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from functools import lru_cache
 from math import sqrt
@@ -65,7 +66,7 @@ def equilibrium(
     >>> round(equilibrium(27.579e5, 4.29).temperature)
     2666
     """
-    if not (pressure > 0.0 and of_ratio > 0.0 and 0.0 <= nitrogen_share < 1.0):
+    if not (0.0 < pressure < np.inf and 0.0 < of_ratio < np.inf and 0.0 <= nitrogen_share < 1.0):
         raise ValueError(f"no mixture: {pressure=} Pa, {of_ratio=}, {nitrogen_share=}")
     return _solver().solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
 
@@ -104,7 +105,9 @@ class _Solver:
         weights /= weights.sum()
         enthalpy = float(weights[0] * FUEL_ENTHALPY + weights[1] * oxidizer_enthalpy)
         # CEA takes h/R with R in J/(kg K) on a kilogram of mixture, and the pressure in bar
-        self._solver.solve(self._solution, self._cea.HP, enthalpy / self._cea.R, pressure / 1e5, weights)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what does not converge is refused below
+            self._solver.solve(self._solution, self._cea.HP, enthalpy / self._cea.R, pressure / 1e5, weights)
         s = self._solution
         if not s.converged or not s.T > 0.0:
             raise ArithmeticError(f"no equilibrium at {pressure / 1e5:.3g} bar and O/F {of_ratio:.3g}")

@@ -1,0 +1,74 @@
+"""``hfa simulate`` and ``hfa design``: from an engine file to a table, JSON or a folder of products."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from hfanalysis.cli.ending import put, tell
+from hfanalysis.errors import InputError
+from hfanalysis.testdata.engine_file import load_engine
+from hfanalysis.testdata.products import to_json
+
+
+def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+    """The unsteady model of the engine file at ``path``; what it found to ``out`` where that is given."""
+    file = load_engine(path)
+    with _watch(file.engine.id, quiet):
+        from hfanalysis.simulate import unsteady_run, write
+
+        found = unsteady_run.simulate(file)
+        if out is not None:
+            with _writing(out):
+                write.simulation(out, found)
+    _show(found.product, as_json, quiet)
+
+
+def design(path: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+    """The steady design of the engine file at ``path``; with its parametric study to ``out`` where that is given."""
+    file = load_engine(path)
+    with _watch(file.engine.id, quiet):
+        from hfanalysis.simulate import steady_run, write
+
+        found = steady_run.design(file)
+        if out is not None:
+            with _writing(out):
+                write.design(out, file, found)
+    _show(found.product, as_json, quiet)
+
+
+@contextmanager
+def _watch(name: str, quiet: bool) -> Iterator[None]:
+    """A spinner on standard error for what takes over two seconds (compiling, once), at a terminal only."""
+    if quiet or not sys.stderr.isatty():
+        yield
+        return
+    from hfanalysis.cli.progress import spinner
+
+    with spinner(name):
+        yield
+
+
+@contextmanager
+def _writing(out: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise InputError(f"--out {out}: cannot be written ({error.strerror}); expected a folder") from None
+
+
+def _show(product: dict[str, Any], as_json: bool, quiet: bool) -> None:
+    text = to_json(product)
+    if as_json:
+        put(text)
+    elif not quiet:
+        import json
+
+        from hfanalysis.cli import tables
+
+        tables.show_engine(json.loads(text))
+    for warning in product["warnings"]:
+        tell(f"warning: {warning}")
