@@ -27,6 +27,9 @@ _MAY_WRAP = ("symbol", "", "flags", "column", "verdict")
 
 _NUMBERS = ("value", "± std", "samples", "rate", "least", "largest", "rms", "bias", "noise")
 
+_WORDS = {"of_ratio": "O/F"}
+"""What an engine's quantities are called, where that is not plain from their names."""
+
 _STYLES = {IDENTIFIED: "green", UNPHYSICAL: "red"}
 
 
@@ -156,7 +159,7 @@ def _values(console: Console, found: Mapping[str, Mapping[str, Any]], title: str
         if quantity["value"] is None:
             absent.setdefault(text.why, []).append(in_words(name))
         else:
-            table.add_row(in_words(name), text.value, text.unit)
+            table.add_row(_WORDS.get(name, in_words(name)), text.value, text.unit)
     if table.row_count:
         console.print(table)
     for reason, names in absent.items():

@@ -7,6 +7,19 @@ from math import sqrt
 from numba import njit
 
 
+SMALL_DROP = 10.0
+"""Pressure drop [Pa] below which the square root is bent to a finite slope, at which no solver stalls."""
+
+
+@njit(cache=True)
+def root(pressure_drop: float) -> float:
+    """sqrt(dp) [Pa^0.5], zero for dp <= 0; below SMALL_DROP the parabola that joins it smoothly."""
+    if pressure_drop >= SMALL_DROP:
+        return sqrt(pressure_drop)
+    x = max(pressure_drop, 0.0) / SMALL_DROP
+    return sqrt(SMALL_DROP) * 0.5 * x * (3.0 - x)
+
+
 @njit(cache=True)
 def mass_flow(area: float, density: float, pressure_drop: float) -> float:
     """mdot = C_i N_i A_i sqrt(2 rho dp) [kg/s], zero for dp <= 0: flow reverses for nobody.
@@ -16,7 +29,7 @@ def mass_flow(area: float, density: float, pressure_drop: float) -> float:
     >>> round(mass_flow(3.786e-5, 742.5, 57.29e5 - 0.345e5 - 27.579e5), 3)
     2.5
     """
-    return area * sqrt(2.0 * density * pressure_drop) if pressure_drop > 0.0 else 0.0
+    return area * sqrt(2.0 * density) * root(pressure_drop)
 
 
 @njit(cache=True)
@@ -26,6 +39,4 @@ def mass_flow_with_feed(area: float, feed_loss_factor: float, density: float, pr
     ``pressure_drop`` is p_T - p_c [Pa], ``feed_loss_factor`` K_loss [1/m^4]. Both losses are quadratic in mdot, so that
     the two resistances add: mdot^2 = rho dp / (K_loss + 1 / (2 (C_i N_i A_i)^2)).
     """
-    if pressure_drop <= 0.0:
-        return 0.0
-    return sqrt(density * pressure_drop / (feed_loss_factor + 0.5 / (area * area)))
+    return sqrt(density / (feed_loss_factor + 0.5 / (area * area))) * root(pressure_drop)

@@ -15,6 +15,9 @@ from numba import njit
 from hfanalysis.thermo.combustion import Gas
 
 SUBSONIC, SHOCK, SUPERSONIC = 0, 1, 2
+SMALL_EXCESS = 1e-4
+"""Excess of the chamber's over the ambient pressure, relative, below which the exit velocity falls linearly."""
+
 REGIMES = ("subsonic", "shock in the diverging part", "supersonic")
 
 
@@ -138,6 +141,9 @@ def expand(
     first = mach_at_area(ratio, gamma, False)
     if ambient >= pressure * pressure_ratio(first, gamma):
         mach = mach_at_pressure(ambient / pressure, gamma)
+        # flow grows as the root of the excess pressure: bent to a finite slope where solvers would stall
+        x = min((pressure / ambient - 1.0) / SMALL_EXCESS, 1.0)
+        mach *= 0.5 * np.sqrt(x) * (3.0 - x)
         return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, mach, ambient, SUBSONIC)
     full = mach_at_area(ratio, gamma, True)
     exit_pressure = pressure * pressure_ratio(full, gamma)

@@ -47,6 +47,12 @@ OUTPUTS = (
 PAD = 1e-3
 """Height [m] above which a rocket has left its pad."""
 
+SMALL_FLUX = 0.01
+"""Oxidizer flux [kg/(m^2 s)] below which regression is bent to a finite slope."""
+
+MOST_CALLS = 400_000
+"""Evaluations of the right-hand side after which an engine is given up; a burn takes about a thousand."""
+
 
 @dataclass(frozen=True)
 class Engine:
@@ -116,6 +122,15 @@ def air(altitude: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
+def flux_power(flux: float, n: float) -> float:
+    """G^n, below SMALL_FLUX the parabola that joins it smoothly and ends in 0 with a finite slope."""
+    if flux >= SMALL_FLUX:
+        return float(flux**n)
+    x = max(flux, 0.0) / SMALL_FLUX
+    return float(SMALL_FLUX**n * x * (2.0 - n - (1.0 - n) * x))
+
+
+@njit(cache=True)
 def rates(y: Array, liquid: bool, sat: Table, gas: Grid, c: Array, dy: Array, out: Array) -> None:
     """Right-hand side; ``c`` holds the engine's constants in the order of :func:`_constants`."""
     volume, area, factor, constant = c[0], c[1], c[2], c[4] >= 0.0
@@ -137,7 +152,7 @@ def rates(y: Array, liquid: bool, sat: Table, gas: Grid, c: Array, dy: Array, ou
         flow = mass_flow(area, density, p_t - loss - p_c)
     else:
         flow = mass_flow_with_feed(area, factor, density, p_t - p_c)
-    opening = c[7] * (flow / (pi * port * port)) ** c[8] if flow > 0.0 else 0.0
+    opening = c[7] * flux_power(flow / (pi * port * port), c[8])
     fuel_flow = c[10] * 2.0 * pi * port * c[6] * opening
     nozzle, thrust, _, _, _ = expand(gamma, rt, p_c, ambient, c[11], c[12])
     dy[0] = -flow
@@ -150,7 +165,7 @@ def rates(y: Array, liquid: bool, sat: Table, gas: Grid, c: Array, dy: Array, ou
     net = thrust - 0.5 * c[17] * rho * y[6] * abs(y[6]) - pull
     # on its pad the rocket stands; what lifts it is the thrust alone
     stands = y[5] <= c[19] + PAD
-    dy[5] = 0.0 if stands and y[6] < 0.0 else y[6] * c[18]
+    dy[5] = y[6] * c[18]
     dy[6] = 0.0 if stands and net <= 0.0 else net / total
     dy[7] = thrust
     out[0], out[1], out[2], out[3] = p_t, p_c, rt, thrust
@@ -245,6 +260,8 @@ def burn(engine: Engine, longest: float = 120.0, rtol: float = 1e-7) -> Burn:
             liquid, liquid_out, wet_until = False, t, len(times)
             _begin_vapor(engine, c, y)
             done = fuel_out = bool(y[RADIUS] >= engine.outer_radius)
+        elif event == 2:
+            y[ALTITUDE], y[SPEED] = c[19], 0.0
         else:
             done, fuel_out = True, event == 1
     outputs = _outputs(np.array(states), wet_until if liquid_out is not None else len(times), sat, gas, c)
@@ -261,21 +278,27 @@ def _begin_vapor(engine: Engine, c: Array, y: Array) -> None:
 def _phase(
     y: Array, start: float, longest: float, liquid: bool, sat: Table, gas: Grid, c: Array, rtol: float
 ) -> tuple[Array, Array, int]:
-    """Integrate one phase; event 0: liquid gone, 1: fuel gone, -1: none."""
+    """Integrate one phase; event 0: liquid gone, 1: fuel gone, 2: fallen to the ground, -1: none."""
     from sksundae.cvode import CVODE
 
     out = np.empty(len(OUTPUTS))
+    calls = 0
 
     def rhs(t: float, state: Array, dy: Array) -> None:
+        nonlocal calls
+        calls += 1
+        if calls > MOST_CALLS:
+            raise ArithmeticError(f"the engine cannot be integrated beyond {t:.3f} s: the solver hardly advances")
         rates(state, liquid, sat, gas, c, dy, out)
 
     def events(t: float, state: Array, values: Array) -> None:
         values[0] = liquid_mass(sat, c[0], state[0], state[1]) if liquid else 1.0
         values[1] = c[13] - state[2]
+        values[2] = state[5] - c[19] + PAD
 
-    events.terminal = [True, True]  # type: ignore[attr-defined]
+    events.terminal = [True, True, True]  # type: ignore[attr-defined]
     scale = np.array([1e-3, 1e-2, 1e-5, 1e-7, 1e-7, 1e-2, 1e-3, 1e-1])
-    options = {"eventsfn": events, "num_events": 2, "max_num_steps": 100_000}
+    options = {"eventsfn": events, "num_events": 3, "max_num_steps": 100_000}
     solver = CVODE(rhs, method="BDF", rtol=rtol, atol=rtol * scale * 10.0, **options)
     solution = solver.solve(np.array([start, longest]), y)
     if not solution.success and solution.status < 0:

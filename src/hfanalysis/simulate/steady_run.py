@@ -13,6 +13,7 @@ from hfanalysis.flight.constant_thrust import Vehicle
 from hfanalysis.quantity import Quantity
 from hfanalysis.simulate import build, heading
 from hfanalysis.testdata.engine_file import EngineFile, Needs
+from hfanalysis.thermo.combustion import restart
 
 COMMAND = "hfa design"
 
@@ -56,6 +57,7 @@ def design(file: EngineFile) -> Design:
 
     Raises :class:`InputError` where the file lacks what the model needs, or no engine meets what it asks for.
     """
+    restart()
     needs = Needs(file, COMMAND)
     task = task_of(needs)
     try:

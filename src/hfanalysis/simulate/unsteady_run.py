@@ -13,7 +13,7 @@ from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, gravity
 from hfanalysis.quantity import Quantity
-from hfanalysis.simulate import build, flown, heading
+from hfanalysis.simulate import build, flown, heading, propellant
 from hfanalysis.testdata.engine_file import EngineFile, Needs
 from hfanalysis.thermo.combustion_table import temperatures
 
@@ -49,6 +49,7 @@ def simulate(file: EngineFile) -> Simulation:
         **_loaded(file, engine, burnt),
         **_tank(tank),
         "flight": _flight(file, engine, burnt),
+        **_propellant(needs, engine),
         "warnings": _warnings(burnt),
         "provenance": heading.provenance(file),
     }
@@ -122,6 +123,14 @@ def _flight(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity
         rail = file.rocket.rail_length if file.rocket else None
         found = flown.flight(engine, burnt, rail.value if rail else None, build.parachutes(file))
     return found | _loaded(file, engine, burnt)
+
+
+def _propellant(needs: Needs, engine: Engine) -> dict[str, dict[str, Quantity]]:
+    """The load for the target apogee, where the file has one and its rocket can fly."""
+    target = needs.file.design.target_apogee
+    if target is None or not isinstance(build.vehicle(needs.file), Vehicle):
+        return {}
+    return {"propellant_for_target_apogee": propellant.for_apogee(needs, engine, target.value)}
 
 
 def _warnings(burnt: Burn) -> list[str]:

@@ -71,6 +71,14 @@ def equilibrium(
     return _solver().solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
 
 
+def restart() -> None:
+    """Forget the last equilibrium, from which the next one starts: results no longer depend on what was asked before.
+
+    Otherwise they differ in the twelfth digit; products are to be the same from run to run.
+    """
+    _solver.cache_clear()
+
+
 class _Solver:
     """CEA's equilibrium solver with the reactants set up once."""
 

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, equilibrium
+from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, equilibrium, restart
 
 Array = NDArray[np.float64]
 
@@ -45,6 +45,7 @@ class CombustionTable:
 
 def build(oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY) -> CombustionTable:
     """Tabulate (about 0.3 s)."""
+    restart()
     ln_p = np.linspace(np.log(PRESSURES[0]), np.log(PRESSURES[1]), NODES[0])
     ln_r = np.linspace(np.log(RATIOS[0]), np.log(RATIOS[1]), NODES[1])
     values = np.empty((ROWS, *NODES))
