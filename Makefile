@@ -56,8 +56,9 @@ lint: $(STAMP) ## ruff and mypy
 format: $(STAMP) ## format the code with ruff
 	$(BIN)/ruff format
 
-benchmark: $(STAMP) ## start-up time beside the bare import of the stack; ingest of a 1 GB log beside pandas
+benchmark: $(STAMP) ## start-up, the engine beside a plain reference solver, ingest of a 1 GB log beside pandas
 	$(BIN)/python benchmarks/startup.py
+	$(BIN)/python benchmarks/reference_engine.py
 	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python benchmarks/ingest_1gb.py --gigabytes 1; fi
 
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage

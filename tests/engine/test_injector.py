@@ -10,7 +10,7 @@ from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
 
 areas = st.floats(1e-6, 1e-4)
 densities = st.floats(10.0, 1200.0)
-drops = st.floats(1.0, 60e5)
+drops = st.floats(1e4, 60e5)
 losses = st.floats(0.0, 1e10)
 
 

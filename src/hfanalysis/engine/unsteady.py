@@ -50,7 +50,7 @@ PAD = 1e-3
 SMALL_FLUX = 0.01
 """Oxidizer flux [kg/(m^2 s)] below which regression is bent to a finite slope."""
 
-MOST_CALLS = 400_000
+MOST_CALLS = 150_000
 """Evaluations of the right-hand side after which an engine is given up; a burn takes about a thousand."""
 
 

@@ -1,0 +1,110 @@
+"""Random engines, most of them absurd: each runs or is refused with a reason, in bounded time, and never pulls.
+
+python benchmarks/random_engines.py [NUMBER]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from dataclasses import dataclass, replace
+from math import pi
+from time import perf_counter
+
+import numpy as np
+
+from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.unsteady import Burn, Engine, burn
+from hfanalysis.flight.constant_thrust import Vehicle
+from hfanalysis.thermo.combustion_table import CombustionTable, build
+from hfanalysis.thermo.nitrous import saturation
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of an engine: a burn or the reason of its refusal, and how long that took [s]."""
+
+    engine: Engine
+    burn: Burn | None
+    reason: str
+    seconds: float
+
+
+def random_engine(rng: np.random.Generator, combustion: CombustionTable) -> Engine:
+    """Every size over one to two orders of magnitude, about one engine in three impossible."""
+
+    def span(low: float, high: float) -> float:
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+    source = saturation(str(rng.choice(["report", "coolprop"])))
+    volume, temperature = span(1e-3, 1e-1), float(rng.uniform(240.0, 312.0))
+    fill = float(rng.uniform(0.05, 1.05))
+    density = float(np.nan_to_num(source.liquid_density(temperature), nan=500.0))
+    radius, length, throat = span(0.015, 0.15), span(0.1, 3.0), span(3e-3, 8e-2)
+    constant = (float(rng.uniform(0.0, 10e5)),) * 2 if rng.random() < 0.5 else None
+    return Engine(
+        saturation=source,
+        combustion=combustion,
+        feed=FeedSystem(volume, span(1e-6, 5e-4), 0.0 if constant else span(1e6, 1e10), constant),
+        oxidizer_mass=fill * volume * density,
+        temperature=temperature,
+        polytropic_exponent=None if rng.random() < 0.5 else float(rng.uniform(0.5, 1.5)),
+        fuel_mass=float(rng.uniform(0.05, 1.05)) * pi * radius**2 * length * 900.0,
+        grain_length=length,
+        outer_radius=radius,
+        fuel_density=900.0,
+        a=span(1e-5, 1e-3),
+        n=float(rng.uniform(0.2, 0.9)),
+        dead_volume=span(1e-5, 1e-2),
+        throat_area=pi * throat**2,
+        exit_area=pi * (throat * float(rng.uniform(0.98, 4.0))) ** 2,
+        vehicle=Vehicle(
+            span(5.0, 500.0), 0.5, span(5e-3, 0.2), float(rng.uniform(0.0, 0.2)), float(rng.uniform(0, 3e3))
+        ),
+    )
+
+
+def attempt(engine: Engine) -> Outcome:
+    """Burn an engine; what is refused has its reason, anything else is a defect and raises."""
+    started = perf_counter()
+    try:
+        done = burn(engine)
+    except (ValueError, ArithmeticError) as error:
+        return Outcome(engine, None, str(error), perf_counter() - started)
+    return Outcome(engine, done, "", perf_counter() - started)
+
+
+def faults(outcome: Outcome) -> list[str]:
+    """What is wrong with an outcome; empty where nothing is."""
+    found = [] if outcome.seconds < 10.0 else [f"took {outcome.seconds:.1f} s"]
+    if outcome.burn is None:
+        return found if len(outcome.reason) > 20 else [*found, f"no reason: {outcome.reason!r}"]
+    states, outputs = outcome.burn.states, outcome.burn.outputs
+    if not (np.isfinite(states).all() and np.isfinite(outputs).all()):
+        found.append("not finite")
+    for name in ("thrust", "oxidizer_flow", "fuel_flow", "nozzle_flow"):
+        if outcome.burn.output(name).min() < 0.0:
+            found.append(f"negative {name}")
+    if outcome.burn.state("altitude").min() < outcome.engine.vehicle.launch_altitude - 0.1:
+        found.append("below ground")
+    return found
+
+
+def main(number: int = 10_000) -> int:
+    """Attempt them all and print a summary; 1 where any has a fault."""
+    rng, table = np.random.default_rng(1), build()
+    attempt(replace(random_engine(rng, table)))
+    outcomes = [attempt(random_engine(rng, table)) for _ in range(number)]
+    wrong = [(i, f) for i, o in enumerate(outcomes) if (f := faults(o))]
+    seconds = np.array([o.seconds for o in outcomes])
+    ran = [o for o in outcomes if o.burn is not None]
+    print(f"{len(ran)} of {number} ran; median {1e3 * np.median(seconds):.1f} ms, longest {seconds.max():.2f} s")
+    for reason, count in Counter(" ".join(o.reason.split()[:3]) for o in outcomes if o.burn is None).most_common():
+        print(f"{count:6} refused: {reason} …")
+    for i, what in wrong[:20]:
+        print(f"engine {i}: {', '.join(what)}")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*(int(a) for a in sys.argv[1:])))
