@@ -86,11 +86,11 @@ def test_its_events_are_certified_to_10_ms(event: str, certified: float) -> None
 
 def test_its_hottest_gas_is_the_start_up_spike() -> None:
     pressure, of = burnt().output("chamber_pressure"), burnt().output("of_ratio")
-    early, later = burnt().time < 0.002, (burnt().time > 0.05) & (burnt().time < 2.6)
+    early, later = burnt().time < 0.002, (burnt().time > 0.05) & (burnt().time < 2.0)
     hottest = max(equilibrium(float(p), float(r)).temperature for p, r in zip(pressure[early], of[early], strict=True))
     rest = [equilibrium(float(p), float(r)).temperature for p, r in zip(pressure[later], of[later], strict=True)]
     assert hottest == pytest.approx(2811.0, rel=0.005)
-    assert (rest[0], rest[-1]) == pytest.approx((2600.0, 2520.0), rel=0.02)
+    assert (rest[0], rest[-1]) == pytest.approx((2600.0, 2520.0), rel=0.005)
 
 
 def test_the_tank_starts_at_the_certified_pressure() -> None:
@@ -185,11 +185,10 @@ def test_the_reference_solver_finds_the_same_events_and_totals() -> None:
 
 
 def test_the_reference_solver_has_the_same_states_at_aligned_times() -> None:
-    """To 1e-4 of the range; what the chamber holds, to 2e-3 in the 0.2 ms in which condensed carbon appears."""
+    """To 1e-4 of the range; the chamber's pressure to 1e-3 in the 0.2 ms in which condensed carbon appears."""
     found = differences(burnt(), reference())
-    of_chamber = {name: found.pop(name) for name in ("chamber_oxidizer", "chamber_fuel", "chamber_pressure")}
+    assert found.pop("chamber_pressure") < 1e-3
     assert max(found.values()) < 1e-4
-    assert max(of_chamber.values()) < 2e-3
 
 
 def test_without_condensed_carbon_the_chamber_too_agrees() -> None:
@@ -219,7 +218,7 @@ def test_a_quadratic_feed_loss_runs_and_slows_the_burn() -> None:
 def test_a_quadratic_feed_loss_agrees_with_the_reference() -> None:
     lossy = with_loss(6.4e8)
     found = differences(burn(lossy), solve(lossy))
-    assert max(found.values()) < 3e-3
+    assert max(found.values()) < 1e-3
 
 
 def test_an_engine_whose_fuel_goes_first_ends_with_liquid_in_the_tank() -> None:
