@@ -48,11 +48,16 @@ class Ascent:
 
 
 def ascend(engine: Engine, burnt: Burn) -> Ascent:
-    """From ignition to apogee. Raises ValueError for a rocket that stays on its pad or leaves the atmosphere model."""
+    """From ignition to apogee.
+
+    Raises ValueError for a rocket that stays on its pad, turns within the burn or leaves the atmosphere model.
+    """
     altitude, speed = burnt.state("altitude"), burnt.state("speed")
     base = engine.vehicle.launch_altitude
-    if not (altitude[-1] > base + PAD and speed[-1] > 0.0):
+    if not altitude.max() > base + PAD:
         raise ValueError(NOT_FROM_PAD)
+    if not speed[-1] > 0.0:
+        raise ValueError("the rocket turns or lands before its engine has burnt out")
     leg = coast(engine.vehicle, float(burnt.time[-1]), float(altitude[-1]), float(speed[-1]))
     joined = (
         np.concatenate([a, b[1:]]) for a, b in ((burnt.time, leg.time), (altitude, leg.altitude), (speed, leg.speed))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
+from itertools import cycle
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,11 +25,12 @@ _ALONE = "svg { font-family: system-ui, sans-serif; background: var(--paper); }"
 
 @dataclass(frozen=True)
 class Curve:
-    """A named line."""
+    """A named line; ``style`` picks its colour, else it takes the next one."""
 
     x: Array
     y: Array
     name: str
+    style: str = ""
 
 
 def simulation(table: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
@@ -83,7 +85,7 @@ def _by_pressure(mixtures: Sequence[MixturePoint]) -> Iterator[Curve]:
         propep = np.array([point.specific_impulse_propep for point in points])
         yield Curve(x, own, f"{1e-5 * pressure:.1f} bar")
         if not np.array_equal(own, propep):
-            yield Curve(x, propep, "PROPEP's")
+            yield Curve(x, propep, "PROPEP's", "raw")
 
 
 def chart(title: str, x_label: str, y_label: str, curves: Sequence[Curve], with_zero: bool = True) -> str:
@@ -91,9 +93,10 @@ def chart(title: str, x_label: str, y_label: str, curves: Sequence[Curve], with_
     xs = np.concatenate([curve.x for curve in curves])
     plot = svg.new_plot((float(xs.min()), float(xs.max())), svg.value_range([c.y for c in curves], with_zero))
     svg.axes(plot, x_label, y_label)
-    for i, curve in enumerate(curves):
+    colours = cycle(_STYLES)
+    for curve in curves:
         data = Envelope(curve.x, curve.y, curve.y, curve.y)
-        svg.line(plot, data, _STYLES[i % len(_STYLES)], curve.name)
+        svg.line(plot, data, curve.style or next(colours), curve.name)
     drawn = str(svg.render(plot, "chart", title, f"{y_label} over {x_label}"))
     style = files("hfanalysis.report").joinpath("templates/style.css").read_text(encoding="utf-8")
     head, body = drawn.split(">", 1)

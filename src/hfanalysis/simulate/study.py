@@ -85,5 +85,6 @@ def over_mixture(requirement: Requirement) -> Iterator[MixturePoint]:
         here = replace(requirement, chamber_pressure=pressure)
         propep = replace(here, oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY)
         for ratio in RATIOS:
-            at = float(ratio)
-            yield MixturePoint(pressure, at, ideal_specific_impulse(here, at), ideal_specific_impulse(propep, at))
+            own = ideal_specific_impulse(here, float(ratio))
+            beside = own if propep == here else ideal_specific_impulse(propep, float(ratio))
+            yield MixturePoint(pressure, float(ratio), own, beside)

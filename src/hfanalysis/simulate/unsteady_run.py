@@ -57,10 +57,10 @@ def simulate(file: EngineFile) -> Simulation:
 
 
 def run(file: EngineFile, engine: Engine) -> Burn:
-    """The burn; an engine that cannot be integrated is refused with the reason."""
+    """The burn; an engine that cannot be lit or integrated is refused with the reason."""
     try:
         return unsteady.burn(engine)
-    except ArithmeticError as error:
+    except (ValueError, ArithmeticError) as error:
         raise InputError(f"{file.path}: {error}") from None
 
 
