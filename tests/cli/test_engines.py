@@ -176,15 +176,32 @@ def test_an_output_folder_that_is_a_file(run: Run, tmp_path: Path, command: str)
     assert "taken" in err
 
 
+def test_a_rocket_that_turns_with_fuel_left_has_an_apogee(run: Run, tmp_path: Path) -> None:
+    product = json.loads(run("simulate", changed(tmp_path, ("a = 1.32e-4", "a = 1.0e-4")), "--json")[1])
+    assert product["burn_time"]["value"] is None
+    assert 2500.0 < product["flight"]["apogee"]["value"] < 3300.0
+    assert 23.0 < product["flight"]["time_to_apogee"]["value"] < 27.0
+
+
 def test_a_grain_too_large_for_the_model_still_gives_what_can_be_had(run: Run, tmp_path: Path) -> None:
     """A fuel that hardly burns is not gone when the run ends: no burn time, and the reason."""
     status, out, err = run("simulate", changed(tmp_path, ("a = 1.32e-4", "a = 1e-6")), "--json")
     product = json.loads(out)
     assert status == 0
     assert "fuel is not gone" in product["burn_time"]["reason"]
-    assert product["flight"]["apogee"]["value"] is None
+    assert product["flight"]["peak_velocity"]["value"] > 0.0
     assert product["warnings"]
     assert err.startswith("hfa: warning: ")
+
+
+def test_a_rocket_that_is_too_heavy_has_no_flight_but_an_engine(run: Run, tmp_path: Path) -> None:
+    path = changed(tmp_path, ('dry_mass = "52.5 kg"', 'dry_mass = "2000 kg"'))
+    status, out, _ = run("simulate", path, "--json")
+    product = json.loads(out)
+    assert status == 0
+    assert "does not leave its pad" in product["flight"]["apogee"]["reason"]
+    assert product["pad_thrust_to_weight"]["value"] > 0.0
+    assert product["total_impulse"]["value"] > 0.0
 
 
 def test_simulate_writes_histories_and_plots(run: Run, tmp_path: Path) -> None:

@@ -50,20 +50,33 @@ class Ascent:
 def ascend(engine: Engine, burnt: Burn) -> Ascent:
     """From ignition to apogee.
 
-    Raises ValueError for a rocket that stays on its pad, turns within the burn or leaves the atmosphere model.
+    Raises ValueError for a rocket that stays on its pad or leaves the atmosphere model.
     """
     altitude, speed = burnt.state("altitude"), burnt.state("speed")
     base = engine.vehicle.launch_altitude
     if not altitude.max() > base + PAD:
         raise ValueError(NOT_FROM_PAD)
-    if not speed[-1] > 0.0:
-        raise ValueError("the rocket turns or lands before its engine has burnt out")
+    turned = np.flatnonzero((altitude > base + PAD) & (speed <= 0.0))
+    if turned.size:
+        return _until_turn(engine.vehicle, burnt, int(turned[0]))
     leg = coast(engine.vehicle, float(burnt.time[-1]), float(altitude[-1]), float(speed[-1]))
     joined = (
         np.concatenate([a, b[1:]]) for a, b in ((burnt.time, leg.time), (altitude, leg.altitude), (speed, leg.speed))
     )
     time, heights, speeds = joined
     return Ascent(time, heights - base, speeds, leg)
+
+
+def _until_turn(vehicle: Vehicle, burnt: Burn, last: int) -> Ascent:
+    """The ascent of a rocket that turns while its engine still runs; the speed is linear over the last step."""
+    time, altitude, speed = (a[: last + 1].copy() for a in (burnt.time, burnt.state("altitude"), burnt.state("speed")))
+    fall = speed[-2] - speed[-1]
+    rest = (time[-1] - time[-2]) * speed[-2] / fall if fall > 0.0 else 0.0
+    time[-1] = time[-2] + rest
+    altitude[-1] = altitude[-2] + 0.5 * speed[-2] * rest * cos(vehicle.launch_angle)
+    speed[-1] = 0.0
+    leg = Leg(time[-2:], altitude[-2:], speed[-2:])
+    return Ascent(time, altitude - vehicle.launch_altitude, speed, leg)
 
 
 def flight(

@@ -117,8 +117,6 @@ def _flight(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity
     vehicle = build.vehicle(file)
     if not isinstance(vehicle, Vehicle):
         found = flown.absent(vehicle)
-    elif not burnt.fuel_out:
-        found = flown.absent(str(_burn_time(burnt).reason))
     else:
         rail = file.rocket.rail_length if file.rocket else None
         found = flown.flight(engine, burnt, rail.value if rail else None, build.parachutes(file))
