@@ -63,10 +63,7 @@ def test_a_log_in_many_pieces_is_the_log_in_one(tmp_path: Path, monkeypatch: pyt
 
 def test_a_column_taken_may_be_changed_and_is_gone(tmp_path: Path) -> None:
     (tmp_path / "log.csv").write_text(make.csv(time=T, p_tank=T))
-    source = delimited.Delimited(
-        tmp_path / "log.csv", delimited.Dialect("utf-8", ",", ".", 1, 2, ("time", "p"), ("", ""))
-    )
-    columns = spool.Spool(source, tmp_path)
+    columns = spool.Spool(open_log(tmp_path / "log.csv", FileSpec(file="log.csv")), tmp_path)
     columns.fill([1], [0], lambda share: None)
     taken = columns.take(1)
     taken += 1.0
