@@ -71,12 +71,17 @@ class _Ingest:
 
     def read(self, sources: dict[str, Source], progress: Progress) -> None:
         """Every file once, then the clocks."""
+        lengths: dict[Hashable, int] = {}
         self.warnings += self.definition.warnings
         for file in dict.fromkeys(plan.file for plan in self.plans):
             self._read_file(file, sources[file], progress)
         for plan in self.plans:
             if plan.clock not in self.clocks:
                 self.clocks[plan.clock] = self._clock(plan)
+                lengths[plan.clock] = self.spools[plan.file].rows(
+                    plan.stamps if plan.stamps is not None else plan.column
+                )
+            self._fits(plan, lengths[plan.clock])
 
     def _read_file(self, file: str, source: Source, progress: Progress) -> None:
         plans = {plan.column: plan for plan in self.plans if plan.file == file}
@@ -96,6 +101,13 @@ class _Ingest:
         clock = read_clock(spool, plan.stamps, plan.time, rows, str(path))
         self.warnings += clock.warnings
         return clock
+
+    def _fits(self, plan: Plan, stamps: int) -> None:
+        """In formats of separate series a column and its time stamps may differ in length."""
+        rows = self.spools[plan.file].rows(plan.column)
+        if rows != stamps:
+            where = f"{self.definition.folder / plan.file}, column {plan.spec.column!r} ({plan.spec.name})"
+            raise InputError(f"{where}: {rows} readings on {stamps} time stamps; expected as many (state its own time)")
 
     def _samples(self, plan: Plan) -> Samples:
         return read_samples(plan, self.spools[plan.file], self.clocks[plan.clock], self.definition)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -33,6 +33,8 @@ class Delimited:
 
     path: Path
     dialect: Dialect
+    clocks: Mapping[int, int] = field(default_factory=dict)
+    """Column -> column of its time stamps, where the format says so."""
     sha256: str | None = field(default=None, init=False)
 
     @property
@@ -48,8 +50,8 @@ class Delimited:
         return self.dialect.units
 
     def stamps_of(self, column: int) -> int | None:
-        """Text has no time but in its columns."""
-        return None
+        """See :class:`hfanalysis.testdata.readers.base.Source`."""
+        return self.clocks.get(column)
 
     def chunks(self, columns: Sequence[int], stamps: Sequence[int], progress: Progress) -> Iterator[Chunk]:
         """See :class:`hfanalysis.testdata.readers.base.Source`."""
