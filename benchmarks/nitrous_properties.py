@@ -1,6 +1,6 @@
 """Compare the two property sources of saturated nitrous oxide and write docs/properties.md.
 
-    python benchmarks/nitrous_properties.py
+python benchmarks/nitrous_properties.py
 """
 
 from __future__ import annotations
@@ -23,31 +23,37 @@ Written by `python benchmarks/nitrous_properties.py`.
 `[model] properties` chooses where the saturated properties of nitrous oxide come from:
 
 - `coolprop` (default): CoolProp's reference equation of state (Lemmon and Span 2006), tabulated once.
-- `report`: the correlations and the table of the technical report's appendix, with its two slips corrected: the liquid expands
-  on heating (the printed derivative of its molar volume has the wrong sign), and c_v of the vapour at 250 K is 0.034798, not
-  0.043798 kJ/(mol K).
+- `report`: the correlations and the table of the technical report's appendix, with its two slips corrected: the liquid
+  expands on heating (the printed derivative of its molar volume has the wrong sign), and c_v of the vapour at 250 K is
+  0.034798, not 0.043798 kJ/(mol K).
 
-Both are C2 splines over theta = (1 - T/T_c)^(1/3), in which densities stay smooth up to the critical point; all derivatives are
-those of the splines, so that mass and energy equations see one consistent surface.
+Both are C2 splines over theta = (1 - T/T_c)^(1/3), in which densities stay smooth up to the critical point; all
+derivatives are those of the splines, so that mass and energy equations see one consistent surface.
 
-**Why CoolProp is the default.** The report takes pressure and liquid volume from correlations and everything else from a table
-that follows an equation of state. Both run a tank whose energy balance closes (second table), but the two halves do not
-describe one fluid: where h - u should be p v they differ by 1 to 5 % (last column of the first table), and a gauge
-pressure is read as a temperature that is 0.3 to 1.4 K too low (third column). With one equation of state the temperature read off the
-gauge is that of the energy balance. For reproducing the report's numbers, and only for that, take `report`.
+**Why CoolProp is the default.** The report takes pressure and liquid volume from correlations and everything else from
+a table that follows an equation of state. Both run a tank whose energy balance closes (second table), but the two
+halves do not describe one fluid: where h - u should be p v they differ by 1 to 5 % (last column of the first table),
+and a gauge pressure is read as a temperature that is 0.3 to 1.4 K too low (third column). With one equation of state
+the temperature read off the gauge is that of the energy balance. For reproducing the report's numbers, and only for
+that, take `report`.
 """
 
 
 def differences() -> str:
     """Report against CoolProp, in percent, over the range of a tank."""
     a, b = saturation("report"), saturation("coolprop")
-    rows = ["| T, K | p_sat, bar | T read off that pressure | p_sat | liquid density | vapour density | p v_v / (h_v - u_v) of the report |", "|---|---|---|---|---|---|---|"]
+    rows = [
+        "| T, K | p_sat, bar | T read off that pressure | p_sat | liquid density | vapour density "
+        "| p v_v / (h_v - u_v) of the report |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for t in (240.0, 260.0, 273.15, 283.15, 293.15, 298.15, 303.15, 307.0):
         h, u = (a.energy(p, t)[0] for p in (Property.VAPOR_ENTHALPY, Property.VAPOR_ENERGY))
         closure = a.pressure(t) * a.vapor_volume(t)[0] / (h - u)
         values = [(f(a) / f(b) - 1.0) * 100.0 for f in _functions(t)]
         read = float(a.temperature(b.pressure(t))) - t
-        rows.append(f"| {t:.2f} | {float(b.pressure(t)) / 1e5:.2f} | {read:+.2f} K | " + " | ".join(f"{v:+.2f} %" for v in values) + f" | {closure:.4f} |")
+        differ = " | ".join(f"{v:+.2f} %" for v in values)
+        rows.append(f"| {t:.2f} | {float(b.pressure(t)) / 1e5:.2f} | {read:+.2f} K | {differ} | {closure:.4f} |")
     return "\n".join(rows)
 
 
@@ -82,7 +88,8 @@ def closure() -> str:
 
 def main() -> None:
     """Write the page."""
-    text = INTRODUCTION + f"\n## Report against CoolProp\n\n{differences()}\n\n## The same tank with either\n\n{closure()}\n"
+    tables = f"## Report against CoolProp\n\n{differences()}\n\n## The same tank with either\n\n{closure()}\n"
+    text = f"{INTRODUCTION}\n{tables}"
     PAGE.write_text(text, encoding="utf-8")
     print(text)
 

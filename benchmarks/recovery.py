@@ -1,8 +1,8 @@
 """Does the calibration find what is in a log, and do its intervals hold it? Two studies, each resumable.
 
-``own``: 400 logs of the virtual stand (random truth, noise, declared biases, line filling, purge), each taken through ingest,
-segment and calibrate. ``blind``: the cases without an effect of another generator, where its folder is given. Results are
-written as they come to .cache/recovery-*.jsonl; the table goes to docs/recovery.md.
+``own``: 400 logs of the virtual stand (random truth, noise, declared biases, line filling, purge), each taken through
+ingest, segment and calibrate. ``blind``: the cases without an effect of another generator, where its folder is given.
+Results are written as they come to .cache/recovery-*.jsonl; the table goes to docs/recovery.md.
 
     python benchmarks/recovery.py --cases 400 [--blind FOLDER]
 """
@@ -92,9 +92,12 @@ def _code() -> str:
 
 
 def table(results: list[dict[str, Any]]) -> str:
-    """Per quantity: cases, mean and scatter of (found - truth)/std, relative bias, and coverage with its 95 % limits."""
-    rows = ["| quantity | cases | answered | median relative or absolute error | mean z | std z | 95 % interval covers | 95 % limits |",
-            "|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    """Per quantity: cases, mean and scatter of (found - truth)/std, relative bias, coverage with its 95 % limits."""
+    rows = [
+        "| quantity | cases | answered | median relative or absolute error | mean z | std z "
+        "| 95 % interval covers | 95 % limits |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
     for name in QUANTITIES:
         pairs = [(r["truth"][name], r["found"][name]) for r in results if name in r["truth"]]
         answered = [(t, f) for t, f in pairs if f["value"] is not None]

@@ -1,7 +1,7 @@
-"""Logs from the project's own tank model, with everything a stand adds: noise, biases, line filling, purge, lost samples.
+"""Logs from the project's own tank model, with what a stand adds: noise, biases, line filling, purge, lost samples.
 
-The truth is drawn at random, the log is written as a logger would, and ``test.toml`` states what an engineer would know. What
-the calibration then finds can be compared with the truth (benchmarks/recovery.py, tests/acceptance).
+The truth is drawn at random, the log is written as a logger would, and ``test.toml`` states what an engineer would
+know. What the calibration then finds can be compared with the truth (benchmarks/recovery.py, tests/acceptance).
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def _burn(
     count: int,
     vapor_time: float,
 ) -> tuple[Array, float, float, float]:
-    """Tank, run line and chamber pressure, tank mass and flow every step; t_v; t_purge; the tank pressure at t_purge."""
+    """Pressures of tank, line and chamber, tank mass and flow every step; t_v; t_purge; tank pressure at t_purge."""
     out = np.empty((5, count))
     p_c = 101_325.0
     t_v = t_purge = np.nan
@@ -179,7 +179,8 @@ def _write_log(path: Path, truth: Truth, out: Array, step: float, generator: np.
     tank, run, chamber, mass = (np.where(after < 0.0, r, np.interp(after, grid, out[k])) for k, r in enumerate(rest))
     sag = 0.25 * (1.0 - np.exp(-np.maximum(after - truth.t_purge, 0.0) / 1.5))
     purge = truth.purge_pressure * (1.0 - sag)
-    phase = 2.0 * np.pi * np.cumsum(generator.uniform(20.0, 80.0) + 5.0 * generator.standard_normal(time.size)) / truth.rate
+    frequency = generator.uniform(20.0, 80.0) + 5.0 * generator.standard_normal(time.size)
+    phase = 2.0 * np.pi * np.cumsum(frequency) / truth.rate
     chamber = chamber + truth.oscillation * (chamber - AMBIENT) * np.sin(phase)
     biases = 2.0 * PSI * generator.standard_normal(4)
     columns = [time]

@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-BLOCK = re.compile(r"(<!-- sample: (?P<command>[^>]*?) \(written by `make readme`\) -->\n).*?(<!-- end of sample -->)", re.S)
+BLOCK = re.compile(
+    r"(<!-- sample: (?P<command>[^>]*?) \(written by `make readme`\) -->\n).*?(<!-- end of sample -->)", re.S
+)
 
 
 def sample(match: re.Match[str]) -> str:

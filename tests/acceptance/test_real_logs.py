@@ -15,7 +15,7 @@ from hfanalysis.testdata.log import TestLog, read_log
 
 HERE = Path(__file__).parent / "real"
 LOGS = Path(os.environ.get("HFA_REAL_TESTS", Path(__file__).parents[3] / "shared" / "real_tests"))
-TESTS = sorted(path.parent.name for path in HERE.glob("*/test.toml"))
+TESTS = sorted(path.parent.name for path in HERE.glob("MRT-*/test.toml"))
 
 
 def read(root: Path, test: str) -> TestLog:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-
 from benchmarks.recovery import QUANTITIES, own_case
 
 SEEDS = range(1000, 1010)

@@ -26,7 +26,12 @@ PHASES = {
 }
 COEFFICIENTS = {
     "HF4": {"C_i": (0.2559, 0.02), "m": (0.745, 0.06), "p_loss_liquid": (6.12e5, 0.03), "p_loss_vapor": (3.35e5, 0.06)},
-    "HF5": {"C_i": (0.2926, 0.02), "m": (0.749, 0.06), "p_loss_liquid": (11.43e5, 0.03), "p_loss_vapor": (6.42e5, 0.06)},
+    "HF5": {
+        "C_i": (0.2926, 0.02),
+        "m": (0.749, 0.06),
+        "p_loss_liquid": (11.43e5, 0.03),
+        "p_loss_vapor": (6.42e5, 0.06),
+    },
 }
 
 
@@ -60,7 +65,7 @@ def test_coefficients(products: dict[str, Any], name: str, quantity: str) -> Non
 
 @pytest.mark.parametrize("name", ["HF4", "HF5"])
 def test_the_tank_loses_11_bar_while_the_line_fills(products: dict[str, Any], name: str) -> None:
-    """10.8 bar by t_feed (report: about 11): seen as the difference between rest and the start of the tank-alone run."""
+    """10.8 bar by t_feed (report: about 11): the difference between rest and the start of the tank-alone run."""
     import h5py
 
     rest = products[name]["calibration"]["rest"]["pressure"]["value"]
@@ -124,14 +129,17 @@ def _write_metric(folder: Path) -> None:
     _write(folder, means, "bar", "N", "K", ";", ",")
 
 
-def _write(folder: Path, table: pd.DataFrame, pressure: str, force: str, temperature: str, sep: str, decimal: str) -> None:
+def _write(
+    folder: Path, table: pd.DataFrame, pressure: str, force: str, temperature: str, sep: str, decimal: str
+) -> None:
     folder.mkdir(parents=True)
     table.columns = pd.Index(["time", "tank", "run", "chamber", "purge", "thrust", "mass", "T"])
     table.to_csv(folder / "log.csv", index=False, sep=sep, decimal=decimal, float_format="%.6f")
     text = (ROOT / "raw_tests" / "HF5" / "test.toml").read_text().replace('"HF5"', f'"{folder.name}"')
-    for old, new in (("Time (s)", "time"), ("PT-TANK (psia)", "tank"), ("PT-RUN (psia)", "run"), ("PT-CC (psia)", "chamber"),
-                     ("PT-PURGE (psia)", "purge"), ("LC-THRUST (lbf)", "thrust"), ("LC-TANK (kg)", "mass"),
-                     ('unit = "psi"', f'unit = "{pressure}"'), ('unit = "lbf"', f'unit = "{force}"')):  # fmt: skip
+    for old, new in (("Time (s)", "time"), ("PT-TANK (psia)", "tank"), ("PT-RUN (psia)", "run"),
+                     ("PT-CC (psia)", "chamber"), ("PT-PURGE (psia)", "purge"), ("LC-THRUST (lbf)", "thrust"),
+                     ("LC-TANK (kg)", "mass"), ('unit = "psi"', f'unit = "{pressure}"'),
+                     ('unit = "lbf"', f'unit = "{force}"')):  # fmt: skip
         text = text.replace(old, new)
     text += f'\n[channels.T_tank]\ncolumn = "T"\nunit = "{temperature}"\n'
     (folder / "test.toml").write_text(text)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from hfanalysis.testdata import flag_kernels
 from hfanalysis.testdata.flags import flag_readings
 from hfanalysis.testdata.log import Flag
 
@@ -119,3 +120,11 @@ def test_a_valve_may_stand_still() -> None:
 def test_noise_alone_is_never_flagged() -> None:
     values = np.random.default_rng(3).normal(size=300_000)
     assert not flag_readings(values, "pressure").any()
+
+
+@pytest.mark.parametrize("count", [2, 5, 255, 256, 257, 1000])
+def test_noise_is_measured_block_by_block(rng: np.random.Generator, count: int) -> None:
+    noise = flag_kernels.local_noise(rng.normal(scale=np.where(np.arange(count) < 256, 1.0, 5.0)))
+    assert len(noise) == -(-count // 256)
+    if count == 1000:
+        np.testing.assert_allclose(noise, [1.0, 5.0, 5.0, 5.0], rtol=0.4)

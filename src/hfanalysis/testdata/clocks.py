@@ -36,19 +36,21 @@ def read_clock(spool: Spool, column: int | None, spec: TimeSpec, rows: int, wher
     """The clock of a file's column, or of its sample rate; raises :class:`InputError` where no stamp can be read."""
     if column is None:
         return _regular(spec, rows)
-    stamps = spool.take(column)
+    stamps = spool.look(column)
     keep = np.isfinite(stamps)
     if not keep.any():
         raise InputError(_no_stamps(spool, column, where))
     warnings = [f"{where}: {n} rows without a readable time stamp are left out"] if (n := int((~keep).sum())) else []
     written = spec.unit in ("datetime", "clock") or column in spool.written
-    time = stamps[keep] * (1.0 if written else unit_factor(spec.unit, "time", where)[0])
+    whole = bool(keep.all())
+    time = (stamps if whole else stamps[keep]) * (1.0 if written else unit_factor(spec.unit, "time", where)[0])
     if spec.spread:
         time, note = _spread(time, where)
         warnings += note
     stale = stale_stamps(time)
     warnings += _noted(time, stale, where)
-    return Clock(time + spec.offset.value, None if keep.all() else keep, stale, tuple(warnings))
+    time += spec.offset.value
+    return Clock(time, None if whole else keep, stale, tuple(warnings))
 
 
 def _regular(spec: TimeSpec, rows: int) -> Clock:

@@ -31,42 +31,6 @@ COMMON = 0.02
 
 
 @njit(cache=True, nogil=True)
-def not_finite(readings: Floats, flags: Flags) -> None:
-    """Flags NaN and infinity as dropped out."""
-    for i in range(len(readings)):
-        if not np.isfinite(readings[i]):
-            flags[i] |= DROPOUT
-
-
-@njit(cache=True, nogil=True)
-def outside(values: Floats, low: float, high: float, flags: Flags) -> None:
-    """Flags values outside low..high as dropped out."""
-    for i in range(len(values)):
-        if values[i] < low or values[i] > high:
-            flags[i] |= DROPOUT
-
-
-@njit(cache=True, nogil=True)
-def survey(readings: Floats, flags: Flags) -> tuple[int, float, float, int, int, int]:
-    """Of the samples without a flag: their number, the extremes, and how often the extremes and zero occur."""
-    count = lows = highs = zeros = 0
-    low, high = np.inf, -np.inf
-    for i in range(len(readings)):
-        if flags[i]:
-            continue
-        x = readings[i]
-        count += 1
-        zeros += x == 0.0
-        if x < low:
-            low, lows = x, 0
-        if x > high:
-            high, highs = x, 0
-        lows += x == low
-        highs += x == high
-    return count, low, high, lows, highs, zeros
-
-
-@njit(cache=True, nogil=True)
 def nearest(readings: Floats, level: float, flags: Flags) -> float:
     """The distance from ``level`` to the nearest other value without a flag."""
     least = np.inf
@@ -174,17 +138,19 @@ def repeats(values: Floats, low: float, high: float, flags: Flags) -> None:
                 flags[i] |= SATURATED
 
 
-@njit(cache=True, nogil=True)
 def local_noise(values: Floats) -> Floats:
-    """Standard deviation of the noise, by blocks, from every fourth difference of neighbours."""
-    n = len(values)
-    blocks = (n + NOISE_BLOCK - 1) // NOISE_BLOCK
-    noise = np.empty(blocks)
-    for b in range(blocks):
-        end = min(n, (b + 1) * NOISE_BLOCK + 1)
-        start = max(0, min(b * NOISE_BLOCK, end - NOISE_BLOCK))
-        noise[b] = 1.0484 * np.median(np.abs(values[start + 1 : end : 4] - values[start : end - 1 : 4]))
-    return noise
+    """Standard deviation of the noise, by blocks, from every fourth difference of neighbours.
+
+    The median of a block is that of sorted numbers, which NumPy sorts faster than any code here picks it out.
+    """
+    steps = np.abs(values[1::4] - values[:-1:4])
+    per = NOISE_BLOCK // 4
+    whole = len(steps) // per
+    noise = np.empty((len(values) + NOISE_BLOCK - 1) // NOISE_BLOCK)
+    noise[whole:] = np.median(steps[-per:])
+    blocks = np.sort(steps[: whole * per].reshape(whole, per), axis=1)
+    noise[:whole] = 0.5 * (blocks[:, per // 2 - 1] + blocks[:, per // 2])
+    return 1.0484 * noise
 
 
 @njit(cache=True, nogil=True)

@@ -27,7 +27,8 @@ IMPOSSIBLE = {"temperature": (1.0, 6000.0), "pressure": (-5e5, 1e9)}
 def flag_readings(readings: Floats, dimension: str, missing: Sequence[float] = ()) -> Flags:
     """The flags of a channel's readings as logged (before unit, zero and tare)."""
     flags = np.zeros(len(readings), dtype=np.uint8)
-    flag_kernels.not_finite(readings, flags)
+    if len(readings) and not np.isfinite(readings.min() + readings.max()):
+        flags[~np.isfinite(readings)] = Flag.DROPOUT
     for value in missing:
         flags[readings == value] = Flag.DROPOUT
     if dimension == "dimensionless":
@@ -39,8 +40,10 @@ def flag_readings(readings: Floats, dimension: str, missing: Sequence[float] = (
 
 def flag_impossible(values: Floats, dimension: str, flags: Flags) -> None:
     """Flags samples [SI] that no sensor of this dimension can read."""
-    low, high = IMPOSSIBLE.get(dimension, (-np.inf, np.inf))
-    flag_kernels.outside(values, low, high, flags)
+    if dimension in IMPOSSIBLE and len(values):
+        low, high = IMPOSSIBLE[dimension]
+        if not low <= np.nanmin(values) <= np.nanmax(values) <= high:
+            flags[(values < low) | (values > high)] |= np.uint8(Flag.DROPOUT)
 
 
 def _flag_unread(readings: Floats, flags: Flags) -> None:
@@ -49,18 +52,23 @@ def _flag_unread(readings: Floats, flags: Flags) -> None:
     Once one is found the next extreme is looked at, which may be another.
     """
     for _ in range(3):
-        count, low, high, lows, highs, zeros = flag_kernels.survey(readings, flags)
-        if count and low == high and low in SENTINELS:
+        live = readings[flags == 0] if flags.any() else readings
+        if not len(live):
+            return
+        low, high = float(live.min()), float(live.max())
+        if low == high and low in SENTINELS:
             flags[readings == low] = Flag.DROPOUT
-        levels = {level: n for level, n in ((low, lows), (high, highs), (0.0, zeros)) if _may_be_none(level, n)}
-        if not count or low == high or not levels:
+        doubtful = {low, high, 0.0} if low < 0.0 < high else {low, high}
+        levels = [level for level in sorted(doubtful) if _may_be_none(level, live)]
+        if low == high or not levels:
             return
         gap = _gap(readings, flags)
         if not sum(_flag_detached(readings, level, gap, flags) for level in levels):
             return
 
 
-def _may_be_none(level: float, count: int) -> bool:
+def _may_be_none(level: float, live: Floats) -> bool:
+    count = int(np.count_nonzero(live == level))
     return count >= 3 or (count > 0 and (level == 0.0 or level in SENTINELS))
 
 

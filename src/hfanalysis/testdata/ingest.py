@@ -5,7 +5,6 @@ The files are read once, in chunks; then a few channels at a time are in memory,
 
 from __future__ import annotations
 
-import hashlib
 from collections import deque
 from collections.abc import Callable, Hashable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -23,6 +22,7 @@ from hfanalysis.testdata.clocks import Clock, read_clock
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import Channel
 from hfanalysis.testdata.plan import Plan, make_plans, open_files
+from hfanalysis.testdata.products import sha256_file
 from hfanalysis.testdata.quiet import REFERENCES, Firing, find_firing
 from hfanalysis.testdata.readers import Source
 from hfanalysis.testdata.samples import Samples, make_channel, read_samples
@@ -43,12 +43,11 @@ def ingest(definition: TestDefinition, out: Path, progress: Progress = lambda na
     sources = open_files(definition)
     plans = make_plans(definition, sources)
     with ThreadPoolExecutor(WORKERS) as pool, closing(_Ingest(definition, plans, pool, out.parent)) as run:
-        hashes = {name: pool.submit(_sha256, definition.folder / name) for name in sources}
         run.read(sources, progress)
         firing = run.find_firing()
         with Store(out) as store:
             run.write(store, firing)
-            raw = {name: found.result() for name, found in hashes.items()}
+            raw = {name: source.sha256 or sha256_file(definition.folder / name) for name, source in sources.items()}
             store.about(run.warnings, _provenance(definition, raw))
 
 
@@ -63,8 +62,8 @@ class _Ingest:
     spools: dict[str, Spool] = field(default_factory=dict)
     clocks: dict[Hashable, Clock] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
-    kept: tuple[Plan, Samples] | None = None
-    """The samples looked at last for the firing, to be used again."""
+    kept: dict[str, Samples] = field(default_factory=dict)
+    """By channel, the samples looked at for the firing."""
 
     def close(self) -> None:
         for spool in self.spools.values():
@@ -72,12 +71,17 @@ class _Ingest:
 
     def read(self, sources: dict[str, Source], progress: Progress) -> None:
         """Every file once, then the clocks."""
+        lengths: dict[Hashable, int] = {}
         self.warnings += self.definition.warnings
         for file in dict.fromkeys(plan.file for plan in self.plans):
             self._read_file(file, sources[file], progress)
         for plan in self.plans:
             if plan.clock not in self.clocks:
                 self.clocks[plan.clock] = self._clock(plan)
+                lengths[plan.clock] = self.spools[plan.file].rows(
+                    plan.stamps if plan.stamps is not None else plan.column
+                )
+            self._fits(plan, lengths[plan.clock])
 
     def _read_file(self, file: str, source: Source, progress: Progress) -> None:
         plans = {plan.column: plan for plan in self.plans if plan.file == file}
@@ -98,6 +102,13 @@ class _Ingest:
         self.warnings += clock.warnings
         return clock
 
+    def _fits(self, plan: Plan, stamps: int) -> None:
+        """In formats of separate series a column and its time stamps may differ in length."""
+        rows = self.spools[plan.file].rows(plan.column)
+        if rows != stamps:
+            where = f"{self.definition.folder / plan.file}, column {plan.spec.column!r} ({plan.spec.name})"
+            raise InputError(f"{where}: {rows} readings on {stamps} time stamps; expected as many (state its own time)")
+
     def _samples(self, plan: Plan) -> Samples:
         return read_samples(plan, self.spools[plan.file], self.clocks[plan.clock], self.definition)
 
@@ -106,8 +117,8 @@ class _Ingest:
         by_name = {plan.spec.name: plan for plan in self.plans}
         found = None
         for plan in (by_name[name] for name in REFERENCES if name in by_name):
-            self.kept = (plan, self._samples(plan))
-            found = find_firing(plan.spec.name, self.kept[1].trace)
+            self.kept[plan.spec.name] = self._samples(plan)
+            found = find_firing(plan.spec.name, self.kept[plan.spec.name].trace)
             if found:
                 break
         stated = self.definition.segments.get("t_open")
@@ -123,13 +134,12 @@ class _Ingest:
         for plan, (channel, warnings) in self._channels(firing):
             self.warnings += warnings
             store.channel(channel, names[plan.clock], LONG_NAMES.get(channel.name, channel.name))
-            self.spools[plan.file].drop(plan.column)
 
     def _channels(self, firing: Firing | None) -> Iterator[tuple[Plan, tuple[Channel, list[str]]]]:
         """Channels in order, a few of them at work."""
 
         def work(plan: Plan) -> tuple[Channel, list[str]]:
-            samples = self.kept[1] if self.kept and self.kept[0] is plan else self._samples(plan)
+            samples = self.kept.pop(plan.spec.name, None) or self._samples(plan)
             return make_channel(plan, samples, firing, self.definition)
 
         waiting: deque[tuple[Plan, Future[tuple[Channel, list[str]]]]] = deque()
@@ -150,8 +160,3 @@ def _provenance(definition: TestDefinition, raw: dict[str, str]) -> dict[str, An
         "test.toml": definition.sha256,
         "version": hfanalysis.__version__,
     }
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -31,6 +31,8 @@ class Samples:
     @property
     def trace(self) -> Trace:
         """The samples without a flag."""
+        if not self.flags.any():
+            return Trace(self.time, self.values)
         good = self.flags == 0
         return Trace(self.time[good], self.values[good])
 

@@ -14,11 +14,14 @@ __all__ = ["READERS", "Chunk", "Progress", "Source", "Text", "find_column", "ope
 
 READERS: dict[str, str] = {
     "csv": "hfanalysis.testdata.readers.delimited",
+    "lvm": "hfanalysis.testdata.readers.labview",
+    "mat": "hfanalysis.testdata.readers.matlab",
+    "tdms": "hfanalysis.testdata.readers.tdms",
 }
 """Format -> module with ``open_source(path, spec) -> Source``; loaded when a log of that format is met."""
 
 _SUFFIXES = {".mat": "mat", ".lvm": "lvm", ".tdms": "tdms"}
-_BEGINNINGS = {b"MATLAB 5.0": "mat", b"LabVIEW Measurement": "lvm", b"TDSm": "tdms"}
+_BEGINNINGS = {b"MATLAB 5.0": "mat", b"MATLAB 7.3": "mat", b"LabVIEW Measurement": "lvm", b"TDSm": "tdms"}
 _NO_TEXT = {b"\x89HDF\r\n": "HDF5", b"PK\x03\x04": "a zip archive or spreadsheet", b"\x1f\x8b": "gzip", b"%PDF": "PDF"}
 
 

@@ -44,6 +44,8 @@ class Source(Protocol):
     """Column names in order; empty strings in a log without a header."""
     units: tuple[str, ...]
     """What the log itself says about units, by column; empty where it says nothing."""
+    sha256: str | None
+    """Of the file, where ``chunks`` has read it and taken the hash on the way."""
 
     def stamps_of(self, column: int) -> int | None:
         """The column of time stamps [s] that the format itself gives this column, None where it gives none."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -26,12 +27,15 @@ CHUNK = 20_000
 """Rows read at a time where text cannot be cut into segments."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Delimited:
     """An opened text log."""
 
     path: Path
     dialect: Dialect
+    clocks: Mapping[int, int] = field(default_factory=dict)
+    """Column -> column of its time stamps, where the format says so."""
+    sha256: str | None = field(default=None, init=False)
 
     @property
     def name(self) -> str:
@@ -46,8 +50,8 @@ class Delimited:
         return self.dialect.units
 
     def stamps_of(self, column: int) -> int | None:
-        """Text has no time but in its columns."""
-        return None
+        """See :class:`hfanalysis.testdata.readers.base.Source`."""
+        return self.clocks.get(column)
 
     def chunks(self, columns: Sequence[int], stamps: Sequence[int], progress: Progress) -> Iterator[Chunk]:
         """See :class:`hfanalysis.testdata.readers.base.Source`."""
@@ -84,19 +88,23 @@ class Delimited:
         return True
 
     def _side_by_side(self, file: Any, wanted: Sequence[int]) -> Iterator[Any]:
-        """Segments in order, the next ones at work. (Letting pandas skip rows and chunk would be half as fast.)"""
-        waiting: deque[Future[Any]] = deque()
-        with ThreadPoolExecutor(WORKERS) as pool:
-            while segment := file.read(SEGMENT):
-                segment += file.readline()
-                if segment.strip():
-                    waiting.append(pool.submit(self._segment, segment, wanted))
-                if len(waiting) > WORKERS:
-                    yield waiting.popleft().result()
-            while waiting:
-                yield waiting.popleft().result()
+        """Segments in order, the next ones at work. (Letting pandas skip rows and chunk would be half as fast.)
 
-    def _segment(self, segment: bytes, wanted: Sequence[int]) -> Any:
+        The file's hash is taken on the way, which spares reading it again.
+        """
+        waiting: deque[tuple[Future[Any], Future[None]]] = deque()
+        digest = hashlib.sha256(_before(file))
+        with ThreadPoolExecutor(WORKERS) as pool, ThreadPoolExecutor(1) as in_order:
+            for segment in _segments(file):
+                waiting.append((pool.submit(self._segment, segment, wanted), in_order.submit(digest.update, segment)))
+                if len(waiting) > WORKERS:
+                    yield from _finished(*waiting.popleft())
+            while waiting:
+                yield from _finished(*waiting.popleft())
+        self.sha256 = digest.hexdigest()
+
+    def _segment(self, segment: memoryview, wanted: Sequence[int]) -> Any:
+        """Chunk or frame; None where there are only blanks."""
         about = self.dialect
         if about.delimiter != WHITESPACE:
             slots = np.full(about.width, -1)
@@ -104,7 +112,32 @@ class Delimited:
             numbers = plain_numbers.parse(segment, about.delimiter, about.decimal, slots, len(wanted))
             if numbers is not None:
                 return Chunk(dict(zip(wanted, numbers, strict=True)))
-        return frames.read(io.BytesIO(segment), about, wanted)
+        text = bytes(segment)
+        return frames.read(io.BytesIO(text), about, wanted) if text.strip() else None
+
+
+def _before(file: Any) -> bytes:
+    """What has been read of a file."""
+    end = file.tell()
+    file.seek(0)
+    return bytes(file.read(end))
+
+
+def _segments(file: Any) -> Iterator[memoryview]:
+    """The rest of a file in pieces of whole lines, as they were read, without a copy."""
+    while segment := file.read(SEGMENT):
+        end = segment.rfind(b"\n") + 1
+        if end:
+            file.seek(end - len(segment), io.SEEK_CUR)
+            yield memoryview(segment)[:end]
+        else:
+            yield memoryview(segment + file.readline())
+
+
+def _finished(read: Future[Any], hashed: Future[None]) -> Iterator[Any]:
+    hashed.result()
+    if (part := read.result()) is not None:
+        yield part
 
 
 def open_source(path: Path, spec: FileSpec) -> Delimited:

@@ -47,7 +47,7 @@ def detect(path: Path, spec: FileSpec) -> Dialect:
     with path.open("rb") as file:
         sample = file.read(SAMPLE)
         whole = len(sample) < SAMPLE
-    encoding = spec.encoding or _encoding(sample)
+    encoding = spec.encoding or encoding_of(sample)
     lines = _lines(sample, encoding, whole)
     if not any(line.strip() for line in lines):
         raise InputError(f"{path}: found an empty file; expected a log")
@@ -80,7 +80,8 @@ def _is_datum(field: str) -> bool:
     return is_number(field) or (any(c.isdigit() for c in field) and bool(_STAMP.fullmatch(field)))
 
 
-def _encoding(sample: bytes) -> str:
+def encoding_of(sample: bytes) -> str:
+    """The encoding of a text that begins like this."""
     for mark, name in _BOMS:
         if sample.startswith(mark):
             return name
