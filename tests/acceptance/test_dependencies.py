@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 REPOSITORY = Path(__file__).parents[2]
-COMES_WITH = {"pydantic_core": "pydantic"}
-"""Imported modules that another distribution pins to itself."""
+COMES_WITH = {"pydantic_core": "pydantic", "sksundae": "scikit-sundae"}
+"""Imported modules that come in a distribution of another name."""
 
 
 def imported() -> Iterator[str]:
