@@ -218,3 +218,23 @@ def test_ambient_pressure_is_stated_or_from_the_altitude_or_of_sea_level(tmp_pat
         assert found.std
     stated = make.write(tmp_path, make.LOG + TANK + '[site]\nambient_pressure = "0.9 +/- 0.01 bar"\n', log)
     assert load_definition(stated).ambient_pressure == Value(0.9e5, 0.01e5)
+
+
+def test_what_hits_all_channels_of_a_file_is_told_once(tmp_path: Path) -> None:
+    mass, other = np.linspace(8.0, 7.0, len(T)), P + 1.0
+    rows = make.csv(time=T, p_tank=P, m_tank=mass, p_run=other).splitlines()
+    for i in (50, 51, 52):
+        rows[1 + i] = f"{T[i]:.6g},,,"
+    rows[1 + 200] = f"{T[200]:.6g},{P[200]:.6g},,"
+    rows[1 + 250] = f"{T[250]:.6g},{P[250]:.6g},,"
+    toml = make.LOG + TANK + make.channel("m_tank", "kg") + make.channel("p_run", "bar")
+    log = make.read(tmp_path, toml, {"log.csv": "\n".join(rows)})
+    assert [warning for warning in log.warnings if "dropout" in warning] == [
+        "channel p_tank: 3 of 300 samples flagged dropout",
+        "channels m_tank, p_run: the same 5 of 300 samples flagged dropout",
+    ]
+    rows[1 + 200] = rows[1 + 250] = f"{T[200]:.6g},{P[200]:.6g},7.5,50.0"
+    log = make.read(tmp_path / "b", toml, {"log.csv": "\n".join(rows)})
+    assert [warning for warning in log.warnings if "dropout" in warning] == [
+        "log.csv: 3 of 300 samples of all 3 channels flagged dropout"
+    ]

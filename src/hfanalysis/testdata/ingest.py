@@ -5,7 +5,7 @@ The files are read once, in chunks; then a few channels at a time are in memory,
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Hashable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing
@@ -20,6 +20,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.testdata.channels import LONG_NAMES
 from hfanalysis.testdata.clocks import Clock, read_clock
 from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.flag_notes import flagged, told
 from hfanalysis.testdata.log import Channel
 from hfanalysis.testdata.plan import Plan, make_plans, open_files
 from hfanalysis.testdata.products import sha256_file
@@ -131,9 +132,12 @@ class _Ingest:
         names = {key: f"time_{i}" if i else "time" for i, key in enumerate(self.clocks)}
         for key, clock in self.clocks.items():
             store.clock(names[key], clock.time)
+        found, said = [], []
         for plan, (channel, warnings) in self._channels(firing):
-            self.warnings += warnings
+            found += [(channel.name, what) for what in flagged(plan.file, channel.flags)]
+            said += warnings
             store.channel(channel, names[plan.clock], LONG_NAMES.get(channel.name, channel.name))
+        self.warnings += [*told(found, Counter(plan.file for plan in self.plans)), *said]
 
     def _channels(self, firing: Firing | None) -> Iterator[tuple[Plan, tuple[Channel, list[str]]]]:
         """Channels in order, a few of them at work."""

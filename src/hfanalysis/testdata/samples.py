@@ -43,13 +43,6 @@ class Samples:
         some = np.abs(self.values[::every][self.flags[::every] == 0])
         return float(np.percentile(some, 99)) if len(some) else 0.0
 
-    def counted(self, name: str) -> Iterator[str]:
-        """How many samples carry which flag."""
-        met = int(np.bitwise_or.reduce(self.flags))
-        for flag in (flag for flag in Flag if met & flag):
-            count = int(np.count_nonzero(self.flags & flag))
-            yield f"channel {name}: {count} of {len(self.flags)} samples flagged {str(flag.name).lower()}"
-
 
 def read_samples(plan: Plan, spool: Spool, clock: Clock, definition: TestDefinition) -> Samples:
     """A channel's samples; raises :class:`InputError` where its column holds not one number."""
@@ -80,7 +73,7 @@ def make_channel(
     spec = plan.spec
     accuracy = spec.accuracy.value if spec.accuracy else default_accuracy(spec.dimension, samples.largest)
     zero = _zero(spec, samples, firing, definition, accuracy)
-    warnings = [*samples.counted(spec.name), *zero.warnings]
+    warnings = list(zero.warnings)
     if not np.isfinite(samples.values).any():
         warnings.append(f"channel {spec.name}: every reading is one that stands for none")
     taken = zero.std is not None
