@@ -195,7 +195,7 @@ class _Search:
         if "p_tank" not in self.signals:
             return "the log has no p_tank: the end of the liquid shows in the tank's pressure"
         tank = self.signals["p_tank"]
-        end = _discharged(tank, min(self.last, LONGEST_RUN))
+        end = _discharged(tank, min(self.last, LONGEST_RUN), self.ambient)
         found = find_liquid_end(self.signals, end, self._dry_pressure(tank))
         if found is None:
             return (
@@ -307,12 +307,15 @@ class _Search:
         return self.events[name].value if name in self.events else None
 
 
-def _discharged(tank: Signal, end: float) -> float:
-    """When the tank has lost 90 % of its pressure above the lowest: knees beyond that are of no liquid."""
+def _discharged(tank: Signal, end: float, ambient: float) -> float:
+    """When the tank has lost 90 % of its pressure above the lowest: knees beyond that are of no liquid.
+
+    Readings below ``ambient`` [Pa] are of no tank: a failing gauge.
+    """
     part = tank.between(0.0, end)
     if part.time.size < 8:
         return end
     smooth = part.smooth(max(0.1, 4.0 * tank.step))
-    low, high = float(smooth.min()), float(smooth[0])
+    low, high = max(float(smooth.min()), ambient), float(smooth[0])
     gone = np.flatnonzero(smooth < low + 0.1 * (high - low))
     return float(part.time[gone[0]]) if gone.size else end

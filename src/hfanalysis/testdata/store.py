@@ -56,8 +56,13 @@ class Store:
         self._file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
 
     def _dataset(self, name: str, data: NDArray[Any]) -> Any:
-        packed = {"compression": "gzip", "compression_opts": 1} if data.dtype == np.uint8 and len(data) else {}
-        return self._file.create_dataset(name, data=data, track_times=False, **packed)
+        if data.dtype != np.uint8 or not len(data):
+            return self._file.create_dataset(name, data=data, track_times=False)
+        packed = {"compression": "gzip", "compression_opts": 1, "track_times": False}
+        if data.any():
+            return self._file.create_dataset(name, data=data, **packed)
+        # a channel without a flag needs no bytes: HDF5 gives the fill value, zero
+        return self._file.create_dataset(name, data.shape, data.dtype, fillvalue=0, **packed)
 
     def _variable(self, name: str, data: NDArray[Any], clock: str, unit: str, long_name: str) -> Any:
         made = self._dataset(name, data)
