@@ -188,3 +188,24 @@ def test_a_misfire_survives_its_product() -> None:
     segments = Segments(Quantity(1.0, "s", 0.1), absent, Kind("cold_flow", "no fire", misfire=True))
     product = {n: v.to_json() if isinstance(v, Quantity) else v for n, v in segments.to_json().items()}
     assert Segments.from_json(product).kind == segments.kind
+
+
+def test_a_tank_above_the_critical_pressure_is_supercharged(burn: Trial) -> None:
+    """72.4 bar is the most that nitrous oxide alone can stand at."""
+    pressed = replace(burn, values={**burn.values, "p_tank": burn.values["p_tank"] + 30e5})
+    segments = found_in(pressed)
+    assert segments.supercharged
+    assert "above the critical pressure" in " ".join(segments.warnings)
+    assert Segments.from_json(json.loads(json.dumps(segments.to_json(), default=Quantity.to_json))).supercharged
+
+
+def test_a_tank_at_its_saturation_pressure_is_not_supercharged(segments: Segments) -> None:
+    assert not segments.supercharged
+
+
+def test_a_thermometer_that_reads_too_cold_for_the_pressure_is_doubted_not_believed(burn: Trial) -> None:
+    cold = definition(burn.stand)
+    cold = replace(cold, tank=replace(cold.tank, temperature=Value(263.15)))
+    segments = find_phases(log_of(burn, T_OPEN, 5e3, 1e4), cold)
+    assert not segments.supercharged
+    assert "the thermometer does not see the oxidizer" in " ".join(segments.warnings)

@@ -29,6 +29,9 @@ LONGEST_RUN = 120.0
 SATURATION_MARGIN = 8.0
 """Kelvin by which the top of a heated tank may be hotter than its thermometer says."""
 
+FROM_THE_START = 0.3
+"""Nitrogen that flows within this time [s] of the opening presses on the liquid, not on what it leaves."""
+
 LARGEST_OFFSET = 3e5
 """Reading of an open chamber this far from ambient [Pa] is no bias: the chamber was not open."""
 
@@ -269,20 +272,31 @@ class _Search:
         return kind
 
     def _note_supercharge(self) -> None:
-        """Say where the tank stands above what nitrous oxide alone can be at."""
+        """Say where nitrogen presses on the tank: by its pressure at rest, or because it flows in from the start."""
         if "p_tank" not in self.signals:
             return
-        source = saturation(self.definition.model.properties)
-        rest = self.signals["p_tank"].mean(-3.0, -0.05)
-        limit, why = source.pressure_range[1], "the critical pressure"
-        warmth = self._tank_temperature()
-        if warmth is not None and source.t_min < warmth < source.t_max:
-            limit, why = float(source.pressure(warmth + SATURATION_MARGIN)), f"saturation at {warmth - 273.15:.0f} degC"
-        if rest > limit:
+        critical = saturation(self.definition.model.properties).pressure_range[1]
+        rest, t_purge = self.signals["p_tank"].mean(-3.0, -0.05), self._time("t_purge")
+        if rest > critical:
             self.supercharged = True
+            above = f"above the critical pressure ({critical / 1e5:.1f} bar)"
+            self.warnings.append(f"the tank is supercharged: {rest / 1e5:.1f} bar before the opening, {above}")
+        elif t_purge is not None and t_purge < FROM_THE_START:
+            self.supercharged = True
+            self.warnings.append("the tank is supercharged: nitrogen feeds it from the opening on")
+        else:
+            self._note_hot_gauge(rest)
+
+    def _note_hot_gauge(self, rest: float) -> None:
+        """Say where the pressure at rest [Pa] is more than the tank's thermometer allows; that alone proves nothing."""
+        source, warmth = saturation(self.definition.model.properties), self._tank_temperature()
+        if warmth is None or not source.t_min < warmth < source.t_max - SATURATION_MARGIN:
+            return
+        if rest > float(source.pressure(warmth + SATURATION_MARGIN)):
             self.warnings.append(
-                f"the tank stands at {rest / 1e5:.1f} bar before the opening, above {why} "
-                f"({limit / 1e5:.1f} bar): it is supercharged"
+                f"the tank stands at {rest / 1e5:.1f} bar before the opening, but saturation at the "
+                f"{warmth - 273.15:.0f} degC of its thermometer is {float(source.pressure(warmth)) / 1e5:.1f} bar: "
+                "it is supercharged, or the thermometer does not see the oxidizer"
             )
 
     def _tank_temperature(self) -> float | None:
