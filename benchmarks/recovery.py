@@ -140,7 +140,7 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--blind", type=Path)
     arguments = parser.parse_args()
-    text = "# Recovery\n\nMade by `make recovery`. z is (found - truth) / stated standard deviation.\n"
+    text = "# Recovery\n\nMade by `make recovery` (the second table, if there is one, with `FLAGS='--blind FOLDER'`). z is (found - truth) / stated standard deviation.\n"
     own = run("own", range(arguments.cases), own_case, arguments.processes)
     text += f"\n## {len(own)} logs of the project's own tank model\n\n{table(own)}\n"
     if arguments.blind is not None and arguments.blind.is_dir():
