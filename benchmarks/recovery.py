@@ -27,6 +27,11 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 CACHE = ROOT / ".cache"
 TABLE = ROOT / "docs" / "recovery.md"
+TITLE = """# Recovery
+
+Made by `make recovery` (the second table, if there is one, with `FLAGS='--blind FOLDER'`). z is (found - truth) / stated
+standard deviation.
+"""
 QUANTITIES = ("C_i", "m", "K_loss", "t_v", "t_purge", "t_open")
 
 
@@ -140,7 +145,7 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--blind", type=Path)
     arguments = parser.parse_args()
-    text = "# Recovery\n\nMade by `make recovery` (the second table, if there is one, with `FLAGS='--blind FOLDER'`). z is (found - truth) / stated standard deviation.\n"
+    text = TITLE
     own = run("own", range(arguments.cases), own_case, arguments.processes)
     text += f"\n## {len(own)} logs of the project's own tank model\n\n{table(own)}\n"
     if arguments.blind is not None and arguments.blind.is_dir():
