@@ -29,8 +29,8 @@ CACHE = ROOT / ".cache"
 TABLE = ROOT / "docs" / "recovery.md"
 TITLE = """# Recovery
 
-Made by `make recovery` (the second table, if there is one, with `FLAGS='--blind FOLDER'`). z is (found - truth) / stated
-standard deviation.
+Made by `make recovery` (the second table, if there is one, with `FLAGS='--blind FOLDER'`). z is (found - truth) /
+stated standard deviation.
 """
 QUANTITIES = ("C_i", "m", "K_loss", "t_v", "t_purge", "t_open")
 
