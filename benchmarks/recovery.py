@@ -78,8 +78,10 @@ def run(name: str, cases: Iterable[Any], work: Any, processes: int) -> list[dict
     CACHE.mkdir(exist_ok=True)
     path = CACHE / f"recovery-{name}-{_code()}.jsonl"
     done = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+    asked = {str(c if isinstance(c, int) else c.name): c for c in cases}
+    done = [r for r in done if str(r["case"]) in asked]
     known = {str(r["case"]) for r in done}
-    todo = [c for c in cases if str(c if isinstance(c, int) else c.name) not in known]
+    todo = [c for name, c in asked.items() if name not in known]
     with path.open("a") as file, ProcessPoolExecutor(processes) as pool:
         for result in track(pool.map(work, todo), f"{name} logs", len(todo), console=Console(stderr=True)):
             file.write(json.dumps(result) + "\n")
@@ -142,11 +144,12 @@ def main() -> None:
     """Run the studies and write the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=400)
+    parser.add_argument("--first", type=int, default=0, help="first seed; others than the default are a check on it")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--blind", type=Path)
     arguments = parser.parse_args()
     text = TITLE
-    own = run("own", range(arguments.cases), own_case, arguments.processes)
+    own = run("own", range(arguments.first, arguments.first + arguments.cases), own_case, arguments.processes)
     text += f"\n## {len(own)} logs of the project's own tank model\n\n{table(own)}\n"
     if arguments.blind is not None and arguments.blind.is_dir():
         blind = run("blind", blind_folders(arguments.blind), blind_case, arguments.processes)
