@@ -12,7 +12,8 @@ from benchmarks.reference_engine import maelstrom
 
 from hfanalysis.engine.unsteady import Burn, air, burn
 from hfanalysis.flight.coast import Descent, Leg, Parachute, coast, descend, fall, speed_of_sound
-from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, apogee, gravity
+from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, apogee, drag_coefficient, gravity
+from hfanalysis.thermo import air as compiled
 from hfanalysis.thermo import atmosphere
 
 DROGUE = Parachute(1.55, 1.17)
@@ -127,8 +128,47 @@ def test_a_rocket_that_leaves_the_atmosphere_model_is_refused() -> None:
         coast(replace(ROCKET, drag_coefficient=0.01), 0.0, 20_000.0, 900.0)
 
 
+def test_a_main_without_a_deploy_altitude_opens_at_apogee() -> None:
+    down = descend(ROCKET, coasting().end, DROGUE, Parachute(2.20, 10.5))
+    assert down.time_of_main == pytest.approx(coasting().end[0], abs=1e-6)
+    assert down.drogue_speed == pytest.approx(0.0, abs=1e-6)
+    assert down.landing_speed == pytest.approx(descent().landing_speed, rel=1e-3)
+
+
+def test_a_main_set_above_the_apogee_opens_at_apogee() -> None:
+    down = descend(ROCKET, coasting().end, DROGUE, Parachute(2.20, 10.5, 9000.0))
+    assert down.time_of_main == pytest.approx(coasting().end[0], abs=1e-6)
+
+
+def test_the_drag_coefficient_is_linear_between_the_table_s_mach_numbers() -> None:
+    table = Vehicle(50.0, 0.5, 0.02, 0.0, 0.0, (0.3, 0.5, 0.9), (0.5, 0.40, 0.6)).drag_table
+    found = [drag_coefficient(mach, table) for mach in (0.0, 0.3, 0.4, 0.5, 0.7, 0.9, 2.0)]
+    assert found == pytest.approx([0.5, 0.5, 0.45, 0.40, 0.5, 0.6, 0.6])
+
+
+def test_a_table_of_one_value_flies_as_that_number() -> None:
+    flat = replace(ROCKET, drag_coefficient=0.1, drag_mach=(0.1, 0.5), drag_values=(0.529, 0.529))
+    end = coasting().time[0], float(coasting().altitude[0]), float(coasting().speed[0])
+    assert coast(flat, *end).end == pytest.approx(coasting().end, rel=1e-9)
+    assert descend(flat, coasting().end, DROGUE, MAIN).ballistic_speed == pytest.approx(descent().ballistic_speed)
+    assert apogee(flat, 6000.0, 3.0, 2.5) == pytest.approx(apogee(ROCKET, 6000.0, 3.0, 2.5), rel=1e-9)
+
+
+def test_more_drag_at_high_mach_numbers_costs_height() -> None:
+    rising = replace(ROCKET, drag_mach=(0.3, 0.8), drag_values=(0.529, 0.7))
+    assert apogee(rising, 6000.0, 3.0, 2.5) < apogee(ROCKET, 6000.0, 3.0, 2.5)
+
+
 @pytest.mark.parametrize("altitude", [0.0, 1402.0, 10_999.0, 11_001.0, 24_999.0, 25_001.0, 30_000.0])
 def test_the_engines_air_is_the_atmosphere(altitude: float) -> None:
     pressure, density = air(altitude)
     assert pressure == pytest.approx(atmosphere.pressure(altitude), rel=1e-12)
     assert density == pytest.approx(atmosphere.density(altitude), rel=1e-12)
+
+
+@pytest.mark.parametrize("altitude", [0.0, 1402.0, 10_999.0, 11_001.0, 24_999.0, 25_001.0, 30_000.0])
+def test_the_compiled_air_is_the_atmosphere(altitude: float) -> None:
+    pressure, density, sound = compiled.air(altitude)
+    assert pressure == pytest.approx(atmosphere.pressure(altitude), rel=1e-12)
+    assert density == pytest.approx(atmosphere.density(altitude), rel=1e-12)
+    assert sound == pytest.approx(sqrt(1.4 * pressure / density), rel=1e-12)

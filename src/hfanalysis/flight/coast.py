@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import cos, sqrt
+from math import cos
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, gravity
-from hfanalysis.thermo.atmosphere import HIGHEST, density, temperature
-from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
+from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, drag, gravity
+from hfanalysis.thermo.air import air
+from hfanalysis.thermo.atmosphere import HIGHEST, density
 
 Array = NDArray[np.float64]
 Rates = Callable[[float, Array], list[float]]
-AIR_GAMMA = 1.4
 LONGEST = 3600.0
 
 
 @dataclass(frozen=True)
 class Parachute:
-    """Drag coefficient on its area [m^2]; ``deploy_altitude`` above ground [m] (None: at apogee)."""
+    """Drag coefficient on its area [m^2]; ``deploy_altitude`` above ground [m] (None: opens at apogee)."""
 
     drag_coefficient: float
     area: float
@@ -45,17 +44,15 @@ class Leg:
 
 def speed_of_sound(altitude: float) -> float:
     """Of air [m/s] at an altitude above sea level [m]."""
-    return sqrt(AIR_GAMMA * GAS_CONSTANT / AIR_MOLAR_MASS * temperature(altitude))
+    return float(air(altitude)[2])
 
 
 def coast(vehicle: Vehicle, time: float, altitude: float, speed: float) -> Leg:
     """Coast with the dry mass along the launch angle until the speed is gone. Raises ValueError above 30 km."""
-    climb = cos(vehicle.launch_angle)
-    area = vehicle.drag_coefficient * vehicle.frontal_area
+    climb, area, table = cos(vehicle.launch_angle), vehicle.frontal_area, vehicle.drag_table
 
     def rates(_t: float, y: Array) -> list[float]:
-        drag = 0.5 * area * density(min(y[0], HIGHEST)) * y[1] * abs(y[1])
-        return [y[1] * climb, -drag / vehicle.dry_mass - gravity(y[0]) * climb]
+        return [y[1] * climb, -drag(y[0], y[1], area, table) / vehicle.dry_mass - gravity(y[0]) * climb]
 
     leg = _until(rates, (time, altitude, speed), lambda y: y[1])
     if leg.altitude[-1] >= HIGHEST:
@@ -65,11 +62,11 @@ def coast(vehicle: Vehicle, time: float, altitude: float, speed: float) -> Leg:
 
 def fall(vehicle: Vehicle, drag_area: float, start: tuple[float, float, float], floor: float) -> Leg:
     """Fall from (time, altitude, speed) to an altitude with a drag area C_d A [m^2] beside the rocket's own."""
-    own = vehicle.drag_coefficient * vehicle.frontal_area
+    area, table = vehicle.frontal_area, vehicle.drag_table
 
     def rates(_t: float, y: Array) -> list[float]:
-        drag = 0.5 * (own + drag_area) * density(y[0]) * y[1] * abs(y[1])
-        return [y[1], -gravity(y[0]) - drag / vehicle.dry_mass]
+        canopy = 0.5 * drag_area * density(y[0]) * y[1] * abs(y[1])
+        return [y[1], -gravity(y[0]) - (canopy + drag(y[0], y[1], area, table)) / vehicle.dry_mass]
 
     return _until(rates, start, lambda y: y[0] - floor)
 
@@ -99,16 +96,19 @@ class Descent:
 
 
 def descend(vehicle: Vehicle, apogee: tuple[float, float, float], drogue: Parachute, main: Parachute) -> Descent:
-    """From apogee (time, altitude above sea level, speed) to the ground."""
+    """From apogee (time, altitude above sea level, speed) to the ground; a main opens at its deploy altitude or below.
+
+    A main without a deploy altitude, or one that is above the apogee, opens at apogee; the drogue then does nothing.
+    """
     ground = vehicle.launch_altitude
     top = (apogee[0], apogee[1], 0.0)
-    deploy = ground + min(main.deploy_altitude or 0.0, apogee[1] - ground)
+    deploy = apogee[1] if main.deploy_altitude is None else min(ground + main.deploy_altitude, apogee[1])
     first = fall(vehicle, drogue.drag_coefficient * drogue.area, top, deploy)
     second = fall(vehicle, main.drag_coefficient * main.area, first.end, ground)
     ballistic = fall(vehicle, 0.0, top, ground)
-    drag = 0.5 * main.drag_coefficient * main.area * density(deploy) * first.end[2] ** 2
-    own = 0.5 * vehicle.drag_coefficient * vehicle.frontal_area * density(deploy) * first.end[2] ** 2
-    load = (drag + own) / vehicle.dry_mass - gravity(deploy)
+    canopy = 0.5 * main.drag_coefficient * main.area * density(deploy) * first.end[2] ** 2
+    own = drag(deploy, -first.end[2], vehicle.frontal_area, vehicle.drag_table)
+    load = (canopy + own) / vehicle.dry_mass - gravity(deploy)
     return Descent(
         time_of_main=first.end[0],
         drogue_speed=-first.end[2],

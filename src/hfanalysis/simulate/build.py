@@ -12,6 +12,7 @@ from hfanalysis.engine.tank import split
 from hfanalysis.errors import InputError
 from hfanalysis.flight.coast import Parachute
 from hfanalysis.flight.constant_thrust import Vehicle
+from hfanalysis.simulate import rocket
 from hfanalysis.testdata.engine_file import EngineFile, Needs
 from hfanalysis.thermo import atmosphere, combustion, combustion_table
 from hfanalysis.thermo.nitrous import saturation
@@ -163,19 +164,7 @@ def feed(needs: Needs, volume: float) -> FeedSystem:
 
 def vehicle(file: EngineFile) -> Vehicle | str:
     """The rocket of the file, or why it cannot fly."""
-    rocket = file.rocket
-    if rocket is None:
-        return "no [rocket] is given"
-    if rocket.drag_coefficient is None:
-        return "rocket.drag_coefficient is not given"
-    area = rocket.frontal_area.value if rocket.frontal_area else None
-    if rocket.diameter is not None:
-        area = 0.25 * pi * rocket.diameter.value**2
-    if area is None or rocket.launch_angle is None:
-        return f"rocket.{'frontal_area (or diameter)' if area is None else 'launch_angle'} is not given"
-    return Vehicle(
-        rocket.dry_mass.value, rocket.drag_coefficient, area, rocket.launch_angle.value, launch_altitude(file)
-    )
+    return rocket.vehicle(file.rocket, file.path.parent, launch_altitude(file))
 
 
 def launch_altitude(file: EngineFile) -> float:
@@ -187,14 +176,7 @@ def launch_altitude(file: EngineFile) -> float:
 
 def parachutes(file: EngineFile) -> tuple[Parachute, Parachute] | str:
     """Drogue and main, or why there is no descent under them."""
-    rocket = file.rocket
-    if rocket is None or rocket.drogue is None or rocket.main is None:
-        return "[rocket.drogue] and [rocket.main] are not both given"
-    if rocket.main.deploy_altitude is None:
-        return "rocket.main.deploy_altitude is not given"
-    drogue = Parachute(rocket.drogue.drag_coefficient, rocket.drogue.area.value)
-    main = Parachute(rocket.main.drag_coefficient, rocket.main.area.value, rocket.main.deploy_altitude.value)
-    return drogue, main
+    return rocket.parachutes(file.rocket)
 
 
 def steady_grain(needs: Needs) -> steady.Grain:

@@ -8,6 +8,7 @@ import hfanalysis
 from hfanalysis.quantity import Quantity
 from hfanalysis.simulate.build import Enthalpy
 from hfanalysis.testdata.engine_file import EngineFile
+from hfanalysis.testdata.products import sha256_file
 
 
 def heading(file: EngineFile, command: str, enthalpy: Enthalpy) -> dict[str, Any]:
@@ -22,5 +23,7 @@ def heading(file: EngineFile, command: str, enthalpy: Enthalpy) -> dict[str, Any
 
 
 def provenance(file: EngineFile) -> dict[str, Any]:
-    """Package version, and the engine file by name and SHA-256."""
-    return {"hfanalysis": hfanalysis.__version__, "engine_toml": {file.path.name: file.sha256}}
+    """Package version, and the engine file and its rocket's drag table by name and SHA-256."""
+    table = file.rocket.drag_table if file.rocket else None
+    tables = {"drag_table": {table: sha256_file(file.path.parent / table)}} if table else {}
+    return {"hfanalysis": hfanalysis.__version__, "engine_toml": {file.path.name: file.sha256}, **tables}
