@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hfanalysis.thermo import coolprop_nitrous
+from hfanalysis.thermo.cache import cache_directory
 from hfanalysis.thermo.saturation import Array, Property
 
 
@@ -102,7 +103,7 @@ def test_a_full_disk_leaves_nothing_half_written(
 def test_the_tables_are_kept_in_the_users_cache_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.delenv("HFA_CACHE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert coolprop_nitrous.cache_directory() == tmp_path / "hfanalysis"
+    assert cache_directory() == tmp_path / "hfanalysis"
     monkeypatch.delenv("XDG_CACHE_HOME")
     monkeypatch.setenv("HOME", str(tmp_path))
-    assert coolprop_nitrous.cache_directory() == tmp_path / ".cache" / "hfanalysis"
+    assert cache_directory() == tmp_path / ".cache" / "hfanalysis"

@@ -21,6 +21,7 @@ from hfanalysis.engine.nozzle import expand
 from hfanalysis.engine.tank import compressibility, liquid_mass, temperature_rate
 from hfanalysis.flight.constant_thrust import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle
 from hfanalysis.thermo.atmosphere import HIGHEST
+from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.combustion_table import CombustionTable, Grid, chamber_pressure, gas_at
 from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
 from hfanalysis.thermo.saturation import LIQUID_VOLUME, LN_PRESSURE, Saturation, evaluate
@@ -74,6 +75,7 @@ class Engine:
     throat_area: float
     exit_area: float
     vehicle: Vehicle
+    oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY
 
     @property
     def port_radius(self) -> float:
@@ -139,7 +141,7 @@ def rates(y: Array, liquid: bool, sat: Table, gas: Grid, c: Array, dy: Array, ou
     chamber_volume = c[9] + pi * port * port * c[6]
     mass = max(y[3] + y[4], 1e-9)
     ratio = min(max(y[3], 1e-9) / max(y[4], 1e-9), 1e4)
-    p_c, rt, gamma = chamber_pressure(gas, mass, chamber_volume, np.log(ratio), ambient)
+    p_c, rt, gamma = chamber_pressure(gas, mass, chamber_volume, np.log(ratio), c[20], 0.0, ambient)
     if liquid:
         p_t = np.exp(evaluate(*sat, LN_PRESSURE, y[1])[0])
         density = 1.0 / evaluate(*sat, LIQUID_VOLUME, y[1])[0]
@@ -181,7 +183,7 @@ def _constants(e: Engine) -> Array:
             e.feed.volume, e.feed.area, e.feed.loss_factor, e.polytropic_exponent or np.nan, liquid_loss, vapor_loss,
             e.grain_length, e.a, e.n, e.dead_volume, e.fuel_density, e.throat_area, e.exit_area, e.outer_radius,
             0.0, 0.0, v.dry_mass, v.drag_coefficient * v.frontal_area, np.cos(v.launch_angle),
-            v.launch_altitude,
+            v.launch_altitude, e.oxidizer_enthalpy,
         ]
     )  # fmt: skip
 
@@ -198,7 +200,7 @@ def _initial(e: Engine, c: Array) -> Array:
     r = e.port_radius
     fuel = e.fuel_density * 2.0 * pi * r * e.grain_length * e.a * (flow / (pi * r * r)) ** e.n
     ratio = flow / fuel
-    rt, _ = gas_at(e.combustion.kernel, np.log(ambient), np.log(ratio))
+    rt, _ = gas_at(e.combustion.kernel, np.log(ambient), np.log(ratio), e.oxidizer_enthalpy, 0.0)
     mass = ambient * (e.dead_volume + pi * r * r * e.grain_length) / rt
     stored = (mass * ratio / (1.0 + ratio), mass / (1.0 + ratio))
     return np.array([e.oxidizer_mass, e.temperature, r, *stored, e.vehicle.launch_altitude, 0.0, 0.0])

@@ -67,10 +67,10 @@ def oxidizer_enthalpy(needs: Needs) -> Enthalpy:
     return Enthalpy(combustion.FORMATION_OFFSET + liquid, f"saturated liquid at {t:.2f} K")
 
 
-@lru_cache(maxsize=8)
-def combustion_of(enthalpy: float) -> combustion_table.CombustionTable:
-    """The combustion table for an oxidizer enthalpy [J/kg], built once."""
-    return combustion_table.build(enthalpy)
+@lru_cache(maxsize=1)
+def combustion_of() -> combustion_table.CombustionTable:
+    """The combustion table, loaded once."""
+    return combustion_table.build()
 
 
 def ambient_pressure(file: EngineFile) -> float:
@@ -223,7 +223,7 @@ def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
     exit_radius = needs.value(file.nozzle.exit_radius, "nozzle", "exit_radius").value
     made = unsteady.Engine(
         saturation=properties(file),
-        combustion=combustion_of(oxidizer_enthalpy(needs).value),
+        combustion=combustion_of(),
         feed=feed(needs, built.volume),
         oxidizer_mass=needs.value(file.tank.oxidizer_mass, "tank", "oxidizer_mass").value,
         temperature=temperature(needs),
@@ -238,6 +238,7 @@ def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
         throat_area=pi * throat**2,
         exit_area=pi * exit_radius**2,
         vehicle=flying if isinstance(flying, Vehicle) else _stand(file),
+        oxidizer_enthalpy=oxidizer_enthalpy(needs).value,
     )
     return _that_flows(needs, made)
 

@@ -42,7 +42,8 @@ def simulate(file: EngineFile) -> Simulation:
     engine = build.engine(needs, tank)
     burnt = run(file, engine)
     ln_p, ln_r = np.log(burnt.output("chamber_pressure")), np.log(burnt.output("of_ratio"))
-    hot = temperatures(engine.combustion.kernel, ln_p, ln_r)
+    entering = np.full(ln_p.size, engine.oxidizer_enthalpy)
+    hot = temperatures(engine.combustion.kernel, ln_p, ln_r, entering, np.zeros(ln_p.size))
     product = {
         **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
         **_engine(engine, burnt, hot),

@@ -68,7 +68,17 @@ def equilibrium(
     """
     if not (0.0 < pressure < np.inf and 0.0 < of_ratio < np.inf and 0.0 <= nitrogen_share < 1.0):
         raise ValueError(f"no mixture: {pressure=} Pa, {of_ratio=}, {nitrogen_share=}")
-    return _solver().solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
+    try:
+        return _solver().solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
+    except ArithmeticError:  # a start far off may be to blame
+        restart()
+        return _solver().solve(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
+
+
+def condensed_carbon(pressure: float, of_ratio: float, oxidizer_enthalpy: float, nitrogen_share: float) -> float:
+    """Mass fraction of graphite in the equilibrium of the same name's arguments."""
+    equilibrium(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
+    return _solver().carbon
 
 
 def restart() -> None:
@@ -106,6 +116,11 @@ class _Solver:
         self._cea: Any = cea
         self._solver = cea.EqSolver(products, reactants=reactants)
         self._solution = cea.EqSolution(self._solver)
+
+    @property
+    def carbon(self) -> float:
+        """Mass fraction of graphite in the last solution."""
+        return float(self._solution.mass_fractions["C(gr)"])
 
     def solve(self, pressure: float, of_ratio: float, oxidizer_enthalpy: float, nitrogen_share: float) -> Gas:
         """One equilibrium; the nitrogen enters at 298.15 K, where its enthalpy is zero on the formation scale."""

@@ -6,13 +6,11 @@ correlations cannot. Importing CoolProp takes longer than a whole calibration, s
 
 from __future__ import annotations
 
-import os
-from contextlib import suppress
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 
+from hfanalysis.thermo.cache import cached
 from hfanalysis.thermo.saturation import NODES, Array, Property, Saturation
 
 CRITICAL_TEMPERATURE = 309.5207
@@ -25,16 +23,9 @@ LAYOUT = 1
 def build() -> Saturation:
     """The table, from the cache where it is there, else from CoolProp (about 3 s, once)."""
     theta = np.linspace(_theta(T_MAX), _theta(T_MIN), NODES)
-    samples = _cached(theta)
+    name = f"nitrous-coolprop-{version('CoolProp')}-{NODES}-{LAYOUT}"
+    samples = cached(name, (len(Property), theta.size), lambda: sample(theta))
     return Saturation.from_samples("coolprop", theta, dict(zip(Property, samples, strict=True)), CRITICAL_TEMPERATURE)
-
-
-def cache_directory() -> Path:
-    """Where tables are kept: $HFA_CACHE, else the user's cache folder."""
-    if os.environ.get("HFA_CACHE"):
-        return Path(os.environ["HFA_CACHE"])
-    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    return Path(base) / "hfanalysis"
 
 
 def sample(theta: Array) -> Array:
@@ -55,27 +46,3 @@ def sample(theta: Array) -> Array:
 
 def _theta(temperature: float) -> float:
     return float((1.0 - temperature / CRITICAL_TEMPERATURE) ** (1.0 / 3.0))
-
-
-def _cached(theta: Array) -> Array:
-    path = cache_directory() / f"nitrous-coolprop-{version('CoolProp')}-{NODES}-{LAYOUT}.npy"
-    try:
-        stored = np.load(path, allow_pickle=False)
-        if stored.shape == (len(Property), theta.size) and np.isfinite(stored).all():
-            return np.asarray(stored, dtype=np.float64)
-    except (OSError, ValueError, EOFError):
-        pass  # absent, unreadable or cut short: made anew below
-    fresh = sample(theta)
-    _store(path, fresh)
-    return fresh
-
-
-def _store(path: Path, values: Array) -> None:
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.npy")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        np.save(temporary, values)
-        temporary.replace(path)
-    except OSError:  # a read-only home costs time at each start, nothing else
-        with suppress(OSError):
-            temporary.unlink()
