@@ -185,10 +185,8 @@ def test_the_reference_solver_finds_the_same_events_and_totals() -> None:
 
 
 def test_the_reference_solver_has_the_same_states_at_aligned_times() -> None:
-    """To 1e-4 of the range; the chamber's pressure to 1e-3 in the 0.2 ms in which condensed carbon appears."""
-    found = differences(burnt(), reference())
-    assert found.pop("chamber_pressure") < 1e-3
-    assert max(found.values()) < 1e-4
+    """To 1e-4 of the range, the 0.2 ms in which condensed carbon appears included."""
+    assert max(differences(burnt(), reference()).values()) < 1e-4
 
 
 def test_without_condensed_carbon_the_chamber_too_agrees() -> None:
