@@ -38,8 +38,10 @@ from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 
 Array = NDArray[np.float64]
 Four = tuple[float, float, float, float]
+Shares = tuple[int, int, Four]
+Place = tuple[int, Four, Four, Four, Four, float]
 Grid = tuple[Array, Array, Array]
-"""Nodes (see :func:`_at`), their slopes along the share, and the carbon edge."""
+"""Nodes (see :func:`_place`), their slopes along the share, and the carbon edge."""
 
 PRESSURES = (0.2e5, 120e5)
 """Range in p [Pa]."""
@@ -74,6 +76,10 @@ _P0, _P1 = float(np.log(PRESSURES[0])), float(np.log(PRESSURES[1]))
 _X0, _X1 = float(np.log(MIXTURES[0])), float(np.log(MIXTURES[1]))
 _S = float(np.log(STOICHIOMETRIC))
 _H0, _H1, _H2, _H3 = ENTHALPIES
+_L0 = 1.0 / ((_H0 - _H1) * (_H0 - _H2) * (_H0 - _H3))
+_L1 = 1.0 / ((_H1 - _H0) * (_H1 - _H2) * (_H1 - _H3))
+_L2 = 1.0 / ((_H2 - _H0) * (_H2 - _H1) * (_H2 - _H3))
+_L3 = 1.0 / ((_H3 - _H0) * (_H3 - _H1) * (_H3 - _H2))
 _Z1 = float(np.log((1.0 + STRETCH) / (1.0 - SHARE + STRETCH)))
 
 
@@ -204,7 +210,7 @@ def carbon_edge(pressure: float, enthalpy: float, share: float, guess: float = _
 
 
 def _with_slopes(samples: Array, nodes: Nodes) -> Grid:
-    """Spline slopes at the nodes, laid out as :func:`_at` reads them."""
+    """Spline slopes at the nodes, laid out as :func:`_place` reads them."""
     values, edges = samples[:, :, :, :-1], samples[:, :, :, -1, 0]
     along_p = _spline_slopes(np.linspace(0.0, nodes.pressures - 1.0, nodes.pressures))
     along_share = _spline_slopes(np.linspace(0.0, nodes.shares - 1.0, nodes.shares))
@@ -292,16 +298,11 @@ def _hermite_slope(t: float, width: float) -> Four:
 def _levels(h: float) -> Four:
     """Weights of the cubic through the four levels of enthalpy."""
     a, b, c, d = h - _H0, h - _H1, h - _H2, h - _H3
-    return (
-        b * c * d / ((_H0 - _H1) * (_H0 - _H2) * (_H0 - _H3)),
-        a * c * d / ((_H1 - _H0) * (_H1 - _H2) * (_H1 - _H3)),
-        a * b * d / ((_H2 - _H0) * (_H2 - _H1) * (_H2 - _H3)),
-        a * b * c / ((_H3 - _H0) * (_H3 - _H1) * (_H3 - _H2)),
-    )
+    return _L0 * b * c * d, _L1 * a * c * d, _L2 * a * b * d, _L3 * a * b * c
 
 
 @njit(cache=True)
-def _share_cell(share: float, count: int) -> tuple[int, int, Four]:
+def _share_cell(share: float, count: int) -> Shares:
     """First level of the share, how many levels count, their weights; without nitrogen there is but the first."""
     if share <= 0.0:
         return 0, 1, (1.0, 0.0, 0.0, 0.0)
@@ -398,43 +399,54 @@ def _bicubic(near0: Four, near1: Four, far0: Four, far1: Four, p: Four, x: Four)
     return near + near_slope + far + far_slope
 
 
+@njit(cache=True, inline="always")
+def _place(curve: Array, stride: int, ln_pressure: float, x: float, levels: Four, shares: Shares) -> Place:
+    """The cell and the weights in it of a pressure and of a mixture ``x``.
+
+    ``stride`` nodes, ZONES of them, follow each other along the mixture, then pressure, then share.
+    """
+    k, many, share = shares
+    pressures, mixtures = curve.shape[1], stride // ZONES
+    i, p, p_slope = _pressure_cell(ln_pressure, pressures)
+    e = _edge(curve, k, many, share, i, levels)
+    edge = p[0] * e[0] + p[1] * e[1] + p[2] * e[2] + p[3] * e[3]
+    drifting = p_slope[0] * e[0] + p_slope[1] * e[1] + p_slope[2] * e[2] + p_slope[3] * e[3]
+    zone, here, moving = _zone(x, edge)
+    j, m, m_slope = _mixture_cell(here, mixtures)
+    return (k * pressures + i) * stride + zone * mixtures + j, p, p_slope, m, m_slope, moving * drifting
+
+
+@njit(cache=True, inline="always")
+def _row(
+    nodes: Array, drift: Array, stride: int, jump: int, place: Place, levels: Four, shares: Shares, row: int
+) -> tuple[float, float]:
+    """A row's value and its derivative with ln p, the motion of the carbon edge included."""
+    n, p, p_slope, m, m_slope, moving = place
+    _, many, share = shares
+    a = _corner(nodes, drift, n, jump, many, share, levels, row)
+    b = _corner(nodes, drift, n + 1, jump, many, share, levels, row)
+    c = _corner(nodes, drift, n + stride, jump, many, share, levels, row)
+    d = _corner(nodes, drift, n + stride + 1, jump, many, share, levels, row)
+    slope = _bicubic(a, b, c, d, p_slope, m) + moving * _bicubic(a, b, c, d, p, m_slope)
+    return _bicubic(a, b, c, d, p, m), slope
+
+
+@njit(cache=True)
+def _oxidizer_to_fuel(ln_ratio: float, share: float) -> float:
+    """x, of the nitrous oxide alone."""
+    return ln_ratio if share <= 0.0 else ln_ratio + np.log1p(-min(share, SHARE))
+
+
 @njit(cache=True)
 def _at(
-    table: Grid, ln_pressure: float, ln_ratio: float, enthalpy: float, share: float, first: int
-) -> tuple[float, float, float, float]:
-    """Rows ``first`` and the next, each with its derivative with ln p.
-
-    A node's row of ``nodes`` holds LEVELS by ROWS by four coefficients; nodes follow each other along the mixture, then
-    pressure, then share.
-    """
+    table: Grid, ln_pressure: float, ln_ratio: float, enthalpy: float, share: float, row: int
+) -> tuple[float, float]:
+    """One row and its derivative with ln p."""
     nodes, drift, curve = table
-    shares_count, pressures = curve.shape[0], curve.shape[1]
-    stride = nodes.shape[0] // (shares_count * pressures)
-    levels = _levels(enthalpy)
-    k, many, shares = _share_cell(share, shares_count)
-    i, p, p_slope = _pressure_cell(ln_pressure, pressures)
-    e = _edge(curve, k, many, shares, i, levels)
-    edge = p[0] * e[0] + p[1] * e[1] + p[2] * e[2] + p[3] * e[3]
-    edge_slope = p_slope[0] * e[0] + p_slope[1] * e[1] + p_slope[2] * e[2] + p_slope[3] * e[3]
-    x = ln_ratio if share <= 0.0 else ln_ratio + np.log1p(-min(share, SHARE))
-    zone, here, moving = _zone(x, edge)
-    j, m, m_slope = _mixture_cell(here, stride // ZONES)
-    n, jump = (k * pressures + i) * stride + zone * (stride // ZONES) + j, pressures * stride
-    moving *= edge_slope
-    a0 = _corner(nodes, drift, n, jump, many, shares, levels, first)
-    a1 = _corner(nodes, drift, n + 1, jump, many, shares, levels, first)
-    a2 = _corner(nodes, drift, n + stride, jump, many, shares, levels, first)
-    a3 = _corner(nodes, drift, n + stride + 1, jump, many, shares, levels, first)
-    b0 = _corner(nodes, drift, n, jump, many, shares, levels, first + 1)
-    b1 = _corner(nodes, drift, n + 1, jump, many, shares, levels, first + 1)
-    b2 = _corner(nodes, drift, n + stride, jump, many, shares, levels, first + 1)
-    b3 = _corner(nodes, drift, n + stride + 1, jump, many, shares, levels, first + 1)
-    return (
-        _bicubic(a0, a1, a2, a3, p, m),
-        _bicubic(a0, a1, a2, a3, p_slope, m) + moving * _bicubic(a0, a1, a2, a3, p, m_slope),
-        _bicubic(b0, b1, b2, b3, p, m),
-        _bicubic(b0, b1, b2, b3, p_slope, m) + moving * _bicubic(b0, b1, b2, b3, p, m_slope),
-    )
+    stride = nodes.shape[0] // (curve.shape[0] * curve.shape[1])
+    levels, shares = _levels(enthalpy), _share_cell(share, curve.shape[0])
+    place = _place(curve, stride, ln_pressure, _oxidizer_to_fuel(ln_ratio, share), levels, shares)
+    return _row(nodes, drift, stride, stride * curve.shape[1], place, levels, shares, row)
 
 
 @njit(cache=True)
@@ -444,7 +456,13 @@ def gas_at(table: Grid, ln_pressure: float, ln_ratio: float, enthalpy: float, sh
     ``ln_ratio`` is that of all that comes through the injector to fuel, of which ``share`` is nitrogen by mass;
     ``enthalpy`` that of the nitrous oxide entering [J/kg].
     """
-    ln_rt, _, gamma, _ = _at(table, ln_pressure, ln_ratio, enthalpy, share, LN_RT)
+    nodes, drift, curve = table
+    stride = nodes.shape[0] // (curve.shape[0] * curve.shape[1])
+    jump = stride * curve.shape[1]
+    levels, shares = _levels(enthalpy), _share_cell(share, curve.shape[0])
+    place = _place(curve, stride, ln_pressure, _oxidizer_to_fuel(ln_ratio, share), levels, shares)
+    ln_rt, _ = _row(nodes, drift, stride, jump, place, levels, shares, LN_RT)
+    gamma, _ = _row(nodes, drift, stride, jump, place, levels, shares, GAMMA)
     return np.exp(ln_rt), gamma
 
 
@@ -453,7 +471,7 @@ def temperatures(table: Grid, ln_pressure: Array, ln_ratio: Array, enthalpy: Arr
     """Temperature [K] of the chamber gas along a history; the solver itself only needs R T."""
     out = np.empty(ln_pressure.size)
     for n in range(out.size):
-        out[n] = np.exp(_at(table, ln_pressure[n], ln_ratio[n], enthalpy[n], share[n], GAMMA)[2])
+        out[n] = np.exp(_at(table, ln_pressure[n], ln_ratio[n], enthalpy[n], share[n], LN_T)[0])
     return out
 
 
@@ -464,17 +482,23 @@ def chamber_pressure(
     """p, R T and gamma of a chamber of ``volume`` [m^3] holding ``mass`` [kg]: p V = m R T(p).
 
     Newton's steps in ln p: R T hardly depends on p and its curvature in ln p is below 0.1, so that what follows a step
-    of 1e-7 is round-off.
+    of 1e-6 is round-off.
     """
-    here, target = np.log(guess), np.log(mass / volume)
-    ln_rt = gamma = 0.0
+    nodes, drift, curve = table
+    stride = nodes.shape[0] // (curve.shape[0] * curve.shape[1])
+    jump = stride * curve.shape[1]
+    levels, shares = _levels(enthalpy), _share_cell(share, curve.shape[0])
+    x, here, target = _oxidizer_to_fuel(ln_ratio, share), np.log(guess), np.log(mass / volume)
+    place = _place(curve, stride, here, x, levels, shares)
+    ln_rt, slope = _row(nodes, drift, stride, jump, place, levels, shares, LN_RT)
+    step = (target + ln_rt - here) / (1.0 - slope)
     for _ in range(25):
-        ln_rt, slope, gamma, gamma_slope = _at(table, here, ln_ratio, enthalpy, share, LN_RT)
-        step = (target + ln_rt - here) / (1.0 - slope)
-        here += step
-        if abs(step) < 1e-7:
-            ln_rt += slope * step
-            gamma += gamma_slope * step
+        if abs(step) < 1e-6:
             break
-    rt = np.exp(ln_rt)
-    return mass * rt / volume, rt, gamma
+        here += step
+        place = _place(curve, stride, here, x, levels, shares)
+        ln_rt, slope = _row(nodes, drift, stride, jump, place, levels, shares, LN_RT)
+        step = (target + ln_rt - here) / (1.0 - slope)
+    gamma, gamma_slope = _row(nodes, drift, stride, jump, place, levels, shares, GAMMA)
+    rt = np.exp(ln_rt + slope * step)
+    return mass * rt / volume, rt, gamma + gamma_slope * step
