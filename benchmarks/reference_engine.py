@@ -25,7 +25,7 @@ from scipy.optimize import brentq
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.sizing import DipTube, size_for_ullage
 from hfanalysis.engine.unsteady import Burn, Engine, burn
-from hfanalysis.flight.constant_thrust import Vehicle, gravity
+from hfanalysis.flight.vehicle import Vehicle, gravity
 from hfanalysis.thermo import atmosphere
 from hfanalysis.thermo.combustion import Gas, equilibrium
 from hfanalysis.thermo.combustion_table import CombustionTable, build

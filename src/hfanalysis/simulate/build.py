@@ -10,8 +10,8 @@ from hfanalysis.engine import sizing, steady, unsteady
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.tank import split
 from hfanalysis.errors import InputError
-from hfanalysis.flight.coast import Parachute
-from hfanalysis.flight.constant_thrust import Vehicle
+from hfanalysis.flight.descent import Parachute
+from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.simulate import rocket
 from hfanalysis.testdata.engine_file import EngineFile, Needs
 from hfanalysis.thermo import atmosphere, combustion, combustion_table

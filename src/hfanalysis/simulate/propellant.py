@@ -8,9 +8,10 @@ from scipy.optimize import brentq
 
 from hfanalysis.engine import unsteady
 from hfanalysis.engine.unsteady import Engine
+from hfanalysis.flight.ascent import NOT_FROM_PAD
 from hfanalysis.quantity import Quantity
 from hfanalysis.simulate import build
-from hfanalysis.simulate.flown import NOT_FROM_PAD, ascend
+from hfanalysis.simulate.flown import ascend
 from hfanalysis.testdata.engine_file import Needs
 
 STEP = 1.15
@@ -42,7 +43,7 @@ def for_apogee(needs: Needs, engine: Engine, target: float) -> dict[str, Quantit
 def apogee(engine: Engine) -> float:
     """Of the engine's rocket above its site [m]; 0 where it does not leave its pad."""
     try:
-        return float(ascend(engine, unsteady.burn(engine)).height[-1])
+        return ascend(engine, unsteady.burn(engine)).height
     except ValueError as error:
         if str(error) == NOT_FROM_PAD:
             return 0.0

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import pi
 from pathlib import Path
 
-from hfanalysis.flight.coast import Parachute
-from hfanalysis.flight.constant_thrust import Vehicle
+from hfanalysis.flight.descent import Parachute
+from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.testdata.drag_table import read_drag_table
 from hfanalysis.testdata.rocket import Rocket
 

@@ -9,7 +9,7 @@ from hfanalysis.engine import steady
 from hfanalysis.engine.steady import Grain, Requirement, SteadyEngine
 from hfanalysis.errors import InputError
 from hfanalysis.flight import constant_thrust
-from hfanalysis.flight.constant_thrust import Vehicle
+from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.quantity import Quantity
 from hfanalysis.simulate import build, heading
 from hfanalysis.testdata.engine_file import EngineFile, Needs

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from hfanalysis.engine import unsteady
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
-from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, gravity
+from hfanalysis.flight import summary
+from hfanalysis.flight.vehicle import STANDARD_GRAVITY, Vehicle, gravity
 from hfanalysis.quantity import Quantity
 from hfanalysis.simulate import build, flown, heading, propellant
 from hfanalysis.testdata.engine_file import EngineFile, Needs
@@ -117,7 +118,7 @@ def _flight(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity
     """As flight.json."""
     vehicle = build.vehicle(file)
     if not isinstance(vehicle, Vehicle):
-        found = flown.absent(vehicle)
+        found = summary.absent(vehicle)
     else:
         rail = file.rocket.rail_length if file.rocket else None
         found = flown.flight(engine, burnt, rail.value if rail else None, build.parachutes(file))

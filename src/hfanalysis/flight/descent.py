@@ -1,18 +1,16 @@
-"""From burn-out to the ground: coasting ascent, drogue, main parachute, ballistic case (report, section 3.1.5)."""
+"""From apogee to the ground: drogue, main parachute, ballistic case (report, section 3.1.5)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import cos
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, drag, gravity
-from hfanalysis.thermo.air import air
-from hfanalysis.thermo.atmosphere import HIGHEST, density
+from hfanalysis.flight.vehicle import STANDARD_GRAVITY, Vehicle, drag, gravity
+from hfanalysis.thermo.atmosphere import density
 
 Array = NDArray[np.float64]
 Rates = Callable[[float, Array], list[float]]
@@ -30,7 +28,7 @@ class Parachute:
 
 @dataclass(frozen=True)
 class Leg:
-    """One part of a flight: time [s], altitude above sea level [m], speed [m/s] (upwards positive on the descent)."""
+    """One part of a descent: time [s], altitude above sea level [m], speed [m/s] (upwards positive)."""
 
     time: Array
     altitude: Array
@@ -40,24 +38,6 @@ class Leg:
     def end(self) -> tuple[float, float, float]:
         """Last time, altitude and speed."""
         return float(self.time[-1]), float(self.altitude[-1]), float(self.speed[-1])
-
-
-def speed_of_sound(altitude: float) -> float:
-    """Of air [m/s] at an altitude above sea level [m]."""
-    return float(air(altitude)[2])
-
-
-def coast(vehicle: Vehicle, time: float, altitude: float, speed: float) -> Leg:
-    """Coast with the dry mass along the launch angle until the speed is gone. Raises ValueError above 30 km."""
-    climb, area, table = cos(vehicle.launch_angle), vehicle.frontal_area, vehicle.drag_table
-
-    def rates(_t: float, y: Array) -> list[float]:
-        return [y[1] * climb, -drag(y[0], y[1], area, table) / vehicle.dry_mass - gravity(y[0]) * climb]
-
-    leg = _until(rates, (time, altitude, speed), lambda y: y[1])
-    if leg.altitude[-1] >= HIGHEST:
-        raise ValueError(f"the rocket leaves the atmosphere model: above {HIGHEST:.0f} m")
-    return leg
 
 
 def fall(vehicle: Vehicle, drag_area: float, start: tuple[float, float, float], floor: float) -> Leg:

@@ -1,0 +1,101 @@
+"""A thrust curve and the rocket's mass on an even clock, as the flight models take them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from hfanalysis.engine.nozzle import SUBSONIC, expand
+
+Array = NDArray[np.float64]
+
+STEPS = 1000
+"""Steps of a burn: 17 ms of a long one, 3 ms of a short one; impulse is kept whatever their number."""
+
+AMBIENTS = 33
+"""Ambient pressures between which the nozzle's gain is taken linear; it is exactly so while the nozzle flows full."""
+
+HIGHEST_AMBIENT = 1.1e5
+"""[Pa], above that of any launch site."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Thrust [N] and the rocket's mass [kg] every ``step`` [s] from ignition to burn-out, (n + 1) each.
+
+    ``mass_after``: what coasts [kg]. ``gain`` (n + 1, k): thrust [N] to add at the k ambient pressures that start at
+    and follow by ``ambients`` [Pa]; one column of zeros where the thrust is what it is at the altitude.
+    """
+
+    step: float
+    thrust: Array
+    mass: Array
+    mass_after: float
+    gain: Array = field(default_factory=lambda: np.zeros((1, 1)))
+    ambients: tuple[float, float] = (0.0, 1.0)
+
+    @property
+    def time(self) -> Array:
+        """[s] from ignition."""
+        return np.asarray(self.step * np.arange(self.thrust.size), dtype=np.float64)
+
+    @property
+    def burn_time(self) -> float:
+        """[s]"""
+        return self.step * (self.thrust.size - 1)
+
+    @property
+    def impulse(self) -> float:
+        """[N s] of the thrust without gain."""
+        return float(np.trapezoid(self.thrust, dx=self.step))
+
+
+def even_curve(time: Array, impulse: Array, mass: Array, mass_after: float, steps: int = STEPS) -> Curve:
+    """The curve of which the impulse [N s] and the mass [kg] are known at increasing times [s], from the first on.
+
+    Thrust is the mean over a step's width about each node: the impulse is kept to rounding. Raises ValueError for a
+    burn that takes no time.
+    """
+    burn = float(time[-1] - time[0])
+    if not burn > 0.0:
+        raise ValueError(f"a burn of {burn} s is none")
+    step = burn / steps
+    nodes = time[0] + step * np.arange(steps + 1)
+    edges = np.concatenate(([time[0]], 0.5 * (nodes[1:] + nodes[:-1]), [time[-1]]))
+    thrust = np.diff(np.interp(edges, time, impulse)) / np.diff(edges)
+    return Curve(step, thrust, np.interp(nodes, time, mass), mass_after)
+
+
+def accumulated(time: Array, thrust: Array) -> Array:
+    """Impulse [N s] until each time, the thrust taken linear between them."""
+    return np.concatenate(([0.0], np.cumsum(0.5 * (thrust[1:] + thrust[:-1]) * np.diff(time))))
+
+
+def altitude_gain(
+    gamma: Array, pressure: Array, stand: float, throat_area: float, exit_area: float
+) -> tuple[Array, tuple[float, float]]:
+    """Thrust [N] gained over the stand's ``stand`` ambient [Pa] by time and ambient pressure, and those pressures.
+
+    From the nozzle model on the chamber's ``pressure`` [Pa] and heat capacity ratio; areas [m^2]. While the nozzle
+    flows full it is (p_stand - p_a) A_e. A throat that does not choke at the stand gains nothing: what such a chamber
+    holds at altitude is not what it holds there.
+    """
+    step = HIGHEST_AMBIENT / (AMBIENTS - 1)
+    ambients: Array = step * np.arange(AMBIENTS, dtype=np.float64)
+    return _gain(gamma, pressure, stand, ambients, throat_area, exit_area), (0.0, step)
+
+
+@njit(cache=True)
+def _gain(gamma: Array, pressure: Array, stand: float, ambients: Array, throat: float, exit_area: float) -> Array:
+    gained = np.zeros((pressure.size, ambients.size))
+    for i in range(pressure.size):
+        # thrust does not depend on the gas temperature: any R T will do
+        _, here, _, _, regime = expand(gamma[i], 1e6, pressure[i], stand, throat, exit_area)
+        if regime == SUBSONIC:
+            continue
+        for k in range(ambients.size):
+            gained[i, k] = expand(gamma[i], 1e6, pressure[i], ambients[k], throat, exit_area)[1] - here
+    return gained

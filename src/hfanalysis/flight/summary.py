@@ -1,0 +1,96 @@
+"""The quantities of flight.json: a flight from its pad to the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.flight.ascent import ACCELERATION, APOGEE, MACH, RAIL, SPEED, TIME, Ascent
+from hfanalysis.flight.descent import Descent, Parachute, descend, fall
+from hfanalysis.flight.vehicle import STANDARD_GRAVITY, Vehicle
+from hfanalysis.quantity import Quantity
+
+Array = NDArray[np.float64]
+
+ASCENT = {
+    "apogee": (APOGEE, "m"),
+    "time_to_apogee": (TIME, "s"),
+    "rail_departure_velocity": (RAIL, "m/s"),
+    "peak_velocity": (SPEED, "m/s"),
+    "peak_mach": (MACH, ""),
+    "peak_acceleration": (ACCELERATION, "m/s^2"),
+}
+"""What the ascent gives: which of its results, and the unit."""
+
+PARACHUTES = {
+    "terminal_velocity_drogue": "m/s",
+    "terminal_velocity_main": "m/s",
+    "time_to_main": "s",
+    "main_deployment_acceleration": "m/s^2",
+    "landing_time": "s",
+}
+"""What the descent under parachutes gives, with units."""
+
+NO_RAIL = "rocket.rail_length is not given"
+RAIL_TOO_LONG = "the rocket does not reach the end of its rail"
+
+
+@dataclass(frozen=True)
+class Spread:
+    """What drawn flights say of one quantity: standard deviation and 95 % interval."""
+
+    std: float
+    ci95: tuple[float, float]
+
+
+def quantities(
+    vehicle: Vehicle,
+    flown: Ascent,
+    rail_length: float | None,
+    canopies: tuple[Parachute, Parachute] | str,
+    spreads: dict[str, Spread] | None = None,
+) -> dict[str, Quantity]:
+    """Every quantity of a flight that took place; what cannot be had says why."""
+    known = spreads or {}
+    found = {name: _of_ascent(flown, name, known.get(name)) for name in ASCENT}
+    if rail_length is None:
+        found["rail_departure_velocity"] = Quantity.absent(NO_RAIL)
+    down = None if isinstance(canopies, str) else descend(vehicle, flown.end, *canopies)
+    return {**found, **(absent_descent(canopies) if down is None else _of_descent(down)), **_ballistic(vehicle, flown)}
+
+
+def absent(reason: str) -> dict[str, Quantity]:
+    """The quantities of a flight that does not take place."""
+    return {name: Quantity.absent(reason) for name in (*ASCENT, *PARACHUTES, "impact_velocity_ballistic")}
+
+
+def absent_descent(reason: object) -> dict[str, Quantity]:
+    """The quantities of a descent without parachutes."""
+    return {name: Quantity.absent(str(reason)) for name in PARACHUTES}
+
+
+def _of_ascent(flown: Ascent, name: str, spread: Spread | None) -> Quantity:
+    index, unit = ASCENT[name]
+    value = float(flown.results[index])
+    if np.isnan(value):
+        return Quantity.absent(RAIL_TOO_LONG)
+    return Quantity(value, unit, *((spread.std, spread.ci95) if spread else ()))
+
+
+def _of_descent(down: Descent) -> dict[str, Quantity]:
+    values = {
+        "terminal_velocity_drogue": down.drogue_speed,
+        "terminal_velocity_main": down.landing_speed,
+        "time_to_main": down.time_of_main,
+        "main_deployment_acceleration": down.main_load * STANDARD_GRAVITY,
+        "landing_time": down.landing_time,
+    }
+    return {name: Quantity(float(value), PARACHUTES[name]) for name, value in values.items()}
+
+
+def _ballistic(vehicle: Vehicle, flown: Ascent) -> dict[str, Quantity]:
+    time, top, _ = flown.end
+    speed = -fall(vehicle, 0.0, (time, top, 0.0), vehicle.launch_altitude).end[2]
+    return {"impact_velocity_ballistic": Quantity(speed, "m/s")}

@@ -1,0 +1,69 @@
+"""A rocket as the flight models take it, and the forces on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from hfanalysis.thermo.air import air
+
+Array = NDArray[np.float64]
+
+EARTH_RADIUS = 6_371_000.0
+STANDARD_GRAVITY = 9.80665
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """Mass without propellant [kg], drag coefficient on the frontal area [m^2], angle from vertical [rad], site [m].
+
+    ``drag_mach`` and ``drag_values``: the coefficient against Mach number, where one number for all is not enough; it
+    then takes the place of ``drag_coefficient``.
+    """
+
+    dry_mass: float
+    drag_coefficient: float
+    frontal_area: float
+    launch_angle: float
+    launch_altitude: float
+    drag_mach: tuple[float, ...] | None = None
+    drag_values: tuple[float, ...] | None = None
+
+    @property
+    def drag_table(self) -> Array:
+        """What :func:`drag_coefficient` reads: rows of Mach numbers and of coefficients; one column for a constant."""
+        if self.drag_mach is None or self.drag_values is None:
+            return np.array([[0.0], [self.drag_coefficient]])
+        return np.array([self.drag_mach, self.drag_values])
+
+
+@njit(cache=True)
+def drag_coefficient(mach: float, table: Array) -> float:
+    """C_d at a Mach number: linear between the table's columns (Mach numbers, coefficients), its ends held.
+
+    >>> drag_coefficient(0.4, np.array([[0.3, 0.5], [0.40, 0.42]]))
+    0.41
+    """
+    last = table.shape[1] - 1
+    if mach <= table[0, 0]:
+        return float(table[1, 0])
+    if mach >= table[0, last]:
+        return float(table[1, last])
+    i = int(np.searchsorted(table[0], mach)) - 1
+    share = (mach - table[0, i]) / (table[0, i + 1] - table[0, i])
+    return float(table[1, i] + share * (table[1, i + 1] - table[1, i]))
+
+
+@njit(cache=True)
+def drag(altitude: float, speed: float, area: float, table: Array) -> float:
+    """D = 1/2 C_d A rho v |v| [N] on the frontal area [m^2], against the speed [m/s]."""
+    _, rho, sound = air(altitude)
+    return 0.5 * drag_coefficient(abs(speed) / sound, table) * area * rho * speed * abs(speed)
+
+
+def gravity(altitude: float) -> float:
+    """g = (r_E / (r_E + z))^2 g_SL [m/s^2] at an altitude above sea level [m]."""
+    return STANDARD_GRAVITY * (EARTH_RADIUS / (EARTH_RADIUS + altitude)) ** 2
