@@ -1,6 +1,7 @@
 # The way through, as rules on real files: what each stage reads and what it writes.
 #
 #   raw_tests/TEST ──► ingest.h5 ──► segments.json ──► calibration.json ──► residuals.h5 ──► report.html
+#                                                                       └────► flight.json ────┘
 #
 # `hfa` judges by content whether a product is up to date; make's time stamps only tell when to ask it.
 
@@ -26,6 +27,10 @@ processed/%/calibration.json: processed/%/segments.json
 
 processed/%/residuals.h5: processed/%/calibration.json
 	@$(HFA) validate --quiet -- $*
+	@touch -c $@
+
+processed/%/flight.json: processed/%/calibration.json
+	@$(HFA) flight --quiet -- $*
 	@touch -c $@
 
 # A log without a firing gets its page too, which says so: the page rests on the raw files, not on every stage's success.

@@ -69,7 +69,7 @@ def test_json_is_the_product_and_nothing_else(run: Run, root: Path) -> None:
     assert json.loads(ended.out)["test"] == "HF5"
 
 
-@pytest.mark.parametrize("stage", ["ingest", "segment", "calibrate", "validate", "report", "run"])
+@pytest.mark.parametrize("stage", ["ingest", "segment", "calibrate", "validate", "flight", "report", "run"])
 def test_every_stage_speaks_json(run: Run, root: Path, stage: str) -> None:
     ended = run(stage, "HF5", "--root", root, "--json")
     assert ended.status == 0

@@ -67,6 +67,7 @@ _STAGES = {
     "segment": "Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end.",
     "calibrate": "Injector coefficient, feed losses, compressibility and polytropic exponent, with intervals.",
     "validate": "Run the model against the measurement.",
+    "flight": "Fly the rocket on the measured thrust: apogee, rail departure, stability; engine files.",
     "report": "Write report.html, one page to read offline.",
     "run": "Every stage.",
 }
@@ -86,8 +87,32 @@ def _add(stage: str, text: str) -> None:
         _do(stage, test, root, out, as_json, force, quiet, settings)
 
 
+Raw = Annotated[bool, typer.Option("--raw-thrust", help="Fly the thrust as measured on the stand, as the report does.")]
+
+
+def _add_flight(text: str) -> None:
+    """The stage with a word of its own for how its thrust is taken."""
+
+    @app.command("flight", help=text)
+    def command(
+        test: Test,
+        root: Root = Path(),
+        out: Out = None,
+        as_json: Json = False,
+        force: Force = False,
+        quiet: Quiet = False,
+        settings: Set = None,
+        raw_thrust: Raw = False,
+    ) -> None:
+        asked = ["flight.raw_thrust=true"] if raw_thrust else []
+        _do("flight", test, root, out, as_json, force, quiet, [*(settings or []), *asked])
+
+
 for _name, _text in _STAGES.items():
-    _add(_name, _text)
+    if _name == "flight":
+        _add_flight(_text)
+    else:
+        _add(_name, _text)
 
 
 EngineToml = Annotated[Path, typer.Argument(metavar="ENGINE.toml", help="An engine file, see engines/.")]

@@ -130,6 +130,15 @@ def _validate(context: Context, console: Console) -> None:
     console.print(table)
 
 
+def _flight(context: Context, console: Console) -> None:
+    product = context.read_json("flight.json")
+    _values(console, quantities(product), f"flight, thrust {product['thrust']}")
+    for name, check in product["checks"].items():
+        style = {"passed": "green", "failed": "red"}.get(check["result"], "yellow")
+        line = Text.assemble(f"  {in_words(name)}: ", (check["result"], style), f": {check['why']}")
+        console.print(line, soft_wrap=True)
+
+
 def _report(context: Context, console: Console) -> None:
     console.print(Text(f"report: {context.product('report.html')}"), soft_wrap=True)
 
@@ -151,15 +160,17 @@ def show_engine(product: Mapping[str, Any]) -> None:
 
 
 def _values(console: Console, found: Mapping[str, Mapping[str, Any]], title: str) -> None:
-    """A table of values, and below it what cannot be had, by reason."""
-    table = _table("", "value", "unit", title=title)
+    """A table of values, with intervals where any has one, and below it what cannot be had, by reason."""
+    spread = any(quantity.get("std") for quantity in found.values())
+    table = _table("", "value", *(["± std", "95 % interval"] if spread else []), "unit", title=title)
     absent: dict[str, list[str]] = {}
     for name, quantity in found.items():
         text = shown(quantity)
         if quantity["value"] is None:
             absent.setdefault(text.why, []).append(in_words(name))
         else:
-            table.add_row(_WORDS.get(name, in_words(name)), text.value, text.unit)
+            extra = [text.std, text.interval] if spread else []
+            table.add_row(_WORDS.get(name, in_words(name)), text.value, *extra, text.unit)
     if table.row_count:
         console.print(table)
     for reason, names in absent.items():
@@ -171,5 +182,6 @@ _SHOWN = {
     "segment": _segment,
     "calibrate": _calibrate,
     "validate": _validate,
+    "flight": _flight,
     "report": _report,
 }

@@ -87,13 +87,7 @@ def site_altitude(file: EngineFile) -> float:
     if file.rocket is not None and file.rocket.launch_altitude is not None:
         return file.rocket.launch_altitude.value
     pressure = file.site.ambient_pressure
-    return _altitude_of(pressure.value if pressure else _STANDARD)
-
-
-def _altitude_of(pressure: float) -> float:
-    from scipy.optimize import brentq
-
-    return float(brentq(lambda z: atmosphere.pressure(z) - pressure, -2000.0, 20_000.0, xtol=1e-6))
+    return atmosphere.altitude_of(pressure.value if pressure else _STANDARD)
 
 
 def tank(needs: Needs) -> TankBuilt:
@@ -245,7 +239,7 @@ def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
 
 def _stand(file: EngineFile) -> Vehicle:
     """What holds an engine that does not fly: at the altitude whose air has the site's pressure."""
-    return Vehicle(STAND_MASS, 1.0, 1.0, 0.0, _altitude_of(ambient_pressure(file)))
+    return Vehicle(STAND_MASS, 1.0, 1.0, 0.0, atmosphere.altitude_of(ambient_pressure(file)))
 
 
 def _exponent(needs: Needs) -> float | None:

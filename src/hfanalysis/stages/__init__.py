@@ -6,5 +6,5 @@ Each stage module names what it needs and what it writes (`STAGE`, see :mod:`hfa
 (:mod:`hfanalysis.stages.runner`) does what a stage needs first and redoes only what changed.
 """
 
-ORDER = ("ingest", "segment", "calibrate", "validate", "report")
+ORDER = ("ingest", "segment", "calibrate", "validate", "flight", "report")
 """The stages in the order of the way through; each is a module of this package."""

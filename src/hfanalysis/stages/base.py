@@ -99,8 +99,8 @@ class Context:
         return self.definition.path.parent
 
     def product(self, name: str) -> Path:
-        """Where a finished product is found."""
-        return self.out / name
+        """Where a finished product is found; ``{test}`` in its name stands for the test's."""
+        return self.out / name.replace("{test}", self.id)
 
     def read_json(self, name: str) -> dict[str, Any]:
         """The data of a finished JSON product."""
@@ -110,7 +110,7 @@ class Context:
         """Where to write a product of the running stage; it gets its final name when the stage is done."""
         if self.stage is None or name not in self.stage.products:
             raise ValueError(f"{name} is not declared as a product of this stage")
-        return products.temporary_path(self.out / name)
+        return products.temporary_path(self.product(name))
 
     def write_json(self, name: str, data: Mapping[str, Any]) -> None:
         """Write a JSON product of the running stage, with the test's name first and its provenance last."""

@@ -107,6 +107,6 @@ def is_fresh(context: Context, stage: Stage, note: Mapping[str, Any], key: str, 
         return True
     made = note.get("products", {})
     try:
-        return all(hashes(context.product(name)) == made.get(name) for name in stage.products)
+        return all(hashes(path) == made.get(path.name) for path in map(context.product, stage.products))
     except OSError:
         return False

@@ -36,7 +36,7 @@ def _product(context: Context, stage: str, name: str) -> dict[str, Any] | None:
 STAGE = Stage(
     name="report",
     needs=("ingest",),
-    wants=("segment", "calibrate", "validate"),
+    wants=("segment", "calibrate", "validate", "flight"),
     products=("report.html",),
     run=run,
 )

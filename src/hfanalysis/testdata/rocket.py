@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
+from pydantic import Field
+
 from hfanalysis.testdata.schema import (
     Altitude,
     Area,
@@ -21,6 +23,7 @@ from hfanalysis.testdata.schema import (
 )
 from hfanalysis.units import Value
 
+_WIND = between(0.0, 60.0, "between 0 and 60 m/s")
 _UPRIGHT = between(0.0, math.radians(90.0), "between 0 and 90 degrees from the vertical")
 
 
@@ -101,16 +104,21 @@ class MainParachute(Parachute):
 
 @section
 class Rocket(Section):
-    """[rocket]: dry mass [kg], drag, diameter [m] or frontal area [m^2], rail and launch site."""
+    """[rocket]: dry mass [kg], drag, diameter [m] or frontal area [m^2], rail and launch site.
+
+    ``drag_uncertainty``: relative standard deviation of the drag; ``wind_speed`` [m/s] at the launch.
+    """
 
     dry_mass: Mass
     drag_coefficient: Positive | None = None
     drag_table: Text | None = None
+    drag_uncertainty: Annotated[Positive, Field(lt=1.0)] | None = None
     diameter: Length | None = None
     frontal_area: Area | None = None
     launch_angle: Annotated[Value, quantity("angle", _UPRIGHT)] | None = None
     rail_length: Length | None = None
     launch_altitude: Altitude | None = None
+    wind_speed: Annotated[Value, quantity("velocity", _WIND)] | None = None
     geometry: Geometry | None = None
     drogue: Parachute | None = None
     main: MainParachute | None = None

@@ -47,6 +47,17 @@ def density(altitude: float) -> float:
     return pressure(altitude) * AIR_MOLAR_MASS / (GAS_CONSTANT * temperature(altitude))
 
 
+def altitude_of(ambient: float) -> float:
+    """Altitude [m] whose air has a pressure [Pa], from 2 km below sea level to 20 km above.
+
+    >>> round(altitude_of(pressure(1402.0)))
+    1402
+    """
+    from scipy.optimize import brentq
+
+    return float(brentq(lambda z: pressure(z) - ambient, -2000.0, 20_000.0, xtol=1e-6))
+
+
 def _check(altitude: float) -> None:
     if not altitude <= HIGHEST:
         raise ValueError(f"the atmosphere model ends at {HIGHEST:.0f} m; asked for {altitude} m")

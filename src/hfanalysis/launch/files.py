@@ -1,0 +1,83 @@
+"""Engine files of a firing, as its rocket feels it, for flight simulators."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.flight import rasp, rocksim
+from hfanalysis.flight.motor import Motor, Points, points_of
+from hfanalysis.launch.product import Launch
+from hfanalysis.testdata.definition import TestDefinition
+
+Array = NDArray[np.float64]
+
+BY_THEMSELVES = "total mass: propellant alone, the empty engine belongs to the rocket's dry mass"
+
+
+@dataclass(frozen=True)
+class Export:
+    """A motor, its curve, comments for people, and radii [m] of throat and exit (0: not known)."""
+
+    motor: Motor
+    points: Points
+    comments: tuple[str, ...]
+    radii: tuple[float, float]
+
+    @property
+    def eng(self) -> str:
+        """As a RASP file."""
+        return rasp.of_points(self.motor, self.points, self.comments)
+
+    @property
+    def rse(self) -> str:
+        """As a RockSim file."""
+        return rocksim.text(self.motor, self.points, self.comments, self.radii)
+
+
+def export(found: Launch, definition: TestDefinition, center: Array | None = None) -> Export:
+    """The firing along its flight: thrust at the altitudes flown through, propellant that burns.
+
+    ``center``: the engine's centre of gravity [m from its front] on the curve's clock, where it is known.
+    """
+    curve, trace = found.firing.curve, found.ascent
+    time = curve.time
+    thrust = np.interp(time, trace.column("time"), trace.column("thrust"))
+    mass = np.maximum(curve.mass - curve.mass_after, 0.0)
+    points = points_of(time, thrust, mass, center)
+    return Export(_motor(found, definition, float(mass[0])), points, _comments(found, definition), _radii(definition))
+
+
+def _motor(found: Launch, definition: TestDefinition, burnt: float) -> Motor:
+    geometry = definition.rocket.geometry if definition.rocket is not None else None
+    engine = geometry.engine_mass.value if geometry is not None and geometry.engine_mass is not None else 0.0
+    loaded = float(found.firing.propellant.total[0])
+    return Motor(definition.test.id, *_size(definition), burnt, engine + loaded)
+
+
+def _size(definition: TestDefinition) -> tuple[float, float]:
+    """Diameter and length [m] of the motor, from what is known of casing, tank and grain."""
+    grain, tank, rocket = definition.grain, definition.tank, definition.rocket
+    widths = [2.0 * grain.outer_radius.value] if grain is not None and grain.outer_radius is not None else []
+    widths += [tank.inner_diameter.value] if tank is not None and tank.inner_diameter is not None else []
+    widths += [rocket.diameter.value] if not widths and rocket is not None and rocket.diameter is not None else []
+    length = grain.length.value if grain is not None and grain.length is not None else 0.0
+    return max(widths, default=0.0), length
+
+
+def _radii(definition: TestDefinition) -> tuple[float, float]:
+    nozzle = definition.nozzle
+    throat, leave = (None, None) if nozzle is None else (nozzle.throat_radius, nozzle.exit_radius)
+    return (throat.value if throat else 0.0), (leave.value if leave else 0.0)
+
+
+def _comments(found: Launch, definition: TestDefinition) -> tuple[str, ...]:
+    source = {"replica": "REPLICA, generated, not measured", "synthetic": "SYNTHETIC, generated, not measured"}
+    altitude = found.firing.vehicle.launch_altitude
+    geometry = definition.rocket.geometry if definition.rocket is not None else None
+    said = [f"{definition.test.id}: {source.get(definition.test.source, 'measured on the stand')}"]
+    said += [f"thrust {found.firing.thrust_is}, along the flight from {altitude:.0f} m"]
+    said += [] if geometry is not None and geometry.engine_mass is not None else [BY_THEMSELVES]
+    return tuple(said)

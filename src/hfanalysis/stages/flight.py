@@ -1,0 +1,45 @@
+"""flight: the rocket's flight on the measured thrust, with bands, and engine files for flight simulators.
+
+Reads ``ingest.h5`` and, where they are there, ``segments.json`` and ``calibration.json``; writes ``flight.json``,
+``flight.h5``, ``TEST.eng`` and ``TEST.rse``.
+"""
+
+from __future__ import annotations
+
+from hfanalysis.errors import AbsentError
+from hfanalysis.stages.base import Context, Stage
+
+
+def run(context: Context) -> None:
+    """Fly the test's rocket."""
+    from hfanalysis.launch.files import export
+    from hfanalysis.launch.firing import firing
+    from hfanalysis.launch.product import launch, product, write_histories
+    from hfanalysis.segment.phases import Segments
+    from hfanalysis.testdata.log import read_log
+
+    definition = context.definition
+    if definition.rocket is None:
+        raise AbsentError(f"test {context.id}: test.toml has no [rocket] to fly")
+    log = read_log(context.product("ingest.h5"))
+    segments = Segments.from_json(context.read_json("segments.json"))
+    calibration = None if "calibrate" in context.absent else context.read_json("calibration.json")
+    flown = firing(log, segments, calibration, definition, bool(context.parameter("raw_thrust")))
+    found = launch(
+        flown, definition.rocket, int(context.parameter("flights")), int(context.parameter("seed")), context.progress
+    )
+    files = export(found, definition)
+    context.scratch("{test}.eng").write_text(files.eng, encoding="utf-8")
+    context.scratch("{test}.rse").write_text(files.rse, encoding="utf-8")
+    write_histories(context.scratch("flight.h5"), found, context.provenance())
+    context.write_json("flight.json", {**product(found), "warnings": []})
+
+
+STAGE = Stage(
+    name="flight",
+    needs=("ingest", "segment"),
+    wants=("calibrate",),
+    products=("flight.json", "flight.h5", "{test}.eng", "{test}.rse"),
+    run=run,
+    parameters={"flights": 10_000, "seed": 1, "raw_thrust": False},
+)
