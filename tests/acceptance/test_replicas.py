@@ -14,8 +14,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from hfanalysis.calibrate.engine_of_test import Regression
+from hfanalysis.calibrate.evidence import Evidence
+from hfanalysis.calibrate.of_test import evidence_for
+from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.segment.phases import Segments
 from hfanalysis.stages.opening import open_test
 from hfanalysis.stages.runner import run_to
+from hfanalysis.testdata.definition import load_definition
+from hfanalysis.testdata.log import read_log
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -33,6 +40,15 @@ COEFFICIENTS = {
         "p_loss_vapor": (6.42e5, 0.06),
     },
 }
+
+
+PERFORMANCE = {
+    "HF4": {"total_impulse": (11_978.0, 0.015), "peak_chamber_pressure": (9.0e5, 0.04), "peak_thrust": (1920.0, 0.04)},
+    "HF5": {"total_impulse": (16_310.0, 0.015), "peak_chamber_pressure": (12.5e5, 0.04), "peak_thrust": (2840.0, 0.04)},
+}
+MASSES = {"HF4": (7.04, 1.594), "HF5": (8.35, 1.594)}
+REPORT = {"HF4": (2e-4, 0.355), "HF5": (5e-4, 0.156)}
+"""a and n of the report (table 4.5)."""
 
 
 def _run(root: Path, name: str, stage: str) -> Path:
@@ -86,6 +102,92 @@ def test_the_tank_alone_follows_the_liquid_phase(products: dict[str, Any], name:
     """The report finds "overall excellent agreement"; within 1.5 bar of 40 in the liquid phase, but above the noise."""
     gap = products[name]["validation"]["gap"]["tank_free"]["p_tank"]["liquid"]
     assert gap["noise"] < gap["rms"] < 1.5e5
+
+
+@pytest.mark.parametrize(("name", "quantity"), [(n, q) for n in PERFORMANCE for q in PERFORMANCE[n]])
+def test_performance(products: dict[str, Any], name: str, quantity: str) -> None:
+    expected, tolerance = PERFORMANCE[name][quantity]
+    found = products[name]["validation"]["performance"]["measured"][quantity]
+    assert found["value"] == pytest.approx(expected, rel=tolerance)
+    assert found["ci95"][0] < found["value"] < found["ci95"][1]
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_specific_impulse_is_that_of_the_loaded_masses(products: dict[str, Any], name: str) -> None:
+    measured = products[name]["validation"]["performance"]["measured"]
+    assert (measured["oxidizer_mass"]["value"], measured["fuel_mass"]["value"]) == MASSES[name]
+    expected = PERFORMANCE[name]["total_impulse"][0] / 9.80665 / sum(MASSES[name])
+    assert measured["specific_impulse"]["value"] == pytest.approx(expected, rel=0.015)
+    assert measured["burn_time"]["value"] == 17.0
+    assert measured["average_thrust"]["value"] == pytest.approx(measured["total_impulse"]["value"] / 17.0)
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_the_raw_files_integral_exaggerates_the_impulse(products: dict[str, Any], name: str) -> None:
+    measured = products[name]["validation"]["performance"]["measured"]
+    assert measured["total_impulse_of_file"]["value"] > 1.03 * measured["total_impulse"]["value"]
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_a_and_n_meet_the_burn_time_and_fit_no_worse_than_the_reports(products: dict[str, Any], name: str) -> None:
+    calibration = products[name]["calibration"]
+    about = calibration["regression"]["tests"][0]
+    assert about["burn_time_model"] == pytest.approx(17.0, abs=0.5)
+    assert products[name]["validation"]["performance"]["model"]["burn_time"]["value"] == pytest.approx(17.0, abs=0.5)
+    assert about["p_chamber_rms"] <= _rms_with(products[name], name, *REPORT[name])
+    assert any("without nitrogen" in text for text in about["fitted_with"])
+
+
+def _rms_with(product: dict[str, Any], name: str, a: float, n: float) -> float:
+    """What other constants leave of the chamber pressure over the same window [Pa]."""
+    evidence = _evidence(product["folder"], name).with_regression(Regression(a, n))
+    predicted = evidence.predict(Regression(a, n))
+    assert predicted is not None
+    residual = (evidence.observed - predicted)[: evidence.time.size]
+    return float(np.sqrt(np.mean(residual**2)))
+
+
+def _evidence(folder: Path, name: str) -> Evidence:
+    definition = load_definition(ROOT / "raw_tests" / name / "test.toml")
+    log = read_log(folder / "ingest.h5")
+    segments = Segments.from_json(json.loads((folder / "segments.json").read_text()))
+    return evidence_for(log, segments, definition, calibrate(log, segments, definition, 400))
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_every_mode_is_run_on_every_channel_it_has(products: dict[str, Any], name: str) -> None:
+    validation = products[name]["validation"]
+    assert validation["absent"] == {}
+    assert {mode: set(found) for mode, found in validation["gap"].items()} == {
+        "tank_free": {"p_tank", "p_run"},
+        "chamber_forced": {"thrust"},
+        "full": {"p_tank", "p_run", "p_chamber", "thrust", "m_tank"},
+    }
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_chemistry_and_nozzle_give_the_thrust_from_the_chamber_pressure(products: dict[str, Any], name: str) -> None:
+    """The report: "excellent agreement"; within 4 % of the thrust while liquid flows."""
+    gap = products[name]["validation"]["gap"]["chamber_forced"]["thrust"]["liquid"]
+    assert gap["rms"] < 0.04 * PERFORMANCE[name]["peak_thrust"][0]
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_histories_close_the_masses(products: dict[str, Any], name: str) -> None:
+    closure = products[name]["validation"]["closure"]
+    assert closure["fuel_burned"]["value"] == pytest.approx(1.594, rel=0.03)
+    assert closure["oxidizer_through_injector"]["value"] == pytest.approx(MASSES[name][0], rel=0.03)
+
+
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_efficiencies_are_those_of_an_engine(products: dict[str, Any], name: str) -> None:
+    import h5py
+
+    with h5py.File(products[name]["folder"] / "performance.h5") as file:
+        liquid = (file["time"][:] > 1.5) & (file["time"][:] < 5.0)
+        for efficiency in ("c_star_efficiency", "thrust_coefficient_efficiency"):
+            assert 0.9 < np.nanmean(file[efficiency][:][liquid]) < 1.1
+        assert 8.0 < np.nanmean(file["of_ratio"][:][liquid]) < 15.0
 
 
 @pytest.mark.parametrize("name", ["HF4", "HF5"])

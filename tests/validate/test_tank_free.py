@@ -43,7 +43,16 @@ def run(test: Trial, calibration: dict[str, Any] | None = None, white: float = 0
     without = change.pop("without", ())
     log = log_of(test, white=white, without=without)
     segments = segments_of(test, t_feed=T_FEED)
-    return run_tank_free(log, segments, calibration or true_calibration(test), definition(test.stand, **change))
+    found = run_tank_free(log, segments, calibration or true_calibration(test), definition(test.stand, **change))
+    return found[0]
+
+
+def test_the_line_follows_with_the_flow(burn: Trial) -> None:
+    log, stated = log_of(burn), definition(burn.stand)
+    tank, line = run_tank_free(log, segments_of(burn, t_feed=T_FEED), true_calibration(burn), stated)
+    assert (tank.channel, line.channel) == ("p_tank", "p_run")
+    assert np.abs(part(line, "liquid")).max() < 0.1e5  # of 35 bar
+    assert np.abs(line.model - tank.model).max() > 2e5
 
 
 def part(found: Residual, name: str) -> np.ndarray[Any, Any]:

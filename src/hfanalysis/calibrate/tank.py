@@ -39,6 +39,7 @@ class Calibration:
     tank_history: TankHistory | None
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    draws: Draws | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The content of calibration.json."""
@@ -62,7 +63,7 @@ FULLEST = 1.05
 """Loaded mass over what the tank holds as liquid at the bulk's temperature, from which on the input is refused."""
 
 NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase",
-         "vapor_mass_at_t_v", "mass_at_t_feed")  # fmt: skip
+         "vapor_mass_at_t_v", "mass_at_t_feed", "oxidizer_mass")  # fmt: skip
 
 
 def calibrate(log: TestLog, segments: Segments, definition: TestDefinition, samples: int) -> Calibration:
@@ -123,7 +124,9 @@ class _Work:
         history = coefficient_history(self.saturation, self.histories, inputs, left)
         content = tank_history(self.saturation, self.histories, inputs, left)
         quantities = self._quantities(nominal, draws, inputs, left)
-        return Calibration(quantities, rest, history, content, tuple(self.warnings), tuple(self.notes))
+        loaded = Quantity(mass.value, "kg", mass.std, verdict="identified", why=mass.source)
+        quantities["oxidizer_mass"] = loaded
+        return Calibration(quantities, rest, history, content, tuple(self.warnings), tuple(self.notes), draws)
 
     def _check_fit(self, inputs: Inputs) -> None:
         """Raise InputError where the loaded mass cannot be in the tank, even as liquid as cold as its blowdown."""

@@ -7,7 +7,7 @@ volume, the phase times and the pressures read at them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,9 +40,13 @@ class Spread:
 
 @dataclass(frozen=True)
 class Draws:
-    """The repeated reductions: one array per quantity, NaN where a draw has no answer."""
+    """The repeated reductions: one array per quantity, NaN where a draw has no answer.
+
+    ``inputs`` holds what was drawn for them: loaded mass [kg], volume [m^3], area [m^2], biases of p_tank and p_c [Pa].
+    """
 
     values: dict[str, Array]
+    inputs: dict[str, Array] = field(default_factory=dict)
 
     def std(self, name: str) -> float:
         """Standard deviation over the draws that have an answer (NaN where fewer than ten do)."""
@@ -69,8 +73,15 @@ def draw(tables: Tables, saturation: Saturation, inputs: Inputs, spread: Spread,
     """Repeat the reduction ``samples`` times with inputs drawn from normal distributions (same seed each time)."""
     generator = np.random.default_rng(SEED)
     z = generator.standard_normal((samples, 11))
-    results = [reduce(tables, saturation, *_drawn(inputs, spread, row)) for row in z]
-    return Draws({n: np.array([getattr(r, n) for r in results]) for n in Reduction.__dataclass_fields__})
+    drawn = [_drawn(inputs, spread, row) for row in z]
+    results = [reduce(tables, saturation, *row) for row in drawn]
+    values = {n: np.array([getattr(r, n) for r in results]) for n in Reduction.__dataclass_fields__}
+    return Draws(values, _what_was_drawn(drawn))
+
+
+def _what_was_drawn(drawn: list[tuple[Inputs, Shift]]) -> dict[str, Array]:
+    found = {n: np.array([getattr(i, n) for i, _ in drawn]) for n in ("mass", "volume", "area")}
+    return found | {f"p_{n}": np.array([getattr(s, n) for _, s in drawn]) for n in ("tank", "chamber")}
 
 
 def _drawn(inputs: Inputs, spread: Spread, z: Array) -> tuple[Inputs, Shift]:

@@ -65,8 +65,8 @@ def _do(
 _STAGES = {
     "ingest": "Read the raw log onto canonical channels in SI, with quality flags per sample.",
     "segment": "Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end.",
-    "calibrate": "Injector coefficient, feed losses, compressibility and polytropic exponent, with intervals.",
-    "validate": "Run the model against the measurement.",
+    "calibrate": "Injector coefficient, feed losses, polytropic exponent and regression, with intervals.",
+    "validate": "Measure the performance and run the model against the measurement.",
     "flight": "Fly the rocket on the measured thrust: apogee, rail departure, stability; engine files.",
     "report": "Write report.html, one page to read offline.",
     "run": "Every stage.",
@@ -136,6 +136,20 @@ def _design(engine: EngineToml, as_json: EngineJson = False, out: Folder = None,
         from hfanalysis.cli import engines
 
         engines.design(engine, out, as_json, quiet)
+
+
+@app.command("regression")
+def _regression(
+    tests: Annotated[list[str], typer.Argument(metavar="TEST OTHER…", help="Tests of one fuel; at least two.")],
+    root: Root = Path(),
+    out: Out = None,
+    as_json: EngineJson = False,
+) -> None:
+    """Regression constants a and n common to several tests, and whether the tests agree on them."""
+    with ending():
+        from hfanalysis.cli import regression
+
+        regression.regression(tests, root, out, as_json)
 
 
 @app.command("new")

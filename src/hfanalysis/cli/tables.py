@@ -117,9 +117,54 @@ def _calibrate(context: Context, console: Console) -> None:
     segments = context.read_json("segments.json")
     times = {name: segments[name] for name in ("t_feed", "t_v", "t_purge") if name in segments}
     _print(console, {name: found[name] for name in found if name not in times} | times, "calibration")
+    _regression(context.read_json("calibration.json").get("regression", {}), console)
+
+
+def _regression(regression: Mapping[str, Any], console: Console) -> None:
+    """What a and n were fitted with, and how well."""
+    for test in regression.get("tests", []):
+        console.print(Text(f"  a, n: {'; '.join(test['fitted_with'])}"), soft_wrap=True)
+        burn = test["burn_time_measured"]
+        seen = "" if burn is None else f" (measured {burn:.2f} s)"
+        console.print(
+            Text(
+                f"  a, n leave {test['p_chamber_rms'] / 1e5:.3f} bar rms in p_chamber over the window, "
+                f"{test['independent_samples']:.0f} independent values; burn time {test['burn_time_model']:.2f} s{seen}"
+            ),
+            soft_wrap=True,
+        )
+
+
+def show_regression(product: Mapping[str, Any]) -> None:
+    """Print a and n of several tests, together and each alone."""
+    console = _Paper(highlight=False)
+    if not console.is_terminal:
+        console.width = max(console.width, _NARROWEST)
+    _print(console, quantities(product), f"regression common to {', '.join(product['tests'])}")
+    _regression(product["regression"], console)
+    agreement = product["agreement"]
+    console.print(Text(f"  the tests {agreement['verdict']} (probability {agreement['probability']:.2g})"))
+    for name, found in product["alone"].items():
+        _print(console, quantities(found), f"{name} alone")
+
+
+def _performance(context: Context, console: Console) -> None:
+    product = context.read_json("validation.json")
+    performance = product.get("performance", {})
+    table = _table("", "measured", "± std", "model", "± std ", "unit", title="performance")
+    for column in table.columns[1:5]:
+        column.justify = "right"
+    for name, measured in performance.get("measured", {}).items():
+        found, model = shown(measured), shown(performance.get("model", {}).get(name) or {"value": None})
+        if measured["value"] is not None or model.value != "–":
+            table.add_row(in_words(name), found.value, found.std, model.value, model.std, found.unit or model.unit)
+    console.print(table)
+    for name, reason in product.get("absent", {}).items():
+        console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=True)
 
 
 def _validate(context: Context, console: Console) -> None:
+    _performance(context, console)
     table = _table("run", "channel", "phase", "rms", "bias", "noise", "unit", title="measured minus model")
     for run, channels in context.read_json("validation.json").get("gap", {}).items():
         for channel, phases in channels.items():

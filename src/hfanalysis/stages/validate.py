@@ -1,6 +1,7 @@
-"""validate: the calibrated model against the measurement; so far the tank alone, with the measured chamber pressure in.
+"""validate: the performance of the test, and the calibrated model against the measurement in three modes.
 
-Reads ``ingest.h5``, ``segments.json`` and ``calibration.json``; writes ``residuals.h5`` and ``validation.json``.
+Reads ``ingest.h5``, ``segments.json`` and, where there is one, ``calibration.json``; writes ``residuals.h5``,
+``performance.h5`` and ``validation.json``.
 """
 
 from __future__ import annotations
@@ -9,25 +10,27 @@ from hfanalysis.stages.base import Context, Stage
 
 
 def run(context: Context) -> None:
-    """Run the tank alone and store its residuals."""
+    """Compare what can be compared; what cannot says why."""
     from hfanalysis.segment.phases import Segments
     from hfanalysis.testdata.log import read_log
-    from hfanalysis.validate.residuals import gaps, write_residuals
-    from hfanalysis.validate.tank_free import run_tank_free
+    from hfanalysis.validate.histories import write_histories
+    from hfanalysis.validate.of_test import validate
+    from hfanalysis.validate.residuals import write_residuals
 
     log = read_log(context.product("ingest.h5"))
     segments = Segments.from_json(context.read_json("segments.json"))
-    residual = run_tank_free(log, segments, context.read_json("calibration.json"), context.definition)
-    write_residuals(context.scratch("residuals.h5"), {"tank_free": [residual]}, context.provenance())
-    context.write_json(
-        "validation.json",
-        {"gap": {"tank_free": gaps([residual])}, "notes": list(residual.notes), "warnings": []},
-    )
+    absent = context.absent.get("calibrate")
+    calibration = None if absent else context.read_json("calibration.json")
+    found = validate(log, segments, context.definition, calibration, absent)
+    write_residuals(context.scratch("residuals.h5"), found.residuals, context.provenance())
+    write_histories(context.scratch("performance.h5"), found.histories, context.provenance())
+    context.write_json("validation.json", found.to_json())
 
 
 STAGE = Stage(
     name="validate",
-    needs=("ingest", "segment", "calibrate"),
-    products=("residuals.h5", "validation.json"),
+    needs=("ingest", "segment"),
+    wants=("calibrate",),
+    products=("residuals.h5", "performance.h5", "validation.json"),
     run=run,
 )

@@ -66,7 +66,7 @@ def tare(spec: ChannelSpec, trace: Trace, firing: Firing | None, accuracy: float
     last = level(window) if window is not None else None
     if last is None:
         return _only_before(only, spec)
-    return _with_drift(spec, first, last, trace, accuracy)
+    return _with_drift(spec, first, last, trace, firing.start, accuracy)
 
 
 def _quiet_level(trace: Trace, firing: Firing | None) -> tuple[Level | None, str]:
@@ -82,14 +82,17 @@ def _only_before(only: Zero, spec: ChannelSpec) -> Zero:
     return Zero(only.value, only.std, history=(*only.history, f"tare: {note}"), warnings=warned)
 
 
-def _with_drift(spec: ChannelSpec, first: Level, last: Level, trace: Trace, accuracy: float) -> Zero:
+def _with_drift(spec: ChannelSpec, first: Level, last: Level, trace: Trace, start: float, accuracy: float) -> Zero:
+    """The drift is linear from the firing's ``start`` [s], before which nothing warms the cell, to the last level."""
     drift = last.value - first.value
     std = float(np.sqrt((first.std**2 + last.std**2) / 2.0))
     history = (f"tare: {first.value:.6g} taken off at {first.time:.3f} s, {last.value:.6g} at {last.time:.3f} s",)
     lot = max(5.0 * accuracy, 0.02 * float(np.max(np.abs(trace.values - first.value))))
     unit = si_unit(spec.dimension)
     note = f"channel {spec.name}: does not return to zero after the firing: {drift:.4g} {unit}"
-    return Zero(first.value, std, drift, (first.time, last.time), history, (note,) if abs(drift) > lot else ())
+    return Zero(
+        first.value, std, drift, (max(first.time, start), last.time), history, (note,) if abs(drift) > lot else ()
+    )
 
 
 def _none(warning: str) -> Zero:

@@ -11,7 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.segment.phases import Segments
+from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.log import TestLog
+
 Array = NDArray[np.float64]
+
+FORMAT = ("v108", "v110")
+"""HDF5 versions that MATLAB and older tools read."""
 
 PHASES = ("before", "filling", "liquid", "vapor", "nitrogen")
 """Phases by their number in ``residuals.h5``: before the opening, line filling, liquid, pure vapour, with nitrogen."""
@@ -42,6 +49,19 @@ class Residual:
     def residual(self) -> Array:
         """Measured minus model."""
         return self.measured - self.model
+
+
+def compared(
+    log: TestLog, segments: Segments, name: str, time: Array, model: Array, notes: tuple[str, ...] = ()
+) -> Residual:
+    """A channel's good samples between the first and the last of ``time``, against a model given there."""
+    origin = segments.t_open.value or 0.0
+    signal = Signal.of(log[name]).shifted(origin)
+    part = signal.between(time[0], time[-1] + 1e-9)
+    phase = phases_of(part.time, segments.time("t_feed") or 0.0, segments.time("t_v"), segments.time("t_purge"))
+    at = np.interp(part.time, time, model)
+    noise = np.full(part.time.size, signal.noise)
+    return Residual(name, log[name].unit, part.time, part.value, at, noise, phase, notes)
 
 
 def phases_of(time: Array, t_feed: float, t_v: float | None, t_purge: float | None) -> NDArray[np.int8]:
@@ -79,7 +99,8 @@ def write_residuals(path: Path, modes: Mapping[str, Sequence[Residual]], provena
     """Write residuals.h5: a group per mode and channel, for h5py, xarray and MATLAB; byte-identical each time."""
     import h5py
 
-    with h5py.File(path, "w", libver="latest", track_order=False) as file:
+    with h5py.File(path, "w", libver=FORMAT, track_order=False) as file:
+        file.attrs["Conventions"] = "CF-1.11"
         file.attrs["title"] = "residuals: measured minus model"
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
         for mode, residuals in modes.items():

@@ -1,0 +1,140 @@
+"""How well a and n are known: a likelihood whose noise is what the fit leaves, counted by its own correlation.
+
+Residuals of a chamber pressure are no white noise: the sensor wanders, the model has another shape than the fire.
+Neighbouring block means then say the same thing again, and only as many as are independent are counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import t as student
+
+Array = NDArray[np.float64]
+Misfit = Callable[[Array], float]
+
+FEWEST = 3.0
+"""Independent residuals that are counted at least."""
+
+NODES = 9
+REACH = 1.6
+"""Runs per direction of the likelihood's surface, and how far it is followed as a multiple of the 95 % limit."""
+
+CEILING = 20.0
+"""Multiple of the 95 % limit at which the misfit is cut off, so that what is far away does not bend what is near."""
+
+FINE = 161
+"""Points per direction at which the surface is read."""
+
+
+def effective_samples(residual: Array) -> float:
+    """How many of the residuals are independent: n / (1 + 2 sum rho_k), to the first rho_k that is not positive.
+
+    The mean is not taken out: a constant misfit is one, not many.
+    """
+    n = residual.size
+    power = float(residual @ residual)
+    if n < 4 or power == 0.0:
+        return float(n)
+    total = 0.0
+    for lag in range(1, n):
+        rho = float(residual[:-lag] @ residual[lag:]) / power
+        if rho <= 0.0:
+            break
+        total += rho
+    return float(np.clip(n / (1.0 + 2.0 * total), min(FEWEST, n), n))
+
+
+@dataclass(frozen=True)
+class Weights:
+    """``precision``: the inverse covariance of all observations; ``threshold``: rise of r'Pr at the 95 % limit.
+
+    ``scatter`` [Pa]: standard deviation of a block mean of the chamber pressure about the model; ``effective``: number
+    of independent ones.
+    """
+
+    precision: Array
+    threshold: float
+    scatter: float
+    effective: float
+
+    def misfit(self, residual: Array) -> float:
+        """r' P r."""
+        return float(residual @ self.precision @ residual)
+
+
+def first_guess(samples: int, level: float, scales: Array) -> Weights:
+    """Weights before anything is known of the residuals: 3 % of the pressure, one in ten independent."""
+    variances = np.concatenate((np.full(samples, (0.03 * level) ** 2 * 10.0), scales**2))
+    return Weights(np.diag(1.0 / variances), 4.0, 0.03 * level, 0.1 * samples)
+
+
+def weights_from(
+    residual: Array, samples: int, scales: Array, sensitivities: Array, correlation: Array, least: float
+) -> Weights:
+    """Weights from what a fit leaves; what the nuisances can explain of it counts as theirs.
+
+    ``sensitivities`` are per standard deviation of a nuisance, ``correlation`` theirs; ``least`` [Pa] is the scatter
+    that the sensor alone has.
+    """
+    common = sensitivities @ correlation @ sensitivities.T
+    scatter, effective = least, float(samples)
+    own = residual
+    for _ in range(3):
+        free = _diagonal(samples, scatter, effective, scales)
+        own = residual - common @ np.linalg.solve(common + free, residual)
+        pressures = own[:samples]
+        effective = effective_samples(pressures)
+        lost = effective / max(effective - 2.0, 1.0)
+        scatter = max(float(np.sqrt(pressures @ pressures / samples * lost)), least)
+    precision = np.asarray(np.linalg.inv(common + _diagonal(samples, scatter, effective, scales)), dtype=np.float64)
+    freedom = max(effective - 2.0, 1.0) + scales.size
+    return Weights(precision, float(student.ppf(0.975, freedom)) ** 2, scatter, effective)
+
+
+def _diagonal(samples: int, scatter: float, effective: float, scales: Array) -> Array:
+    return np.diag(np.concatenate((np.full(samples, scatter**2 * samples / effective), scales**2)))
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The misfit about its least, on a fine grid of two parameters: ``points`` (k, 2), ``rise`` (k,).
+
+    ``edge`` tells the points on the rim; beyond it nothing is known.
+    """
+
+    points: Array
+    rise: Array
+    edge: NDArray[np.bool_]
+    threshold: float
+
+    def interval(self, weights: Array) -> tuple[float, float]:
+        """95 % profile-likelihood interval of a linear combination of the parameters: the region's projection."""
+        inside = self.points[self.rise <= self.threshold] @ weights
+        return float(inside.min()), float(inside.max())
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the 95 % region ends before the rim."""
+        return not bool((self.edge & (self.rise <= self.threshold)).any())
+
+
+def surface(misfit: Misfit, best: Array, covariance: Array, threshold: float) -> Surface:
+    """Follow the misfit about ``best`` in the directions of a first ``covariance`` (2, 2), on both sides of each.
+
+    A bicubic spline through NODES x NODES runs of the model stands for it in between.
+    """
+    from scipy.interpolate import RectBivariateSpline
+
+    reach = REACH * float(np.sqrt(threshold))
+    spread = reach * np.linalg.cholesky(covariance)
+    nodes, axis = np.linspace(-1.0, 1.0, NODES), np.linspace(-1.0, 1.0, FINE)
+    values = np.array([[misfit(best + spread @ np.array([x, y])) for y in nodes] for x in nodes])
+    values = np.minimum(values - values.min(), CEILING * threshold)
+    fine = RectBivariateSpline(nodes, nodes, values)(axis, axis).ravel()
+    x, y = (grid.ravel() for grid in np.meshgrid(axis, axis, indexing="ij"))
+    edge = (np.abs(x) > 0.999) | (np.abs(y) > 0.999)
+    return Surface(best + np.column_stack((x, y)) @ spread.T, fine - fine.min(), edge, threshold)

@@ -1,0 +1,317 @@
+"""a and n of the fuel's regression r = a G^n, from one test or several (report, section 4.3.1, as one estimate).
+
+The report finds n for the burn time at a fixed a, and a for the chamber pressure of the full run. Here both are fitted
+at once to burn time (or fuel left) and chamber pressure. A burn sees only a narrow range of oxidizer flux: what it
+tells well is the rate at one flux in the middle of that range, ln a + n ln G_ref; whether it tells a and n apart is
+part of the answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import exp, log, pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.calibrate.engine_of_test import Regression
+from hfanalysis.calibrate.evidence import Evidence, burn_time_of
+from hfanalysis.calibrate.likelihood import Surface, Weights, first_guess, surface, weights_from
+from hfanalysis.engine.unsteady import Burn
+from hfanalysis.errors import AbsentError
+from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+
+Array = NDArray[np.float64]
+
+UNIT_OF_A = "m/s (kg/m^2/s)^-n"
+WIDEST_N = 0.1
+"""Standard deviation of n from which on a test does not tell a and n apart."""
+
+WIDEST_RATE = 0.25
+"""Standard deviation of the logarithm of the rate from which on it is not known either."""
+
+PHYSICAL_N = (0.0, 1.0)
+"""A flux that slows the regression, or acts more than in proportion, is no regression law."""
+
+RANGE_N = (-0.3, 1.3)
+SCAN_N = (0.1, 0.3, 0.5, 0.7, 0.9)
+SCAN_RATE = (0.6, 0.85, 1.2, 1.7)
+"""Exponents, and rates over that which burns the web in the burn time, from which the best start is taken."""
+
+LARGEST_STEP = 0.2
+"""Standard deviation of n [-] to which the likelihood's surface is followed at most."""
+
+ROUNDS = 2
+TESTS_DISAGREE = 0.01
+"""Probability of the rise in misfit by common constants below which tests are said to disagree."""
+
+FAILED = 1e12
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """a and n with their likelihood.
+
+    ``best`` is (ln r at ``flux``, n); ``flux`` [kg/m^2/s] a flux of the burn. ``covariance`` is of ``best``; ``misfit``
+    r'Pr at the best.
+    """
+
+    evidence: tuple[Evidence, ...]
+    weights: tuple[Weights, ...]
+    flux: float
+    best: Array
+    surface: Surface
+    misfit: float
+
+    @property
+    def law(self) -> Regression:
+        """The best a and n."""
+        return law_at(self.best, self.flux)
+
+    @property
+    def reference_flux(self) -> float:
+        """The flux [kg/m^2/s] at which the rate is known best and does not depend on n."""
+        low, high = self._narrowest()
+        return float(np.sqrt(low * high))
+
+    def _narrowest(self) -> tuple[float, float]:
+        """Fluxes between which the interval of ln r is within a twentieth of its least width."""
+        shifts = np.linspace(-2.5, 2.5, 201)
+        widths = np.array([np.ptp(self.surface.interval(np.array([1.0, s]))) for s in shifts])
+        near = shifts[widths <= 1.05 * widths.min()]
+        return self.flux * exp(float(near[0])), self.flux * exp(float(near[-1]))
+
+
+def law_at(point: Array, flux: float) -> Regression:
+    """a and n from (ln r at ``flux``, n)."""
+    return Regression(exp(float(point[0]) - float(point[1]) * log(flux)), float(point[1]))
+
+
+def fit(tests: Sequence[Evidence]) -> Fitted:
+    """a and n common to the tests. Raises AbsentError where no engine with any constants runs."""
+    flux = middle_flux(tests[0])
+    evidence = list(tests)
+    weights = [first_guess(e.time.size, float(e.chamber.mean()), e.scales) for e in evidence]
+    best = _minimum(evidence, weights, flux, _scan(evidence, weights, flux))
+    for _ in range(ROUNDS):
+        law = law_at(best, flux)
+        evidence = [e.with_regression(law) for e in evidence]
+        weights = [_weighed(e, law) for e in evidence]
+        best = _minimum(evidence, weights, flux, best)
+    return _surveyed(evidence, weights, flux, best)
+
+
+def _surveyed(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> Fitted:
+    """The fit with its likelihood's surface."""
+    objective, threshold = _objective(evidence, weights, flux), max(w.threshold for w in weights)
+    found = surface(objective, best, _covariance(evidence, weights, flux, best), threshold)
+    return Fitted(tuple(evidence), tuple(weights), flux, best, found, objective(best))
+
+
+def middle_flux(evidence: Evidence) -> float:
+    """Oxidizer flux [kg/m^2/s] of the first flow at the port's mean radius: where the rate is parametrised."""
+    engine = evidence.engine
+    drop = float(engine.saturation.pressure(engine.temperature)) - float(evidence.chamber.mean())
+    density = float(engine.saturation.liquid_density(engine.temperature))
+    flow = np.sqrt(density * max(drop, 1e5) / (engine.feed.loss_factor + 0.5 / engine.feed.area**2))
+    radius = 0.5 * (engine.port_radius + engine.outer_radius)
+    return float(flow) / (pi * radius**2)
+
+
+def _scan(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float) -> Array:
+    """The best of a coarse grid of exponents and rates."""
+    engine, objective = evidence[0].engine, _objective(evidence, weights, flux)
+    rate = (engine.outer_radius - engine.port_radius) / evidence[0].end
+    points = [np.array([log(rate * f), n]) for n in SCAN_N for f in SCAN_RATE]
+    misfits = [objective(p) for p in points]
+    if min(misfits) >= FAILED:
+        raise AbsentError("the engine's model cannot be run with any a and n")
+    return points[int(np.argmin(misfits))]
+
+
+def _minimum(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, start: Array) -> Array:
+    """The least misfit from ``start``, by BOBYQA."""
+    import nlopt
+
+    objective = _objective(evidence, weights, flux)
+    solver = nlopt.opt(nlopt.LN_BOBYQA, 2)
+    solver.set_min_objective(lambda x, _gradient: objective(np.array(x)))
+    solver.set_lower_bounds([start[0] - 2.0, RANGE_N[0]])
+    solver.set_upper_bounds([start[0] + 2.0, RANGE_N[1]])
+    solver.set_initial_step([0.05, 0.05])
+    solver.set_xtol_abs([1e-4, 1e-4])
+    solver.set_maxeval(200)
+    return np.asarray(solver.optimize(start), dtype=np.float64)
+
+
+def _objective(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float) -> Any:
+    def misfit(point: Array) -> float:
+        law = law_at(point, flux)
+        return sum(_misfit(e, w, law) for e, w in zip(evidence, weights, strict=True))
+
+    return misfit
+
+
+def _misfit(evidence: Evidence, weights: Weights, law: Regression) -> float:
+    predicted = evidence.predict(law)
+    return FAILED if predicted is None else weights.misfit(evidence.observed - predicted)
+
+
+def _weighed(evidence: Evidence, law: Regression) -> Weights:
+    predicted = evidence.predict(law)
+    assert predicted is not None
+    std = np.sqrt(np.diag(evidence.covariance))
+    scale = np.where(std > 0.0, std, 1.0)
+    correlation = evidence.covariance / np.outer(scale, scale)
+    return weights_from(
+        evidence.observed - predicted, evidence.time.size, evidence.scales, evidence.sensitivities(law), correlation,
+        evidence.least,
+    )  # fmt: skip
+
+
+def _covariance(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> Array:
+    """Of (ln r, n) from the model's slopes; a direction hardly seen is cut at LARGEST_STEP."""
+    information = np.zeros((2, 2))
+    for e, w in zip(evidence, weights, strict=True):
+        slopes = _slopes(e, flux, best)
+        information += slopes.T @ w.precision @ slopes
+    return np.asarray(np.linalg.inv(information + np.diag([0.0, LARGEST_STEP**-2])), dtype=np.float64)
+
+
+def _slopes(evidence: Evidence, flux: float, best: Array, step: float = 0.01) -> Array:
+    columns = []
+    for axis in np.eye(2) * step:
+        after, before = (evidence.predict(law_at(best + s * axis, flux)) for s in (1.0, -1.0))
+        if after is None or before is None:
+            raise AbsentError("the engine's model cannot be run about the best a and n")
+        columns.append((after - before) / (2.0 * step))
+    return np.column_stack(columns)
+
+
+@dataclass(frozen=True)
+class RegressionResult:
+    """Quantities by their names in calibration.json, and what they rest on."""
+
+    quantities: dict[str, Quantity]
+    about: dict[str, Any]
+
+    @classmethod
+    def absent(cls, reason: str) -> RegressionResult:
+        """Nothing can be said, and why."""
+        names = ("a", "n", "regression_rate_reference")
+        return cls({n: Quantity.absent(reason, verdict=NOT_IDENTIFIABLE) for n in names}, {})
+
+    def to_json(self) -> dict[str, Any]:
+        """Part of calibration.json."""
+        return {**{n: q.to_json() for n, q in self.quantities.items()}, "regression": self.about}
+
+
+def result(found: Fitted) -> RegressionResult:
+    """Judge a fit and say what it rests on."""
+    flux = found.reference_flux
+    shift = log(flux / found.flux)
+    rate = np.array([1.0, shift])
+    ln_rate = float(found.best @ rate)
+    low, high = found.surface.interval(rate)
+    spread = 0.5 * (high - low) / NORMAL_95
+    n_low, n_high = found.surface.interval(np.array([0.0, 1.0]))
+    a_low, a_high = found.surface.interval(np.array([1.0, -log(found.flux)]))
+    n_std = 0.5 * (n_high - n_low) / NORMAL_95
+    apart = found.surface.bounded and n_std <= WIDEST_N
+    law = found.law
+    verdict, why = _judged(apart, (n_low, n_high), n_std, flux, spread)
+    known = spread <= WIDEST_RATE
+    a_std = law.a * 0.5 * (a_high - a_low) / NORMAL_95
+    quantities = {
+        "a": Quantity(law.a, UNIT_OF_A, a_std, (exp(a_low), exp(a_high)), verdict=verdict, why=why),
+        "n": Quantity(law.n, "", n_std, (n_low, n_high), verdict=verdict, why=why),
+        "regression_rate_reference": Quantity(
+            exp(ln_rate), "m/s", exp(ln_rate) * spread, (exp(low), exp(high)),
+            verdict=IDENTIFIED if known else NOT_IDENTIFIABLE,
+            why=f"rate at an oxidizer flux of {flux:.0f} kg/(m^2 s), where the test tells it best: ln a + n ln G_ref",
+        ),
+    }  # fmt: skip
+    return RegressionResult(quantities, _about(found, flux))
+
+
+def _judged(apart: bool, interval: tuple[float, float], std: float, flux: float, spread: float) -> tuple[str, str]:
+    if not apart:
+        return NOT_IDENTIFIABLE, (
+            f"a and n are not told apart (n to +/- {std:.2f} or worse); what is identified is their combination, the "
+            f"rate at {flux:.0f} kg/(m^2 s), to {100.0 * spread:.1f} %"
+        )
+    if interval[1] < PHYSICAL_N[0] or interval[0] > PHYSICAL_N[1]:
+        return (
+            UNPHYSICAL,
+            f"n outside {PHYSICAL_N[0]:.0f} to {PHYSICAL_N[1]:.0f}: the model lacks something that acts on p_c",
+        )
+    return (
+        IDENTIFIED,
+        f"with the oxidizer flow and effects listed under regression; the rate at {flux:.0f} kg/(m^2 s) is known best",
+    )
+
+
+def _about(found: Fitted, flux: float) -> dict[str, Any]:
+    law = found.law
+    return {
+        "reference_flux": {"value": flux, "unit": "kg/(m^2 s)", "std": None, "ci95": None},
+        "misfit": found.misfit,
+        "tests": [_about_test(e, w, law) for e, w in zip(found.evidence, found.weights, strict=True)],
+    }
+
+
+def _about_test(evidence: Evidence, weights: Weights, law: Regression) -> dict[str, Any]:
+    burnt = evidence.burnt(law)
+    predicted = evidence.predict(law)
+    assert predicted is not None
+    residual = (evidence.observed - predicted)[: evidence.time.size]
+    return {
+        "test": evidence.test,
+        "fitted_with": list(evidence.remarks) + [f"burn time: {s.source}" for s in (evidence.burn_time,) if s],
+        "window": [float(evidence.time[0]), float(evidence.time[-1])],
+        "burn_time_measured": evidence.burn_time.value if evidence.burn_time else None,
+        "burn_time_std": evidence.burn_time.std if evidence.burn_time else None,
+        "burn_time_model": burn_time_of(evidence.engine, burnt),
+        "fuel_left_measured": evidence.fuel_left.value if evidence.fuel_left else None,
+        "initial_temperature": evidence.engine.temperature,
+        "flux_range": flux_range(evidence, burnt),
+        "p_chamber_rms": float(np.sqrt(np.mean(residual**2))),
+        "p_chamber_bias": float(residual.mean()),
+        "independent_samples": weights.effective,
+    }
+
+
+def flux_range(evidence: Evidence, burnt: Burn) -> list[float]:
+    """Least and largest oxidizer flux [kg/m^2/s] over the compared window."""
+    part = (burnt.time >= evidence.time[0]) & (burnt.time <= evidence.time[-1])
+    flux = burnt.output("oxidizer_flow")[part] / (pi * burnt.state("port_radius")[part] ** 2)
+    return [float(flux.min()), float(flux.max())]
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Constants common to several tests, and whether the tests agree on them."""
+
+    fitted: Fitted
+    probability: float
+
+    @property
+    def agree(self) -> bool:
+        """Whether the misfit rises by common constants no more than chance lets it."""
+        return self.probability >= TESTS_DISAGREE
+
+
+def fit_together(tests: Sequence[Evidence], alone: Sequence[Fitted]) -> Joint:
+    """Common a and n of several tests with the weights that each has alone; 2 (k - 1) constants fewer."""
+    from scipy.stats import chi2
+
+    flux = middle_flux(tests[0])
+    evidence = [f.evidence[0] for f in alone]
+    weights = [f.weights[0] for f in alone]
+    start = _scan(evidence, weights, flux)
+    best = _minimum(evidence, weights, flux, start)
+    together = _surveyed(evidence, weights, flux, best)
+    rise = together.misfit - sum(f.misfit for f in alone)
+    return Joint(together, float(chi2.sf(max(rise, 0.0), 2 * (len(alone) - 1))))

@@ -1,0 +1,40 @@
+"""chamber_forced: the measured chamber pressure in, the thrust out (report, 4.3.2): chemistry and nozzle alone.
+
+The chamber's residence time is milliseconds, so that the mixture in it is that of the flows entering; under a given
+pressure the thrust depends on it through gamma only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hfanalysis.engine.unsteady import Engine
+from hfanalysis.segment.phases import Segments
+from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.log import TestLog
+from hfanalysis.validate.flows import Flows, nozzle_along
+from hfanalysis.validate.residuals import Residual, compared
+
+
+def run_chamber_forced(
+    log: TestLog, segments: Segments, engine: Engine, flows: Flows, ambient: float, end: float
+) -> list[Residual]:
+    """Measured and modelled thrust from the opening to ``end`` [s]; ``ambient`` [Pa].
+
+    Raises AbsentError where the log has no thrust or no chamber pressure.
+    """
+    origin = segments.t_open.value or 0.0
+    thrust, chamber = (Signal.of(log[name]).shifted(origin) for name in ("thrust", "p_chamber"))
+    time = thrust.between(0.0, end).time
+    pressure = np.maximum(chamber.at(time), 0.1 * ambient)
+    mixed = np.isfinite(flows.of_ratio)
+    ratio = np.interp(time, flows.time[mixed], flows.of_ratio[mixed]) if mixed.any() else np.full(time.size, np.nan)
+    model = nozzle_along(engine, pressure, ratio, ambient).thrust
+    return [compared(log, segments, "thrust", time, model, _notes(segments, end))]
+
+
+def _notes(segments: Segments, end: float) -> tuple[str, ...]:
+    t_purge = segments.time("t_purge")
+    if t_purge is None or t_purge > end:
+        return ()
+    return (f"nitrogen enters at {t_purge:.2f} s; the gas in the nozzle is taken to be without it",)

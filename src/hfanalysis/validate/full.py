@@ -1,0 +1,105 @@
+"""full: the calibrated engine with nothing measured in (report, 4.3.3).
+
+The tank starts from the pressure at which its liquid phase, extrapolated to the opening, meets the measured one at
+t_feed; the filling of the line is not in the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.calibrate.engine_of_test import Regression, engine_of_test, starting_for
+from hfanalysis.calibrate.evidence import line_at
+from hfanalysis.engine.unsteady import Burn, Engine, burn
+from hfanalysis.segment.phases import Segments
+from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import TestLog
+from hfanalysis.validate.residuals import Residual, compared
+
+Array = NDArray[np.float64]
+
+LONGEST = 60.0
+"""Seconds after which a burn that does not end is cut off."""
+
+TANK_CELL = 0.05
+"""Part of the loaded mass by which the tank's cell may be off at rest and still be compared."""
+
+
+@dataclass(frozen=True)
+class FullRun:
+    """The engine as started, and its burn."""
+
+    engine: Engine
+    burnt: Burn
+
+    @property
+    def run_pressure(self) -> Array:
+        """Modelled pressure before the injector: p_c + mdot^2 / (2 rho (C_i N_i A_i)^2) [Pa]."""
+        flow, area = self.burnt.output("oxidizer_flow"), self.engine.feed.area
+        return self.burnt.output("chamber_pressure") + 0.5 * flow**2 / (self._density * area**2)
+
+    @property
+    def _density(self) -> Array:
+        """Of what leaves the tank [kg/m^3]."""
+        gone = self.burnt.liquid_out
+        wet = self.burnt.time <= (gone if gone is not None else np.inf)
+        temperature = np.where(wet, self.burnt.state("tank_temperature"), self.engine.temperature)
+        vapor = self.burnt.state("tank_mass") / self.engine.feed.volume
+        return np.where(wet, self.engine.saturation.liquid_density(temperature), vapor)
+
+
+def run_full(log: TestLog, segments: Segments, calibration: Mapping[str, Any], definition: TestDefinition) -> FullRun:
+    """Run the calibrated engine. Raises AbsentError where the test does not state it or it is not calibrated."""
+    law = Regression.of(calibration)
+    tank = Signal.of(log["p_tank"]).shifted(segments.t_open.value or 0.0)
+    instant = segments.time("t_feed") or min(0.1, 0.1 * (segments.time("t_v") or 1.0))
+    pressure = line_at(tank, instant)
+    engine = engine_of_test(definition, calibration, _temperature(definition, pressure), law)
+    started = starting_for(engine, instant, pressure)
+    return FullRun(started, burn(started, longest=LONGEST))
+
+
+def _temperature(definition: TestDefinition, pressure: float) -> float:
+    from hfanalysis.thermo.nitrous import saturation
+
+    source = saturation(definition.model.properties)
+    return float(source.temperature(min(pressure, 0.999 * source.pressure_range[1])))
+
+
+def moved(full: FullRun, change: Mapping[str, float]) -> Burn:
+    """The burn of the same engine with other constants, from the same tank temperature.
+
+    ``change`` names fields of the engine, or ``area`` and ``loss_factor`` of its feed system.
+    """
+    parts: dict[str, Any] = dict(change)
+    feed: dict[str, Any] = {name: parts.pop(name) for name in ("area", "loss_factor") if name in parts}
+    engine = replace(full.engine, feed=replace(full.engine.feed, **feed), **parts)
+    return burn(engine, longest=LONGEST)
+
+
+def compare_full(log: TestLog, segments: Segments, full: FullRun) -> list[Residual]:
+    """Every channel that the model has, over the burn."""
+    burnt = full.burnt
+    models = {
+        "p_tank": burnt.output("tank_pressure"),
+        "p_run": full.run_pressure,
+        "p_chamber": burnt.output("chamber_pressure"),
+        "thrust": burnt.output("thrust"),
+        "m_tank": burnt.state("tank_mass"),
+    }
+    usable = {name: model for name, model in models.items() if name in log and log[name].good.sum() > 8}
+    if "m_tank" in usable and not _cell_reads(log, segments, full.engine.oxidizer_mass):
+        del usable["m_tank"]
+    return [compared(log, segments, name, burnt.time, model) for name, model in usable.items()]
+
+
+def _cell_reads(log: TestLog, segments: Segments, loaded: float) -> bool:
+    """Whether the tank's cell at rest reads what is loaded."""
+    still = Signal.of(log["m_tank"]).shifted(segments.t_open.value or 0.0).between(-5.0, -0.1).value
+    return bool(still.size > 3 and abs(float(np.median(still)) - loaded) < TANK_CELL * loaded)

@@ -1,0 +1,177 @@
+"""Histories of a hot fire: mixture, regression, flows, efficiencies, thrust; and how mass and energy close."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.engine.unsteady import Engine
+from hfanalysis.quantity import Quantity
+from hfanalysis.segment.ending import CRITICAL_RATIO
+from hfanalysis.segment.phases import Segments
+from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.log import Channel, TestLog
+from hfanalysis.validate.flows import STEP, Flows, ideal_characteristic_velocity, nozzle_along
+from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.residuals import FORMAT
+
+Array = NDArray[np.float64]
+
+BEFORE, AFTER = 2.0, 3.0
+"""[s] shown before the opening and after the burn."""
+
+WIDTH = 0.2
+"""[s] of the running mean from which efficiencies are taken: a ratio of noisy values is noisier than either."""
+
+ABOUT = {
+    "time": ("s", "time after the valve opening"),
+    "of_ratio": ("1", "oxidizer to fuel flow ratio"),
+    "regression_rate": ("m/s", "regression rate of the fuel"),
+    "port_radius": ("m", "radius of the port"),
+    "oxidizer_flow": ("kg/s", "oxidizer mass flow"),
+    "fuel_flow": ("kg/s", "fuel mass flow"),
+    "c_star": ("m/s", "characteristic velocity: p_c A_t over mass flow"),
+    "c_star_efficiency": ("1", "characteristic velocity over that of the equilibrium gas"),
+    "thrust_coefficient": ("1", "thrust coefficient: thrust over p_c A_t"),
+    "thrust_coefficient_efficiency": ("1", "thrust coefficient over that of the ideal nozzle"),
+    "thrust_raw": ("N", "thrust as logged"),
+    "thrust_corrected": ("N", "thrust without the cell's zero and drift"),
+    "p_chamber": ("Pa", "chamber pressure"),
+}
+"""Unit and long name of each history."""
+
+
+@dataclass(frozen=True)
+class Histories:
+    """Histories by name, all on ``time`` [s after the opening]; NaN where there is nothing to say.
+
+    ``absent`` says why a history is missing.
+    """
+
+    time: Array
+    values: dict[str, Array]
+    absent: dict[str, str] = field(default_factory=dict)
+    closure: dict[str, Quantity] = field(default_factory=dict)
+
+
+def clock(log: TestLog, segments: Segments, end: float) -> Array:
+    """Times of the histories [s after the opening]."""
+    origin = segments.t_open.value or 0.0
+    name = next((n for n in ("thrust", "p_chamber", "p_tank") if n in log), next(iter(log.channels)))
+    signal = Signal.of(log[name]).shifted(origin)
+    first, last = max(float(signal.time[0]), -BEFORE), min(float(signal.time[-1]), end + AFTER)
+    return np.arange(np.ceil(first / STEP), np.floor(last / STEP) + 1.0) * STEP
+
+
+def measured_histories(log: TestLog, segments: Segments, time: Array) -> dict[str, Array]:
+    """Thrust, raw and corrected, and chamber pressure, as far as they are logged."""
+    out = {}
+    if "thrust" in log:
+        channel = log["thrust"]
+        out["thrust_raw"] = _on(channel, segments, time, channel.raw)
+        out["thrust_corrected"] = _on(channel, segments, time, None)
+    if "p_chamber" in log:
+        out["p_chamber"] = _on(log["p_chamber"], segments, time, None)
+    return out
+
+
+def _on(channel: Channel, segments: Segments, time: Array, raw: Array | None) -> Array:
+    """Block means of the good samples on the histories' clock."""
+    from dataclasses import replace
+
+    shown = channel if raw is None else replace(channel, values=raw)
+    signal = Signal.of(shown).shifted(segments.t_open.value or 0.0)
+    if signal.time.size < 2:
+        return np.full(time.size, np.nan)
+    return signal.reduced(STEP).at(time)
+
+
+def flow_histories(flows: Flows) -> dict[str, Array]:
+    """Flows, regression and mixture; NaN before the opening."""
+    lit = flows.time >= 0.0
+    found = {
+        "oxidizer_flow": flows.oxidizer,
+        "fuel_flow": flows.fuel,
+        "regression_rate": flows.rate,
+        "port_radius": flows.port,
+        "of_ratio": flows.of_ratio,
+    }
+    return {name: np.where(lit, value, np.nan) for name, value in found.items()}
+
+
+def efficiencies(
+    measured: Mapping[str, Array], flows: Flows, engine: Engine, ambient: float, fire: Fire
+) -> dict[str, Array]:
+    """c* and thrust coefficient with their efficiencies, where the nozzle is choked and both propellants flow."""
+    if "p_chamber" not in measured:
+        return {}
+    width = round(WIDTH / STEP)
+    pressure, oxidizer, fuel = (_smooth(x, width) for x in (measured["p_chamber"], flows.oxidizer, flows.fuel))
+    burning = (flows.time > 0.0) & (flows.time < fire.end) & (pressure > CRITICAL_RATIO * ambient) & (fuel > 1e-4)
+    ratio = np.where(burning & (oxidizer > 1e-4), oxidizer / np.where(fuel > 1e-4, fuel, 1.0), np.nan)
+    ideal = nozzle_along(engine, pressure, ratio, ambient)
+    c_star = np.where(burning, pressure * engine.throat_area / np.where(burning, oxidizer + fuel, 1.0), np.nan)
+    out = {"c_star": c_star, "c_star_efficiency": c_star / ideal_characteristic_velocity(ideal.heat, ideal.gamma)}
+    if "thrust_corrected" in measured:
+        thrust = _smooth(measured["thrust_corrected"], width)
+        force = np.where(burning, pressure * engine.throat_area, np.nan)
+        out["thrust_coefficient"] = thrust / force
+        out["thrust_coefficient_efficiency"] = thrust / ideal.thrust
+    return out
+
+
+def _smooth(value: Array, width: int) -> Array:
+    """Running mean over ``width`` samples, narrower at the ends."""
+    kernel = np.ones(width)
+    return np.asarray(np.convolve(value, kernel, "same") / np.convolve(np.ones(value.size), kernel, "same"))
+
+
+def closure(
+    flows: Flows, measured: Mapping[str, Array], engine: Engine, ambient: float, fire: Fire
+) -> dict[str, Quantity]:
+    """How the masses close over the burn, and the heat that the calibrated tank takes.
+
+    ``oxidizer_through_injector`` and ``fuel_burned`` [kg] are the flows' integrals; ``propellant_through_nozzle`` [kg]
+    what the measured chamber pressure passes at the equilibrium gas's c*.
+    """
+    part = (flows.time >= 0.0) & (flows.time <= fire.end)
+    out = {
+        "oxidizer_through_injector": _integral(flows.time, flows.oxidizer, part, "without nitrogen"),
+        "fuel_burned": _integral(flows.time, flows.fuel, part, "by a and n"),
+    }
+    if "p_chamber" in measured:
+        nozzle = nozzle_along(engine, measured["p_chamber"], flows.of_ratio, ambient).flow
+        why = "p_chamber over the equilibrium gas's c*; what lacks is combustion that is not complete, or cold gas"
+        out["propellant_through_nozzle"] = _integral(flows.time, np.nan_to_num(nozzle), part, why)
+    out["oxidizer_loaded"] = Quantity(engine.oxidizer_mass, "kg")
+    out["fuel_loaded"] = Quantity(engine.fuel_mass, "kg")
+    return out
+
+
+def _integral(time: Array, value: Array, part: NDArray[np.bool_], why: str) -> Quantity:
+    return Quantity(float(np.trapezoid(value[part], time[part])), "kg", why=why)
+
+
+def write_histories(path: Path, histories: Histories, provenance: Mapping[str, Any]) -> None:
+    """Write performance.h5: one time axis, a data set per history; byte-identical each time."""
+    import h5py
+
+    with h5py.File(path, "w", libver=FORMAT, track_order=False) as file:
+        file.attrs["title"] = "histories of a hot fire"
+        file.attrs["Conventions"] = "CF-1.11"
+        file.attrs["absent"] = json.dumps(histories.absent, sort_keys=True)
+        file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
+        time = file.create_dataset("time", data=histories.time, track_times=False)
+        time.make_scale("time")
+        time.attrs.update(units=ABOUT["time"][0], long_name=ABOUT["time"][1])
+        for name in ABOUT:
+            if name in histories.values:
+                data = file.create_dataset(name, data=histories.values[name], track_times=False)
+                data.dims[0].attach_scale(time)
+                data.attrs.update(units=ABOUT[name][0], long_name=ABOUT[name][1])

@@ -1,0 +1,255 @@
+"""The performance table of a hot fire (report, table 4.6), measured and modelled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.calibrate.evidence import VIDEO
+from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
+from hfanalysis.engine.unsteady import Burn
+from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
+from hfanalysis.quantity import Quantity
+from hfanalysis.segment.phases import Segments
+from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import Channel, TestLog
+from hfanalysis.units import Value
+from hfanalysis.validate.full import FullRun, moved
+
+Array = NDArray[np.float64]
+
+NAMES = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust", "average_thrust",
+         "oxidizer_mass", "fuel_mass")  # fmt: skip
+
+SMOOTHING = 0.1
+"""[s] of the running mean of which a peak is the largest value: longer than a period of the chamber's oscillation."""
+
+SPAN = 0.25
+"""Part of a cell's accuracy that a tare does not take away, and of its drift that a straight line may miss."""
+
+
+@dataclass(frozen=True)
+class Fire:
+    """When the engine burns: from the opening to ``end`` [s], known to ``std``, as ``source`` says."""
+
+    end: float
+    std: float
+    source: str
+
+
+def fire_of(segments: Segments, definition: TestDefinition) -> Fire | str:
+    """The burn as seen on video, else until the fuel is gone, else until the chamber unchokes; or why there is none."""
+    if segments.kind.name != "hot_fire" or segments.kind.misfire:
+        return "nothing burns in this test"
+    seen = definition.observed.burn_time if definition.observed else None
+    if seen is not None:
+        return Fire(seen.value, seen.std if seen.std is not None else VIDEO, "[observed] burn_time")
+    for name, words in (("t_fuel_out", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
+        found = segments.time(name)
+        if found is not None:
+            return Fire(found, max(segments.std(name), 1e-3), f"{name}: {words}")
+    return f"the end of the burn is not known: {segments.events['t_end'].reason}"
+
+
+def measured(
+    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Mapping[str, Any] | None
+) -> dict[str, Quantity]:
+    """The measured column, and ``total_impulse_of_file``: the raw integral over the whole file."""
+    fire = fire_of(segments, definition)
+    if isinstance(fire, str):
+        none = {name: Quantity.absent(fire) for name in NAMES}
+        return none | {"oxidizer_mass": _oxidizer(log, segments, definition, calibration)}
+    out = {"burn_time": Quantity(fire.end, "s", fire.std, why=fire.source)}
+    out["total_impulse"] = impulse = _impulse(log, segments, fire)
+    oxidizer, fuel = _oxidizer(log, segments, definition, calibration), _fuel(definition)
+    out["specific_impulse"] = specific_impulse(impulse, oxidizer, fuel)
+    out["peak_chamber_pressure"] = _peak(log, segments, "p_chamber", fire)
+    out["peak_thrust"] = _peak(log, segments, "thrust", fire)
+    out["average_thrust"] = _average(impulse, out["burn_time"])
+    out |= {"oxidizer_mass": oxidizer, "fuel_mass": fuel}
+    out["mean_chamber_pressure"] = _mean(log, segments, "p_chamber", fire)
+    out["total_impulse_of_file"] = _raw_integral(log)
+    return out
+
+
+def _signal(log: TestLog, segments: Segments, name: str) -> Signal | str:
+    channel = log.get(name)
+    if channel is None:
+        return f"the log has no {name}"
+    signal = Signal.of(channel).shifted(segments.t_open.value or 0.0)
+    return signal if signal.time.size > 8 else f"{name} has too few good samples"
+
+
+def _bias(channel: Channel) -> float:
+    """Standard deviation of what a zero leaves [SI]."""
+    if channel.zero_std is None:
+        return channel.accuracy
+    return float(np.hypot(channel.zero_std, SPAN * channel.accuracy))
+
+
+def _impulse(log: TestLog, segments: Segments, fire: Fire) -> Quantity:
+    """Integral of the thrust over the burn, the cell's drift taken off."""
+    signal = _signal(log, segments, "thrust")
+    if isinstance(signal, str):
+        return Quantity.absent(signal)
+    if signal.time[-1] < fire.end - 0.5:
+        return Quantity.absent(f"the log ends at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)")
+    edges = np.array([0.0, fire.end])
+    inner = signal.between(*edges)
+    time = np.concatenate((edges[:1], inner.time, edges[1:]))
+    value = float(np.trapezoid(signal.at(time), time))
+    channel = log["thrust"]
+    last = abs(signal.mean(fire.end - 0.2, fire.end + 0.2))
+    errors = (_bias(channel) * fire.end, SPAN * channel.drift * 0.5 * fire.end, last * fire.std)
+    drift = f"; {channel.drift:.0f} N of drift taken off" if channel.drift else ""
+    return Quantity(value, "N s", float(np.linalg.norm(errors)), why=f"over the burn{drift}")
+
+
+def _raw_integral(log: TestLog) -> Quantity:
+    """What a plain integral of the raw channel over the file gives."""
+    channel = log.get("thrust")
+    if channel is None:
+        return Quantity.absent("the log has no thrust")
+    raw = channel.values if channel.raw is None else channel.raw
+    good = channel.good & np.isfinite(raw)
+    value = float(np.trapezoid(raw[good], channel.time[good]))
+    return Quantity(value, "N s", why="the raw channel over the whole file: offset, drift and all")
+
+
+def specific_impulse(impulse: Quantity, oxidizer: Quantity, fuel: Quantity) -> Quantity:
+    """I_tot / (g (m_o + m_f)) [s] of the masses of the table."""
+    for needed in (impulse, oxidizer, fuel):
+        if needed.value is None:
+            return Quantity.absent(str(needed.reason))
+    assert impulse.value is not None
+    assert oxidizer.value is not None
+    assert fuel.value is not None
+    mass = oxidizer.value + fuel.value
+    value = impulse.value / (STANDARD_GRAVITY * mass)
+    by_mass = value * np.hypot(oxidizer.std or 0.0, fuel.std or 0.0) / mass
+    return Quantity(value, "s", float(np.hypot((impulse.std or 0.0) / (STANDARD_GRAVITY * mass), by_mass)))
+
+
+def _peak(log: TestLog, segments: Segments, name: str, fire: Fire) -> Quantity:
+    """Largest value of the mean curve: flagged samples left out, the chamber's oscillation averaged."""
+    signal = _signal(log, segments, name)
+    if isinstance(signal, str):
+        return Quantity.absent(signal)
+    part = signal.between(0.0, fire.end)
+    if part.time.size < 8:
+        return Quantity.absent(f"{name} has too few good samples in the burn")
+    smooth = part.smooth(max(SMOOTHING, 3.0 * part.step))
+    inside = (part.time > 0.5 * SMOOTHING) & (part.time < fire.end - 0.5 * SMOOTHING)
+    place = int(np.argmax(np.where(inside, smooth, -np.inf)))
+    count = max(SMOOTHING / part.step, 1.0)
+    error = np.hypot(_bias(log[name]), part.noise / np.sqrt(count))
+    return Quantity(float(smooth[place]), log[name].unit, float(error), why=f"at {part.time[place]:.2f} s")
+
+
+def _mean(log: TestLog, segments: Segments, name: str, fire: Fire) -> Quantity:
+    signal = _signal(log, segments, name)
+    if isinstance(signal, str):
+        return Quantity.absent(signal)
+    inner = signal.between(0.0, fire.end)
+    if inner.time.size < 8:
+        return Quantity.absent(f"{name} has too few good samples in the burn")
+    mean = float(np.trapezoid(inner.value, inner.time) / np.ptp(inner.time))
+    return Quantity(mean, log[name].unit, _bias(log[name]))
+
+
+def _average(impulse: Quantity, burn_time: Quantity) -> Quantity:
+    """Total impulse over burn time."""
+    if impulse.value is None or burn_time.value is None:
+        return Quantity.absent(str(impulse.reason or burn_time.reason))
+    value = impulse.value / burn_time.value
+    by_time = value * (burn_time.std or 0.0) / burn_time.value
+    return Quantity(value, "N", float(np.hypot((impulse.std or 0.0) / burn_time.value, by_time)))
+
+
+def _oxidizer(
+    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Mapping[str, Any] | None
+) -> Quantity:
+    """Loaded, less what is stated to be left."""
+    after = definition.observed.oxidizer_mass_after if definition.observed else None
+    stated = definition.tank.oxidizer_mass if definition.tank else None
+    found = (calibration or {}).get("oxidizer_mass") or {}
+    if found.get("value") is not None:
+        return _less(Value(found["value"], found["std"]), after)
+    if stated is not None:
+        return _less(stated, after)
+    cell = load_cell_mass(log, segments)
+    if cell is None:
+        return Quantity.absent("[tank] oxidizer_mass is not stated, and no cell says it")
+    return _less(Value(*cell), after)
+
+
+def _fuel(definition: TestDefinition) -> Quantity:
+    grain = definition.grain.mass if definition.grain else None
+    if grain is None:
+        return Quantity.absent("test.toml does not state [grain] mass")
+    return _less(grain, definition.observed.fuel_mass_after if definition.observed else None)
+
+
+def _less(loaded: Value, after: Value | None) -> Quantity:
+    std = loaded.std if loaded.std is not None else UNSTATED * loaded.value
+    if after is None:
+        return Quantity(loaded.value, "kg", std, why="loaded")
+    left = after.std if after.std is not None else UNSTATED * loaded.value
+    return Quantity(loaded.value - after.value, "kg", float(np.hypot(std, left)), why="loaded less left")
+
+
+@dataclass(frozen=True)
+class _Column:
+    """The modelled numbers of one run, in the order of NAMES."""
+
+    values: Array
+
+    @classmethod
+    def of(cls, full: FullRun, burnt: Burn, oxidizer: float, fuel: float) -> _Column:
+        impulse = float(burnt.state("impulse")[-1])
+        peaks = [float(burnt.output(name).max()) for name in ("chamber_pressure", "thrust")]
+        isp = impulse / (STANDARD_GRAVITY * (oxidizer + fuel))
+        return cls(np.array([burnt.burn_time, impulse, isp, *peaks, impulse / burnt.burn_time, oxidizer, fuel]))
+
+
+_UNITS = ("s", "N s", "s", "Pa", "N", "N", "kg", "kg")
+
+
+def modelled(full: FullRun, calibration: Mapping[str, Any]) -> dict[str, Quantity]:
+    """The model's column, with what the calibrated constants' uncertainties make of it."""
+    engine = full.engine
+    nominal = _Column.of(full, full.burnt, engine.oxidizer_mass, engine.fuel_mass).values
+    errors = np.zeros(len(NAMES))
+    for change in _changes(full, calibration):
+        oxidizer = change.get("oxidizer_mass", engine.oxidizer_mass)
+        try:
+            other = _Column.of(full, moved(full, change), oxidizer, engine.fuel_mass).values
+        except (ValueError, ArithmeticError):
+            continue
+        errors += (other - nominal) ** 2
+    out = {
+        n: Quantity(float(v), u, float(e)) for n, v, u, e in zip(NAMES, nominal, _UNITS, np.sqrt(errors), strict=True)
+    }
+    if not full.burnt.fuel_out:
+        reason = f"the model's fuel is not gone after {full.burnt.burn_time:.0f} s"
+        out |= {name: Quantity.absent(reason) for name in ("burn_time", "average_thrust")}
+    return out
+
+
+def _changes(full: FullRun, calibration: Mapping[str, Any]) -> list[dict[str, float]]:
+    """One standard deviation of each calibrated constant; a and n along and across their combination."""
+    engine, std = full.engine, {k: (calibration[k].get("std") or 0.0) for k in ("C_i", "m", "K_loss", "oxidizer_mass")}
+    area = engine.feed.area * (1.0 + std["C_i"] / calibration["C_i"]["value"])
+    changes = [{"area": area}, {"loss_factor": engine.feed.loss_factor + std["K_loss"]}]
+    changes.append({"oxidizer_mass": engine.oxidizer_mass + std["oxidizer_mass"]})
+    if engine.polytropic_exponent is not None and std["m"] > 0.0:
+        changes.append({"polytropic_exponent": engine.polytropic_exponent + std["m"]})
+    rate, flux = calibration["regression_rate_reference"], calibration["regression"]["reference_flux"]["value"]
+    changes.append({"a": engine.a * (1.0 + rate["std"] / rate["value"])})
+    n = engine.n + calibration["n"]["std"]
+    return [*changes, {"n": n, "a": rate["value"] / flux**n}]

@@ -1,0 +1,163 @@
+"""a and n: a burn's own constants are found from burn time and chamber pressure, and what is not told apart is said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from engine_sample import TRUTH, engine, evidence, rate
+
+from hfanalysis.calibrate.engine_of_test import Regression, pressure_at, starting_for
+from hfanalysis.calibrate.evidence import Evidence, Scalar, burn_time_of
+from hfanalysis.calibrate.likelihood import effective_samples, surface
+from hfanalysis.calibrate.regression import Fitted, fit, fit_together, law_at, result
+from hfanalysis.engine.unsteady import burn
+from hfanalysis.errors import AbsentError
+
+
+@pytest.fixture(scope="module")
+def clear() -> Fitted:
+    """Little noise, a burn time to 50 ms."""
+    return fit([evidence()])
+
+
+@pytest.fixture(scope="module")
+def blurred() -> Fitted:
+    """Noise of a bar, no burn time."""
+    return fit([replace(evidence(noise=1e5, stop=2.0), burn_time=None)])
+
+
+@pytest.mark.parametrize("truth", [TRUTH, Regression(3.2e-4, 0.3), Regression(4e-5, 0.65)])
+def test_the_constants_of_a_burn_are_found(truth: Regression) -> None:
+    """From the rough scan of starts, none of which is the answer."""
+    found = fit([evidence(truth)])
+    assert found.law.n == pytest.approx(truth.n, abs=0.02)
+    assert rate(found.law, 200.0) == pytest.approx(rate(truth, 200.0), rel=0.01)
+
+
+def test_two_observations_tell_a_and_n_apart(clear: Fitted) -> None:
+    quantities = result(clear).quantities
+    for name, true in (("a", TRUTH.a), ("n", TRUTH.n)):
+        assert quantities[name].verdict == "identified"
+        assert quantities[name].interval[0] < true < quantities[name].interval[1]
+
+
+def test_the_rate_at_the_reference_flux_is_known_better_than_at_any_other(clear: Fitted) -> None:
+    flux = clear.reference_flux
+    widths = [
+        np.ptp(clear.surface.interval(np.array([1.0, np.log(g / clear.flux)]))) for g in (flux / 3, flux, 3 * flux)
+    ]
+    assert widths[1] < min(widths[0], widths[2])
+
+
+def test_what_is_not_told_apart_is_said_and_the_combination_given(blurred: Fitted) -> None:
+    quantities = result(blurred).quantities
+    assert quantities["n"].verdict == quantities["a"].verdict == "not identifiable"
+    assert "combination" in (quantities["n"].why or "")
+    found = quantities["regression_rate_reference"]
+    assert found.verdict == "identified"
+    flux = result(blurred).about["reference_flux"]["value"]
+    assert found.interval[0] < rate(TRUTH, flux) < found.interval[1]
+
+
+def test_a_and_n_multiply_to_the_reference_rate(clear: Fitted) -> None:
+    found = result(clear)
+    q, flux = found.quantities, found.about["reference_flux"]["value"]
+    assert q["a"].value * flux ** q["n"].value == pytest.approx(q["regression_rate_reference"].value)
+
+
+def test_more_noise_widens_the_intervals() -> None:
+    widths = [np.ptp(fit([evidence(noise=n)]).surface.interval(np.array([0.0, 1.0]))) for n in (0.02e5, 0.2e5)]
+    assert widths[1] > 3.0 * widths[0]
+
+
+def test_what_the_tank_leaves_open_widens_the_rate() -> None:
+    sure, unsure = fit([evidence()]), fit([evidence(nuisance={"area": 0.03 * engine().feed.area})])
+    width = [float(np.ptp(f.surface.interval(np.array([1.0, 0.0])))) for f in (sure, unsure)]
+    assert width[1] > 1.5 * width[0]
+
+
+def test_fuel_left_takes_the_place_of_a_burn_time() -> None:
+    whole = evidence(fuel_mass=2.5, outer_radius=45e-3)
+    true = burn(replace(whole.engine, a=TRUTH.a, n=TRUTH.n))
+    left = 2.5 - float(np.trapezoid(true.output("fuel_flow") * (true.time < 6.0), true.time))
+    seen = replace(whole, burn_time=None, fuel_left=Scalar(left, 0.02, "scales"), end=6.0)
+    found = fit([seen])
+    assert rate(found.law, 200.0) == pytest.approx(rate(TRUTH, 200.0), rel=0.02)
+
+
+def test_tests_of_one_law_agree_and_give_it_together() -> None:
+    tests = [evidence(), evidence(fuel_mass=1.2, oxidizer_mass=8.0)]
+    joint = fit_together(tests, [fit([e]) for e in tests])
+    assert joint.agree
+    assert joint.fitted.law.n == pytest.approx(TRUTH.n, abs=0.02)
+
+
+def test_tests_of_two_laws_disagree() -> None:
+    tests = [evidence(), evidence(Regression(0.8 * TRUTH.a, TRUTH.n))]
+    assert not fit_together(tests, [fit([e]) for e in tests]).agree
+
+
+def test_an_engine_that_cannot_run_says_so() -> None:
+    broken = evidence()
+    broken = replace(broken, engine=replace(broken.engine, exit_area=0.5 * broken.engine.throat_area))
+    with pytest.raises(AbsentError, match="cannot be run"):
+        fit([broken])
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.5, 0.9])
+def test_correlated_residuals_count_as_fewer(correlation: float) -> None:
+    """Of a first-order process n (1 - rho)/(1 + rho) values are independent."""
+    noise = np.random.default_rng(0).standard_normal(20_000)
+    x = np.empty_like(noise)
+    x[0] = noise[0]
+    for i in range(1, x.size):
+        x[i] = correlation * x[i - 1] + noise[i]
+    expected = x.size * (1.0 - correlation) / (1.0 + correlation)
+    assert effective_samples(x) == pytest.approx(expected, rel=0.15)
+
+
+def test_a_constant_misfit_is_one_value_and_not_many() -> None:
+    assert effective_samples(np.full(100, 3.0)) == 3.0
+
+
+def test_the_region_of_a_quadratic_misfit_is_its_ellipse() -> None:
+    """x^2/4 + y^2 <= 4 reaches to 4 in x, to 2 in y, to sqrt(20) in x + y."""
+    found = surface(lambda p: p[0] ** 2 / 4.0 + p[1] ** 2, np.zeros(2), np.diag([4.0, 1.0]), 4.0)
+    assert found.bounded
+    for weights, half in (((1.0, 0.0), 4.0), ((0.0, 1.0), 2.0), ((1.0, 1.0), np.sqrt(20.0))):
+        assert found.interval(np.array(weights)) == pytest.approx((-half, half), rel=0.03)
+
+
+def test_a_valley_without_an_end_is_not_bounded() -> None:
+    found = surface(lambda p: p[1] ** 2, np.zeros(2), np.diag([1.0, 1.0]), 4.0)
+    assert not found.bounded
+
+
+def test_the_start_is_extrapolated_from_the_pressure_at_the_full_line() -> None:
+    warm = replace(engine(), temperature=289.0)
+    started = starting_for(engine(), 0.8, pressure_at(warm, 0.8))
+    assert started.temperature == pytest.approx(289.0, abs=0.01)
+
+
+def test_a_pressure_that_no_saturated_tank_comes_down_to_is_refused() -> None:
+    with pytest.raises(AbsentError, match=r"no saturated tank of 14\.00 kg in 16\.5 L comes down to"):
+        starting_for(replace(engine(), oxidizer_mass=14.0), 0.8, 60e5)
+
+
+def test_a_burn_given_up_early_is_carried_on_at_its_last_rate() -> None:
+    whole, part = burn(engine()), burn(engine(), longest=6.0)
+    assert not part.fuel_out
+    assert burn_time_of(engine(), part) == pytest.approx(whole.burn_time, rel=0.15)
+    assert burn_time_of(engine(), whole) == whole.burn_time
+
+
+def test_the_law_passes_through_its_point() -> None:
+    assert rate(law_at(np.array([np.log(1e-3), 0.4]), 150.0), 150.0) == pytest.approx(1e-3)
+
+
+def test_evidence_lists_its_observations() -> None:
+    e: Evidence = evidence()
+    assert e.observed.size == e.time.size + 1
+    assert e.observed[-1] == e.burn_time.value  # type: ignore[union-attr]

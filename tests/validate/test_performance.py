@@ -1,0 +1,140 @@
+"""The performance table, the histories and the sensors' verdicts, on logs whose truth is written down here."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+from stand import AMBIENT, THROAT, Trial, definition, fire, log_of, segments_of
+
+from hfanalysis.quantity import Quantity
+from hfanalysis.testdata.log import Channel, TestLog
+from hfanalysis.testdata.sections import Grain, Observed
+from hfanalysis.units import Value
+from hfanalysis.validate.histories import ABOUT, Histories, clock, measured_histories, write_histories
+from hfanalysis.validate.performance import Fire, fire_of, measured
+from hfanalysis.validate.sensors import findings
+
+BURN = Observed(burn_time=Value(9.0, 0.1))
+GRAIN = Grain(mass=Value(1.6, 0.01))
+AREA = np.pi * THROAT**2
+
+
+@pytest.fixture(scope="module")
+def burn() -> Trial:
+    return fire(rate=500.0)
+
+
+def with_thrust(log: TestLog, thrust: Channel) -> TestLog:
+    return replace(log, channels={**log.channels, "thrust": thrust})
+
+
+def table(log: TestLog, test: Trial, **change: Any) -> dict[str, Quantity]:
+    stated = {"observed": BURN, "grain": GRAIN} | change
+    return measured(log, segments_of(test), definition(test.stand, **stated), None)
+
+
+def test_the_impulse_is_that_of_the_burn(burn: Trial) -> None:
+    found = table(log_of(burn), burn)
+    inside = (burn.time >= 0.0) & (burn.time <= 9.0)
+    true = float(np.trapezoid(burn.values["thrust"][inside], burn.time[inside]))
+    assert found["total_impulse"].value == pytest.approx(true, rel=1e-3)
+    assert found["average_thrust"].value == pytest.approx(true / 9.0, rel=1e-3)
+    assert found["specific_impulse"].value == pytest.approx(true / 9.80665 / (burn.stand.mass + 1.6), rel=1e-3)
+
+
+def test_the_raw_files_integral_stands_beside_it(burn: Trial) -> None:
+    log = log_of(burn)
+    raw = log["thrust"].values + 200.0
+    found = table(with_thrust(log, replace(log["thrust"], raw=raw)), burn)
+    length = float(np.ptp(burn.time))
+    whole = float(np.trapezoid(burn.values["thrust"], burn.time)) + 200.0 * length
+    assert found["total_impulse_of_file"].value == pytest.approx(whole, rel=1e-3)
+    assert found["total_impulse"].value < 0.9 * whole
+
+
+def test_a_peak_is_that_of_the_mean_curve_and_not_of_its_oscillation(burn: Trial) -> None:
+    log = log_of(burn)
+    p = log["p_chamber"]
+    ringing = replace(p, values=p.values + 3e5 * np.sin(2.0 * np.pi * 40.0 * p.time) * (p.time > 100.0))
+    found = table(replace(log, channels={**log.channels, "p_chamber": ringing}), burn)
+    assert ringing.values.max() > 1.15 * burn.values["p_chamber"].max()
+    assert found["peak_chamber_pressure"].value == pytest.approx(burn.values["p_chamber"].max(), rel=0.02)
+
+
+def test_a_flagged_spike_is_no_peak(burn: Trial) -> None:
+    log = log_of(burn)
+    p = log["p_chamber"]
+    values, flags = p.values.copy(), p.flags.copy()
+    hit = int(np.searchsorted(p.time, 102.0))
+    values[hit], flags[hit] = 500e5, 8
+    spiked = replace(log, channels={**log.channels, "p_chamber": replace(p, values=values, flags=flags)})
+    found = table(spiked, burn)["peak_chamber_pressure"].value
+    assert found == pytest.approx(table(log, burn)["peak_chamber_pressure"].value, rel=1e-4)
+
+
+def test_what_is_left_is_no_propellant_burned(burn: Trial) -> None:
+    left = Observed(burn_time=Value(9.0), fuel_mass_after=Value(0.4, 0.01), oxidizer_mass_after=Value(1.0, 0.1))
+    found = table(log_of(burn), burn, observed=left)
+    assert found["fuel_mass"].value == pytest.approx(1.2)
+    assert found["oxidizer_mass"].value == pytest.approx(burn.stand.mass - 1.0)
+
+
+@pytest.mark.parametrize(("without", "name"), [("thrust", "total_impulse"), ("p_chamber", "peak_chamber_pressure")])
+def test_a_missing_channel_takes_its_numbers_with_it(burn: Trial, without: str, name: str) -> None:
+    found = table(log_of(burn, without=(without,)), burn)
+    assert found[name].value is None
+    assert found[name].reason == f"the log has no {without}"
+    assert found["burn_time"].value == 9.0
+
+
+def test_a_grain_that_is_not_stated_takes_the_specific_impulse(burn: Trial) -> None:
+    found = table(log_of(burn), burn, grain=None)
+    assert found["specific_impulse"].reason == "test.toml does not state [grain] mass"
+    assert found["total_impulse"].value is not None
+
+
+def test_the_end_of_the_fuel_ends_the_burn_where_nobody_saw_it(burn: Trial) -> None:
+    gone = segments_of(burn, t_fuel_out=Quantity(7.0, "s", 0.02))
+    found = fire_of(gone, definition(burn.stand))
+    assert isinstance(found, Fire)
+    assert (found.end, found.std) == (7.0, 0.02)
+    assert fire_of(segments_of(burn), definition(burn.stand)).startswith("the end of the burn is not known")  # type: ignore[union-attr]
+
+
+def test_a_cell_that_does_not_come_back_to_zero_is_named(burn: Trial) -> None:
+    log = log_of(burn)
+    warm = replace(log["thrust"], zero=0.0, zero_std=1.0, drift=190.0)
+    seen = definition(burn.stand, observed=BURN)
+    found = findings(with_thrust(log, warm), segments_of(burn), seen, Fire(9.0, 0.1, "video"))
+    assert [f.verdict for f in found] == ["does not return to zero"]
+    assert "+190 N" in found[0].text
+    assert not findings(log, segments_of(burn), seen, Fire(9.0, 0.1, "video"))
+
+
+@pytest.mark.parametrize("factor", [0.6, 1.5])
+def test_a_thrust_that_no_nozzle_gives_is_named(burn: Trial, factor: float) -> None:
+    log = log_of(burn)
+    off = replace(log["thrust"], values=factor * log["thrust"].values)
+    found = findings(with_thrust(log, off), segments_of(burn), definition(burn.stand), Fire(9.0, 0.1, "video"))
+    assert [f.verdict for f in found] == ["thrust and p_c A_t disagree"]
+    assert found[0].channels == ("thrust", "p_chamber")
+
+
+def test_histories_are_read_with_their_units(burn: Trial, tmp_path: Path) -> None:
+    log, segments = log_of(burn), segments_of(burn)
+    time = clock(log, segments, 6.0)
+    found = Histories(time, measured_histories(log, segments, time), {"of_ratio": "a and n are missing"})
+    write_histories(tmp_path / "performance.h5", found, {"version": "1"})
+    with h5py.File(tmp_path / "performance.h5") as file:
+        assert set(file) == {"time", "thrust_raw", "thrust_corrected", "p_chamber"}
+        for name in file:
+            assert file[name].attrs["units"] == ABOUT[name][0]
+        at = float(np.interp(2.0, file["time"], file["p_chamber"]))
+    true = float(np.interp(2.0, burn.time, burn.values["p_chamber"]))
+    assert at == pytest.approx(true, rel=1e-3)
+    assert true > 5.0 * AMBIENT
