@@ -15,7 +15,6 @@ from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.flight.constant_thrust import Vehicle
 from hfanalysis.simulate.build import STAND_MASS, combustion_of
-from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
 
 TRUTH = Regression(1e-4, 0.5)
@@ -26,7 +25,7 @@ def engine() -> Engine:
     """A stand's engine of 15 bar that burns for some 8 s, 6 of them on liquid."""
     return Engine(
         saturation=saturation("coolprop"),
-        combustion=combustion_of(PROPEP_OXIDIZER_ENTHALPY),
+        combustion=combustion_of(),
         feed=FeedSystem(16.5e-3, 2.4e-5, 2e8),
         oxidizer_mass=10.0,
         temperature=291.0,

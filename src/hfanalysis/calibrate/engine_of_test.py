@@ -57,7 +57,7 @@ def engine_of_test(
     source = saturation(definition.model.properties)
     return Engine(
         saturation=source,
-        combustion=combustion_of(oxidizer_enthalpy(definition, source, temperature)),
+        combustion=combustion_of(),
         feed=FeedSystem(stated["volume"], effective_area(definition, calibration), loss_factor(calibration)),
         oxidizer_mass=loaded_mass(definition, calibration),
         temperature=temperature,
@@ -72,6 +72,7 @@ def engine_of_test(
         throat_area=pi * stated["throat_radius"] ** 2,
         exit_area=pi * stated["exit_radius"] ** 2,
         vehicle=stand(definition),
+        oxidizer_enthalpy=oxidizer_enthalpy(definition, source, temperature),
     )
 
 

@@ -108,18 +108,20 @@ def nozzle_along(engine: Engine, pressure: Array, of_ratio: Array, ambient: floa
     """What the nozzle does with gas of this mixture at this pressure [Pa]; NaN where there is no mixture."""
     found = _nozzle_along(
         engine.combustion.kernel, np.ascontiguousarray(pressure), np.ascontiguousarray(of_ratio), ambient,
-        engine.throat_area, engine.exit_area,
+        engine.throat_area, engine.exit_area, engine.oxidizer_enthalpy,
     )  # fmt: skip
     return Nozzle(*found)
 
 
 @njit(cache=True)
-def _nozzle_along(gas: Grid, pressure: Array, ratio: Array, ambient: float, throat: float, exit_area: float) -> Array:
+def _nozzle_along(
+    gas: Grid, pressure: Array, ratio: Array, ambient: float, throat: float, exit_area: float, enthalpy: float
+) -> Array:
     out = np.full((4, pressure.size), np.nan)
     for i in range(pressure.size):
         if not (ratio[i] > 0.0 and pressure[i] > 0.0):
             continue
-        heat, gamma = gas_at(gas, np.log(pressure[i]), np.log(ratio[i]))
+        heat, gamma = gas_at(gas, np.log(pressure[i]), np.log(ratio[i]), enthalpy, 0.0)
         flow, thrust, _, _, _ = expand(gamma, heat, pressure[i], ambient, throat, exit_area)
         out[0, i], out[1, i], out[2, i], out[3, i] = flow, thrust, heat, gamma
     return out
