@@ -227,3 +227,38 @@ def test_a_terminal_without_special_signs_is_no_fault(run: Run, root: Path) -> N
     ended = shell(f"PYTHONIOENCODING=ascii hfa calibrate HF5 --root {root}")
     assert ended.returncode == 0
     assert "C_i" in ended.stdout
+
+
+def test_the_report_also_comes_as_plots(run: Run, root: Path) -> None:
+    ended = run("report", "HF5", "--root", root, "--plots")
+    assert ended.status == 0
+    plots = root / "processed/HF5/plots"
+    assert "written: " in ended.err
+    assert {path.stem for path in plots.glob("*.png")} == {path.stem for path in plots.glob("*.csv")}
+    assert {"pressures", "thrust", "flow"} <= {path.stem for path in plots.glob("*.csv")}
+
+
+def test_a_pdf_without_a_browser_ends_with_what_is_missing(
+    run: Run, root: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    ended = run("report", "HF5", "--root", root, "--pdf")
+    assert ended.status == 2
+    assert ended.err.startswith("hfa: --pdf: no browser to print with; expected one of chromium")
+
+
+def test_two_tests_are_compared_on_one_page(run: Run, root: Path) -> None:
+    if not (root / "raw_tests/HF4").exists():
+        shutil.copytree(REPOSITORY / "raw_tests" / "HF4", root / "raw_tests" / "HF4")
+    ended = run("compare", "HF5", "HF4", "--root", root, "--json")
+    assert ended.status == 0
+    (path,) = json.loads(ended.out)["products"]
+    text = Path(path).read_text()
+    assert text.count("REPLICA") == 2
+    assert ">HF4</th>" in text
+
+
+def test_a_test_is_not_compared_with_itself(run: Run, root: Path) -> None:
+    ended = run("compare", "HF5", "HF5", "--root", root)
+    assert ended.status == 2
+    assert ended.err == "hfa: compare HF5 HF5: one test twice; expected two different ones\n"

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hfanalysis.report.material import Material, Residuals
+from hfanalysis.report.material import Column, Material, Store
 from hfanalysis.testdata.definition import load_definition
 from hfanalysis.testdata.log import Channel, TestLog
 from hfanalysis.testdata.summary import summary
@@ -90,25 +91,92 @@ CALIBRATION: dict[str, Any] = {
     "C_i": quantity(0.2931, "", 0.0034, verdict="identified"),
     "m": quantity(-3.1, "", 0.4, verdict="unphysical", why="needs 14 kW of heat"),
     "Z": {"value": None, "reason": "the vapour phase lasts 0.05 s", "verdict": "not identifiable"},
+    "a": quantity(1.32e-4, "m/s (kg/m^2/s)^-n", 3e-5, verdict="not identifiable", why="only with n"),
+    "n": quantity(0.55, "", 0.12, verdict="not identifiable", why="only with a"),
+    "regression_rate_reference": quantity(1.05e-3, "m/s", 2e-5, verdict="identified"),
     "K_loss": quantity(6.371e8, "1/m^4", 2.1e7, verdict="identified"),
     "p_loss_liquid": quantity(11.43e5, "Pa", 0.12e5, verdict="identified"),
     "rest": {"temperature": quantity(293.4, "K", 0.3), "finding": "pressure and mass fit a saturated tank"},
+    "tank_history": {
+        "time": list(_TIME),
+        "liquid": list(150.0 - 25.0 * _TIME),
+        "vapor": list(30.0 + 2.0 * _TIME),
+        "flow": list(1.3 - 0.02 * _TIME),
+    },
     "C_i_history": {"time": list(_TIME), "value": list(0.29 + 0.002 * _TIME), "std": [0.004] * _TIME.size},
     "warnings": ["the purge check valve opens before the liquid is gone"],
     "provenance": {"hfanalysis": "0.1.0", "raw": {"log.csv": "ab" * 32}, "parameters": {}},
 }
 
 
-def residuals() -> Residuals:
-    """Half a bar of misfit on noise of 0.1 bar."""
-    time = np.linspace(0.0, 6.0, 1200)
-    model = 6.5e6 * np.exp(-time / 14.0)
-    residual = 0.5e5 * np.sin(time)
-    return Residuals(time, model + residual, model, residual, np.full(time.size, 1e4))
+def _gap(rms: float, unit: str) -> dict[str, Any]:
+    return {"rms": rms, "bias": -0.5 * rms, "noise": 0.1 * rms, "samples": 900, "unit": unit}
+
+
+VALIDATION: dict[str, Any] = {
+    "performance": {
+        "measured": {
+            "burn_time": quantity(12.4, "s", 0.1),
+            "total_impulse": quantity(18_340.0, "N s", 60.0),
+            "peak_chamber_pressure": quantity(13.2e5, "Pa", 0.1e5),
+            "peak_thrust": quantity(2430.0, "N", 15.0),
+            "fuel_mass": {"value": None, "reason": "the grain was not weighed after the firing"},
+        },
+        "model": {"burn_time": quantity(12.9, "s", 0.2), "peak_thrust": quantity(2500.0, "N", 40.0)},
+    },
+    "gap": {"full": {"thrust": {"liquid": _gap(40.0, "N")}}, "tank_free": {"p_tank": {"liquid": _gap(5e4, "Pa")}}},
+    "warnings": ["thrust and p_c A_t disagree: 2430 N against 3100 N"],
+    "provenance": {"hfanalysis": "0.1.0", "parameters": {"modes": "all"}},
+}
+
+
+def _residual(level: float, unit: str) -> dict[str, Column]:
+    """A misfit of one per cent on noise of a tenth of that."""
+    time = np.linspace(-1.0, 17.0, 1800)
+    model = level * np.exp(-np.maximum(time, 0.0) / 14.0)
+    residual = 0.01 * level * np.sin(time)
+    noise = np.full(time.size, 0.001 * level)
+    named = {"measured": model + residual, "model": model, "residual": residual, "noise_std": noise}
+    return {"time": Column(time, "s"), **{name: Column(values, unit) for name, values in named.items()}}
+
+
+def _performance() -> dict[str, Column]:
+    time = np.linspace(0.1, 12.0, 400)
+    fall = np.exp(-time / 9.0)
+    return {
+        "time": Column(time, "s"),
+        "oxidizer_flow": Column(1.3 * fall, "kg/s"),
+        "fuel_flow": Column(0.2 * fall**0.5, "kg/s"),
+        "of_ratio": Column(6.5 * fall**0.5, ""),
+        "regression_rate": Column(1.1e-3 * fall**0.5, "m/s"),
+        "c_star": Column(1500.0 + 20.0 * time, "m/s"),
+        "c_star_efficiency": Column(0.93 + 0.001 * time, ""),
+        "thrust_coefficient_efficiency": Column(0.97 - 0.001 * time, ""),
+    }
+
+
+def stores() -> dict[str, Store]:
+    """The HDF5 products: residuals of all modes, and the performance over time."""
+    groups = {
+        "tank_free/p_tank": _residual(6.5e6, "Pa"),
+        "chamber_forced/thrust": _residual(2400.0, "N"),
+        "full/p_chamber": _residual(1.3e6, "Pa"),
+        "full/thrust": _residual(2400.0, "N"),
+    }
+    return {"residuals": groups, "performance": {"": _performance()}}
 
 
 def material(folder: Path, label: str | None = None, **text: str) -> Material:
     """All of it."""
     made = log(label)
     about = {**summary(made), "provenance": {}}
-    return Material(definition(folder, **text), made, about, SEGMENTS, CALIBRATION, residuals(), {})
+    products = {"ingest": about, "segments": SEGMENTS, "calibration": CALIBRATION, "validation": VALIDATION}
+    return Material(definition(folder, **text), made, products, stores())
+
+
+def without(made: Material, *names: str, **reasons: str) -> Material:
+    """The material with products left out, for reasons."""
+    gone = {*names, *reasons}
+    products = {name: product for name, product in made.products.items() if name not in gone}
+    kept = {name: store for name, store in made.stores.items() if name not in gone}
+    return replace(made, products=products, stores=kept, absent=reasons)

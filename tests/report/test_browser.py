@@ -1,91 +1,319 @@
-"""The page in a real browser: it opens offline, complains about nothing, fits a phone, and hostile text stays text.
+"""The page in a real browser: it opens offline, complains about nothing, answers to hands, and can be read by all.
 
 Skips where there is no Chromium, unless HFA_REQUIRE_BROWSER is set: then its absence is a failure.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import re
-import shutil
-import subprocess
-from collections.abc import Callable
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from browser import CHROMIUM, Page, browser
 from PIL import Image
-from sample import material
+from sample import channel, material
+from test_page import hostile
 
+from hfanalysis.report.compare import compare
 from hfanalysis.report.page import page
+from hfanalysis.report.pdf import print_page
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-HOSTILE = '<script>document.title="owned"</script>'
-OPTIONS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--hide-scrollbars",
-    "--host-resolver-rules=MAP * ~NOTFOUND",
-    "--enable-logging=stderr",
-    "--virtual-time-budget=2000",
-)
-
-Browse = Callable[..., subprocess.CompletedProcess[str]]
+PRESSURES = '[data-chart="pressures"]'
 
 
-@pytest.fixture
-def browse(tmp_path: Path) -> Browse:
-    """Open a page's text in Chromium with further options; returns the finished process."""
+@pytest.fixture(scope="module")
+def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+    """A tab of a real browser."""
     if CHROMIUM is None:
         if os.environ.get("HFA_REQUIRE_BROWSER"):
             pytest.fail("no Chromium here, and HFA_REQUIRE_BROWSER asks for one")
         pytest.skip("no Chromium here")
-
-    def run(text: str, *options: str) -> subprocess.CompletedProcess[str]:
-        path = tmp_path / "page.html"
-        path.write_text(text, encoding="utf-8")
-        command = [str(CHROMIUM), *OPTIONS, f"--user-data-dir={tmp_path / 'profile'}", *options, path.as_uri()]
-        return subprocess.run(command, capture_output=True, text=True, timeout=90, check=True)
-
-    return run
+    with browser(tmp_path_factory.mktemp("profile")) as opened:
+        yield opened
 
 
-def test_the_browser_sees_the_whole_page_and_complains_about_nothing(browse: Browse, tmp_path: Path) -> None:
-    done = browse(page(material(tmp_path)), "--dump-dom")
-    for heading in ("Verdict", "Pressures", "Phases", "Calibration", "Made from"):
-        assert re.search(rf"<h[12-4][^>]*>\s*{heading}", done.stdout), heading
-    assert "CONSOLE" not in done.stderr
-    assert "ERR_NAME_NOT_RESOLVED" not in done.stderr
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of a test that has everything."""
+    folder = tmp_path_factory.mktemp("page")
+    (folder / "report.html").write_text(page(material(folder)), encoding="utf-8")
+    return folder / "report.html"
 
 
-def test_hostile_text_is_shown_as_text(browse: Browse, tmp_path: Path) -> None:
-    done = browse(page(material(tmp_path, description=f"'{HOSTILE}'")), "--dump-dom")
-    assert "<title>owned" not in done.stdout
-    assert "&lt;script&gt;document.title" in done.stdout
+@pytest.fixture
+def opened(tab: Page, path: Path) -> Page:
+    """That page, opened anew, as the first reader finds it."""
+    tab.open(path)
+    tab.ask("localStorage.clear()")
+    tab.console.clear()
+    tab.requests.clear()
+    return tab.open(path)
 
 
-@pytest.mark.parametrize(("width", "height"), [(1200, 1600), (390, 844)])
-def test_a_screen_and_a_phone_show_text_on_a_plain_ground(
-    browse: Browse, tmp_path: Path, width: int, height: int
-) -> None:
-    """A picture with one dominating ground colour, dark text on it, and nothing cut off at the right edge."""
-    shot = tmp_path / "page.png"
-    browse(page(material(tmp_path)), f"--screenshot={shot}", f"--window-size={width},{height}")
-    picture = Image.open(shot).convert("L")
-    histogram = picture.histogram()
-    assert max(histogram) > 0.3 * width * height
-    assert sum(histogram[:90]) > 0.005 * width * height
-    edge = picture.crop((picture.width - 2, 0, picture.width, picture.height)).histogram()
-    assert sum(edge[:90]) == 0
+def ticks(tab: Page, chart: str = PRESSURES, axis: str = "x") -> list[float]:
+    """The values at an axis."""
+    found = tab.ask(f"[...document.querySelectorAll('{chart} .{axis}-tick')].map((tick) => tick.textContent)")
+    return [float(text.replace("−", "-")) for text in found]
 
 
-def test_the_page_prints(browse: Browse, tmp_path: Path) -> None:
-    printed = tmp_path / "page.pdf"
-    browse(page(material(tmp_path)), f"--print-to-pdf={printed}", "--no-pdf-header-footer")
+def read_out(tab: Page, chart: str = PRESSURES) -> list[str]:
+    """What the legend says under the cursor."""
+    return list(tab.ask(f"[...document.querySelectorAll('{chart} output')].map((output) => output.textContent)"))
+
+
+def test_the_page_complains_about_nothing_and_asks_for_nothing(opened: Page, path: Path) -> None:
+    assert opened.console == []
+    assert {url for url in opened.requests if not url.startswith("data:")} == {path.as_uri()}
+
+
+def test_a_drag_zooms_all_charts_and_a_double_click_shows_all(opened: Page) -> None:
+    left, top, width, height = opened.show(f"{PRESSURES} .plot")
+    before = ticks(opened)
+    opened.drag((left + 0.3 * width, top + 0.5 * height), (left + 0.5 * width, top + 0.5 * height))
+    after = ticks(opened)
+    assert before[0] < after[0] < after[-1] < before[-1]
+    assert ticks(opened, '[data-chart="thrust"]') == after
+    opened.click(left + 0.4 * width, top + 0.5 * height, count=2)
+    assert ticks(opened) == before
+
+
+def test_zooming_fits_the_values_to_what_is_seen(opened: Page) -> None:
+    left, top, width, height = opened.show('[data-chart="tank-mass"] .plot')
+    opened.drag((left + 0.7 * width, top + 0.5 * height), (left + 0.8 * width, top + 0.5 * height))
+    values = ticks(opened, '[data-chart="tank-mass"]', "y")
+    assert values[-1] - values[0] < 1.0
+
+
+def test_the_wheel_zooms_about_the_pointer_and_leaves_scrolling_alone(opened: Page) -> None:
+    left, top, width, height = opened.show(f"{PRESSURES} .plot")
+    place = (left + 0.5 * width, top + 0.5 * height)
+    before = ticks(opened)
+    opened.mouse("mouseMoved", *place)
+    for _ in range(4):
+        opened.mouse("mouseWheel", *place, deltaX=0, deltaY=-120)
+    opened.settle()
+    assert ticks(opened)[-1] - ticks(opened)[0] < 0.6 * (before[-1] - before[0])
+    for _ in range(6):
+        opened.mouse("mouseWheel", *place, deltaX=0, deltaY=120)
+    opened.settle()
+    assert ticks(opened) == before
+
+
+def test_the_cursor_reads_every_line_in_every_chart(opened: Page) -> None:
+    left, top, width, height = opened.show(f"{PRESSURES} .plot")
+    opened.mouse("mouseMoved", left + 0.4 * width, top + 0.5 * height)
+    opened.settle()
+    t = float(opened.ask(f"document.querySelector('{PRESSURES} .instant').textContent")[4:-2])
+    tank, _, chamber, _ = (float(text.split()[0]) for text in read_out(opened))
+    assert tank == pytest.approx(65.0 * 2.718281828 ** (-t / 14.0), rel=0.05)
+    assert chamber == pytest.approx(1.0 + 13.0 * 2.718281828 ** (-t / 9.0), rel=0.05)
+    assert read_out(opened, '[data-chart="thrust"]')[0].endswith(" N")
+
+
+def test_a_line_can_be_taken_out_and_put_back(opened: Page) -> None:
+    drawn = f"document.querySelectorAll('{PRESSURES} .chart > .line.p_run').length"
+    before = opened.ask(drawn)
+    opened.ask(f"document.querySelectorAll('{PRESSURES} .key')[1].click()")
+    opened.settle()
+    assert opened.ask(drawn) == 0
+    assert opened.ask(f"document.querySelectorAll('{PRESSURES} .key')[1].getAttribute('aria-pressed')") == "false"
+    opened.ask(f"document.querySelectorAll('{PRESSURES} .key')[1].click()")
+    opened.settle()
+    assert opened.ask(drawn) == before > 0
+
+
+def test_the_keyboard_does_what_the_mouse_does(opened: Page) -> None:
+    opened.ask(f"document.querySelector('{PRESSURES} .plot').focus()")
+    before = ticks(opened)
+    opened.press("ArrowRight")
+    first = opened.ask("document.getElementById('spoken').textContent")
+    assert re.match(r"t = \d+\.\d+ s: tank \d+\.\d+ bar, run line", first)
+    opened.press("ArrowRight")
+    assert opened.ask("document.getElementById('spoken').textContent") != first
+    opened.press("+")
+    opened.press("+")
+    zoomed = ticks(opened)
+    assert zoomed[-1] - zoomed[0] < 0.7 * (before[-1] - before[0])
+    opened.press("-")
+    assert ticks(opened) != zoomed
+    opened.press("0")
+    assert ticks(opened) == before
+
+
+def test_tab_reaches_every_chart_and_the_focus_is_seen(opened: Page) -> None:
+    reached, outlined = set(), True
+    for _ in range(400):
+        opened.press("Tab")
+        name, style = opened.ask(
+            "(() => { const e = document.activeElement; return [e.closest('figure') && e.classList.contains('plot')"
+            " ? e.closest('figure').dataset.chart : e.tagName, getComputedStyle(e).outlineStyle] })()"
+        )
+        outlined &= style != "none" or name == "BODY"
+        reached.add(name)
+        if name == "BODY":
+            break
+    assert set(opened.ask("[...document.querySelectorAll('figure')].map((f) => f.dataset.chart)")) <= reached
+    assert outlined
+
+
+def test_the_units_change_everywhere_and_back(opened: Page) -> None:
+    numbers = (
+        "[...document.querySelectorAll('[data-value][data-unit=Pa]')].map((e) => [e.dataset.value, e.textContent])"
+    )
+    whole = "document.body.innerText"
+    before = opened.ask(whole)
+    opened.ask("document.querySelector('#choose-units [value=team]').click()")
+    opened.settle()
+    found = opened.ask(numbers)
+    assert len(found) > 10
+    for si, shown in found:
+        number = float(shown.split()[0].replace("−", "-"))
+        assert number == pytest.approx(float(si) / 6894.757293168, rel=5e-3, abs=0.06), shown
+    assert opened.ask(f"document.querySelector('{PRESSURES} .y-label').textContent") == "pressure [psi]"
+    assert max(ticks(opened, PRESSURES, "y")) > 800.0
+    assert "psi" in opened.ask("document.getElementById('pressures-desc').textContent")
+    assert not re.search(r"\d (bar|N)\b", opened.ask(whole))
+    opened.ask("document.querySelector('#choose-units [value=si]').click()")
+    opened.settle()
+    assert opened.ask(whole) == before
+
+
+def test_a_choice_is_kept_for_the_next_page(opened: Page, path: Path) -> None:
+    opened.ask("document.querySelector('#choose-units [value=team]').click()")
+    opened.ask("document.querySelector('#choose-theme [value=dark]').click()")
+    opened.open(path)
+    assert "psi" in opened.ask("document.querySelector('#performance').innerText")
+    assert opened.ask("document.documentElement.dataset.theme") == "dark"
+
+
+CONTRAST = """(() => {
+  const parts = (text) => text.match(/[\\d.]+/g).map(Number);
+  const luminance = ([r, g, b]) => [r, g, b].map((c) => c / 255)
+    .map((c) => c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+  const ground = (element) => {
+    for (let e = element; e; e = e.parentElement) {
+      const colour = parts(getComputedStyle(e).backgroundColor);
+      if (colour.length < 4 || colour[3] > 0) return colour;
+    }
+    return [255, 255, 255];
+  };
+  const found = [], walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) {
+    const text = walker.currentNode.data.trim(), element = walker.currentNode.parentElement;
+    if (!text || !element.checkVisibility() || ["SCRIPT", "STYLE", "title", "desc"].includes(element.tagName)) continue;
+    const style = getComputedStyle(element), ink = parts(element.closest("svg") ? style.fill : style.color);
+    const [a, b] = [luminance(ink), luminance(ground(element))].sort((x, y) => x - y);
+    found.push([(b + 0.05) / (a + 0.05), text.slice(0, 40)]);
+  }
+  return found;
+})()"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_every_text_stands_out_from_its_ground(opened: Page, path: Path, scheme: str) -> None:
+    opened.open(path, prefers_color_scheme=scheme)
+    opened.ask("document.querySelectorAll('details').forEach((fold) => { fold.open = true })")
+    ratios = opened.ask(CONTRAST)
+    assert len(ratios) > 500
+    assert [text for ratio, text in ratios if ratio < 4.5] == []
+
+
+def test_the_theme_can_be_chosen_against_the_systems(opened: Page, path: Path) -> None:
+    opened.open(path, prefers_color_scheme="dark")
+    ground = "getComputedStyle(document.body).backgroundColor"
+    dark = opened.ask(ground)
+    opened.ask("document.querySelector('#choose-theme [value=light]').click()")
+    assert opened.ask(ground) != dark
+    opened.ask("document.querySelector('#choose-theme [value=auto]').click()")
+    assert opened.ask(ground) == dark
+
+
+@pytest.mark.parametrize("width", [320, 390, 768])
+def test_a_narrow_screen_never_scrolls_sideways(opened: Page, path: Path, width: int) -> None:
+    opened.open(path, width=width, height=844)
+    assert opened.ask("document.documentElement.scrollWidth") <= width
+    for chart in opened.ask("[...document.querySelectorAll('.chart')].map((svg) => svg.getBoundingClientRect().right)"):
+        assert chart <= width
+
+
+def test_paper_has_all_charts_and_no_controls(opened: Page, tmp_path: Path) -> None:
+    charts = opened.ask("document.querySelectorAll('figure').length")
+    opened.media("print")
+    opened.settle()
+    visible = "[...document.querySelectorAll('{}')].filter((e) => e.checkVisibility()).length"
+    assert opened.ask(visible.format("figure svg.chart")) == charts > 10
+    assert opened.ask(visible.format("details, nav, .bar, .save-csv")) == 0
+    assert opened.ask("getComputedStyle(document.body).color") == "rgb(27, 31, 36)"
+    printed = opened.printed(tmp_path / "page.pdf").read_bytes()
+    assert printed.startswith(b"%PDF")
+    assert len(printed) > 50_000
+
+
+def test_a_dark_screen_prints_on_white_paper(opened: Page, path: Path) -> None:
+    opened.ask("document.querySelector('#choose-theme [value=dark]').click()")
+    opened.media("print", prefers_color_scheme="dark")
+    assert opened.ask("getComputedStyle(document.documentElement).getPropertyValue('--paper')") == "#ffffff"
+    assert opened.ask("getComputedStyle(document.body).color") == "rgb(27, 31, 36)"
+
+
+def test_without_script_the_charts_are_there_and_the_controls_are_not(tab: Page, path: Path) -> None:
+    count = "[...document.querySelectorAll('{}')].filter((e) => e.checkVisibility()).length"
+    with tab.without_script():
+        tab.open(path, width=1200)
+        assert tab.ask(count.format("figure svg.chart .line")) > 20
+        assert tab.ask(count.format(".bar, .key, .save-csv")) == 0
+
+
+def test_hostile_text_is_shown_as_text(tab: Page, tmp_path: Path) -> None:
+    (tmp_path / "hostile.html").write_text(page(hostile(tmp_path)), encoding="utf-8")
+    tab.console.clear()
+    tab.open(tmp_path / "hostile.html", width=390)
+    assert tab.console == []
+    assert "<script>alert(1)</script>" in tab.ask("document.body.innerText")
+    assert tab.ask("document.images.length") == 0
+    assert tab.ask("document.documentElement.scrollWidth") <= 390
+
+
+@pytest.mark.parametrize("name", ["</svg></figure>", "\u202eknat", "x" * 400, "a\"b'c", "]]>", "<!--"])
+def test_odd_names_of_channels_stay_names(tab: Page, tmp_path: Path, name: str) -> None:
+    made = material(tmp_path, label=name)
+    made.log.channels[name] = channel(name, "V", lambda t: 1.0 + 0.0 * t)
+    (tmp_path / "odd.html").write_text(page(made), encoding="utf-8")
+    tab.console.clear()
+    tab.open(tmp_path / "odd.html", width=390)
+    assert tab.console == []
+    entry = f"[...document.querySelectorAll('.legend bdi')].some((e) => e.textContent === {json.dumps(name)})"
+    assert tab.ask(entry)
+    assert tab.ask("document.querySelectorAll('figure').length") == tab.ask("document.querySelectorAll('.plot').length")
+    assert tab.ask("document.documentElement.scrollWidth") <= 390
+
+
+def test_two_tests_share_one_page(tab: Page, tmp_path: Path) -> None:
+    made = material(tmp_path)
+    (tmp_path / "compare.html").write_text(compare(made, made), encoding="utf-8")
+    tab.console.clear()
+    tab.open(tmp_path / "compare.html")
+    assert tab.console == []
+    left, top, width, height = tab.show('[data-chart="pressures-0"] .plot')
+    tab.mouse("mouseMoved", left + 0.4 * width, top + 0.5 * height)
+    tab.settle()
+    one, other = read_out(tab, '[data-chart="pressures-0"]')
+    assert one == other != ""
+
+
+def test_the_page_looks_like_a_page(opened: Page, tmp_path: Path) -> None:
+    """A picture with one dominating ground colour and dark text on it."""
+    shot = Image.open(opened.picture(tmp_path / "page.png")).convert("L")
+    histogram, pixels = shot.histogram(), shot.width * shot.height
+    assert max(histogram) > 0.3 * pixels
+    assert sum(histogram[:90]) > 0.005 * pixels
+
+
+def test_the_command_prints_the_page(tab: Page, path: Path, tmp_path: Path) -> None:
+    printed = print_page(path, tmp_path / "report.pdf")
     assert printed.read_bytes().startswith(b"%PDF")
-    assert printed.stat().st_size > 10_000
+    assert printed.stat().st_size > 50_000

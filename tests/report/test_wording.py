@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sample import quantity
 
-from hfanalysis.report.wording import fixed, people_unit, pretty_unit, quantities, shown
+from hfanalysis.report.scales import pretty_unit, scale
+from hfanalysis.report.wording import fixed, people_unit, quantities, shown
 
 
 @pytest.mark.parametrize(
@@ -62,3 +63,27 @@ def test_known_quantities_come_first_and_none_is_lost() -> None:
         "kind": "x",
     }
     assert list(quantities(product)) == ["C_i", "m", "new_one"]
+
+
+@pytest.mark.parametrize(
+    ("made", "read"),
+    [
+        (quantity(1e6, "Pa", 1e4), "145.0 psi"),
+        (quantity(4448.2216152605, "N", 10.0), "1000.0 lbf"),
+        (quantity(4448.2216152605, "N s", 10.0), "1000.0 lbf s"),
+        (quantity(3048.0, "m", 3.0), "10000.0 ft"),
+        (quantity(8.35, "kg", 0.05), "8.350 kg"),
+        (quantity(293.15, "K", 0.5), "20.00 °C"),
+    ],
+)
+def test_a_quantity_reads_in_the_units_of_the_team(made: dict, read: str) -> None:
+    assert shown(made, "team").with_unit == read
+
+
+def test_a_difference_of_temperatures_knows_no_zero_point() -> None:
+    assert shown(quantity(2.0, "K", 0.5), "team", difference=True).value == "2.00"
+
+
+def test_a_burning_surface_is_told_in_millimetres_per_second() -> None:
+    assert shown(quantity(1.05e-3, "m/s", 2e-5), name="regression_rate_reference").with_unit == "1.050 mm/s"
+    assert scale("m/s").unit == "m/s"

@@ -68,7 +68,6 @@ _STAGES = {
     "calibrate": "Injector coefficient, feed losses, polytropic exponent and regression, with intervals.",
     "validate": "Measure the performance and run the model against the measurement.",
     "flight": "Fly the rocket on the measured thrust: apogee, rail departure, stability; engine files.",
-    "report": "Write report.html, one page to read offline.",
     "run": "Every stage.",
 }
 
@@ -113,6 +112,47 @@ for _name, _text in _STAGES.items():
         _add_flight(_text)
     else:
         _add(_name, _text)
+
+
+Pdf = Annotated[bool, typer.Option("--pdf", help="Also print the page to PDF; needs Chromium or Chrome.")]
+Plots = Annotated[bool, typer.Option("--plots", help="Also write every chart as PNG and CSV to TEST/plots/.")]
+
+
+@app.command("report")
+def _report(
+    test: Test,
+    root: Root = Path(),
+    out: Out = None,
+    as_json: Json = False,
+    force: Force = False,
+    quiet: Quiet = False,
+    settings: Set = None,
+    pdf: Pdf = False,
+    plots: Plots = False,
+) -> None:
+    """Write report.html, one page to read offline; on request as PDF, and its plots as PNG and CSV."""
+    with ending():
+        from hfanalysis.cli import papers, perform
+
+        request = perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+        papers.report(request, pdf, plots)
+
+
+@app.command("compare")
+def _compare(
+    test: Test,
+    other: Annotated[str, typer.Argument(metavar="OTHER", help="The test to lay over it.")],
+    root: Root = Path(),
+    out: Out = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    pdf: Pdf = False,
+) -> None:
+    """Lay two tests over each other: TEST/compare_OTHER.html, curves from the valve's opening, numbers side by side."""
+    with ending():
+        from hfanalysis.cli import papers, perform
+
+        papers.compare(perform.Request(test, root, out, as_json, False, quiet), other, pdf)
 
 
 EngineToml = Annotated[Path, typer.Argument(metavar="ENGINE.toml", help="An engine file, see engines/.")]

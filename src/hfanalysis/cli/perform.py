@@ -35,8 +35,8 @@ class Request:
     settings: tuple[str, ...] = ()
 
 
-def stage(name: str, request: Request) -> None:
-    """Bring a stage (or, for "run", all of them) up to date and show it."""
+def stage(name: str, request: Request) -> Context:
+    """Bring a stage (or, for "run", all of them) up to date and show it; returns its context."""
     with _watch(request) as progress:
         context = open_test(
             request.root, request.test, request.out, progress=progress, settings=_settings(request.settings)
@@ -51,6 +51,7 @@ def stage(name: str, request: Request) -> None:
         tell(f"warning: {text}")
     if name == "run":
         _check_spine(context)
+    return context
 
 
 def _check_spine(context: Context) -> None:

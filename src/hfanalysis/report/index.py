@@ -2,47 +2,36 @@
 
 from __future__ import annotations
 
-import re
-from html import unescape
+import json
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from hfanalysis.report import wording
-from hfanalysis.report.page import render
-from hfanalysis.testdata.products import atomic, read_json
+from hfanalysis.report.page import SUMMARY, render
+from hfanalysis.testdata.products import atomic
 
-_LEAD = re.compile(r'<p class="lead">(.*?)</p>', re.DOTALL)
+_HEAD = 64_000
+"""Characters from the start of a page within which its summary ends."""
+
+_EMPTY: dict[str, Any] = {"kind": "", "date": "", "source": "measured", "sentence": "", "numbers": [], "spark": {}}
 
 
 def write_index(folder: Path) -> Path:
     """Write ``index.html`` over the pages below ``folder`` (processed/); returns its path."""
     path = folder / "index.html"
-    text = render("index.html.j2", rows=[_row(page.parent) for page in sorted(folder.glob("*/report.html"))])
+    text = render("index.html.j2", rows=[_row(page) for page in sorted(folder.glob("*/report.html"))])
     if not (path.exists() and path.read_text(encoding="utf-8") == text):
         with atomic(path) as scratch:
             scratch.write_text(text, encoding="utf-8")
     return path
 
 
-def _row(folder: Path) -> dict[str, Any]:
-    """What the index says about a test."""
-    about = _read(folder / "ingest.json")
-    segments = _read(folder / "segments.json")
-    kind = str(segments.get("kind", ""))
-    lead = _LEAD.search((folder / "report.html").read_text(encoding="utf-8"))
-    return {
-        "id": folder.name,
-        "kind": wording.KINDS.get(kind, kind) or "no firing found",
-        "date": "",
-        "source": str(about.get("source", "measured")),
-        "sentence": unescape(lead[1]) if lead else "",
-        "href": f"{quote(folder.name)}/report.html",
-    }
-
-
-def _read(path: Path) -> dict[str, Any]:
+def _row(page: Path) -> dict[str, Any]:
+    """What the index says about a test, as its page has it."""
+    with page.open(encoding="utf-8") as file:
+        _, _, rest = file.read(_HEAD).partition(SUMMARY)
     try:
-        return read_json(path)
-    except (OSError, ValueError):
-        return {}
+        found = json.loads(rest.partition("</script>")[0])
+    except ValueError:
+        found = {}
+    return {**_EMPTY, **found, "id": page.parent.name, "href": f"{quote(page.parent.name)}/report.html"}

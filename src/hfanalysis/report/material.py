@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from hfanalysis.errors import AbsentError
 from hfanalysis.report.envelope import Floats
 from hfanalysis.report.svg import Event, Phase
 from hfanalysis.testdata.definition import TestDefinition
@@ -21,54 +22,72 @@ _BEFORE, _AFTER = 2.0, 3.0
 
 
 @dataclass(frozen=True)
-class Residuals:
-    """Measured against modelled p_tank of the tank-free run: time [s], all else [Pa]."""
+class Column:
+    """A variable of an HDF5 product, with its SI unit."""
 
-    time: Floats
-    measured: Floats
-    model: Floats
-    residual: Floats
-    noise_std: Floats
+    values: Floats
+    unit: str = ""
+    long_name: str = ""
 
-    def between(self, start: float, end: float) -> Residuals:
-        """The part between two instants."""
-        part = (self.time >= start) & (self.time <= end)
-        return Residuals(*(values[part] for values in vars(self).values()))
+
+Table = Mapping[str, Column]
+Store = Mapping[str, Table]
+"""The groups of an HDF5 product by their path ("" for the root), each with its variables."""
 
 
 @dataclass(frozen=True)
 class Material:
-    """All that the page shows. ``segments`` and ``calibration`` are None where ``absent`` says why."""
+    """All that the page shows.
+
+    ``products``: the JSON products by the name of their file without its ending (``"calibration"``); ``stores``: the
+    HDF5 products likewise; ``absent``: by the same names, why one is not there.
+    """
 
     definition: TestDefinition
     log: TestLog
-    ingest: Mapping[str, Any]
-    segments: Mapping[str, Any] | None = None
-    calibration: Mapping[str, Any] | None = None
-    residuals: Residuals | None = None
-    absent: Mapping[str, str] | None = None
+    products: Mapping[str, Mapping[str, Any]]
+    stores: Mapping[str, Store] = field(default_factory=dict)
+    absent: Mapping[str, str] = field(default_factory=dict)
+
+    def product(self, name: str) -> Mapping[str, Any]:
+        """A JSON product; empty where there is none."""
+        return self.products.get(name) or {}
+
+    def table(self, store: str, group: str = "") -> Table:
+        """A group of an HDF5 product; empty where there is none."""
+        return (self.stores.get(store) or {}).get(group) or {}
+
+    def has(self, name: str) -> bool:
+        """Whether a product is there."""
+        return name in self.products or name in self.stores
+
+    def why_not(self, name: str) -> str:
+        """Why a product is not there."""
+        return self.absent.get(name) or f"{name.replace('_', ' ')}: not made for this test"
+
+    @property
+    def fired(self) -> bool:
+        """Whether the opening of the valve was found."""
+        return self.event("t_open") is not None
 
     @property
     def opening(self) -> float:
         """The instant of the opening [s, log time]; 0 where the log has none, so that charts show log time."""
-        return _value(self.segments, "t_open") or 0.0
+        return self.event("t_open") or 0.0
 
     def event(self, name: str) -> float | None:
-        """An event's instant [s after the opening]."""
-        return _value(self.segments, name)
-
-
-def _value(product: Mapping[str, Any] | None, name: str) -> float | None:
-    quantity = (product or {}).get(name) or {}
-    value = quantity.get("value")
-    return None if value is None else float(value)
+        """An event's instant [s after the opening; t_open in log time]."""
+        value = (self.product("segments").get(name) or {}).get("value")
+        return None if value is None else float(value)
 
 
 def window(material: Material) -> tuple[float, float]:
     """The stretch of time that the charts show [s after the opening]: the firing, or the whole log without one."""
-    first = min(float(np.nanmin(c.time)) for c in material.log.channels.values()) - material.opening
-    last = max(float(np.nanmax(c.time)) for c in material.log.channels.values()) - material.opening
-    if material.segments is None:
+    clocks = [c.time[np.isfinite(c.time)] for c in material.log.channels.values()]
+    clocks = [clock for clock in clocks if clock.size] or [np.zeros(1)]
+    first = min(float(clock.min()) for clock in clocks) - material.opening
+    last = max(float(clock.max()) for clock in clocks) - material.opening
+    if not material.fired:
         return first, max(last, first + 1.0)
     times = [t for name in EVENTS if (t := material.event(name)) is not None]
     end = max(times) + _AFTER if material.event("t_end") is not None else max([*times, 10.0]) * 1.5 + _AFTER
@@ -77,20 +96,21 @@ def window(material: Material) -> tuple[float, float]:
 
 def event_list(material: Material) -> list[Event]:
     """The events that the test has."""
-    if material.segments is None:
+    segments = material.product("segments")
+    if not material.fired:
         return []
-    found = [Event(0.0, material.segments["t_open"].get("std") or 0.0, "t_open")]
+    found = [Event(0.0, segments["t_open"].get("std") or 0.0, "t_open")]
     for name in EVENTS:
         time = material.event(name)
         if time is not None:
-            found.append(Event(time, material.segments[name].get("std") or 0.0, name))
+            found.append(Event(time, segments[name].get("std") or 0.0, name))
     return found
 
 
 def phase_list(material: Material) -> list[Phase]:
     """What flows between one event and the next: the line filling, liquid, vapour, nitrogen; they may overlap."""
     end = material.event("t_end")
-    if material.segments is None or end is None:
+    if not material.fired or end is None:
         return []
     names = ("t_feed", "t_v", "t_purge")
     inner = sorted(t for name in names if (t := material.event(name)) is not None and 0.0 < t < end)
@@ -109,16 +129,30 @@ def _phase(material: Material, start: float, end: float) -> Phase:
     return Phase(start, end, "vapour + N₂" if nitrogen else "vapour", "nitrogen" if nitrogen else "vapor")
 
 
-def read_residuals(path: Path, group: str = "tank_free/p_tank") -> Residuals | None:
-    """The residuals of the tank-free run; None where there are none."""
-    if not path.exists():
-        return None
+def read_store(path: Path) -> Store:
+    """All one-dimensional variables of an HDF5 file, by group; those without a dimension become arrays of one."""
     import h5py
 
+    found: dict[str, dict[str, Column]] = {}
+
+    def keep(name: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset) and item.ndim <= 1 and item.dtype.kind in "fiu":
+            group, _, variable = name.rpartition("/")
+            found.setdefault(group, {})[variable] = _column(item)
+
     with h5py.File(path, "r") as file:
-        if group not in file:
-            return None
-        data = file[group]
-        time = data["time"][:]
-        noise = np.broadcast_to(data["noise_std"][()], time.shape).astype(float)
-        return Residuals(time, data["measured"][:], data["model"][:], data["residual"][:], noise)
+        file.visititems(keep)
+    return found
+
+
+def _column(item: Any) -> Column:
+    unit, long_name = (str(item.attrs.get(key, "")) for key in ("units", "long_name"))
+    return Column(np.atleast_1d(np.asarray(item[()], dtype=float)), unit, long_name)
+
+
+def required(table: Table, *names: str) -> list[Floats]:
+    """Variables of one table; raises :class:`AbsentError` naming one that it has not."""
+    for name in names:
+        if name not in table or not np.isfinite(table[name].values).any():
+            raise AbsentError(f"the products hold no {name.replace('_', ' ')}")
+    return [table[name].values for name in names]

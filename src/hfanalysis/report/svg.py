@@ -13,7 +13,7 @@ from hfanalysis.report.envelope import Envelope, Floats
 from hfanalysis.report.wording import fixed
 
 WIDTH = 960.0
-LEFT, RIGHT, TOP, BOTTOM = 58.0, 104.0, 64.0, 46.0
+LEFT, RIGHT, TOP, BOTTOM = 58.0, 116.0, 52.0, 46.0
 """Margins: for the values, the names at the lines' ends, the events, and the time."""
 
 _ROWS = 3
@@ -121,7 +121,7 @@ def axes(plot: Plot, x_label: str, y_label: str) -> None:
     plot.parts += _x_ticks(plot, bottom)
     plot.parts.append(f'<path class="axis" d="M{LEFT:.1f} {TOP:.1f}V{bottom:.1f}H{right:.1f}"/>')
     plot.parts.append(_text(0.5 * (LEFT + right), plot.height - 8, x_label, "label", "middle"))
-    plot.parts.append(_text(4, 14, y_label, "label", "start"))
+    plot.parts.append(_text(4, 11, y_label, "label", "start"))
 
 
 def _y_ticks(plot: Plot, right: float) -> Iterator[str]:
@@ -179,7 +179,7 @@ def events(plot: Plot, found: Sequence[Event]) -> None:
         row = next((row for row, end in enumerate(ends) if end < x - half), _ROWS - 1)
         ends[row] = x + half
         plot.parts.append(_event(plot, event, x))
-        plot.parts.append(_text(x, TOP - 6 - 13 * row, event.name, "event-name", "middle"))
+        plot.parts.append(_text(x, TOP - 6 - 12 * row, event.name, "event-name", "middle"))
 
 
 def _event(plot: Plot, event: Event, x: float) -> str:
@@ -242,14 +242,16 @@ def _runs(values: Floats) -> list[slice]:
     return [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def render(plot: Plot, name: str, title: str, description: str) -> Markup:
-    """The finished chart; ``title`` and ``description`` are its text alternative."""
+def render(plot: Plot, name: str, title: str, description: str, other_units: str = "") -> Markup:
+    """The finished chart; ``title`` and ``description`` are its text alternative, ``other_units`` the team's."""
     _name_ends(plot)
     body = "".join(plot.parts)
+    texts = f' data-si="{escape(description)}" data-team="{escape(other_units)}"' if other_units else ""
     return Markup(
         f'<svg class="chart" viewBox="0 0 {WIDTH:.0f} {plot.height:.0f}" role="img" '
-        f'aria-labelledby="{name}-title {name}-desc"><title id="{name}-title">{escape(title)}</title>'
-        f'<desc id="{name}-desc">{escape(description)}</desc>{body}</svg>'
+        f'aria-labelledby="{name}-title" aria-describedby="{name}-desc">'
+        f'<title id="{name}-title">{escape(title)}</title>'
+        f'<desc id="{name}-desc"{texts}>{escape(description)}</desc>{body}</svg>'
     )
 
 
@@ -260,7 +262,12 @@ def _name_ends(plot: Plot) -> None:
     for place, (_, name, style) in zip(places, ordered, strict=True):
         x = WIDTH - RIGHT + 8
         plot.parts.append(f'<path class="line {style}" d="M{x:.1f} {place:.1f}h12"/>')
-        plot.parts.append(_text(x + 17, place + 4, name, "end-name", "start"))
+        plot.parts.append(_text(x + 17, place + 4, shortened(name), "end-name", "start"))
+
+
+def shortened(name: str, most: int = 13) -> str:
+    """A name that fits beside a chart."""
+    return name if len(name) <= most else f"{name[: most - 1]}…"
 
 
 def _apart(places: list[float], gap: float, lowest: float) -> list[float]:

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from hfanalysis.report.scales import reading_unit, scale
+
 NAMES: dict[str, str] = {
     "C_i": "injector coefficient",
     "m": "polytropic exponent",
@@ -22,15 +24,25 @@ NAMES: dict[str, str] = {
     "t_end": "chamber unchokes",
     "a": "regression coefficient",
     "n": "regression exponent",
+    "regression_rate_reference": "regression rate at the reference flux",
     "oxidizer_flow_peak": "peak oxidizer flow",
     "oxidizer_mass_liquid_phase": "oxidizer used as liquid",
     "mass_at_t_feed": "oxidizer at t_feed",
     "vapor_mass_at_t_v": "vapour left at t_v",
+    "burn_time": "burn time",
+    "total_impulse": "total impulse",
+    "specific_impulse": "specific impulse",
+    "peak_chamber_pressure": "peak chamber pressure",
+    "average_chamber_pressure": "average chamber pressure",
+    "peak_thrust": "peak thrust",
+    "average_thrust": "average thrust",
+    "oxidizer_mass": "oxidizer used",
+    "fuel_mass": "fuel burned",
 }
 """The quantities of the products, in the order in which they are shown."""
 
 EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
-MASTHEAD = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor")
+MASTHEAD = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "a", "n", "regression_rate_reference")
 """What a calibration is asked for first."""
 
 SOURCES: dict[str, str] = {
@@ -42,12 +54,11 @@ SOURCES: dict[str, str] = {
 
 KINDS: dict[str, str] = {"hot_fire": "hot fire", "cold_flow": "cold flow"}
 
-_PEOPLE: dict[str, tuple[float, str]] = {"Pa": (1e-5, "bar"), "m^2": (1e6, "mm²"), "m^3": (1e3, "L")}
 _FINEST: dict[str, int] = {"s": 4}
 """Decimals beyond which nobody reads."""
 _NOTHING = 1e-200
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_MINUS = "\N{MINUS SIGN}"
+MINUS = "\N{MINUS SIGN}"
 
 
 @dataclass(frozen=True)
@@ -69,35 +80,31 @@ class Shown:
 
 def people_unit(unit: str) -> tuple[float, str]:
     """(factor, unit): multiply an SI value to have it in the unit people at a test stand use."""
-    return _PEOPLE.get(unit, (1.0, pretty_unit(unit)))
+    found = scale(unit)
+    return found.factor, found.unit
 
 
-def pretty_unit(unit: str) -> str:
-    """The unit with real superscripts.
+def shown(quantity: Mapping[str, Any], system: str = "si", name: str = "", difference: bool = False) -> Shown:
+    """A quantity of a product (``{"value": …}``) as people read it in one of the systems of units.
 
-    >>> pretty_unit("1/m^4")
-    '1/m⁴'
+    Args:
+        quantity: as products state it.
+        system: of units: "si" or "team".
+        name: the quantity's, which may ask for a unit of its own.
+        difference: whether no zero point of a unit concerns it.
     """
-    head, *powers = unit.split("^")
-    for power in powers:
-        digits = len(power) - len(power.lstrip("-0123456789"))
-        head += power[:digits].translate(_SUPERSCRIPT) + power[digits:]
-    return "" if head == "1" else head
-
-
-def shown(quantity: Mapping[str, Any]) -> Shown:
-    """A quantity of a product (``{"value": …}``) as people read it."""
     verdict = str(quantity.get("verdict") or "")
     if quantity.get("value") is None:
         return Shown("–", "", "", "", verdict or "absent", str(quantity.get("reason") or ""))
-    factor, unit = people_unit(str(quantity.get("unit") or ""))
-    value, std = factor * quantity["value"], factor * (quantity.get("std") or 0.0)
+    found = scale(reading_unit(name, str(quantity.get("unit") or "")), system)
+    factor, zero, unit = found.factor, 0.0 if difference else found.zero, found.unit
+    value, std = factor * quantity["value"] + zero, factor * (quantity.get("std") or 0.0)
     exponent = 0 if unit == "s" else _exponent(max(abs(value), std))
     if exponent:
-        factor, unit = factor / 10.0**exponent, f"×10{str(exponent).translate(_SUPERSCRIPT)} {unit}".strip()
-        value, std = value / 10.0**exponent, std / 10.0**exponent
+        unit = f"×10{str(exponent).translate(_SUPERSCRIPT)} {unit}".strip()
+        factor, zero, value, std = (x / 10.0**exponent for x in (factor, zero, value, std))
     decimals = min(decimals_for(value, std), _FINEST.get(unit, 8))
-    interval = [fixed(factor * end, decimals) for end in quantity.get("ci95") or ()]
+    interval = [fixed(factor * end + zero, decimals) for end in quantity.get("ci95") or ()]
     return Shown(
         fixed(value, decimals),
         fixed(std, decimals) if quantity.get("std") else "",
@@ -130,7 +137,7 @@ def fixed(value: float, decimals: int) -> str:
     '−1.2'
     """
     text = f"{value:.{decimals}f}"
-    return text.replace("-", _MINUS) if float(text) else text.replace("-", "")
+    return text.replace("-", MINUS) if float(text) else text.replace("-", "")
 
 
 def tidy(value: float, digits: int = 4) -> str:
@@ -139,7 +146,7 @@ def tidy(value: float, digits: int = 4) -> str:
     >>> tidy(-0.001234567)
     '−0.001235'
     """
-    return f"{value:.{digits}g}".replace("-", _MINUS)
+    return f"{value:.{digits}g}".replace("-", MINUS)
 
 
 def is_quantity(data: Any) -> bool:
@@ -161,3 +168,12 @@ def in_words(name: str) -> str:
     ('liquid gone', 'tank rest pressure')
     """
     return NAMES.get(name, name.replace("_", " "))
+
+
+def listed(names: list[str]) -> str:
+    """Names in a sentence.
+
+    >>> listed(["a", "b", "c"])
+    'a, b and c'
+    """
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

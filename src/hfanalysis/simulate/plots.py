@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from itertools import cycle
 
 import numpy as np
@@ -12,13 +11,12 @@ from numpy.typing import NDArray
 
 from hfanalysis.engine.steady import SteadyEngine
 from hfanalysis.report import svg
+from hfanalysis.report.colours import STYLES
 from hfanalysis.report.envelope import Envelope
+from hfanalysis.report.style import sheet
 from hfanalysis.simulate.study import FlowPoint, MixturePoint
 
 Array = NDArray[np.float64]
-
-_STYLES = ("p_tank", "p_run", "p_chamber", "p_purge", "thrust", "m_tank")
-"""Colours of the style sheet, in the order in which curves take them."""
 
 _ALONE = "svg { font-family: system-ui, sans-serif; background: var(--paper); }"
 
@@ -93,11 +91,10 @@ def chart(title: str, x_label: str, y_label: str, curves: Sequence[Curve], with_
     xs = np.concatenate([curve.x for curve in curves])
     plot = svg.new_plot((float(xs.min()), float(xs.max())), svg.value_range([c.y for c in curves], with_zero))
     svg.axes(plot, x_label, y_label)
-    colours = cycle(_STYLES)
+    colours = cycle(STYLES)
     for curve in curves:
         data = Envelope(curve.x, curve.y, curve.y, curve.y)
         svg.line(plot, data, curve.style or next(colours), curve.name)
     drawn = str(svg.render(plot, "chart", title, f"{y_label} over {x_label}"))
-    style = files("hfanalysis.report").joinpath("templates/style.css").read_text(encoding="utf-8")
     head, body = drawn.split(">", 1)
-    return f'{head} xmlns="http://www.w3.org/2000/svg"><style><![CDATA[{style}{_ALONE}]]></style>{body}\n'
+    return f'{head} xmlns="http://www.w3.org/2000/svg"><style><![CDATA[{sheet()}{_ALONE}]]></style>{body}\n'

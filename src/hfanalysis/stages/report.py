@@ -6,37 +6,22 @@ Reads whatever the stages before it have made; a stage that found nothing to do 
 
 from __future__ import annotations
 
-from typing import Any
-
+from hfanalysis.stages import ORDER
 from hfanalysis.stages.base import Context, Stage
 
 
 def run(context: Context) -> None:
     """Write the page of the test."""
-    from hfanalysis.report.material import Material, read_residuals
+    from hfanalysis.report.load import load
     from hfanalysis.report.page import page
-    from hfanalysis.testdata.log import read_log
 
-    material = Material(
-        context.definition,
-        read_log(context.product("ingest.h5")),
-        context.read_json("ingest.json"),
-        _product(context, "segment", "segments.json"),
-        _product(context, "calibrate", "calibration.json"),
-        None if "validate" in context.absent else read_residuals(context.product("residuals.h5")),
-        context.absent,
-    )
-    context.scratch("report.html").write_text(page(material), encoding="utf-8")
-
-
-def _product(context: Context, stage: str, name: str) -> dict[str, Any] | None:
-    return None if stage in context.absent else context.read_json(name)
+    context.scratch("report.html").write_text(page(load(context)), encoding="utf-8")
 
 
 STAGE = Stage(
     name="report",
     needs=("ingest",),
-    wants=("segment", "calibrate", "validate", "flight"),
+    wants=tuple(name for name in ORDER if name not in ("ingest", "report")),
     products=("report.html",),
     run=run,
 )

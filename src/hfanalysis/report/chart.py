@@ -1,0 +1,144 @@
+"""A chart as data: series over time in SI. How it is drawn, sent to the page and written to files is elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from markupsafe import Markup
+
+from hfanalysis.report.envelope import Envelope, Floats, envelope
+from hfanalysis.report.material import Material, event_list, phase_list, window
+from hfanalysis.report.scales import Scale, scale
+from hfanalysis.report.svg import Event, Phase
+from hfanalysis.testdata.log import Channel
+
+TIME = "time after the valve opens [s]"
+LOG_TIME = "log time [s]"
+
+
+@dataclass(frozen=True)
+class Series:
+    """One line over time, in the SI unit of its chart.
+
+    ``style`` names its colour and ``label`` what people read; ``kind`` is "line", "band" (``values`` and ``upper`` are
+    its edges) or "level" (a constant, drawn across the whole chart).
+    """
+
+    label: str
+    style: str
+    time: Floats
+    values: Floats
+    kind: str = "line"
+    upper: Floats | None = None
+    dashed: bool = False
+
+    def reduced(self, start: float, end: float, bins: int) -> Envelope:
+        """The line with at most ``bins`` points."""
+        return envelope(self.time, self.values, start, end, bins)
+
+    @property
+    def finite(self) -> bool:
+        """Whether there is anything to draw."""
+        return bool(np.isfinite(self.values).any())
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Series over one time axis with what people need to read them."""
+
+    key: str
+    title: str
+    quantity: str
+    unit: str
+    series: tuple[Series, ...]
+    span: tuple[float, float]
+    caption: str | Markup = ""
+    phases: tuple[Phase, ...] = ()
+    events: tuple[Event, ...] = ()
+    x_label: str = TIME
+    height: float = 300.0
+    with_zero: bool = True
+    value_span: tuple[float, float] | None = None
+    """Of the value axis [SI], where the data themselves should not set it."""
+    difference: bool = False
+    """Whether the values are differences, which the zero point of a unit does not concern."""
+
+    def scale(self, system: str = "si") -> Scale:
+        """How its values are shown in a system of units."""
+        found = scale(self.unit, system)
+        return replace(found, zero=0.0) if self.difference else found
+
+    @property
+    def lines(self) -> list[Series]:
+        """The series that are lines."""
+        return [series for series in self.series if series.kind == "line"]
+
+
+def over_time(
+    material: Material,
+    key: str,
+    title: str,
+    axis: tuple[str, str],
+    series: Iterable[Series],
+    caption: str | Markup = "",
+    *,
+    span: tuple[float, float] | None = None,
+    height: float = 300.0,
+    with_zero: bool = True,
+    value_span: tuple[float, float] | None = None,
+    difference: bool = False,
+) -> Chart | None:
+    """A chart over the test's phases and events; None where no series has anything to draw.
+
+    Args:
+        material: the test.
+        key: the chart's name in files and addresses.
+        title: its heading.
+        axis: (quantity, SI unit) of the values.
+        series: what is drawn.
+        caption: below it; text is escaped.
+        span: of time [s]; by default the page's window.
+        height: in pixels at a width of 960.
+        with_zero: whether zero belongs to the value axis.
+        value_span: of the value axis, where the data should not set it.
+        difference: whether the values are differences.
+    """
+    kept = tuple(one for one in series if one.finite)
+    if not any(one.kind == "line" for one in kept):
+        return None
+    return Chart(
+        key,
+        title,
+        *axis,
+        kept,
+        span or window(material),
+        Markup.escape(caption),
+        tuple(phase_list(material)),
+        tuple(event_list(material)),
+        TIME if material.fired else LOG_TIME,
+        height,
+        with_zero,
+        value_span,
+        difference,
+    )
+
+
+def of_channel(
+    material: Material, channel: Channel, label: str = "", style: str = "other", raw: bool = False
+) -> Series:
+    """A channel's good samples within the page's window."""
+    values = channel.raw if raw and channel.raw is not None else channel.values
+    start, end = window(material)
+    time = channel.time - material.opening
+    part = channel.good & (time >= start) & (time <= end)
+    return Series(label or channel.name, style, time[part], values[part])
+
+
+def around(times: Sequence[Floats]) -> tuple[float, float]:
+    """A little more than the stretch that the times cover."""
+    first = min(float(time[0]) for time in times if time.size)
+    last = max(float(time[-1]) for time in times if time.size)
+    air = 0.04 * (last - first) or 0.5
+    return first - air, last + air

@@ -1,0 +1,132 @@
+"""Two tests laid over each other: the same charts in two colours, and their numbers side by side."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from markupsafe import Markup
+
+from hfanalysis.report import html
+from hfanalysis.report.chart import Chart, Series
+from hfanalysis.report.figure import figure
+from hfanalysis.report.material import EVENTS, Material
+from hfanalysis.report.page import kind, render
+from hfanalysis.report.payload import payload
+from hfanalysis.report.scales import SYSTEMS
+from hfanalysis.report.sections import charts
+from hfanalysis.report.wording import MINUS, Shown, fixed, quantities, shown
+
+_LEFT_OUT = {"raw", "model", "residual"}
+"""Lines that say something of one test only."""
+
+_FAR, _VERY_FAR = 3.0, 100.0
+"""Standard deviations beyond which a difference is pointed out, and beyond which nobody counts them."""
+
+
+def compare(one: Material, other: Material) -> str:
+    """The HTML of the page of two tests."""
+    pairs = list(both_charts(one, other))
+    return render(
+        "compare.html.j2",
+        tests=[(material.definition.test, kind(material)) for material in (one, other)],
+        tables=list(_tables(one, other)),
+        figures=[figure(chart) for chart in pairs],
+        data=payload(pairs),
+    )
+
+
+def both_charts(one: Material, other: Material) -> Iterator[Chart]:
+    """A chart for every line that both tests have, time from the opening of the valve."""
+    theirs = {(chart.key, line.label): (chart, line) for chart in charts(other) for line in _lines(chart)}
+    names = [material.definition.test.id for material in (one, other)]
+    for chart in charts(one):
+        for line in _lines(chart):
+            found = theirs.get((chart.key, line.label))
+            if found is not None:
+                yield _laid_over((chart, line), found, names)
+
+
+def _lines(chart: Chart) -> list[Series]:
+    return [line for line in chart.lines if line.style not in _LEFT_OUT and line.label != "measured"]
+
+
+def _laid_over(mine: tuple[Chart, Series], theirs: tuple[Chart, Series], names: list[str]) -> Chart:
+    chart, line = mine
+    span = (min(chart.span[0], theirs[0].span[0]), max(chart.span[1], theirs[0].span[1]))
+    alone = len(_lines(chart)) == 1
+    return replace(
+        chart,
+        key=f"{chart.key}-{chart.lines.index(line)}",
+        title=chart.title if alone else f"{chart.title}: {line.label}",
+        series=(
+            replace(line, label=names[0], style="one"),
+            replace(theirs[1], label=names[1], style="two", dashed=True),
+        ),
+        span=span,
+        caption="",
+        phases=(),
+        events=(),
+        value_span=None,
+        height=260.0,
+    )
+
+
+def _tables(one: Material, other: Material) -> Iterator[tuple[str, Markup]]:
+    columns = ("quantity", f">{one.definition.test.id}", f">{other.definition.test.id}", ">difference", ">in std")
+    for title, pick in (("Performance", _performance), ("Calibration", _calibration), ("Phases", _phases)):
+        mine, theirs = pick(one), pick(other)
+        rows = [_row(name, mine.get(name), theirs.get(name)) for name in dict.fromkeys([*mine, *theirs])]
+        if rows:
+            caption = "Difference: the second less the first; in standard deviations of both together."
+            yield title, html.table(title, caption, columns, rows)
+
+
+def _performance(material: Material) -> Mapping[str, Mapping[str, Any]]:
+    return quantities((material.product("validation").get("performance") or {}).get("measured") or {})
+
+
+def _calibration(material: Material) -> Mapping[str, Mapping[str, Any]]:
+    return quantities(material.product("calibration"))
+
+
+def _phases(material: Material) -> Mapping[str, Mapping[str, Any]]:
+    segments = material.product("segments")
+    return {name: segments[name] for name in EVENTS if isinstance(segments.get(name), Mapping)}
+
+
+def _row(name: str, mine: Mapping[str, Any] | None, theirs: Mapping[str, Any] | None) -> tuple[Any, ...]:
+    cells = [Markup("–") if not quantity else _cell(name, quantity) for quantity in (mine, theirs)]
+    return (html.symbol_and_words(name), *cells, *_difference(name, mine or {}, theirs or {}))
+
+
+def _cell(name: str, quantity: Mapping[str, Any]) -> Markup:
+    verdict = str(quantity.get("verdict") or "")
+    judged = Markup(" ") + html.verdict(verdict) if verdict and html.mark(verdict) != "good" else Markup()
+    return html.value(quantity, name) + judged
+
+
+def _difference(name: str, mine: Mapping[str, Any], theirs: Mapping[str, Any]) -> tuple[Markup, Markup]:
+    """The difference of two quantities with its standard deviation, and how many of those it is."""
+    if mine.get("value") is None or theirs.get("value") is None:
+        return Markup(), Markup()
+    value, std = theirs["value"] - mine["value"], math.hypot(mine.get("std") or 0.0, theirs.get("std") or 0.0)
+    between = {"value": value, "std": std, "unit": mine.get("unit")}
+    si, team = (_signed(shown(between, system, name, True)) for system in SYSTEMS)
+    return html.both(si, team), _sigmas(value, std)
+
+
+def _signed(text: Shown) -> str:
+    spread = f" ± {text.std}" if text.std else ""
+    number = f"{'' if text.value.startswith(MINUS) else '+'}{text.value}{spread}"
+    return f"({number}) {text.unit}" if text.unit.startswith("×") else f"{number} {text.unit}".strip()
+
+
+def _sigmas(value: float, std: float) -> Markup:
+    if not std:
+        return Markup()
+    share = abs(value) / std
+    number = fixed(share, 1) if share < _VERY_FAR else f"> {_VERY_FAR:.0f}"
+    return Markup("<strong>{}</strong>").format(number) if share > _FAR else Markup(number)

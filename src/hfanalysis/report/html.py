@@ -1,0 +1,153 @@
+"""Small pieces of HTML: numbers that know both systems of units, tables, badges. Everything put in is escaped."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from markupsafe import Markup, escape
+
+from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
+from hfanalysis.report.scales import scale
+from hfanalysis.report.wording import Shown, fixed, in_words, shown, tidy
+
+_UNITS_IN_TEXT = {"bar": ("Pa", 1e5), "Pa": ("Pa", 1.0), "N": ("N", 1.0), "N s": ("N s", 1.0)}
+_IN_TEXT = re.compile(r"(?<![\w.])([+\-−]?\d+(?:\.\d+)?) (bar|Pa|N s|N)(?![\w/^²·])")
+
+
+def both(si: str, team: str, style: str = "", value: float | None = None, unit: str = "") -> Markup:
+    """Text in both systems of units: SI's shows, the page's script changes it. ``value`` is the number in SI."""
+    if si == team and value is None and not style:
+        return escape(si)
+    known = "" if value is None else Markup(' data-value="{}" data-unit="{}"').format(repr(float(value)), unit)
+    css = Markup(' class="{}"').format(style) if style else ""
+    texts = Markup(' data-si="{}" data-team="{}"').format(si, team) if si != team else ""
+    return Markup("<span{}{}{}>{}</span>").format(css, known, texts, si)
+
+
+def amount(value: float | None, unit: str, digits: int = 4, difference: bool = False) -> Markup:
+    """A number without uncertainty, with its unit; ``difference`` for those that no zero point concerns."""
+    if value is None:
+        return Markup("–")
+    texts = []
+    for system in ("si", "team"):
+        found = scale(unit, system)
+        number = found.factor * value if difference else found(value)
+        texts.append(f"{tidy(number, digits)} {found.unit}".strip())
+    return both(texts[0], texts[1], "number", value, unit)
+
+
+def switchable(text: str) -> Markup:
+    """A sentence of a product, its pressures and forces ready for the other system of units."""
+    parts, last = [], 0
+    for found in _IN_TEXT.finditer(text):
+        parts += [escape(text[last : found.start()]), _converted(found[1], found[2])]
+        last = found.end()
+    return Markup("").join([*parts, escape(text[last:])])
+
+
+def _converted(number: str, unit: str) -> Markup:
+    si, factor = _UNITS_IN_TEXT[unit]
+    value = float(number.replace("−", "-")) * factor
+    team = scale(si, "team")
+    digits = max(3, len(re.sub(r"\D", "", number)))
+    return both(f"{number} {unit}", f"{tidy(team(value), digits)} {team.unit}")
+
+
+def value(quantity: Mapping[str, Any], name: str = "") -> Markup:
+    """A quantity with its standard deviation and unit."""
+    si, team = _shown(quantity, name)
+    number = both(si.value, team.value, "number", quantity.get("value"), str(quantity.get("unit") or ""))
+    std = Markup(" ") + both(f"± {si.std}", f"± {team.std}", "std") if si.std else Markup()
+    unit = Markup(" ") + both(si.unit, team.unit, "unit") if si.unit or team.unit else Markup()
+    if std and si.unit.startswith("×"):
+        number, std = Markup("(") + number, std + Markup(")")
+    return Markup('<span class="quantity">{}{}{}</span>').format(number, std, unit)
+
+
+def interval(quantity: Mapping[str, Any], name: str = "") -> Markup:
+    """Its 95 % interval."""
+    si, team = _shown(quantity, name)
+    return both(si.interval, team.interval)
+
+
+def _shown(quantity: Mapping[str, Any], name: str) -> tuple[Shown, Shown]:
+    return shown(quantity, "si", name), shown(quantity, "team", name)
+
+
+def symbol(name: str) -> Markup:
+    """A quantity's symbol, with its subscript where it has a short head."""
+    head, _, tail = name.partition("_")
+    if len(head) > 2:
+        return Markup('<span class="name">{}</span>').format(name)
+    sub = Markup("<sub>{}</sub>").format(tail.replace("_", " ")) if tail else ""
+    return Markup('<span class="symbol">{}{}</span>').format(head, sub)
+
+
+def symbol_and_words(name: str) -> Markup:
+    """The symbol, where it is one, and the name in words."""
+    words = in_words(name)
+    if len(name.partition("_")[0]) > 2:
+        return Markup('<span class="words">{}</span>').format(words)
+    return Markup('{} <span class="words">{}</span>').format(symbol(name), words)
+
+
+MARKS = {"good": "✓", "open": "?", "bad": "✕", "sensor": "!"}
+"""Signs that say without colour what a colour says."""
+
+
+def mark(verdict: str) -> str:
+    """The class of a verdict for the style sheet."""
+    return {IDENTIFIED: "good", UNPHYSICAL: "bad"}.get(verdict, "open")
+
+
+def verdict(text: str) -> Markup:
+    """A verdict as a badge: sign, word and colour."""
+    if not text:
+        return Markup()
+    kind = mark(text)
+    badge = Markup('<span class="verdict {}"><span aria-hidden="true">{}</span> {}</span>')
+    return badge.format(kind, MARKS[kind], text)
+
+
+def table(name: str, caption: str | Markup, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> Markup:
+    """A table that scrolls by itself where it is too wide; a column whose head starts with ">" is aligned right."""
+    right = [column.startswith(">") for column in columns]
+    heads = Markup().join(
+        Markup('<th scope="col"{}>{}</th>').format(_right(is_right), column.lstrip(">"))
+        for column, is_right in zip(columns, right, strict=True)
+    )
+    body = Markup("\n").join(_row(row, right) for row in rows)
+    frame = Markup(
+        '<div class="scroll" tabindex="0" role="region" aria-label="{}: table"><table><caption>{}</caption>'
+        "<thead><tr>{}</tr></thead><tbody>\n{}\n</tbody></table></div>"
+    )
+    return frame.format(name, caption, heads, body)
+
+
+def _row(cells: Sequence[Any], right: Sequence[bool]) -> Markup:
+    first, *others = cells
+    head = Markup('<tr><th scope="row"{}>{}</th>').format(_right(right[0]), first)
+    rest = (Markup("<td{}>{}</td>").format(_right(r), cell) for cell, r in zip(others, right[1:], strict=True))
+    return head + Markup().join(rest) + Markup("</tr>")
+
+
+def _right(is_right: bool) -> Markup:
+    return Markup(' class="r"') if is_right else Markup()
+
+
+def paragraph(text: str | Markup, style: str = "note") -> Markup:
+    """A paragraph."""
+    return Markup('<p class="{}">{}</p>').format(style, text)
+
+
+def bullets(texts: Iterable[str | Markup], style: str) -> Markup:
+    """A list."""
+    items = Markup().join(Markup("<li>{}</li>").format(text) for text in texts)
+    return Markup('<ul class="{}">{}</ul>').format(style, items)
+
+
+def seconds(time: float, decimals: int = 2) -> str:
+    """An instant of a chart."""
+    return f"{fixed(time, decimals)} s"

@@ -1,0 +1,94 @@
+"""What the page's script needs to draw a chart anew: its series with the detail to zoom into, as JSON."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from hfanalysis.report import draw
+from hfanalysis.report.chart import Chart, Series
+from hfanalysis.report.envelope import Envelope, Floats
+from hfanalysis.report.scales import SYSTEMS
+
+MOST, LEAST = 24_000, 1_500
+"""Samples of a line that a page keeps as they are (24 s at 1 kHz), and how few where there are many lines."""
+
+BUDGET = 500_000
+"""Numbers on a page, 5.3 bytes each: with everything else a page stays below 5 MB."""
+
+
+def detail(charts: Sequence[Chart]) -> int:
+    """How many samples each line of a page may keep."""
+    lines = sum(len(chart.series) for chart in charts)
+    return int(np.clip(BUDGET / (2 * max(1, lines)), LEAST, MOST))
+
+
+def payload(charts: Sequence[Chart]) -> Markup:
+    """All charts as JSON, for an element that browsers do not run."""
+    most = detail(charts)
+    return as_json({"charts": {chart.key: _chart(chart, most) for chart in charts}})
+
+
+def as_json(data: Any) -> Markup:
+    """JSON that may stand in an HTML script element, whatever its texts are."""
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    for sign in "<>&\u2028\u2029":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return Markup(text)
+
+
+def _chart(chart: Chart, most: int) -> dict[str, Any]:
+    clocks: list[str] = []
+    return {
+        "title": chart.title,
+        "si": chart.unit.partition(",")[0],
+        "quantity": chart.quantity,
+        "scales": {system: list(vars(chart.scale(system)).values()) for system in SYSTEMS},
+        "span": list(chart.span),
+        "values": list(_si_span(chart)),
+        "height": chart.height,
+        "label": chart.x_label,
+        "phases": [vars(phase) for phase in chart.phases],
+        "events": [vars(event) for event in chart.events],
+        "series": [_series(chart, one, most, clocks) for one in chart.series],
+        "clocks": clocks,
+    }
+
+
+def _si_span(chart: Chart) -> tuple[float, float]:
+    scale = chart.scale()
+    low, high = draw.value_span(chart, scale)
+    return (low - scale.zero) / scale.factor, (high - scale.zero) / scale.factor
+
+
+def _series(chart: Chart, one: Series, most: int, clocks: list[str]) -> dict[str, Any]:
+    out: dict[str, Any] = {"label": one.label, "style": one.style, "kind": one.kind, "dashed": one.dashed}
+    if one.kind == "level":
+        return out | {"level": float(one.values[0])}
+    data = _kept(chart, one.time, one.values, most)
+    clock = _packed(data.time - chart.span[0])
+    if clock not in clocks:
+        clocks.append(clock)
+    out |= {"clock": clocks.index(clock), "mean": _packed(data.mean)}
+    if one.upper is not None:
+        out["high"] = _packed(_kept(chart, one.time, one.upper, most).mean)
+    elif data.low is not data.mean:
+        out |= {"low": _packed(data.low), "high": _packed(data.high)}
+    return out
+
+
+def _kept(chart: Chart, time: Floats, values: Floats, most: int) -> Envelope:
+    """All samples where there are few, else an envelope of a third as many bins, each with three numbers."""
+    start, end = chart.span
+    inside = int(np.count_nonzero((time >= start) & (time <= end)))
+    return Series("", "", time, values).reduced(start, end, most if inside <= most else most // 3)
+
+
+def _packed(values: Floats) -> str:
+    """Numbers as base64 of little-endian 32-bit floats."""
+    return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode("ascii")

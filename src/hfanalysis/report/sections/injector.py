@@ -1,0 +1,86 @@
+"""The injector: the pressure drop across it, and its coefficient over time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from hfanalysis.report import html, svg
+from hfanalysis.report.chart import Chart, Series, around, over_time
+from hfanalysis.report.envelope import Floats
+from hfanalysis.report.material import Material, window
+from hfanalysis.report.sections import Block, Section
+
+_FIRST = 0.1
+"""The share of the history, from its start, that does not set the chart's range: the line is still filling."""
+
+
+def render(material: Material) -> Iterator[Block]:
+    """Both charts, where there is what they need."""
+    yield _drop(material)
+    yield _coefficient(material)
+
+
+def _drop(material: Material) -> Chart | None:
+    run, chamber = (material.log.get(name) for name in ("p_run", "p_chamber"))
+    if run is None or chamber is None:
+        return None
+    start, end = window(material)
+    time = run.time - material.opening
+    part = run.good & (time >= start) & (time <= end)
+    good = chamber.good
+    if not part.any() or not good.any():
+        return None
+    behind = np.interp(run.time[part], chamber.time[good], chamber.values[good])
+    drop = Series("p_run − p_chamber", "p_run", time[part], run.values[part] - behind)
+    caption = "Run line less chamber pressure: what drives the flow, and what keeps the chamber from pushing back."
+    return over_time(material, "injector-drop", "Pressure drop across the injector", ("drop", "Pa"), [drop], caption)
+
+
+def _coefficient(material: Material) -> Chart | None:
+    history = material.product("calibration").get("C_i_history") or {}
+    time, value = (np.asarray(history.get(key, []), dtype=float) for key in ("time", "value"))
+    if time.size < 2:
+        return None
+    std = np.broadcast_to(np.asarray(history.get("std", 0.0), dtype=float), time.shape)
+    quantity = material.product("calibration").get("C_i") or {}
+    return over_time(
+        material,
+        "injector-coefficient",
+        "Injector coefficient over time",
+        ("C_i", ""),
+        list(_series(time, value, std, quantity)),
+        _caption(quantity),
+        span=around([time]),
+        height=260.0,
+        value_span=_range(time, value),
+    )
+
+
+def _series(time: Floats, value: Floats, std: Floats, quantity: Mapping[str, Any]) -> Iterator[Series]:
+    yield Series("95 % interval", "C_i", time, value - 1.96 * std, "band", value + 1.96 * std)
+    yield Series("C_i(t)", "C_i", time, value)
+    if quantity.get("value") is not None:
+        level = np.full(2, float(quantity["value"]))
+        yield Series("calibrated", "C_i", time[[0, -1]], level, "level")
+
+
+def _caption(quantity: Mapping[str, Any]) -> Markup:
+    words = Markup("Each instant taken for itself, with its 95 % interval.")
+    if quantity.get("value") is not None:
+        words += Markup(" Dashed: the calibrated C_i = {}.").format(html.value(quantity))
+    return words + Markup(" A coefficient that drifts says that the model lacks something.")
+
+
+def _range(time: Floats, value: Floats) -> tuple[float, float]:
+    settled = np.isfinite(value) & (time > time[0] + _FIRST * (time[-1] - time[0]))
+    limits = np.nanpercentile(value[settled] if settled.any() else value, [1, 99])
+    low, high = svg.value_range([np.asarray(limits)], with_zero=False)
+    air = 0.5 * (high - low)
+    return max(0.0, low - air), high + air
+
+
+SECTION = Section("Injector", 35, (), render)

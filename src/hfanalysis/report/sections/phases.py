@@ -1,0 +1,55 @@
+"""Phases: when what happened."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from markupsafe import Markup
+
+from hfanalysis.report import html
+from hfanalysis.report.material import EVENTS, Material, phase_list
+from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.svg import Phase
+from hfanalysis.report.wording import in_words, is_quantity
+
+_CAPTION = Markup("Seconds after the valve opens; t<sub>open</sub> in log time.")
+
+
+def render(material: Material) -> Iterator[Block]:
+    """A strip of the phases, and the events as a table."""
+    found = phase_list(material)
+    if found:
+        yield _strip(found)
+    yield html.table(
+        "Events", _CAPTION, ("event", "what happens", ">time", ">95 % interval", "remark"), _rows(material)
+    )
+    for note in material.product("segments").get("notes", []):
+        yield html.paragraph(str(note))
+
+
+def _strip(found: list[Phase]) -> Markup:
+    items = Markup().join(_item(phase) for phase in found)
+    return Markup('<ul class="phases" aria-label="Phases, seconds after the valve opens">{}</ul>').format(items)
+
+
+def _item(phase: Phase) -> Markup:
+    times = f"{phase.start:.2f} … {phase.end:.2f} s"
+    item = '<li><span class="swatch phase-swatch {}" aria-hidden="true"></span>{} <span class="unit">{}</span></li>'
+    return Markup(item).format(phase.kind, phase.name, times)
+
+
+def _rows(material: Material) -> Iterator[tuple[Any, ...]]:
+    segments = material.product("segments")
+    for name in ("t_open", *EVENTS):
+        if is_quantity(segments.get(name)):
+            yield _row(name, segments[name], name in segments.get("engineer", []))
+
+
+def _row(name: str, quantity: dict[str, Any], by_hand: bool) -> tuple[Any, ...]:
+    hand = Markup("<strong>set by the engineer</strong> ") if by_hand else Markup()
+    why = quantity.get("why") or quantity.get("reason") or ""
+    return html.symbol(name), in_words(name), html.value(quantity), html.interval(quantity), hand + why
+
+
+SECTION = Section("Phases", 20, ("segments",), render)

@@ -1,0 +1,48 @@
+"""What the page was made from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from markupsafe import Markup
+
+from hfanalysis.report import html
+from hfanalysis.report.material import Material
+from hfanalysis.report.sections import Block, Section
+
+_LAST = ("validation", "calibration", "segments", "ingest")
+"""Products whose provenance covers that of those after them, the farthest first."""
+
+
+def render(material: Material) -> Iterator[Block]:
+    """Hashes, versions and settings, behind a fold."""
+    rows = [
+        (f"{name}: {key}" if key in ("code", "parameters") or key.startswith("parameters") else key, code)
+        for name, key, code in _entries(material)
+    ]
+    caption = "SHA-256 of the files, versions and parameters behind every number on this page."
+    yield html.table("Provenance", caption, ("what", "is"), rows)
+
+
+def _entries(material: Material) -> Iterator[tuple[str, str, Markup]]:
+    """Each fact once, from the last product that states it."""
+    seen = set()
+    for product in _LAST:
+        for key, text in flat(material.product(product).get("provenance") or {}):
+            name = f"{product}: {key}" if key.startswith("parameters") else key
+            if name not in seen:
+                seen.add(name)
+                yield product, key, Markup("<code>{}</code>").format(text)
+
+
+def flat(data: Mapping[str, Any], before: str = "") -> list[tuple[str, str]]:
+    """Nested facts as rows."""
+    rows: list[tuple[str, str]] = []
+    for name, value in data.items():
+        full = f"{before}{name}"
+        rows += flat(value, f"{full} / ") if isinstance(value, Mapping) else [(full, str(value))]
+    return rows
+
+
+SECTION = Section("Made from", 95, ("ingest",), render)

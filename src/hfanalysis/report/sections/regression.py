@@ -1,0 +1,78 @@
+"""Regression of the grain, and how well the chamber and the nozzle did."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from markupsafe import Markup
+
+from hfanalysis.errors import AbsentError
+from hfanalysis.report import html
+from hfanalysis.report.chart import Chart, Series, around, over_time
+from hfanalysis.report.material import Material, Table
+from hfanalysis.report.scales import SLOW
+from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.wording import is_quantity
+
+_LAW = ("a", "n", "regression_rate_reference")
+
+
+def render(material: Material) -> Iterator[Block]:
+    """The rate over time, the law behind it, and the efficiencies."""
+    drawn = [_rate(material), _law(material), _efficiencies(material), _velocity(material)]
+    if not any(drawn):
+        raise AbsentError("the products hold no regression rate and no efficiencies")
+    yield from drawn
+
+
+def _line(table: Table, name: str, label: str, style: str) -> list[Series]:
+    return [Series(label, style, table["time"].values, table[name].values)] if name in table else []
+
+
+def _drawn(
+    material: Material, key: str, title: str, axis: tuple[str, str], lines: list[Series], caption: str
+) -> Chart | None:
+    if not lines:
+        return None
+    return over_time(material, key, title, axis, lines, caption, span=around([lines[0].time]), height=260.0)
+
+
+def _rate(material: Material) -> Chart | None:
+    lines = _line(material.table("performance"), "regression_rate", "regression rate", "p_run")
+    return _drawn(material, "regression", "Regression rate", ("rate", SLOW), lines, "Of the grain's burning surface.")
+
+
+def _law(material: Material) -> Markup | None:
+    calibration = material.product("calibration")
+    found = [name for name in _LAW if is_quantity(calibration.get(name))]
+    if not found:
+        return None
+    said = [
+        Markup("{}: {} {}").format(
+            html.symbol_and_words(name),
+            html.value(calibration[name], name),
+            html.verdict(str(calibration[name].get("verdict", ""))),
+        )
+        for name in found
+    ]
+    return html.bullets(said, "plain")
+
+
+def _efficiencies(material: Material) -> Chart | None:
+    table = material.table("performance")
+    lines = [
+        *_line(table, "c_star_efficiency", "c* efficiency", "p_chamber"),
+        *_line(table, "thrust_coefficient_efficiency", "C_F efficiency", "thrust"),
+    ]
+    caption = "Measured over ideal: c* judges the combustion, the thrust coefficient the nozzle."
+    return _drawn(material, "efficiencies", "Efficiencies", ("efficiency", ""), lines, caption)
+
+
+def _velocity(material: Material) -> Chart | None:
+    lines = _line(material.table("performance"), "c_star", "c*", "p_chamber")
+    return _drawn(
+        material, "c-star", "Characteristic velocity", ("c*", "m/s"), lines, "From chamber pressure and flow."
+    )
+
+
+SECTION = Section("Regression and efficiencies", 55, (), render)

@@ -1,0 +1,48 @@
+"""Temperatures, and channels that have no place of their own."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from hfanalysis.errors import AbsentError
+from hfanalysis.report.chart import Chart, of_channel, over_time
+from hfanalysis.report.colours import style_of
+from hfanalysis.report.material import Material
+from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.sections.pressures import PRESSURES
+from hfanalysis.report.wording import in_words
+from hfanalysis.testdata.channels import CANONICAL, LONG_NAMES
+from hfanalysis.testdata.log import Channel
+
+_ELSEWHERE = {*PRESSURES, "thrust", "m_tank"}
+_MOST = 6
+"""Lines in one chart; more could not be told apart."""
+
+
+def render(material: Material) -> Iterator[Block]:
+    """Temperatures in one chart; of the others those that share a unit."""
+    groups: dict[str, list[Channel]] = {}
+    for name, channel in material.log.channels.items():
+        if name not in _ELSEWHERE and channel.good.any():
+            groups.setdefault(channel.unit, []).append(channel)
+    if not groups:
+        raise AbsentError("the log holds no other channels")
+    for unit, channels in groups.items():
+        for first in range(0, len(channels), _MOST):
+            yield _chart(material, unit, channels[first : first + _MOST])
+
+
+def _chart(material: Material, unit: str, channels: list[Channel]) -> Chart | None:
+    warm = all(CANONICAL.get(channel.name) == "temperature" for channel in channels) or unit == "K"
+    title = "Temperatures" if warm else ", ".join(in_words(channel.name) for channel in channels)
+    lines = [
+        of_channel(material, channel, LONG_NAMES.get(channel.name, channel.name), style_of(channel.name, number))
+        for number, channel in enumerate(channels)
+    ]
+    key = re.sub(r"\W+", "-", f"other-{channels[0].name}")[:60]
+    quantity = "temperature" if warm else "reading"
+    return over_time(material, key, title, (quantity, unit), lines, height=260.0, with_zero=not warm)
+
+
+SECTION = Section("Temperatures and other channels", 62, (), render)
