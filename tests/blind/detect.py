@@ -1,0 +1,226 @@
+"""Detectability: how many standard deviations of its own an effect's strength is away from none.
+
+d' = p sqrt(S_k), S_k being the information on the strength after projecting out the nuisances with their priors. Here
+in its form for responses that are not linear: d'^2 is the least chi-square, priors included, with which the model
+without the effect can describe the noise-free test (whitened by the true noise). For small strengths both are the
+same. d'_{k|l} likewise, the rival l being free as well, with a strength that is not negative.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
+
+from . import kernel
+from . import sensors as se
+from . import slots as s
+from .effects import EFFECTS, LIBRARY, Hidden, drawn, slots_of
+from .observe import Observer
+from .stand import Histories, Stand, simulate
+
+Array = NDArray[np.float64]
+
+NUISANCES = (("C_i", 0.5, 0.004, True), ("K_loss", 1.0, 0.02, True), ("m", 0.087, 0.003, False),
+             ("a", 1.0, 0.005, True), ("n", 0.25, 0.003, False), ("mass", 0.01, 0.004, False),
+             ("temperature", 5.0, 0.05, False))  # fmt: skip
+"""Name, standard deviation of the prior, step of the difference, whether both are relative."""
+
+
+def observed(stand: Stand, hidden: tuple[Hidden, ...]) -> tuple[Array, Histories]:
+    """Channels (count, 6) in SI as ideal sensors, but for the hidden effects, would give them."""
+    true = simulate(stand, slots_of(hidden))
+    channels = true.traces[:, : len(s.CHANNELS)]
+    for h in hidden:
+        if h.effect.distortion is not None:
+            channels = h.effect.distortion(channels, true, h.strength, h.shape)  # type: ignore[arg-type]
+    return channels, true
+
+
+def shifted(stand: Stand, q: Array) -> Stand:
+    """The stand with its nuisances moved by ``q``."""
+    changes = {}
+    for (name, _, _, relative), x in zip(NUISANCES, q, strict=True):
+        now = getattr(stand, name)
+        changes[name] = now * float(np.exp(np.clip(x, -2.0, 2.0))) if relative else now + float(x)
+    changes["temperature"] = min(max(changes["temperature"], 265.0), 306.0)
+    changes["m"] = min(max(changes["m"], 0.6), 1.8)
+    return replace(stand, **changes)
+
+
+OPENING = 5e-3
+"""Standard deviation of the instant of opening [s]; the log does not state it."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What is left of a test after the best model without the effect: whitened residual, nuisances, chi-square."""
+
+    residual: Array
+    nuisances: Array
+    chi2: float
+
+
+class Detector:
+    """Detectability for one stand, one test and its instruments."""
+
+    def __init__(self, stand: Stand, instruments: se.Instruments, rivals: Sequence[Hidden] = ()) -> None:
+        self.stand = stand
+        channels, self.base = observed(stand, ())
+        self.observer = Observer.of(stand, self.base, instruments)
+        self._base_means = self.observer.means(channels, self.base)
+        self.zero = self._white(channels, self.base)
+        self.priors = np.array(
+            [n[1] for n in NUISANCES] + [v for i in instruments.sensors for v in _sensor_priors(i)] + [OPENING]
+        )
+        physics = [self._tangent(i) for i in range(len(NUISANCES))]
+        self.tangents = np.column_stack([*physics, *self._sensor_tangents(), self._later(channels)])
+        system = np.vstack([self.tangents * self.priors, np.eye(len(self.priors))])
+        self._q, self._r = np.linalg.qr(system)
+        self.rivals = {r.effect.name: r for r in rivals}
+        self._columns: dict[str, Array] = {}
+
+    def _white(self, channels: Array, true: Histories) -> Array:
+        return self.observer.whitened(self.observer.means(channels, true), true)
+
+    def response(self, hidden: tuple[Hidden, ...], q: Array | None = None) -> Array:
+        """Whitened observations less those of the base test."""
+        stand = self.stand if q is None else shifted(self.stand, q)
+        return self._white(*observed(stand, hidden)) - self.zero
+
+    def _tangent(self, i: int) -> Array:
+        q = np.zeros(len(NUISANCES))
+        q[i] = NUISANCES[i][2]
+        up = self.response((), q)
+        return (up - self.response((), -q)) / (2.0 * q[i])
+
+    def _sensor_tangents(self) -> list[Array]:
+        out = []
+        for i in range(len(s.CHANNELS)):
+            for values in (np.ones(len(self._base_means)), self._base_means[:, i]):
+                means = np.zeros_like(self._base_means)
+                means[:, i] = values
+                out.append(self.observer.whitened(means, self.base))
+        return out
+
+    def _later(self, channels: Array) -> Array:
+        """The opening a millisecond later than thought, per second."""
+        late = np.vstack([channels[:1], channels[:-1]])
+        return (self.observer.whitened(self.observer.means(late, self.base), self.base) - self.zero) / kernel.STEP
+
+    def fit(self, target: Array, most: int = 4) -> Fit:
+        """The base model fitted to a response: steps on the tangents of the base, each checked by a run."""
+        best = Fit(target, np.zeros(len(self.priors)), float(target @ target))
+        for _ in range(most):
+            step, before = self._step(best), best
+            for share in (1.0, 0.4, 0.1):
+                trial = self._at(target, before.nuisances + share * step)
+                if trial.chi2 < before.chi2:
+                    best = trial
+                    break
+            if before.chi2 - best.chi2 < 0.02 * best.chi2:
+                break
+        return best
+
+    def _at(self, target: Array, theta: Array) -> Fit:
+        count = len(NUISANCES)
+        moved = self.response((), theta[:count]) + self.tangents[:, count:] @ theta[count:]
+        residual = target - moved
+        return Fit(residual, theta, float(residual @ residual + np.sum((theta / self.priors) ** 2)))
+
+    def _right(self, fit: Fit) -> Array:
+        return np.concatenate([fit.residual, -fit.nuisances / self.priors])
+
+    def _step(self, fit: Fit) -> Array:
+        """To the least squares of the linear problem; columns are in units of their priors."""
+        return np.asarray(solve_triangular(self._r, self._q.T @ self._right(fit))) * self.priors
+
+    def d_prime(self, hidden: tuple[Hidden, ...]) -> tuple[float, Fit]:
+        """Detectability of a hidden effect (or of all of them together) against none."""
+        fit = self.fit(self.response(hidden))
+        return sqrt(fit.chi2), fit
+
+    def column(self, name: str) -> Array:
+        """A rival's response at its nominal strength on the base test."""
+        if name not in self._columns:
+            self._columns[name] = self.response((self.rivals[name],))
+        return self._columns[name]
+
+    def against(self, fit: Fit, name: str) -> float:
+        """d' left where a rival of any strength may explain the test: linear, then once more at the size found."""
+        rival = self.rivals[name]
+        chi2, amount = self._with_rival(fit, self.column(name))
+        if amount <= 0.0 or fit.chi2 - chi2 < 1e-3 * fit.chi2:
+            return sqrt(fit.chi2)
+        strength = min(amount * rival.effect.nominal, rival.effect.most)
+        if amount > 1.5 or amount < 0.3:
+            at = self.response((rival.at(strength),), fit.nuisances[: len(NUISANCES)])
+            plain = self.response((), fit.nuisances[: len(NUISANCES)])
+            chi2 = min(self._with_rival(fit, at - plain, rival.effect.most / strength)[0], fit.chi2)
+        return sqrt(max(chi2, 0.0))
+
+    def _with_rival(self, fit: Fit, column: Array, most: float = np.inf) -> tuple[float, float]:
+        """Least chi-square, and the rival's amount, from 0 to ``most``, at which it is had."""
+        right, c = self._right(fit), np.concatenate([column, np.zeros(len(self.priors))])
+        right, c = (v - self._q @ (self._q.T @ v) for v in (right, c))
+        square = float(c @ c)
+        amount = min(max(float(c @ right) / square, 0.0), most) if square > 1e-12 else 0.0
+        rest = right - amount * c
+        return min(float(rest @ rest), fit.chi2), amount
+
+    def solve(self, hidden: Hidden, target: float, among: Sequence[str] = ()) -> tuple[Hidden, float, Fit]:
+        """The strength, up to the most plausible, at which d' (with rivals: the least against them) is ``target``."""
+
+        def measure(x: Hidden) -> tuple[float, Fit]:
+            d, fit = self.d_prime((x,))
+            return (min([d, *(self.against(fit, r) for r in among)]) if among else d), fit
+
+        return _bracketed(hidden, target, measure)
+
+
+def _bracketed(hidden: Hidden, target: float, measure) -> tuple[Hidden, float, Fit]:  # type: ignore[no-untyped-def]
+    """Secants in the logarithms of strength and d'; they are nearly proportional."""
+    most, strength = hidden.effect.most, hidden.effect.nominal
+    seen: list[tuple[float, float]] = []
+    best: tuple[float, Hidden, float, Fit] | None = None
+    for _ in range(9):
+        x = hidden.at(strength)
+        d, fit = measure(x)
+        seen.append((strength, d))
+        miss = abs(np.log(max(d, 1e-9) / target))
+        if best is None or miss < best[0]:
+            best = (miss, x, d, fit)
+        if miss < 0.03 or (strength >= most and d < target):
+            break
+        strength = _next(seen, target, most)
+    assert best is not None
+    return best[1:]
+
+
+def _next(seen: list[tuple[float, float]], target: float, most: float) -> float:
+    below = max((p for p in seen if p[1] < target), default=None)
+    above = min((p for p in seen if p[1] >= target), default=None)
+    if below and above:
+        (p0, d0), (p1, d1) = below, above
+        w = np.log(target / max(d0, 1e-9)) / np.log(d1 / max(d0, 1e-9))
+        return float(np.exp(np.log(p0) + np.clip(w, 0.1, 0.9) * np.log(p1 / p0)))
+    p, d = below or above  # type: ignore[misc]
+    return min(p * float(np.clip(target / max(d, 1e-9), 0.03, 30.0)), most)
+
+
+def _sensor_priors(sensor: se.Sensor) -> tuple[float, float]:
+    accuracy = se.ACCURACY[sensor.channel]
+    zero = 100.0 if sensor.channel == "thrust" else accuracy * sensor.size
+    return zero, accuracy / se.FULL_SCALE[sensor.channel]
+
+
+def rivals(rng: np.random.Generator) -> list[Hidden]:
+    """Every effect of the generator, with a shape each."""
+    return [drawn(e, rng) for e in EFFECTS.values()]
+
+
+LIBRARY_NAMES = tuple(e.name for e in LIBRARY)

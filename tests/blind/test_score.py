@@ -1,0 +1,158 @@
+"""The scorer, on products made up for the purpose."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.blind.score import Case, load, reliability, score, share, table, twins
+
+STEP = {"unit": "W", "channel": None, "start": 0.025, "step": 0.05, "values": [500.0] * 200}
+
+
+def answer(name: str | None, d: float = 10.0, kind: str = "single", inside: bool = True, **more: Any) -> dict[str, Any]:
+    effects = [] if name is None else [
+        {"name": n, "inside_library": inside, "equation": "tank_energy", "equations_accepted": ["tank_energy"],
+         "phases": ["liquid"], "onset": 1.0, "onset_kind": "step", "source": STEP} for n in name.split("+")
+    ]  # fmt: skip
+    base = {"kind": "none" if name is None else kind, "effects": effects, "d_prime": d, "target_d_prime": d,
+            "against": {"tank_heat": 9.0, "n2_purge": 8.0}, "given_others": {}, "after_best_of_library": d,
+            "noise": {"family": "ar1"}}  # fmt: skip
+    return base | more
+
+
+def product(label: str, p: float = 0.95, place: dict[str, Any] | None = None, **more: Any) -> dict[str, Any]:
+    named = label not in ("none", "unknown")
+    base = {"verdict": "named" if named else label, "effects": [{"name": label}] if named else [],
+            "posterior": {label: p, "tank_wall_heat_capacity": 1.0 - p}, "set90": [label],
+            "localisation": [place] if place else []}  # fmt: skip
+    return base | more
+
+
+def figure(cases: list[Case], name: str) -> Any:
+    return score(cases)["figures"][name]
+
+
+def test_wilson_limits_are_those_of_the_textbook() -> None:
+    f = share([True] * 81 + [False] * 182)
+    assert (f.low, f.high) == pytest.approx((0.2553, 0.3662), abs=1e-4)
+    assert share([]).n == 0
+
+
+def test_an_exact_name_counts_only_where_it_can_be_told_apart() -> None:
+    right = Case(answer("nozzle_divergence"), product("nozzle_divergence"))
+    wrong = Case(answer("nozzle_divergence"), product("n2_purge"))
+    near = Case(answer("nozzle_divergence", against={"n2_purge": 3.0}), product("n2_purge"))
+    faint = Case(answer("nozzle_divergence", d=4.0), product("none"))
+    assert figure([right, wrong, near, faint], "exact_name") == pytest.approx(
+        {"value": 0.5, "n": 2, "k": 1} | _limits(1, 2)
+    )
+    assert figure([right, wrong, near, faint], "exact_name_no_twin_allowance")["n"] == 3
+
+
+def _limits(k: int, n: int) -> dict[str, float]:
+    f = share([True] * k + [False] * (n - k))
+    return {"low": f.low, "high": f.high}
+
+
+def test_twins_are_declared_by_the_benchmark_and_forgiven_in_the_group() -> None:
+    close = answer("tank_heat", against={"tank_wall_heat_capacity": 2.0, "n2_purge": 8.0})
+    groups = twins([close])
+    assert groups["tank_heat"] == {"tank_heat", "tank_wall_heat_capacity"}
+    assert groups["n2_purge"] == {"n2_purge"}
+    case = Case(close, product("tank_wall_heat_capacity"))
+    assert figure([case], "twin_group")["value"] == 1.0
+    assert figure([case], "sure_and_wrong")["value"] == 0.0
+    assert figure([Case(close, product("n2_purge"))], "sure_and_wrong")["value"] == 1.0
+    assert figure([Case(close, product("n2_purge", 0.8))], "sure_and_wrong")["value"] == 0.0
+
+
+def test_sets_cover_over_all_strengths_and_are_measured_where_there_is_something_to_see() -> None:
+    wide = ["tank_heat", "n2_purge", "none"]
+    cases = [
+        Case(answer("tank_heat", d=1.0), product("none", set90=wide)),
+        Case(answer("tank_heat"), product("tank_heat")),
+    ]
+    cases.append(Case(answer(None, d=0.0), product("n2_purge")))
+    assert figure(cases, "set90_coverage")["k"] == 2
+    assert figure(cases, "set90_size") | {"low": 0, "high": 0} == {"value": 1.0, "low": 0, "high": 0, "n": 1, "k": None}
+
+
+def test_a_false_alarm_is_anything_but_none_where_there_is_none() -> None:
+    cases = [Case(answer(None, d=0.0), product(x)) for x in ("none", "none", "tank_heat", "unknown")]
+    assert figure(cases, "false_alarm")["k"] == 2
+    assert score(cases)["false_alarm_by_noise"]["ar1"]["n"] == 4
+
+
+def test_an_outsider_must_be_unknown_in_the_right_equation() -> None:
+    strange = answer("vent_leak", kind="outside", inside=False)
+    here, there = {"equation": "tank_energy", "phase": "liquid"}, {"equation": "nozzle", "phase": "liquid"}
+    cases = [Case(strange, product("unknown", place=here)), Case(strange, product("unknown", place=there)),
+             Case(strange, product("tank_heat", place=here)),
+             Case(strange | {"after_best_of_library": 5.0}, product("tank_heat"))]  # fmt: skip
+    assert (figure(cases, "outside_unknown")["k"], figure(cases, "outside_unknown")["n"]) == (2, 3)
+    assert figure(cases, "outside_unknown_and_equation")["k"] == 1
+
+
+def test_of_two_effects_both_must_be_named_where_both_can_be_seen() -> None:
+    two = answer("tank_heat+n2_purge", kind="pair", given_others={"tank_heat": 9.0, "n2_purge": 12.0})
+    both = product("tank_heat", effects=[{"name": "n2_purge"}, {"name": "tank_heat"}])
+    faint = two | {"given_others": {"tank_heat": 3.0, "n2_purge": 12.0}}
+    cases = [Case(two, both), Case(two, product("tank_heat")), Case(faint, product("n2_purge"))]
+    assert (figure(cases, "pair_both")["k"], figure(cases, "pair_both")["n"]) == (1, 2)
+
+
+def test_the_most_significant_place_counts_and_its_band_must_hold_the_onset() -> None:
+    rows = [{"equation": "nozzle", "phase": "vapor", "significance": 3.0},
+            {"equation": "tank_energy", "phase": "liquid", "significance": 9.0,
+             "t_start": {"value": 1.1, "unit": "s", "std": 0.1}, "t_end": 5.0,
+             "source": {"value": 560.0, "unit": "W", "std": 40.0},
+             "history": {"unit": "W", "time": [2.0, 3.0], "low90": [450.0, 510.0],
+                         "high90": [550.0, 600.0]}}]  # fmt: skip
+    cases = [Case(answer("tank_heat"), product("tank_heat", localisation=rows))]
+    for name, value in {"equation_first": 1.0, "phase": 1.0, "onset_in_95_band": 1.0, "size_in_90_interval": 1.0,
+                        "source_in_90_band": 0.5}.items():  # fmt: skip
+        assert figure(cases, name)["value"] == value, name
+
+
+def test_stated_probabilities_that_come_true_have_no_calibration_error() -> None:
+    rng = np.random.default_rng(0)
+
+    def cases(right: float) -> list[Case]:
+        names = np.where(rng.uniform(size=1000) < right, "tank_heat", "n2_purge")
+        return [Case(answer("tank_heat"), product(str(n), 0.8)) for n in names]
+
+    assert reliability(cases(0.8))[0].value < 0.03
+    assert reliability(cases(0.5))[0].value == pytest.approx(0.3, abs=0.05)
+
+
+def test_gaps_are_medians_over_the_tests_with_an_answer() -> None:
+    closed = [{"same": x, "held_out": 0.9, "other_test": None, "placebo": 0.1} for x in (0.9, 0.95, 1.0)]
+    cases = [Case(answer("tank_heat"), product("tank_heat", gap={"closed_fraction": c})) for c in closed]
+    assert figure(cases, "gap_closed_same")["value"] == 0.95
+    assert figure(cases, "gap_closed_other_test")["n"] == 0
+
+
+def test_always_none_is_right_on_nothing_but_none() -> None:
+    cases = [Case(answer("tank_heat"), product("tank_heat")), Case(answer(None, d=0.0), product("none"))]
+    result = score(cases)["baselines"]
+    assert result["always_none"]["exact_name"]["value"] == 0.0
+    assert result["always_none"]["label"]["value"] == 0.5
+    assert result["always_unknown"]["label"]["value"] == 0.0
+    assert result["prior_only"]["false_alarm"]["n"] == 1
+
+
+def test_missing_and_broken_products_are_counted_and_left_out(tmp_path: Path) -> None:
+    for name in ("A", "B", "C"):
+        (tmp_path / "answers").mkdir(exist_ok=True)
+        (tmp_path / "answers" / f"{name}.json").write_text(json.dumps(answer("tank_heat")))
+        (tmp_path / "products" / name).mkdir(parents=True)
+    (tmp_path / "products" / "A" / "diagnosis.json").write_text(json.dumps(product("tank_heat")))
+    (tmp_path / "products" / "B" / "diagnosis.json").write_text("{")
+    cases, missing = load(tmp_path / "answers", tmp_path / "products")
+    assert (len(cases), missing) == (1, ["B", "C"])
+    assert "2 without a diagnosis" in table(score(cases, missing))
+    assert "0 cases" in table(score([], missing))
