@@ -15,13 +15,13 @@ export TEST
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) all test lint format benchmark recovery readme lock clean
+.PHONY: help setup $(STAGES) all test lint format benchmark recovery blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
 	@echo
-	@sed -n 's/^\([a-z][a-z ]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | while IFS="$$(printf '\t')" read -r name text; do \
-		printf '  %-10s %s\n' "$$name" "$$text"; done
+	@sed -n 's/^\([a-z][a-z -]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | while IFS="$$(printf '\t')" read -r name text; do \
+		printf '  %-12s %s\n' "$$name" "$$text"; done
 
 include pipeline/dag.mk
 
@@ -64,6 +64,9 @@ benchmark: $(STAMP) ## start-up, the engine beside a plain reference solver, ing
 
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 	$(BIN)/python benchmarks/recovery.py $(FLAGS)
+
+blind-cases: $(STAMP) ## tests with hidden effects under .cache/blind/; FLAGS='--n 20' (docs/blind.md)
+	$(BIN)/python -m tests.blind write --jobs 2 $(FLAGS)
 
 readme: $(STAMP) ## write the sample output in README.md anew
 	@$(BIN)/python pipeline/readme.py

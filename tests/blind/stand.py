@@ -13,6 +13,8 @@ from . import slots as s
 
 Array = NDArray[np.float64]
 
+LONGEST = 20.0
+"""When the valve is closed at the latest [s]."""
 SPEED = 1550.0
 """c* [m/s] from which the throat is sized."""
 
@@ -150,13 +152,24 @@ def draw(rng: np.random.Generator, burns_out: bool = False, purge: bool | None =
         stand = _draw_once(rng, burns_out, purge)
         base = simulate(stand)
         if 3.0 <= base.t_v <= 8.0 and plausible(base, stand):
-            return finish(rng, stand, base, burns_out)
+            return finish(rng, closed(rng, stand, base), base, burns_out)
 
 
 def plausible(base: Histories, stand: Stand) -> bool:
-    """Ambient pressure left behind, p_c well below p_run, and the liquid out well before the valve closes."""
+    """A chamber well above ambient and well below p_run, which is nearly empty long before LONGEST."""
     p_c = float(base.trace(s.P_CHAMBER)[1000])
-    return p_c > 6e5 and p_c < 0.75 * float(base.trace(s.P_RUN)[1000]) and base.t_v + 4.0 < stand.closing
+    return 6e5 < p_c < 0.75 * float(base.trace(s.P_RUN)[1000]) and _cold_from(base, stand) + 2.0 < LONGEST
+
+
+def _cold_from(base: Histories, stand: Stand) -> float:
+    """When the chamber has fallen to 1.6 times ambient [s]: about where its throat unchokes."""
+    return float(base.time[np.flatnonzero(base.trace(s.P_CHAMBER) > 1.6 * stand.ambient)[-1]])
+
+
+def closed(rng: np.random.Generator, stand: Stand, base: Histories) -> Stand:
+    """With the valve closed only when nothing is to be seen of it in the chamber."""
+    late = max(_between(rng, 12.0, 17.0), _cold_from(base, stand) + _between(rng, 0.5, 1.5))
+    return replace(stand, closing=round(late, 3))
 
 
 def _draw_once(rng: np.random.Generator, burns_out: bool, purge: bool | None) -> Stand:
@@ -171,7 +184,7 @@ def _draw_once(rng: np.random.Generator, burns_out: bool, purge: bool | None) ->
         m=_between(rng, 1.02, 1.28), fuel_mass=20.0, pre_volume=room * _between(rng, 0.1, 0.4),
         post_volume=room * _between(rng, 0.4, 1.2), ambient=1e5 * round(_between(rng, 0.82, 1.02), 3),
         cracking=1e5 * round(_between(rng, 1.0, 5.0), 2), supply=1e5 if with_purge else None,
-        closing=round(_between(rng, 12.0, 19.0), 3), lead=round(_between(rng, 2.0, 6.0), 3),
+        closing=LONGEST, lead=round(_between(rng, 2.0, 6.0), 3),
         tail=round(_between(rng, 1.0, 3.0), 3),
     )  # fmt: skip
 
@@ -179,7 +192,7 @@ def _draw_once(rng: np.random.Generator, burns_out: bool, purge: bool | None) ->
 def finish(rng: np.random.Generator, stand: Stand, base: Histories, burns_out: bool) -> Stand:
     """Set what follows from the burn: the fuel that is loaded and the purge line's pressure."""
     fuel = base.trace(s.FUEL)
-    burnt = float(fuel.sum()) * kernel.STEP
+    burnt = float(fuel[: int(stand.closing / kernel.STEP)].sum()) * kernel.STEP
     if burns_out:
         # gone somewhere between late in the liquid phase and early in the vapour phase
         out = _between(rng, 0.75, 1.6) * base.t_v
@@ -205,7 +218,7 @@ def other_load(rng: np.random.Generator, stand: Stand) -> Stand:
         rho_new = float(nitrous.saturated(nitrous.table(), nitrous.RHO_L, temperature))
         mass = min(max(fill * _between(rng, 0.75, 1.2), 0.42), 0.82) * stand.volume * rho_new
         supply = None if stand.supply is None else stand.supply * _pressure(temperature) / _pressure(stand.temperature)
-        new = replace(stand, temperature=temperature, mass=mass, supply=supply)
+        new = replace(stand, temperature=temperature, mass=mass, supply=supply, closing=LONGEST)
         base = simulate(new)
         if 2.5 <= base.t_v <= 9.0 and plausible(base, new):
-            return replace(new, fuel_mass=round(stand.fuel_mass * _between(rng, 0.98, 1.04), 3))
+            return replace(closed(rng, new, base), fuel_mass=round(stand.fuel_mass * _between(rng, 0.98, 1.04), 3))

@@ -93,7 +93,12 @@ ambient_pressure = "{x.ambient / 1e5:.8g} bar"
 
 [observed]
 burn_time = "{end:.1f} s"
-{left}"""
+{left}
+[[exclude]]
+channels = {json.dumps([c for c in channels_of(b) if c not in ("p_chamber", "thrust")])}
+start = "{b.log.t_open + x.closing:.3f} s"
+end = "{float(b.log.time[-1]) + 0.001:.3f} s"
+"""
 
 
 def write_case(case: Case, root: Path) -> Path:
