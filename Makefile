@@ -57,9 +57,10 @@ lint: $(STAMP) ## ruff and mypy
 format: $(STAMP) ## format the code with ruff
 	$(BIN)/ruff format
 
-benchmark: $(STAMP) ## start-up, the engine beside a plain reference solver, ingest of a 1 GB log beside pandas
+benchmark: $(STAMP) ## start-up, the engine beside a plain solver and HRAP, a 1 GB log beside pandas
 	$(BIN)/python benchmarks/startup.py
 	$(BIN)/python benchmarks/reference_engine.py
+	$(BIN)/python benchmarks/hrap_run.py
 	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python benchmarks/ingest_1gb.py --gigabytes 1; fi
 
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
