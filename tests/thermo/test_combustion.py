@@ -172,7 +172,7 @@ WORST = (1e-4, 1e-4, 2.5e-4)
 """Of ln(R T), gamma, ln T; the temperature is only printed, nothing is solved with it."""
 
 TOP_SHARE = 0.85
-"""Beyond it the gas is below 900 K; there the table's 1e-4 become a few 1e-3."""
+"""Beyond it the gas is below 1100 K; there the table's 1e-4 become 1e-3."""
 
 
 def mixtures(count: int, ratios: tuple[float, float], most_nitrogen: float) -> Array:
