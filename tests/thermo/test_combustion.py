@@ -284,6 +284,14 @@ def test_the_pressures_derivative_is_the_values() -> None:
                 assert (up - down) / (2.0 * h) == pytest.approx(_at(kernel, 14.0, *at)[1], abs=1e-8)
 
 
+@pytest.mark.parametrize("which", range(4))
+def test_what_is_no_number_stays_none(which: int) -> None:
+    at = [14.0, 1.0, 1.6e6, 0.3]
+    at[which] = float("nan")
+    assert np.isnan(gas_at(table().kernel, *at)).all()
+    assert np.isnan(chamber_pressure(table().kernel, -1.0, 1e-3, 1.0, 1.6e6, 0.0, 1e5)).all()
+
+
 SMALL = Nodes(pressures=4, mixtures=5, shares=4)
 
 

@@ -274,9 +274,9 @@ def _spline_slopes(x: Array) -> Array:
 
 @njit(cache=True)
 def _cell(x: float, count: int) -> tuple[int, float]:
-    """Cell and position within it for ``x`` in units of nodes; ends held."""
+    """Cell and position within it for ``x`` in units of nodes; ends held, and no number stays none."""
     x = min(max(x, 0.0), count - 1.0)
-    i = min(int(x), count - 2)
+    i = min(int(x), count - 2) if x > 0.0 else 0
     return i, x - i
 
 
@@ -342,7 +342,7 @@ def _zone(x: float, edge: float) -> tuple[int, float, float]:
 @njit(cache=True)
 def _mixture_cell(here: float, count: int) -> tuple[int, Four, Four]:
     """Cell of a zone, weights and their derivatives with the zone's coordinate."""
-    j = min(int(np.sqrt(here) * (count - 1)), count - 2)
+    j = min(int(np.sqrt(here) * (count - 1)), count - 2) if here > 0.0 else 0
     unit = 1.0 / ((count - 1) * (count - 1))
     width = (2 * j + 1) * unit
     t = (here - j * j * unit) / width
