@@ -125,6 +125,22 @@ VALIDATION: dict[str, Any] = {
         "model": {"burn_time": quantity(12.9, "s", 0.2), "peak_thrust": quantity(2500.0, "N", 40.0)},
     },
     "gap": {"full": {"thrust": {"liquid": _gap(40.0, "N")}}, "tank_free": {"p_tank": {"liquid": _gap(5e4, "Pa")}}},
+    "closure": {"oxidizer_loaded": quantity(8.35, "kg", 0.05), "fuel_burned": quantity(1.6, "kg", 0.02, why="by a, n")},
+    "sensors": [
+        {
+            "channels": ["thrust"],
+            "verdict": "does not return to zero",
+            "text": "the thrust cell does not return to zero: +76 N after the burn",
+            "size": quantity(76.0, "N", 1.0),
+        },
+        {
+            "channels": ["thrust", "p_chamber"],
+            "verdict": "thrust and p_c A_t disagree",
+            "text": "thrust and p_c A_t disagree: 2430 N against 3100 N",
+            "size": quantity(0.6, "", 0.03),
+        },
+    ],
+    "absent": {},
     "warnings": ["thrust and p_c A_t disagree: 2430 N against 3100 N"],
     "provenance": {"hfanalysis": "0.1.0", "parameters": {"modes": "all"}},
 }
@@ -155,6 +171,24 @@ def _performance() -> dict[str, Column]:
     }
 
 
+FLIGHT: dict[str, Any] = {
+    "apogee": quantity(2815.0, "m", 74.0),
+    "peak_mach": quantity(0.56, "", 0.004),
+    "checks": {"rail_departure_velocity": {"limit": 30.48, "unit": "m/s", "is": "at least", "result": "failed"}},
+    "notes": ["burn from the opening to 17.00 s"],
+    "warnings": [],
+}
+
+
+def _flight() -> Store:
+    time = np.linspace(0.0, 27.0, 300)
+    height = 2815.0 * (1.0 - (time / 27.0 - 1.0) ** 2)
+    speed = 208.0 * (1.0 - time / 27.0)
+    ascent = {"time": Column(time, "s"), "height": Column(height, "m"), "speed": Column(speed, "m/s")}
+    bands = {"time": Column(time, "s"), "height_low": Column(0.95 * height), "height_high": Column(1.05 * height)}
+    return {"ascent": ascent, "bands": bands}
+
+
 def stores() -> dict[str, Store]:
     """The HDF5 products: residuals of all modes, and the performance over time."""
     groups = {
@@ -163,7 +197,7 @@ def stores() -> dict[str, Store]:
         "full/p_chamber": _residual(1.3e6, "Pa"),
         "full/thrust": _residual(2400.0, "N"),
     }
-    return {"residuals": groups, "performance": {"": _performance()}}
+    return {"residuals": groups, "performance": {"": _performance()}, "flight": _flight()}
 
 
 def material(folder: Path, label: str | None = None, **text: str) -> Material:
@@ -171,6 +205,7 @@ def material(folder: Path, label: str | None = None, **text: str) -> Material:
     made = log(label)
     about = {**summary(made), "provenance": {}}
     products = {"ingest": about, "segments": SEGMENTS, "calibration": CALIBRATION, "validation": VALIDATION}
+    products["flight"] = FLIGHT
     return Material(definition(folder, **text), made, products, stores())
 
 

@@ -80,6 +80,13 @@ def test_a_drag_zooms_all_charts_and_a_double_click_shows_all(opened: Page) -> N
     assert ticks(opened) == before
 
 
+def test_a_flight_has_a_clock_of_its_own(opened: Page) -> None:
+    left, top, width, height = opened.show(f"{PRESSURES} .plot")
+    before = ticks(opened, '[data-chart="flight-height"]')
+    opened.drag((left + 0.3 * width, top + 0.5 * height), (left + 0.5 * width, top + 0.5 * height))
+    assert ticks(opened, '[data-chart="flight-height"]') == before
+
+
 def test_zooming_fits_the_values_to_what_is_seen(opened: Page) -> None:
     left, top, width, height = opened.show('[data-chart="tank-mass"] .plot')
     opened.drag((left + 0.7 * width, top + 0.5 * height), (left + 0.8 * width, top + 0.5 * height))

@@ -125,7 +125,7 @@ def test_every_chart_has_a_text_alternative(text: str) -> None:
     reader = Reader(text)
     charts = [attrs for attrs in reader.all("svg") if attrs["class"] == "chart"]
     ids = [attrs["id"] for _, attrs in reader.tags if "id" in attrs]
-    assert len(charts) == len(reader.all("figure")) == len(reader.all("details")) == 19
+    assert len(charts) == len(reader.all("figure")) == len(reader.all("details")) == 21
     assert len(ids) == len(set(ids))
     for chart in charts:
         assert chart["role"] == "img"
@@ -159,6 +159,33 @@ def test_the_verdict_names_what_is_known_and_what_is_not(tmp_path: Path) -> None
     assert "Not identifiable from this test: vapour compressibility, regression coefficient and" in said
 
 
+def test_the_verdict_names_the_sensors_that_look_wrong(tmp_path: Path) -> None:
+    assert sentence(material(tmp_path)).endswith(
+        "Sensors: thrust does not return to zero; thrust and p_c A_t disagree."
+    )
+
+
+def test_quantities_that_lack_the_same_thing_share_the_reason(tmp_path: Path) -> None:
+    lacking = {"value": None, "reason": "no injector area", "verdict": "not identifiable"}
+    products = {"calibration": {"C_i": lacking, "m": lacking, "Z": lacking}}
+    (verdict, *_) = lay_out(replace(material(tmp_path), products={**material(tmp_path).products, **products}))
+    assert "".join(map(str, verdict.blocks)).count("no injector area") == 1
+
+
+def test_what_the_ingest_says_in_short_is_not_repeated(tmp_path: Path) -> None:
+    made = material(tmp_path)
+    told = {**made.products["ingest"], "warnings": ["channel thrust: does not return to zero after the firing: 76 N"]}
+    sensors, _ = warnings(replace(made, products={**made.products, "ingest": told}))
+    assert sum("return to zero" in text for text in sensors) == 1
+
+
+def test_modes_that_could_not_run_say_why(tmp_path: Path) -> None:
+    made = material(tmp_path)
+    validation = {**made.products["validation"], "absent": {"full": "test.toml does not state the throat"}}
+    text = page(replace(made, products={**made.products, "validation": validation}))
+    assert "Full: test.toml does not state the throat" in text
+
+
 def test_reasons_and_values_are_on_the_page(text: str) -> None:
     for words in ("needs 14 kW of heat", "the vapour phase lasts 0.05 s", "11.43", "set by the engineer", "ab" * 32):
         assert words in text
@@ -166,8 +193,11 @@ def test_reasons_and_values_are_on_the_page(text: str) -> None:
 
 def test_what_looks_wrong_with_the_sensors_stands_apart_from_the_rest(tmp_path: Path) -> None:
     sensors, others = warnings(material(tmp_path))
-    assert "channel p_run: 10 of 4600 samples flagged dropout" in sensors
-    assert "thrust and p_c A_t disagree: 2430 N against 3100 N" in sensors
+    assert sensors == [
+        "the thrust cell does not return to zero: +76 N after the burn",
+        "thrust and p_c A_t disagree: 2430 N against 3100 N",
+        "samples flagged dropout: p_run (10 of 4600)",
+    ]
     assert others == ["the purge check valve opens before the liquid is gone"]
 
 

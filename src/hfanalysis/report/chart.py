@@ -62,6 +62,8 @@ class Chart:
     with_zero: bool = True
     value_span: tuple[float, float] | None = None
     """Of the value axis [SI], where the data themselves should not set it."""
+    clock: str = "test"
+    """Charts of one clock are zoomed together."""
     difference: bool = False
     """Whether the values are differences, which the zero point of a unit does not concern."""
 
@@ -121,7 +123,7 @@ def over_time(
         height,
         with_zero,
         value_span,
-        difference,
+        difference=difference,
     )
 
 

@@ -55,15 +55,16 @@ def _converted(number: str, unit: str) -> Markup:
     return both(f"{number} {unit}", f"{tidy(team(value), digits)} {team.unit}")
 
 
-def value(quantity: Mapping[str, Any], name: str = "") -> Markup:
-    """A quantity with its standard deviation and unit."""
+def value(quantity: Mapping[str, Any], name: str = "", std_last: bool = False) -> Markup:
+    """A quantity with its standard deviation and unit; ``std_last`` puts the deviation behind the unit."""
     si, team = _shown(quantity, name)
     number = both(si.value, team.value, "number", quantity.get("value"), str(quantity.get("unit") or ""))
     std = Markup(" ") + both(f"± {si.std}", f"± {team.std}", "std") if si.std else Markup()
     unit = Markup(" ") + both(si.unit, team.unit, "unit") if si.unit or team.unit else Markup()
-    if std and si.unit.startswith("×"):
+    if std and si.unit.startswith("×") and not std_last:
         number, std = Markup("(") + number, std + Markup(")")
-    return Markup('<span class="quantity">{}{}{}</span>').format(number, std, unit)
+    rest = unit + std if std_last else std + unit
+    return Markup('<span class="quantity">{}{}</span>').format(number, rest)
 
 
 def interval(quantity: Mapping[str, Any], name: str = "") -> Markup:

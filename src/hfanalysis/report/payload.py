@@ -53,6 +53,7 @@ def _chart(chart: Chart, most: int) -> dict[str, Any]:
         "values": list(_si_span(chart)),
         "height": chart.height,
         "label": chart.x_label,
+        "clock": chart.clock,
         "phases": [vars(phase) for phase in chart.phases],
         "events": [vars(event) for event in chart.events],
         "series": [_series(chart, one, most, clocks) for one in chart.series],

@@ -68,6 +68,7 @@ class Plot:
     height: float
     parts: list[str] = field(default_factory=list)
     ends: list[tuple[float, str, str]] = field(default_factory=list)
+    over: list[str] = field(default_factory=list)
 
 
 def new_plot(times: tuple[float, float], values: tuple[float, float], height: float = 320.0) -> Plot:
@@ -162,7 +163,7 @@ def phases(plot: Plot, found: Sequence[Phase]) -> None:
             f'height="{height:.1f}"><title>{escape(phase.name)}</title></rect>'
         )
         if right - left > _LETTER * len(phase.name) + 6:
-            plot.parts.append(_text(0.5 * (left + right), top + 15, phase.name, "phase-name", "middle"))
+            plot.over.append(_text(0.5 * (left + right), top + 15, phase.name, "phase-name", "middle"))
 
 
 def _clamped(axis: Axis, value: float) -> float:
@@ -245,7 +246,7 @@ def _runs(values: Floats) -> list[slice]:
 def render(plot: Plot, name: str, title: str, description: str, other_units: str = "") -> Markup:
     """The finished chart; ``title`` and ``description`` are its text alternative, ``other_units`` the team's."""
     _name_ends(plot)
-    body = "".join(plot.parts)
+    body = "".join([*plot.parts, *plot.over])
     texts = f' data-si="{escape(description)}" data-team="{escape(other_units)}"' if other_units else ""
     return Markup(
         f'<svg class="chart" viewBox="0 0 {WIDTH:.0f} {plot.height:.0f}" role="img" '

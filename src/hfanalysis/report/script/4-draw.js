@@ -49,6 +49,7 @@ function draw(chart, width, start, end) {
   drawAxes(chart, svg);
   drawEvents(chart, svg);
   for (const one of chart.series) if (one.shown) drawSeries(chart, svg, one);
+  namePhases(chart, svg);
   if (width >= WIDE) nameEnds(chart, svg);
   chart.overlay = element(svg, "g", { class: "overlay", "aria-hidden": "true" });
 }
@@ -64,10 +65,16 @@ function drawPhases(chart, svg) {
     if (right <= left) continue;
     element(svg, "rect", { class: "phase " + phase.kind, x: left, y: m.top, width: right - left,
       height: height - m.bottom - m.top });
-    if (right - left > 6.6 * phase.name.length + 6) {
-      element(svg, "text", { class: "phase-name", x: (left + right) / 2, y: m.top + 15, "text-anchor": "middle" },
-        phase.name);
-    }
+  }
+}
+
+function namePhases(chart, svg) {
+  const { x, m } = chart.place;
+  for (const phase of chart.phases) {
+    const left = clamp(x(phase.start), x.from, x.to), right = clamp(x(phase.end), x.from, x.to);
+    if (right - left <= 6.6 * phase.name.length + 6) continue;
+    element(svg, "text", { class: "phase-name", x: (left + right) / 2, y: m.top + 15, "text-anchor": "middle" },
+      phase.name);
   }
 }
 

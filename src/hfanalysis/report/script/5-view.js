@@ -1,18 +1,28 @@
-// One stretch of time and one cursor for all charts of the page.
+// One stretch of time and one cursor for all charts that share a clock: the test's, the flight's.
 const charts = [];
-const view = { span: null, cursor: null, pending: false };
+const views = {};
 const CLOSEST = 0.002;
+let pending = false;
+
+function viewOf(chart) {
+  return views[chart.clock] ||= { span: null, cursor: null };
+}
 
 function spanOf(chart) {
-  return view.span || chart.span;
+  return viewOf(chart).span || chart.span;
 }
 
-function wholeSpan() {
-  return [Math.min(...charts.map((chart) => chart.span[0])), Math.max(...charts.map((chart) => chart.span[1]))];
+function sharing(chart) {
+  return charts.filter((other) => other.clock === chart.clock);
 }
 
-function look(start, end) {
-  const [first, last] = wholeSpan(), width = Math.max(end - start, CLOSEST);
+function wholeSpan(chart) {
+  const spans = sharing(chart).map((other) => other.span);
+  return [Math.min(...spans.map((span) => span[0])), Math.max(...spans.map((span) => span[1]))];
+}
+
+function look(chart, start, end) {
+  const [first, last] = wholeSpan(chart), width = Math.max(end - start, CLOSEST), view = viewOf(chart);
   if (width >= last - first) { view.span = null; } else {
     const from = clamp(start, first, last - width);
     view.span = [from, from + width];
@@ -21,21 +31,21 @@ function look(start, end) {
 }
 
 function lookAtAll() {
-  view.span = null;
+  for (const view of Object.values(views)) view.span = null;
   schedule();
 }
 
 // Zoom by a factor and keep the instant `about` where it is on the screen.
 function zoom(chart, factor, about) {
   const [start, end] = spanOf(chart);
-  look(about - (about - start) * factor, about + (end - about) * factor);
+  look(chart, about - (about - start) * factor, about + (end - about) * factor);
 }
 
 function schedule() {
-  if (view.pending) return;
-  view.pending = true;
+  if (pending) return;
+  pending = true;
   requestAnimationFrame(() => {
-    view.pending = false;
+    pending = false;
     drawAll();
   });
 }
@@ -46,16 +56,16 @@ function drawAll(width) {
     showCursor(chart);
   }
   const reset = document.getElementById("reset-zoom");
-  if (reset) reset.disabled = view.span === null;
+  if (reset) reset.disabled = Object.values(views).every((view) => view.span === null);
 }
 
-function moveCursor(t) {
-  view.cursor = t;
-  for (const chart of charts) showCursor(chart);
+function moveCursor(chart, t) {
+  viewOf(chart).cursor = t;
+  for (const other of sharing(chart)) showCursor(other);
 }
 
 function showCursor(chart) {
-  const { x, y, unit } = chart.place, t = view.cursor, inside = t !== null && t >= x.low && t <= x.high;
+  const { x, y, unit } = chart.place, t = viewOf(chart).cursor, inside = t !== null && t >= x.low && t <= x.high;
   chart.overlay.replaceChildren();
   chart.instant.textContent = inside ? `t = ${fixed(t, finer(x.low, x.high))} s` : "";
   if (inside) element(chart.overlay, "path", { class: "cursor", d: `M${x(t)} ${y.to}V${y.from}` });

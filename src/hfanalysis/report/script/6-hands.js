@@ -20,20 +20,20 @@ function listen(chart) {
   });
   frame.addEventListener("pointermove", (event) => {
     scrolled = false;
-    moveCursor(timeAt(chart, event));
+    moveCursor(chart, timeAt(chart, event));
     if (from) showSelection(chart, from.t, timeAt(chart, event));
   });
   frame.addEventListener("pointerup", (event) => {
     const to = timeAt(chart, event), start = from;
     from = null;
-    if (start && Math.abs(event.clientX - start.clientX) > DRAG) look(Math.min(start.t, to), Math.max(start.t, to));
+    if (start && Math.abs(event.clientX - start.clientX) > DRAG) look(chart, Math.min(start.t, to), Math.max(start.t, to));
   });
   frame.addEventListener("pointercancel", () => { from = null; showCursor(chart); });
-  frame.addEventListener("pointerleave", () => { if (!from) moveCursor(null); });
+  frame.addEventListener("pointerleave", () => { if (!from) moveCursor(chart, null); });
   frame.addEventListener("dblclick", lookAtAll);
   frame.addEventListener("wheel", (event) => wheel(chart, event), { passive: false });
   frame.addEventListener("keydown", (event) => key(chart, event));
-  frame.addEventListener("blur", () => moveCursor(null));
+  frame.addEventListener("blur", () => moveCursor(chart, null));
 }
 
 function showSelection(chart, a, b) {
@@ -45,7 +45,7 @@ function showSelection(chart, a, b) {
 // Zooming out of the whole is scrolling the page.
 function wheel(chart, event) {
   const out = event.deltaY > 0;
-  if (scrolled || !event.deltaY || (out && view.span === null)) return;
+  if (scrolled || !event.deltaY || (out && viewOf(chart).span === null)) return;
   event.preventDefault();
   zoom(chart, out ? WHEEL : 1 / WHEEL, timeAt(chart, event));
 }
@@ -53,13 +53,13 @@ function wheel(chart, event) {
 function key(chart, event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   const [start, end] = spanOf(chart), step = (end - start) / STEPS * (event.shiftKey ? 10 : 1);
-  const cursor = view.cursor === null ? (start + end) / 2 : clamp(view.cursor, start, end);
+  const at = viewOf(chart).cursor, cursor = at === null ? (start + end) / 2 : clamp(at, start, end);
   const moves = {
     ArrowLeft: () => cursor - step, ArrowRight: () => cursor + step, Home: () => start, End: () => end,
   };
   const zooms = {
     "+": () => zoom(chart, 1 / 1.5, cursor), "=": () => zoom(chart, 1 / 1.5, cursor),
-    "-": () => zoom(chart, 1.5, cursor), "0": lookAtAll, Escape: () => moveCursor(null),
+    "-": () => zoom(chart, 1.5, cursor), "0": lookAtAll, Escape: () => moveCursor(chart, null),
   };
   if (moves[event.key]) {
     moveTo(chart, moves[event.key](), end - start);
@@ -74,15 +74,15 @@ function key(chart, event) {
 
 // A cursor that leaves the stretch in view takes it along.
 function moveTo(chart, t, width) {
-  const [first, last] = wholeSpan(), at = clamp(t, view.span ? first : chart.span[0], view.span ? last : chart.span[1]);
+  const view = viewOf(chart), [first, last] = view.span ? wholeSpan(chart) : chart.span, at = clamp(t, first, last);
   const [start, end] = spanOf(chart);
   if (view.span && (at < start || at > end)) {
     const from = at < start ? at : at - width;
-    look(from, from + width);
+    look(chart, from, from + width);
     view.cursor = at;
     drawAll();
   } else {
-    moveCursor(at);
+    moveCursor(chart, at);
   }
 }
 

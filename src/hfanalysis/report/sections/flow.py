@@ -11,6 +11,7 @@ from hfanalysis.report.chart import Chart, Series, around, over_time
 from hfanalysis.report.envelope import Floats
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.sections.regression import flows_absent
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 
 MOLES_TO_KG = 1e-3 * OXIDIZER_MOLAR_MASS
@@ -20,7 +21,7 @@ def render(material: Material) -> Iterator[Block]:
     """Flows, mixture ratio, and what is left in the tank."""
     drawn = [_flows(material), _ratio(material), _content(material)]
     if not any(drawn):
-        raise AbsentError("neither the calibration nor the validation holds flows")
+        raise AbsentError(flows_absent(material) or "neither the calibration nor the validation holds flows")
     yield from drawn
 
 

@@ -11,31 +11,41 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.wording import in_words, quantities, tidy
+from hfanalysis.report.wording import MINUS, fixed, in_words, quantities
 
 _CAPTION = "Measured: peaks of the despiked signal, impulse within the burn and free of the cell's drift."
 
 
 def render(material: Material) -> Iterator[Block]:
-    """Measured and model side by side."""
-    performance = material.product("validation").get("performance") or {}
+    """Measured and model side by side, and whether the masses close."""
+    validation = material.product("validation")
+    performance = validation.get("performance") or {}
     measured, model = (quantities(performance.get(side) or {}) for side in ("measured", "model"))
     if not (measured or model):
         raise AbsentError("the validation holds no performance table")
     columns = ("quantity", ">measured", ">95 % interval", ">model", ">model − measured", "remark")
-    names = dict.fromkeys([*measured, *model])
-    rows = (_row(name, measured.get(name, {}), model.get(name, {})) for name in names)
+    rows = (_row(name, measured.get(name, {}), model.get(name, {})) for name in dict.fromkeys([*measured, *model]))
     yield html.table("Performance", _CAPTION, columns, rows)
+    for reason in dict.fromkeys(str(quantity["reason"]) for quantity in model.values() if quantity.get("reason")):
+        yield html.paragraph(Markup("No model: {}.").format(html.switchable(reason.rstrip("."))))
+    yield _closure(quantities(validation.get("closure") or {}))
+
+
+def _closure(found: Mapping[str, Mapping[str, Any]]) -> Markup | None:
+    rows = [(in_words(name), html.value(q, name), html.switchable(_remark(q))) for name, q in found.items()]
+    caption = "Whether masses and energy close."
+    return html.table("Closure", caption, ("quantity", ">value", "remark"), rows) if rows else None
 
 
 def _row(name: str, measured: Mapping[str, Any], model: Mapping[str, Any]) -> tuple[Any, ...]:
+    known = measured.get("value") is not None
     return (
         in_words(name),
         _cell(measured, name),
-        html.interval(measured, name) if measured.get("value") is not None else "",
+        html.interval(measured, name) if known else "",
         _cell(model, name),
         _share(measured.get("value"), model.get("value")),
-        html.switchable("; ".join(dict.fromkeys(_remarks(measured, model)))),
+        html.switchable(_remark(measured)),
     )
 
 
@@ -46,15 +56,12 @@ def _cell(quantity: Mapping[str, Any], name: str) -> Markup:
 def _share(measured: float | None, model: float | None) -> str:
     if not measured or model is None:
         return ""
-    percent = 100.0 * (model - measured) / abs(measured)
-    return f"{'+' if percent > 0 else ''}{tidy(percent, 2)} %"
+    text = fixed(100.0 * (model - measured) / abs(measured), 1)
+    return f"{text} %" if text.startswith(MINUS) or text == "0.0" else f"+{text} %"
 
 
-def _remarks(*found: Mapping[str, Any]) -> Iterator[str]:
-    for quantity in found:
-        for key in ("reason", "why"):
-            if quantity.get(key):
-                yield str(quantity[key])
+def _remark(quantity: Mapping[str, Any]) -> str:
+    return str(quantity.get("reason") or quantity.get("why") or "")
 
 
 SECTION = Section("Performance", 15, ("validation",), render)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from markupsafe import Markup
 
@@ -21,8 +22,13 @@ def render(material: Material) -> Iterator[Block]:
     """The rate over time, the law behind it, and the efficiencies."""
     drawn = [_rate(material), _law(material), _efficiencies(material), _velocity(material)]
     if not any(drawn):
-        raise AbsentError("the products hold no regression rate and no efficiencies")
+        raise AbsentError(flows_absent(material) or "the products hold no regression rate and no efficiencies")
     yield from drawn
+
+
+def flows_absent(material: Material) -> str:
+    """Why the validation has no flows, in its own words."""
+    return str((material.product("validation").get("absent") or {}).get("flows", ""))
 
 
 def _line(table: Table, name: str, label: str, style: str) -> list[Series]:
@@ -55,7 +61,17 @@ def _law(material: Material) -> Markup | None:
         )
         for name in found
     ]
-    return html.bullets(said, "plain")
+    return html.bullets(said, "plain") + _fitted_with(calibration.get("regression") or {})
+
+
+def _fitted_with(regression: Mapping[str, Any]) -> Markup:
+    """The oxidizer flow and the effects behind a and n, which mean nothing without them."""
+    tests = [test for test in regression.get("tests", []) if test.get("fitted_with")]
+    words = Markup('<p class="note">{} fitted with:</p>{}')
+    return Markup().join(
+        words.format(test.get("test", ""), html.bullets(map(html.switchable, test["fitted_with"]), "said"))
+        for test in tests
+    )
 
 
 def _efficiencies(material: Material) -> Chart | None:

@@ -32,13 +32,17 @@ def render(material: Material) -> Iterator[Block]:
     """Two charts for each mode and channel, then the gaps as a table."""
     groups = material.stores["residuals"]
     if not groups:
-        raise AbsentError("no mode of validation ran")
+        absent = list((material.product("validation").get("absent") or {}).values())
+        raise AbsentError(str(absent[0]) if absent else "no mode of validation ran")
     for mode in sorted({name.partition("/")[0] for name in groups}, key=_order):
         yield Markup('<h3 class="mode">{}</h3>').format(MODES.get(mode, in_words(mode)))
         for name, table in groups.items():
             if name.startswith(f"{mode}/"):
                 yield from _charts(material, mode, name.partition("/")[2], table)
     yield _gaps(material.product("validation").get("gap") or {})
+    for mode, reason in (material.product("validation").get("absent") or {}).items():
+        if mode in MODES:
+            yield html.paragraph(Markup("{}: {}").format(in_words(mode).capitalize(), html.switchable(str(reason))))
 
 
 def _order(mode: str) -> tuple[int, str]:
@@ -60,13 +64,13 @@ def _charts(material: Material, mode: str, channel: str, table: Table) -> Iterat
         Series("model", "model", time, model, dashed=True),
     ]
     title = f"{words.capitalize()}: model against measurement"
-    yield over_time(material, key, title, (words, unit), lines, _known(mode), span=span, height=280.0)
+    yield over_time(material, key, title, (words, unit), lines, _known(mode), span=span, height=250.0)
     band = Series("noise, 95 %", "noise", time, -1.96 * noise, "band", 1.96 * noise)
     zero = Series("zero", "zero", time[[0, -1]], np.zeros(2), "level")
     left = [band, Series("residual", "residual", time, residual), zero]
     caption = "Measured less model. The grey band is what noise alone would do in 95 % of the samples."
     title, axis = f"{words.capitalize()}: residual", ("measured − model", unit)
-    yield over_time(material, f"{key}-residual", title, axis, left, caption, span=span, height=220.0, difference=True)
+    yield over_time(material, f"{key}-residual", title, axis, left, caption, span=span, height=200.0, difference=True)
 
 
 def _stretch(material: Material, mode: str) -> tuple[float, float]:

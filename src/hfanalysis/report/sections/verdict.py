@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from markupsafe import Markup
@@ -41,31 +42,41 @@ def key_numbers(material: Material) -> dict[str, Mapping[str, Any]]:
     measured = performance.get("measured") or {}
     found = {name: measured[name] for name in KEY_NUMBERS if (measured.get(name) or {}).get("value") is not None}
     flow = material.product("calibration").get("oxidizer_flow_peak") or {}
-    return found | ({"oxidizer_flow_peak": flow} if flow.get("value") is not None else {})
+    return found or ({"oxidizer_flow_peak": flow} if flow.get("value") is not None else {})
 
 
 def _numbers(found: Mapping[str, Mapping[str, Any]]) -> Markup | None:
     if not found:
         return None
     item = Markup("<div><dt>{}</dt><dd>{}</dd></div>")
-    items = (item.format(in_words(name), html.value(quantity, name)) for name, quantity in found.items())
+    items = (item.format(in_words(name), html.value(quantity, name, True)) for name, quantity in found.items())
     return Markup('<dl class="key-numbers">{}</dl>').format(Markup().join(items))
 
 
 def sentence(material: Material) -> str:
-    """The verdict in a sentence."""
+    """The verdict in a few sentences."""
     if not material.fired:
         return "No firing was found in this log, so there is nothing to calibrate."
-    marked = by_mark(material)
     if not material.has("calibration"):
-        return "This test could not be calibrated; the reason is given below."
-    names = {kind: [in_words(name) for name in found] for kind, found in marked.items()}
+        return " ".join(["This test could not be calibrated; the reason is given below.", *_sensor_sentence(material)])
+    names = {kind: [in_words(name) for name in found] for kind, found in by_mark(material).items()}
     parts = [
         f"Identified: {listed(names['good'])}." if names["good"] else "Nothing could be identified.",
         f"Outside its physical range: {listed(names['bad'])}." if names["bad"] else "",
         f"Not identifiable from this test: {listed(names['open'])}." if names["open"] else "",
     ]
-    return " ".join(filter(None, parts))
+    return " ".join([*filter(None, parts), *_sensor_sentence(material)])
+
+
+def _sensor_sentence(material: Material) -> list[str]:
+    """What looks wrong with the sensors, in a sentence of its own."""
+    found = [_of_channels(fault) for fault in material.product("validation").get("sensors", [])]
+    return [f"Sensors: {'; '.join(found)}."] if found else []
+
+
+def _of_channels(fault: Mapping[str, Any]) -> str:
+    channels, verdict = list(map(str, fault.get("channels", []))), str(fault.get("verdict", ""))
+    return verdict if not channels or verdict.startswith(channels[0]) else f"{listed(channels)} {verdict}"
 
 
 def by_mark(material: Material) -> dict[str, dict[str, Mapping[str, Any]]]:
@@ -79,14 +90,13 @@ def by_mark(material: Material) -> dict[str, dict[str, Mapping[str, Any]]]:
 
 
 def _findings(material: Material) -> Iterator[Markup]:
-    marked = by_mark(material)
     heads = {"good": "Identified", "bad": "Outside its physical range", "open": "Not identified"}
-    for kind, found in marked.items():
+    for kind, found in by_mark(material).items():
         if found:
-            yield _finding(kind, heads[kind], (_judged(kind, *item) for item in found.items()))
-    sensors, others = warnings(material)
-    if sensors:
-        yield _finding("sensor", "Sensors and log", map(html.switchable, sensors))
+            yield _finding(kind, heads[kind], map(_judged, *zip(*_by_reason(found, kind), strict=True)))
+    faults, others = warnings(material)
+    if faults:
+        yield _finding("sensor", "Sensors and log", map(html.switchable, faults))
     elif material.log.channels:
         yield _finding("good", "Sensors and log", [Markup("Nothing looks wrong with the sensors.")])
     if others:
@@ -98,25 +108,59 @@ def _finding(kind: str, head: str, items: Any) -> Markup:
     return Markup(block).format(kind, html.MARKS[kind], head, html.bullets(items, "plain"))
 
 
-def _judged(kind: str, name: str, quantity: Mapping[str, Any]) -> Markup:
-    why = str(quantity.get("why") or quantity.get("reason") or "")
-    known = quantity.get("value") is not None
-    number = Markup('<span class="judged">{}</span>').format(html.value(quantity, name)) if known else Markup()
-    said = Markup(' <span class="because">{}</span>').format(html.switchable(why)) if why and kind != "good" else ""
-    return html.symbol_and_words(name) + number + said
+def _by_reason(found: Mapping[str, Mapping[str, Any]], kind: str) -> list[tuple[str, dict[str, Mapping[str, Any]]]]:
+    """The quantities with their reason, those together that have the same one."""
+    groups: dict[str, dict[str, Mapping[str, Any]]] = {}
+    for name, quantity in found.items():
+        why = "" if kind == "good" else str(quantity.get("why") or quantity.get("reason") or "")
+        groups.setdefault(why, {})[name] = quantity
+    return list(groups.items()) if kind != "good" else [("", {name: found[name]}) for name in found]
 
 
-_OF_SENSORS = ("channel", "thrust", "clock", "sensor", "cell")
+def _judged(why: str, found: Mapping[str, Mapping[str, Any]]) -> Markup:
+    names = Markup().join(_named(name, quantity) for name, quantity in found.items())
+    return names + (Markup('<span class="because">{}</span>').format(html.switchable(why)) if why else Markup())
+
+
+def _named(name: str, quantity: Mapping[str, Any]) -> Markup:
+    number = Markup()
+    if quantity.get("value") is not None:
+        number = Markup('<span class="judged">{}</span>').format(html.value(quantity, name))
+    return Markup('<span class="names">{}{}</span>').format(html.symbol_and_words(name), number)
+
+
+_OF_SENSORS = re.compile(r"^channel |\b(cell|gauge|thermometer|clock|sensor|disagree)\b", re.IGNORECASE)
+_FLAGGED = re.compile(r"^channel (.+): (\d+ of \d+) samples flagged (\w+)$")
+_RETURNS = re.compile(r"^channel (\w+): does not return to zero")
 
 
 def warnings(material: Material) -> tuple[list[str], list[str]]:
     """What every product warns of, each once: of the sensors and the log, and of the rest."""
-    sensors = [str(text) for text in material.product("ingest").get("warnings", [])]
+    validation = material.product("validation").get("sensors", [])
+    faults = [str(fault["text"]) for fault in validation]
+    covered = {channel for fault in validation for channel in fault.get("channels", [])}
+    logged = list(map(str, material.product("ingest").get("warnings", [])))
+    sensors = [text for text in logged if not _repeats(text, covered)]
     others: list[str] = []
     for name, product in reversed(list(material.products.items())):
         for text in map(str, product.get("warnings", []) if name != "ingest" else []):
-            (sensors if text.casefold().startswith(_OF_SENSORS) else others).append(text)
-    return list(dict.fromkeys(sensors)), list(dict.fromkeys([*others, *material.definition.warnings]))
+            (faults if _OF_SENSORS.search(text) else others).append(text)
+    faults += [text for text in sensors if not _FLAGGED.match(text)] + _flagged(sensors)
+    return list(dict.fromkeys(faults)), list(dict.fromkeys([*others, *material.definition.warnings]))
+
+
+def _repeats(text: str, covered: Collection[str]) -> bool:
+    """Whether the ingest says in short what the validation says at length."""
+    found = _RETURNS.match(text)
+    return bool(found and found[1] in covered)
+
+
+def _flagged(texts: list[str]) -> list[str]:
+    """Flagged samples of many channels, one line for each flag."""
+    by_flag: dict[str, list[str]] = {}
+    for found in filter(None, map(_FLAGGED.match, texts)):
+        by_flag.setdefault(found[3], []).append(f"{found[1]} ({found[2]})")
+    return [f"samples flagged {flag}: {listed(channels)}" for flag, channels in by_flag.items()]
 
 
 SECTION = Section("Verdict", 10, (), render)
