@@ -64,6 +64,8 @@ class Chart:
     """Of the value axis [SI], where the data themselves should not set it."""
     clock: str = "test"
     """Charts of one clock are zoomed together."""
+    weight: float = 1.0
+    """The share of a page's detail that its lines ask for, beside the others."""
     difference: bool = False
     """Whether the values are differences, which the zero point of a unit does not concern."""
 
@@ -91,6 +93,7 @@ def over_time(
     with_zero: bool = True,
     value_span: tuple[float, float] | None = None,
     difference: bool = False,
+    weight: float = 1.0,
 ) -> Chart | None:
     """A chart over the test's phases and events; None where no series has anything to draw.
 
@@ -106,6 +109,7 @@ def over_time(
         with_zero: whether zero belongs to the value axis.
         value_span: of the value axis, where the data should not set it.
         difference: whether the values are differences.
+        weight: of the chart's lines where the page's detail is shared out.
     """
     kept = tuple(one for one in series if one.finite)
     if not any(one.kind == "line" for one in kept):
@@ -124,6 +128,7 @@ def over_time(
         with_zero,
         value_span,
         difference=difference,
+        weight=weight,
     )
 
 

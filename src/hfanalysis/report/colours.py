@@ -24,7 +24,7 @@ COLOURS: dict[str, tuple[str, str]] = {
     "thrust": ("#6a36a8", "#c3a3ff"),
     "m_tank": ("#7b6100", "#e2c655"),
     "C_i": ("#0b5cad", "#6fb4ff"),
-    "model": ("#b14a07", "#ffab6b"),
+    "model": ("#1b1f24", "#eceae4"),
     "residual": ("#1b1f24", "#eceae4"),
     "raw": ("#6b7178", "#959da7"),
     "other": ("#6b7178", "#959da7"),

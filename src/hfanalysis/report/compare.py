@@ -26,6 +26,10 @@ _FAR, _VERY_FAR = 3.0, 100.0
 """Standard deviations beyond which a difference is pointed out, and beyond which nobody counts them."""
 
 
+_LONG_UNIT = 16
+"""Letters of a unit that need not be said again with a difference."""
+
+
 def compare(one: Material, other: Material) -> str:
     """The HTML of the page of two tests."""
     pairs = list(both_charts(one, other))
@@ -121,7 +125,8 @@ def _difference(name: str, mine: Mapping[str, Any], theirs: Mapping[str, Any]) -
 def _signed(text: Shown) -> str:
     spread = f" ± {text.std}" if text.std else ""
     number = f"{'' if text.value.startswith(MINUS) else '+'}{text.value}{spread}"
-    return f"({number}) {text.unit}" if text.unit.startswith("×") else f"{number} {text.unit}".strip()
+    unit = text.unit if len(text.unit) <= _LONG_UNIT else text.unit.partition(" ")[0]
+    return f"({number}) {unit}" if unit.startswith("×") else f"{number} {unit}".strip()
 
 
 def _sigmas(value: float, std: float) -> Markup:

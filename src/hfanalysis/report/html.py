@@ -121,8 +121,8 @@ def table(name: str, caption: str | Markup, columns: Sequence[str], rows: Iterab
     )
     body = Markup("\n").join(_row(row, right) for row in rows)
     frame = Markup(
-        '<div class="scroll" tabindex="0" role="region" aria-label="{}: table"><table><caption>{}</caption>'
-        "<thead><tr>{}</tr></thead><tbody>\n{}\n</tbody></table></div>"
+        '<div class="scroll" tabindex="0" role="region" aria-label="{}: table"><table>'
+        "<caption><span>{}</span></caption><thead><tr>{}</tr></thead><tbody>\n{}\n</tbody></table></div>"
     )
     return frame.format(name, caption, heads, body)
 

@@ -16,22 +16,38 @@ from hfanalysis.report.envelope import Envelope, Floats
 from hfanalysis.report.scales import SYSTEMS
 
 MOST, LEAST = 24_000, 1_500
-"""Samples of a line that a page keeps as they are (24 s at 1 kHz), and how few where there are many lines."""
+"""Samples of a line that a page keeps as they are (24 s at 1 kHz), and how few it may be asked to keep."""
 
-BUDGET = 500_000
+BUDGET = 520_000
 """Numbers on a page, 5.3 bytes each: with everything else a page stays below 5 MB."""
+
+_HALVINGS = 12
 
 
 def detail(charts: Sequence[Chart]) -> int:
-    """How many samples each line of a page may keep."""
-    lines = sum(len(chart.series) for chart in charts)
-    return int(np.clip(BUDGET / (2 * max(1, lines)), LEAST, MOST))
+    """How many samples a line of weight 1 may keep: as many as the page's budget lets all of them have."""
+    low, high = LEAST, MOST
+    if _numbers(charts, high) <= BUDGET:
+        return high
+    for _ in range(_HALVINGS):
+        middle = (low + high) // 2
+        low, high = (middle, high) if _numbers(charts, middle) <= BUDGET else (low, middle)
+    return low
+
+
+def _numbers(charts: Sequence[Chart], most: int) -> float:
+    """How many numbers a page holds; an envelope has a third as many instants, with three numbers each."""
+    total = 0.0
+    for chart in charts:
+        kept = [min(one.time.size, most * chart.weight) for one in chart.series if one.kind != "level"]
+        total += sum(kept) + max(kept, default=0)
+    return total
 
 
 def payload(charts: Sequence[Chart]) -> Markup:
     """All charts as JSON, for an element that browsers do not run."""
     most = detail(charts)
-    return as_json({"charts": {chart.key: _chart(chart, most) for chart in charts}})
+    return as_json({"charts": {chart.key: _chart(chart, int(most * chart.weight)) for chart in charts}})
 
 
 def as_json(data: Any) -> Markup:

@@ -13,7 +13,7 @@ from hfanalysis.report.envelope import Envelope, Floats
 from hfanalysis.report.wording import fixed
 
 WIDTH = 960.0
-LEFT, RIGHT, TOP, BOTTOM = 58.0, 116.0, 52.0, 46.0
+LEFT, RIGHT, TOP, BOTTOM = 58.0, 116.0, 56.0, 46.0
 """Margins: for the values, the names at the lines' ends, the events, and the time."""
 
 _ROWS = 3
@@ -180,7 +180,7 @@ def events(plot: Plot, found: Sequence[Event]) -> None:
         row = next((row for row, end in enumerate(ends) if end < x - half), _ROWS - 1)
         ends[row] = x + half
         plot.parts.append(_event(plot, event, x))
-        plot.parts.append(_text(x, TOP - 6 - 12 * row, event.name, "event-name", "middle"))
+        plot.parts.append(_text(x, TOP - 6 - 13 * row, event.name, "event-name", "middle"))
 
 
 def _event(plot: Plot, event: Event, x: float) -> str:

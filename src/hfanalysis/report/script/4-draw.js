@@ -11,7 +11,7 @@ function element(parent, name, attributes, text) {
 }
 
 function margins(width) {
-  return width < WIDE ? { left: 46, right: 10, top: 52, bottom: 46 } : { left: 58, right: 116, top: 52, bottom: 46 };
+  return width < WIDE ? { left: 46, right: 10, top: 56, bottom: 46 } : { left: 58, right: 116, top: 56, bottom: 46 };
 }
 
 function shownUnit(chart) {
@@ -110,7 +110,7 @@ function drawEvents(chart, svg) {
     element(group, "rect", { class: "event-band", x: at - spread, y: m.top, width: 2 * spread,
       height: height - m.bottom - m.top });
     element(group, "path", { class: "event", d: `M${at} ${m.top}V${height - m.bottom}` });
-    element(svg, "text", { class: "event-name", x: at, y: m.top - 6 - 12 * row, "text-anchor": "middle" }, event.name);
+    element(svg, "text", { class: "event-name", x: at, y: m.top - 6 - 13 * row, "text-anchor": "middle" }, event.name);
   }
 }
 

@@ -25,6 +25,9 @@ MODES: dict[str, str] = {
 _UNTIL_NITROGEN = ("tank_free",)
 """Modes that know nothing of the nitrogen, drawn until it enters."""
 
+_WEIGHT = 0.2
+"""Beside the log's own charts, which show the same samples."""
+
 _NUMBERS = ("measured", "model", "residual", "noise_std")
 
 
@@ -64,13 +67,24 @@ def _charts(material: Material, mode: str, channel: str, table: Table) -> Iterat
         Series("model", "model", time, model, dashed=True),
     ]
     title = f"{words.capitalize()}: model against measurement"
-    yield over_time(material, key, title, (words, unit), lines, _known(mode), span=span, height=250.0)
+    yield over_time(material, key, title, (words, unit), lines, _known(mode), span=span, height=250.0, weight=_WEIGHT)
     band = Series("noise, 95 %", "noise", time, -1.96 * noise, "band", 1.96 * noise)
     zero = Series("zero", "zero", time[[0, -1]], np.zeros(2), "level")
     left = [band, Series("residual", "residual", time, residual), zero]
     caption = "Measured less model. The grey band is what noise alone would do in 95 % of the samples."
     title, axis = f"{words.capitalize()}: residual", ("measured − model", unit)
-    yield over_time(material, f"{key}-residual", title, axis, left, caption, span=span, height=200.0, difference=True)
+    yield over_time(
+        material,
+        f"{key}-residual",
+        title,
+        axis,
+        left,
+        caption,
+        span=span,
+        height=200.0,
+        difference=True,
+        weight=_WEIGHT,
+    )
 
 
 def _stretch(material: Material, mode: str) -> tuple[float, float]:
