@@ -16,6 +16,7 @@ import numpy as np
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.flight.vehicle import Vehicle
+from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.combustion_table import CombustionTable, build
 from hfanalysis.thermo.nitrous import saturation
 
@@ -61,6 +62,7 @@ def random_engine(rng: np.random.Generator, combustion: CombustionTable) -> Engi
         vehicle=Vehicle(
             span(5.0, 500.0), 0.5, span(5e-3, 0.2), float(rng.uniform(0.0, 0.2)), float(rng.uniform(0, 3e3))
         ),
+        oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY if rng.random() < 0.5 else None,
     )
 
 

@@ -27,7 +27,7 @@ from hfanalysis.engine.sizing import DipTube, size_for_ullage
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.flight.vehicle import Vehicle, gravity
 from hfanalysis.thermo import atmosphere
-from hfanalysis.thermo.combustion import Gas, equilibrium
+from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, Gas, equilibrium
 from hfanalysis.thermo.combustion_table import CombustionTable, build
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.nitrous import saturation
@@ -72,6 +72,7 @@ def maelstrom(combustion: CombustionTable | None = None) -> Engine:
         throat_area=pi * 0.0233**2,
         exit_area=pi * 0.0381**2,
         vehicle=Vehicle(52.5, 0.529, 19478e-6, radians(6.0), 1402.0),
+        oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY,
     )
 
 
@@ -300,7 +301,7 @@ def differences(ours: Burn, run: Run) -> dict[str, float]:
     """Largest difference of every state in its range, at times that are the same fraction of the same phase."""
     borders = [0.0, ours.liquid_out, ours.burn_time] if ours.liquid_out is not None else [0.0, ours.burn_time]
     theirs = [0.0, *run.events]
-    mine = np.vstack([ours.states.T[:8], ours.output("chamber_pressure")])
+    mine = np.vstack([ours.state(name) for name in COMPARED] + [ours.output("chamber_pressure")])
     reference = np.empty_like(mine)
     for k, phase in enumerate(run.phases):
         low, high = borders[k], borders[k + 1]
@@ -334,7 +335,7 @@ def main(repeats: int = 5) -> int:
         ("liquid out [s]", ours.liquid_out or np.nan, run.events[0]),
         ("burn time [s]", ours.burn_time, run.events[-1]),
     ]
-    rows += [(f"{name}, end", ours.states[-1, i], last[i]) for i, name in enumerate(COMPARED)]
+    rows += [(f"{name}, end", ours.state(name)[-1], last[i]) for i, name in enumerate(COMPARED)]
     for name, mine, theirs in rows:
         print(f"{name:28}{mine:14.6f}{theirs:14.6f}{mine / theirs - 1.0:12.1e}")
     print("\nlargest difference of a state over the burn, in its range")

@@ -13,8 +13,7 @@ from hfanalysis.calibrate.engine_of_test import Regression
 from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar, chamber_at
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn
-from hfanalysis.flight.constant_thrust import Vehicle
-from hfanalysis.simulate.build import STAND_MASS, combustion_of
+from hfanalysis.simulate.build import combustion_of
 from hfanalysis.thermo.nitrous import saturation
 
 TRUTH = Regression(1e-4, 0.5)
@@ -39,7 +38,8 @@ def engine() -> Engine:
         dead_volume=1.1e-3,
         throat_area=pi * 22e-3**2,
         exit_area=pi * 36e-3**2,
-        vehicle=Vehicle(STAND_MASS, 1.0, 1.0, 0.0, 16.0),
+        ambient_pressure=101_130.0,
+        oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY,
     )
 
 

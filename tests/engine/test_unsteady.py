@@ -181,7 +181,7 @@ def their_state(done: Burn, i: int) -> Array:
 def test_the_reference_solver_finds_the_same_events_and_totals() -> None:
     assert (burnt().liquid_out, burnt().burn_time) == pytest.approx(reference().events, rel=1e-4)
     assert burnt().state("impulse")[-1] == pytest.approx(reference().end[9], rel=1e-5)
-    assert burnt().states[-1] == pytest.approx(in_our_states(reference().end)[:8], rel=1e-4)
+    assert burnt().states[-1][:8] == pytest.approx(in_our_states(reference().end)[:8], rel=1e-4)
 
 
 def test_the_reference_solver_has_the_same_states_at_aligned_times() -> None:
@@ -195,7 +195,7 @@ def test_without_condensed_carbon_the_chamber_too_agrees() -> None:
     wet = whole.time <= (whole.liquid_out or 0.0)
     assert whole.output("of_ratio")[wet].min() > 3.4
     theirs = in_our_states(run.phases[0].sol(whole.time[wet] / (whole.liquid_out or 1.0) * run.events[0]))
-    ours = np.vstack([whole.states[wet].T, whole.output("chamber_pressure")[wet]])
+    ours = np.vstack([whole.states[wet].T[:8], whole.output("chamber_pressure")[wet]])
     assert (np.abs(ours - theirs).max(axis=1) / np.ptp(theirs, axis=1)).max() < 1e-4
 
 

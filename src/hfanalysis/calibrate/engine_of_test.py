@@ -17,10 +17,8 @@ from scipy.optimize import brentq
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
-from hfanalysis.flight.constant_thrust import Vehicle
-from hfanalysis.simulate.build import STAND_MASS, combustion_of
+from hfanalysis.simulate.build import combustion_of
 from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.thermo import atmosphere
 from hfanalysis.thermo.combustion import FORMATION_OFFSET, PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
@@ -71,7 +69,7 @@ def engine_of_test(
         dead_volume=stated["pre_volume"] + stated["post_volume"],
         throat_area=pi * stated["throat_radius"] ** 2,
         exit_area=pi * stated["exit_radius"] ** 2,
-        vehicle=stand(definition),
+        ambient_pressure=definition.ambient_pressure.value,
         oxidizer_enthalpy=oxidizer_enthalpy(definition, source, temperature),
     )
 
@@ -134,13 +132,6 @@ def oxidizer_enthalpy(definition: TestDefinition, source: Saturation, temperatur
     if definition.model.conventions == "report":
         return PROPEP_OXIDIZER_ENTHALPY
     return FORMATION_OFFSET + float(source.energy(Property.LIQUID_ENTHALPY, temperature)[0])
-
-
-def stand(definition: TestDefinition) -> Vehicle:
-    """What the engine is bolted to: at the altitude whose air has the site's pressure."""
-    pressure = definition.ambient_pressure.value
-    altitude = brentq(lambda z: float(atmosphere.pressure(z)) - pressure, -2000.0, 20_000.0, xtol=1e-6)
-    return Vehicle(STAND_MASS, 1.0, 1.0, 0.0, float(altitude))
 
 
 def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:

@@ -6,7 +6,7 @@ from math import sqrt
 
 from numba import njit
 
-SMALL_DROP = 10.0
+SMALL_DROP = 1000.0
 """Pressure drop [Pa] below which the square root is bent to a finite slope, at which no solver stalls."""
 
 

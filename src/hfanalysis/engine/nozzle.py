@@ -15,7 +15,7 @@ from numba import njit
 from hfanalysis.thermo.combustion import Gas
 
 SUBSONIC, SHOCK, SUPERSONIC = 0, 1, 2
-SMALL_EXCESS = 1e-4
+SMALL_EXCESS = 1e-3
 """Excess of the chamber's over the ambient pressure, relative, below which the exit velocity falls linearly."""
 
 REGIMES = ("subsonic", "shock in the diverging part", "supersonic")
@@ -56,29 +56,32 @@ def area_ratio(mach: float, gamma: float) -> float:
 
 @njit(cache=True)
 def mach_at_area(ratio: float, gamma: float, supersonic: bool) -> float:
-    """Mach number at A/A* = ``ratio`` >= 1 on one branch: Newton on ln(A/A*) in ln M, kept on its side of M = 1."""
+    """Mach number at A/A* = ``ratio`` >= 1 on one branch: Halley on ln(A/A*) in ln M, kept on its side of M = 1."""
     if ratio <= 1.0:
         return 1.0
-    # near the throat A/A* - 1 is quadratic in M - 1; far from it the branches follow powers of the ratio
-    spread = np.sqrt(2.0 * np.log(ratio) * (gamma + 1.0) / 2.0)
-    x = min(spread, 2.5) if supersonic else max(-spread, -np.log(ratio) - 0.6)
+    # near the throat ln(A/A*) is quadratic in ln M; far from it the branches follow powers of the ratio
     target = np.log(ratio)
+    spread = np.sqrt(target * (gamma + 1.0))
+    x = min(spread, 2.5) if supersonic else max(-spread, -target - 0.6)
+    half = 0.5 * (gamma - 1.0)
+    power = 0.5 * (gamma + 1.0) / (gamma - 1.0)
+    throat = power * np.log(1.0 + half)
     for _ in range(60):
-        mach = np.exp(x)
-        square = mach * mach
-        slope = (square - 1.0) / (1.0 + 0.5 * (gamma - 1.0) * square)
-        error = np.log(area_ratio(mach, gamma)) - target
-        if abs(error) < 1e-14:
+        square = np.exp(2.0 * x)
+        bracket = 1.0 + half * square
+        error = power * np.log(bracket) - throat - x - target
+        slope = (square - 1.0) / bracket
+        if slope == 0.0:
             break
-        step = error / slope if slope != 0.0 else 0.0
-        new = x - step
-        if supersonic and new <= 0.0:
+        curvature = (gamma + 1.0) * square / (bracket * bracket)
+        newton = error / slope
+        new = x - newton / max(1.0 - 0.5 * newton * curvature / slope, 0.5)  # Halley's correction
+        if (new > 0.0) != supersonic or new == 0.0:
             new = 0.5 * x
-        if not supersonic and new >= 0.0:
-            new = 0.5 * x
-        if abs(new - x) < 1e-15:
-            break
+        done = abs(new - x) < 1e-7 or abs(error) < 1e-15
         x = new
+        if done:  # of third order: what is left is the cube of the last change
+            break
     return float(np.exp(x))
 
 
@@ -138,13 +141,15 @@ def expand(
     if not pressure > ambient:
         return 0.0, 0.0, 0.0, ambient, SUBSONIC
     ratio = exit_area / throat_area
-    first = mach_at_area(ratio, gamma, False)
-    if ambient >= pressure * pressure_ratio(first, gamma):
-        mach = mach_at_pressure(ambient / pressure, gamma)
-        # flow grows as the root of the excess pressure: bent to a finite slope where solvers would stall
-        x = min((pressure / ambient - 1.0) / SMALL_EXCESS, 1.0)
-        mach *= 0.5 * np.sqrt(x) * (3.0 - x)
-        return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, mach, ambient, SUBSONIC)
+    # a nozzle with less than the throat's critical pressure behind it is choked: no need to ask for its subsonic flow
+    if ambient >= pressure * pressure_ratio(1.0, gamma):
+        first = mach_at_area(ratio, gamma, False)
+        if ambient >= pressure * pressure_ratio(first, gamma):
+            mach = mach_at_pressure(ambient / pressure, gamma)
+            # flow grows as the root of the excess pressure: bent to a finite slope where solvers would stall
+            x = min((pressure / ambient - 1.0) / SMALL_EXCESS, 1.0)
+            mach *= 0.5 * np.sqrt(x) * (3.0 - x)
+            return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, mach, ambient, SUBSONIC)
     full = mach_at_area(ratio, gamma, True)
     exit_pressure = pressure * pressure_ratio(full, gamma)
     if ambient < exit_pressure * pressure_after_shock(full, gamma):

@@ -17,11 +17,14 @@ from hfanalysis.thermo.saturation import (
     LIQUID_ENERGY,
     LIQUID_ENTHALPY,
     LIQUID_VOLUME,
+    LN_PRESSURE,
     LN_VAPOR_VOLUME,
     VAPOR_ENERGY,
     Array,
     Saturation,
     evaluate,
+    place,
+    row_at,
 )
 
 SPECIFIC_GAS_CONSTANT = GAS_CONSTANT / OXIDIZER_MOLAR_MASS
@@ -74,11 +77,23 @@ def energy_derivatives(
     table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float
 ) -> tuple[float, float, float]:
     """U_M [J/kg], U_T [J/K] of the saturated tank's internal energy, and the liquid's enthalpy h_l [J/kg]."""
-    v_l, v_l_slope = evaluate(*table, LIQUID_VOLUME, temperature)
-    ln_v_v, ln_v_v_slope = evaluate(*table, LN_VAPOR_VOLUME, temperature)
-    u_l, u_l_slope = evaluate(*table, LIQUID_ENERGY, temperature)
-    u_v, u_v_slope = evaluate(*table, VAPOR_ENERGY, temperature)
-    h_l, _ = evaluate(*table, LIQUID_ENTHALPY, temperature)
+    _, _, _, by_mass, by_temperature, h_l = saturated_tank(table, volume, mass, temperature)
+    return by_mass, by_temperature, h_l
+
+
+@njit(cache=True)
+def saturated_tank(
+    table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float
+) -> tuple[float, float, float, float, float, float]:
+    """p_sat [Pa], rho_l [kg/m^3], m_l [kg], U_M [J/kg], U_T [J/K], h_l [J/kg]: the whole tank from one place in the table."""
+    rows = table[0]
+    k, x, d = place(*table, temperature)
+    ln_p, _ = row_at(rows, LN_PRESSURE, k, x, d)
+    v_l, v_l_slope = row_at(rows, LIQUID_VOLUME, k, x, d)
+    ln_v_v, ln_v_v_slope = row_at(rows, LN_VAPOR_VOLUME, k, x, d)
+    u_l, u_l_slope = row_at(rows, LIQUID_ENERGY, k, x, d)
+    u_v, u_v_slope = row_at(rows, VAPOR_ENERGY, k, x, d)
+    h_l, _ = row_at(rows, LIQUID_ENTHALPY, k, x, d)
     v_v = np.exp(ln_v_v)
     gap = v_v - v_l
     m_l = (mass * v_v - volume) / gap
@@ -86,7 +101,7 @@ def energy_derivatives(
     m_l_slope = (m_l * v_l_slope + m_v * v_v * ln_v_v_slope) / gap
     by_mass = (u_l * v_v - u_v * v_l) / gap
     by_temperature = m_l * u_l_slope + m_v * u_v_slope + (u_l - u_v) * m_l_slope
-    return by_mass, by_temperature, h_l
+    return np.exp(ln_p), 1.0 / v_l, m_l, by_mass, by_temperature, h_l
 
 
 @njit(cache=True)

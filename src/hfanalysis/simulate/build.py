@@ -18,9 +18,6 @@ from hfanalysis.thermo import atmosphere, combustion, combustion_table
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
 
-STAND_MASS = 1e12
-"""[kg] of what an engine without a rocket is bolted to: it does not move."""
-
 _STANDARD = 101_325.0
 
 
@@ -210,7 +207,7 @@ def requirement(needs: Needs) -> steady.Requirement:
 
 
 def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
-    """The unsteady engine on its rocket, or bolted down at the site where there is none that can fly."""
+    """The unsteady engine on its rocket, or on its stand at the site where there is none that can fly."""
     file, grain = needs.file, steady_grain(needs)
     flying = vehicle(file)
     throat = needs.value(file.nozzle.throat_radius, "nozzle", "throat_radius").value
@@ -231,15 +228,11 @@ def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
         dead_volume=_dead_volume(needs),
         throat_area=pi * throat**2,
         exit_area=pi * exit_radius**2,
-        vehicle=flying if isinstance(flying, Vehicle) else _stand(file),
-        oxidizer_enthalpy=oxidizer_enthalpy(needs).value,
+        vehicle=flying if isinstance(flying, Vehicle) else None,
+        ambient_pressure=ambient_pressure(file),
+        oxidizer_enthalpy=combustion.PROPEP_OXIDIZER_ENTHALPY if file.model.conventions == "report" else None,
     )
     return _that_flows(needs, made)
-
-
-def _stand(file: EngineFile) -> Vehicle:
-    """What holds an engine that does not fly: at the altitude whose air has the site's pressure."""
-    return Vehicle(STAND_MASS, 1.0, 1.0, 0.0, atmosphere.altitude_of(ambient_pressure(file)))
 
 
 def _exponent(needs: Needs) -> float | None:
@@ -259,7 +252,7 @@ def _that_flows(needs: Needs, made: unsteady.Engine) -> unsteady.Engine:
     """The engine, if its tank can push anything through the line at all."""
     at_rest = float(made.saturation.pressure(made.temperature))
     loss = made.feed.constant_losses[0] if made.feed.constant_losses else 0.0
-    ambient = float(atmosphere.pressure(made.vehicle.launch_altitude))
+    ambient = made.ambient
     if at_rest - loss <= ambient:
         raise InputError(
             f"{needs.file.where('tank', 'temperature')}: the tank's {at_rest / 1e5:.4g} bar less {loss / 1e5:.4g} bar "

@@ -13,6 +13,7 @@ from hfanalysis.flight.ascent import Ascent
 from hfanalysis.flight.ascent import ascend as ascend_on
 from hfanalysis.flight.curve import Curve, even_curve
 from hfanalysis.flight.descent import Parachute
+from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.quantity import Quantity
 
 Array = NDArray[np.float64]
@@ -20,16 +21,24 @@ Array = NDArray[np.float64]
 
 def curve_of(engine: Engine, burnt: Burn) -> Curve:
     """Thrust at the altitudes of the burn, and the rocket's mass; it coasts with its dry mass, as the report does."""
+    vehicle = flying(engine)
     later = np.flatnonzero(np.diff(burnt.time, prepend=-1.0) > 0.0)
     time, impulse = burnt.time[later], burnt.state("impulse")[later]
-    return even_curve(time, impulse, mass(engine, burnt)[later], engine.vehicle.dry_mass)
+    return even_curve(time, impulse, mass(engine, burnt)[later], vehicle.dry_mass)
+
+
+def flying(engine: Engine) -> Vehicle:
+    """The engine's rocket; ValueError for an engine on its stand."""
+    if engine.vehicle is None:
+        raise ValueError("the engine stands on its bench")
+    return engine.vehicle
 
 
 def mass(engine: Engine, burnt: Burn) -> Array:
     """Of the rocket over the burn [kg]: dry mass, tank, grain, and the gas in the chamber."""
     grain = pi * engine.fuel_density * engine.grain_length * (engine.outer_radius**2 - burnt.state("port_radius") ** 2)
     stored = burnt.state("chamber_oxidizer") + burnt.state("chamber_fuel")
-    return np.asarray(engine.vehicle.dry_mass + burnt.state("tank_mass") + grain + stored)
+    return np.asarray(flying(engine).dry_mass + burnt.state("tank_mass") + grain + stored)
 
 
 def ascend(engine: Engine, burnt: Burn, rail_length: float | None = None) -> Ascent:
@@ -37,7 +46,7 @@ def ascend(engine: Engine, burnt: Burn, rail_length: float | None = None) -> Asc
 
     Raises ValueError for a rocket that stays on its pad or leaves the atmosphere model.
     """
-    return ascend_on(curve_of(engine, burnt), engine.vehicle, rail_length)
+    return ascend_on(curve_of(engine, burnt), flying(engine), rail_length)
 
 
 def flight(
@@ -48,4 +57,4 @@ def flight(
         flown = ascend(engine, burnt, rail_length)
     except ValueError as error:
         return summary.absent(str(error))
-    return summary.quantities(engine.vehicle, flown, rail_length, canopies)
+    return summary.quantities(flying(engine), flown, rail_length, canopies)

@@ -11,3 +11,6 @@ OXIDIZER_MOLAR_MASS = 44.0128
 
 AIR_MOLAR_MASS = 28.9647
 """Molar mass of air [kg/kmol]."""
+
+NITROGEN_MOLAR_MASS = 28.0134
+"""Molar mass of nitrogen [kg/kmol]."""

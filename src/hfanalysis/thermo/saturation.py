@@ -37,7 +37,8 @@ class Property(IntEnum):
 
 
 LN_PRESSURE, LIQUID_VOLUME, LN_VAPOR_VOLUME = 0, 1, 2
-LIQUID_ENERGY, VAPOR_ENERGY, LIQUID_ENTHALPY = 3, 4, 5
+LIQUID_ENERGY, VAPOR_ENERGY, LIQUID_ENTHALPY, VAPOR_ENTHALPY = 3, 4, 5, 6
+LN_VAPOR_CV, LN_VAPOR_CP = 7, 8
 
 
 @dataclass(frozen=True)
@@ -141,14 +142,26 @@ def evaluate(
     table: Array, theta_start: float, theta_step: float, critical: float, row: int, temperature: float
 ) -> tuple[float, float]:
     """Value of one table row and its derivative by temperature; the ends are held by their last cubic."""
+    k, x, by_temperature = place(table, theta_start, theta_step, critical, temperature)
+    return row_at(table, row, k, x, by_temperature)
+
+
+@njit(cache=True)
+def place(
+    table: Array, theta_start: float, theta_step: float, critical: float, temperature: float
+) -> tuple[int, float, float]:
+    """Where a temperature lies in the table: interval, distance from its node, and d theta/dT, for :func:`row_at`."""
     theta = max(1.0 - temperature / critical, 1e-9) ** (1.0 / 3.0)
-    place = (theta - theta_start) / theta_step
-    k = min(max(int(place), 0), table.shape[1] - 1)
-    x = theta - (theta_start + k * theta_step)
+    k = min(max(int((theta - theta_start) / theta_step), 0), table.shape[1] - 1)
+    return k, theta - (theta_start + k * theta_step), -1.0 / (3.0 * critical * theta * theta)
+
+
+@njit(cache=True)
+def row_at(table: Array, row: int, k: int, x: float, by_temperature: float) -> tuple[float, float]:
+    """Value and derivative by temperature of one table row at a :func:`place`; many rows share one place."""
     c = table[row, k]
     value = c[0] + x * (c[1] + x * (c[2] + x * c[3]))
-    slope = c[1] + x * (2.0 * c[2] + x * 3.0 * c[3])
-    return value, -slope / (3.0 * critical * theta * theta)
+    return value, (c[1] + x * (2.0 * c[2] + x * 3.0 * c[3])) * by_temperature
 
 
 @njit(cache=True)

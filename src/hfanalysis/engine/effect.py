@@ -1,0 +1,150 @@
+"""What an effect is: a small object that plugs into the engine's sites, and how several are composed.
+
+An effect acts through a compiled ``term`` (:mod:`hfanalysis.engine.sites`), which may have states of its own and a switch
+where it has a corner, or through ``distort``, which changes what a sensor reads. At strength 0 an effect is left out
+altogether, so that the engine is exactly the base model; active effects act in the order of their names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from hfanalysis.engine.unsteady import Engine
+
+Array = NDArray[np.float64]
+Channels = Mapping[str, Array]
+Distortion = Callable[[Array, Channels, Mapping[str, float]], dict[str, Array]]
+
+EQUATIONS = (
+    "tank_energy", "tank_volume", "injector", "feed", "grain", "chamber_mass", "chamber_energy", "nozzle", "sensor",
+)  # fmt: skip
+"""The governing equations in which an effect can be missing."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number of an effect, in SI: its name, unit, what it says, and its prior.
+
+    ``typical`` is the physical scale: the prior's standard deviation about ``center`` (a strength's center is 0), ``low``
+    and ``high`` bound it. A ``given`` parameter is stated by the test and not estimated.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    typical: float
+    center: float = 0.0
+    low: float = -np.inf
+    high: float = np.inf
+    given: bool = False
+
+
+@dataclass(frozen=True)
+class OwnState:
+    """A state that an effect brings along: what counts as small of it, and where it starts."""
+
+    name: str
+    unit: str
+    scale: float
+    start: Callable[[Engine, Mapping[str, float]], float]
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A physical or sensor effect that the report's model lacks; the first parameter is its strength."""
+
+    name: str
+    equation: str
+    meaning: str
+    reference: str
+    parameters: tuple[Parameter, ...]
+    phases: tuple[str, ...]
+    term: Any = None
+    switch: Any = None
+    states: tuple[OwnState, ...] = ()
+    distort: Distortion | None = None
+    twins: tuple[str, ...] = ()
+    decisive: str = ""
+
+    def __post_init__(self) -> None:
+        if self.equation not in EQUATIONS:
+            raise ValueError(f"{self.name}: no governing equation is called {self.equation!r}")
+        if (self.term is None) == (self.distort is None):
+            raise ValueError(f"{self.name}: an effect has either a term or a distortion")
+
+    @property
+    def strength(self) -> Parameter:
+        """The parameter that is 0 in the base model."""
+        return self.parameters[0]
+
+    def at(self, **values: float) -> Active:
+        """This effect with values [SI]; parameters that are left out have their prior's center."""
+        names = [p.name for p in self.parameters]
+        if wrong := set(values) - set(names):
+            raise ValueError(f"{self.name} has no parameter {sorted(wrong)}; it has {names}")
+        return Active(self, tuple(float(values.get(p.name, p.center)) for p in self.parameters))
+
+
+@dataclass(frozen=True)
+class Active:
+    """An effect with the values of its parameters [SI]."""
+
+    effect: Effect
+    values: tuple[float, ...]
+
+    @property
+    def named(self) -> dict[str, float]:
+        """Values by the parameters' names."""
+        return {p.name: v for p, v in zip(self.effect.parameters, self.values, strict=True)}
+
+    @property
+    def idle(self) -> bool:
+        """Whether the strength is 0."""
+        return self.values[0] == 0.0
+
+
+@dataclass(frozen=True)
+class Composition:
+    """Active terms as the compiled equations read them.
+
+    ``constants`` are the engine's, followed by the terms' parameters; ``terms`` has a row per term (addresses, where its
+    parameters and states begin); ``scales`` of the own states; ``active`` in the order of the rows.
+    """
+
+    constants: Array
+    terms: NDArray[np.int64]
+    scales: Array
+    active: tuple[Active, ...]
+
+    def initial(self, engine: Engine) -> Array:
+        """Where the own states start."""
+        return np.array([s.start(engine, a.named) for a in self.active for s in a.effect.states], dtype=np.float64)
+
+
+def compose(effects: Sequence[Active], constants: Array, states: int, idle: bool = False) -> Composition:
+    """Effects with terms in canonical order; ``states`` of the engine precede their own.
+
+    Idle effects are left out unless they are asked for (their tangents need them). Raises ValueError for an effect that
+    is named twice.
+    """
+    names = [a.effect.name for a in effects]
+    if len(set(names)) < len(names):
+        raise ValueError(f"an effect is named twice: {sorted(names)}")
+    acting = [a for a in effects if a.effect.term is not None and (idle or not a.idle)]
+    acting.sort(key=lambda a: a.effect.name)
+    rows, values, parameters_at, states_at = [], [constants], constants.size, states
+    for a in acting:
+        switch = 0 if a.effect.switch is None else a.effect.switch.address
+        rows.append((a.effect.term.address, switch, parameters_at, states_at))
+        values.append(np.array(a.values))
+        parameters_at += len(a.values)
+        states_at += len(a.effect.states)
+    terms = np.array(rows, dtype=np.int64).reshape(len(rows), 4)
+    scales = np.array([s.scale for a in acting for s in a.effect.states], dtype=np.float64)
+    return Composition(np.concatenate(values), terms, scales, tuple(acting))

@@ -1,0 +1,132 @@
+"""Tangents of a run for named parameters: of an engine's numbers and of its effects'."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hfanalysis.engine import tangents
+from hfanalysis.engine.course import SCALES
+from hfanalysis.engine.effect import Active, compose
+from hfanalysis.engine.model import OUTPUTS, STATES
+from hfanalysis.engine.unsteady import ACCURACY, Burn, Engine, burn, constants, initial
+
+Array = NDArray[np.float64]
+
+ENGINE_PARAMETERS = {
+    "volume": 1e-2,
+    "area": 1e-5,
+    "loss_factor": 1e8,
+    "polytropic_exponent": 1.0,
+    "oxidizer_mass": 1.0,
+    "temperature": 100.0,
+    "fuel_mass": 1.0,
+    "grain_length": 0.1,
+    "outer_radius": 0.01,
+    "fuel_density": 100.0,
+    "a": 1e-4,
+    "n": 0.5,
+    "dead_volume": 1e-3,
+    "throat_area": 1e-3,
+    "exit_area": 1e-3,
+    "ambient_pressure": 1e5,
+}
+"""Numbers of an engine that can be a parameter, with what counts as large of each [SI]."""
+
+SHIFT = 1e-6
+"""Relative to what counts as large: by how much a parameter is moved for its difference quotient."""
+
+
+@dataclass(frozen=True)
+class Tangents:
+    """A run and its sensitivities to ``parameters``.
+
+    ``states`` (n, 4, states, parameters) and ``outputs`` (n, 4, outputs, parameters) on four nodes of each of the solver's n
+    steps; ``liquid_out`` and ``burn_time`` (parameters,), NaN where the event does not take place.
+    """
+
+    burn: Burn
+    parameters: tuple[str, ...]
+    states: Array
+    outputs: Array
+    moments: Array
+
+    def output(self, name: str, times: ArrayLike) -> Array:
+        """Sensitivities (times, parameters) of one of OUTPUTS, or "impulse", at increasing times [s]."""
+        where = np.ascontiguousarray(times, dtype=np.float64)
+        source, row = (self.outputs, OUTPUTS.index(name)) if name in OUTPUTS else (self.states, STATES.index(name))
+        return tangents.at_times(where, self.burn.steps.times, source[:, :, row : row + 1])[:, 0]
+
+    def event(self, number: int) -> Array:
+        """Sensitivities (parameters,) of the time of an event of :mod:`hfanalysis.engine.course` [s]."""
+        at = np.flatnonzero(self.burn.steps.events == number)
+        return self.moments[at[-1]] if at.size else np.full(len(self.parameters), np.nan)
+
+
+def shifted(engine: Engine, name: str) -> tuple[Engine, float]:
+    """The engine with one parameter moved a little, and by how much [SI].
+
+    ``name`` is one of ENGINE_PARAMETERS, or "EFFECT.PARAMETER" of an effect the engine has. Raises ValueError for others.
+    """
+    if "." in name:
+        return _shifted_effect(engine, *name.split(".", 1))
+    if name not in ENGINE_PARAMETERS:
+        raise ValueError(f"{name!r} is no parameter of an engine; there are {sorted(ENGINE_PARAMETERS)}")
+    step = SHIFT * ENGINE_PARAMETERS[name]
+    if name in ("volume", "area", "loss_factor"):
+        return replace(engine, feed=replace(engine.feed, **{name: getattr(engine.feed, name) + step})), step
+    value = getattr(engine, name)
+    if value is None:
+        raise ValueError(f"{name} of this engine is not a number")
+    return replace(engine, **{name: value + step}), step
+
+
+def _shifted_effect(engine: Engine, effect: str, parameter: str) -> tuple[Engine, float]:
+    moved, step = [], 0.0
+    for active in engine.effects:
+        if active.effect.name != effect:
+            moved.append(active)
+            continue
+        names = [p.name for p in active.effect.parameters]
+        where = names.index(parameter)
+        step = SHIFT * active.effect.parameters[where].typical
+        values = tuple(v + step if i == where else v for i, v in enumerate(active.values))
+        moved.append(Active(active.effect, values))
+    if step == 0.0:
+        raise ValueError(f"the engine has no effect {effect!r} with a parameter {parameter!r}")
+    return replace(engine, effects=tuple(moved)), step
+
+
+def run_with_tangents(
+    engine: Engine,
+    parameters: Sequence[str],
+    longest: float = 120.0,
+    rtol: float = ACCURACY,
+    run_on: bool = False,
+    times: Sequence[float] | Array | None = None,
+) -> Tangents:
+    """A run (as :func:`hfanalysis.engine.unsteady.burn`) and its sensitivities to ``parameters``.
+
+    Parameters of effects at strength 0 are allowed: their terms act with that strength.
+    """
+    done = burn(engine, longest, rtol, run_on, times, keep_idle=True)
+    composition = done.steps.composition
+    y = done.steps.begin[0]
+    constant_rows, steps, start = [], [], []
+    for name in parameters:
+        moved, step = shifted(engine, name)
+        other = compose(moved.effects, constants(moved), len(STATES), idle=True)
+        constant_rows.append(other.constants)
+        steps.append(step)
+        start.append((initial(moved, other) - y) / step)
+    s = done.steps
+    scales = np.concatenate([SCALES, composition.scales])
+    shifted_constants = np.array(constant_rows).reshape(len(steps), composition.constants.size)
+    found = tangents.propagate(
+        s.times, s.begin, s.end, s.dense, s.phases, s.events, engine.tables, composition.constants, shifted_constants,
+        np.array(steps), scales, composition.terms, np.ascontiguousarray(np.array(start).T),
+    )  # fmt: skip
+    return Tangents(done, tuple(parameters), *found)
