@@ -14,6 +14,7 @@ from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar, chamber_a
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.simulate.build import combustion_of
+from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
 
 TRUTH = Regression(1e-4, 0.5)

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from hfanalysis.calibrate.engine_of_test import Regression, engine_of_test, exponent, starting_for
 from hfanalysis.calibrate.uncertainty import Draws
-from hfanalysis.engine.unsteady import RADIUS, Burn, Engine, air, burn
+from hfanalysis.engine.model import RADIUS
+from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
@@ -159,8 +160,8 @@ def _predicted(evidence: Evidence, engine: Engine) -> Array | None:
 
 def chamber_at(engine: Engine, burnt: Burn, time: Array) -> Array:
     """Modelled chamber pressure [Pa] at given times; ambient after the burn."""
-    ambient, _ = air(engine.vehicle.launch_altitude)
-    return np.interp(time, burnt.time, burnt.output("chamber_pressure"), right=ambient)
+    pressure = np.interp(time, burnt.time, burnt.output("chamber_pressure"), right=engine.ambient)
+    return np.asarray(pressure)
 
 
 def _scalars(evidence: Evidence, engine: Engine, burnt: Burn) -> list[float]:

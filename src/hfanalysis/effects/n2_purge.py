@@ -1,17 +1,21 @@
-"""Nitrogen from the purge line entering the tank through its check valve, once the tank's pressure has fallen enough."""
+"""Nitrogen from the purge line entering the tank through its check valve, once the tank's pressure has fallen
+enough."""
 
 from __future__ import annotations
 
 from math import sqrt
 
 from hfanalysis.engine.effect import Effect, Parameter
-from hfanalysis.engine.injector import SMALL_DROP
 from hfanalysis.engine.model import NITROGEN_CV, SPECIFIC_NITROGEN
 from hfanalysis.engine.sites import NITROGEN_INFLOW, P_TANK, RATES, T_TANK, TANK_HEAT, switch, term
 
 AREA, SUPPLY, CRACKING, TEMPERATURE = range(4)
 GAMMA = 1.4
 CRITICAL = (2.0 / (GAMMA + 1.0)) ** (GAMMA / (GAMMA - 1.0))
+CHOKED = sqrt(GAMMA) * (2.0 / (GAMMA + 1.0)) ** (0.5 * (GAMMA + 1.0) / (GAMMA - 1.0))
+SMALL_SHARE = 1e-3
+"""Share of the choked flow squared below which the flow falls linearly."""
+
 CP = NITROGEN_CV + SPECIFIC_NITROGEN
 
 
@@ -24,16 +28,15 @@ def _opens(t, env, c, p, x):  # type: ignore[no-untyped-def]
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if hook != RATES:
         return
-    drop = p[SUPPLY] - p[CRACKING] - env[P_TANK]
-    if drop <= 0.0:
+    ratio = (env[P_TANK] + p[CRACKING]) / p[SUPPLY]
+    if ratio >= 1.0:
         return
-    upstream = p[SUPPLY]
-    # the spring takes the cracking pressure; what is left drives the flow, at most to the speed of sound
-    drop = min(drop, (1.0 - CRITICAL) * upstream)
-    root = (
-        sqrt(drop) if drop >= SMALL_DROP else sqrt(SMALL_DROP) * 0.5 * (drop / SMALL_DROP) * (3.0 - drop / SMALL_DROP)
-    )
-    flow = p[AREA] * sqrt(2.0 * upstream / (SPECIFIC_NITROGEN * p[TEMPERATURE])) * root
+    # choked below the critical ratio, an ellipse above it (ISO 6358), bent to a finite slope where the valve closes
+    beyond = max((ratio - CRITICAL) / (1.0 - CRITICAL), 0.0)
+    share = 1.0 - beyond * beyond
+    x = min(share / SMALL_SHARE, 1.0)
+    bent = sqrt(share) * 0.5 * sqrt(x) * (3.0 - x)
+    flow = p[AREA] * CHOKED * p[SUPPLY] / sqrt(SPECIFIC_NITROGEN * p[TEMPERATURE]) * bent
     site[NITROGEN_INFLOW] += flow
     site[TANK_HEAT] += flow * (CP * p[TEMPERATURE] - NITROGEN_CV * env[T_TANK])
 
@@ -42,8 +45,8 @@ EFFECT = Effect(
     name="n2_purge",
     equation="tank_volume",
     meaning="nitrogen enters the tank through the purge line's check valve",
-    reference="report, section 4.2.2: the valve opens when the tank is below the purge line by its cracking pressure; flow as "
-    "through an orifice, mdot = C A sqrt(2 rho dp), choked at most",
+    reference="report, section 4.2.2: the valve opens when the tank is below the purge line by its cracking pressure; "
+    "flow of an orifice by ISO 6358, the spring taking the cracking pressure",
     parameters=(
         Parameter("area", "m^2", "effective area of line and check valve", typical=1e-5, low=0.0, high=2e-4),
         Parameter(

@@ -1,8 +1,8 @@
 """The course of a run: phases and events, step by step, in one compiled loop.
 
-Phase changes are events: the end of the liquid, the end of the fuel, a rocket that falls back onto its pad, a nozzle that
-unchokes, and the switches of effects. A step that passes one is shortened to end on it; equations change only
-between steps.
+Phase changes are events: the end of the liquid, the end of the fuel, a rocket that falls back onto its pad, a
+nozzle that unchokes, and the switches of effects. A step that passes one is shortened to end on it; equations
+change only between steps.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ INCREMENT = 1e-7
 """Relative to a state, or to its scale: the difference with which Jacobians are formed."""
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def active_states(c: Array, y: Array, liquid: bool, burning: bool, terms: Integers) -> Integers:
     """Indices of the states that move in a phase; the others stay, and the linear algebra is spared them."""
     out = np.empty(y.size, dtype=np.int64)
@@ -99,7 +99,7 @@ def active_states(c: Array, y: Array, liquid: bool, burning: bool, terms: Intege
             moves = burning
         elif i in (ALTITUDE, SPEED):
             moves = c[FLIES] > 0.0
-        elif i == NITROGEN or i == CHAMBER_NITROGEN:
+        elif i in (NITROGEN, CHAMBER_NITROGEN):
             moves = terms.shape[0] > 0
         elif i == ENTHALPY:
             moves = np.isnan(c[OXIDIZER_ENTHALPY])
@@ -111,12 +111,13 @@ def active_states(c: Array, y: Array, liquid: bool, burning: bool, terms: Intege
     return out[:n].copy()
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def event_values(
     t: float, y: Array, liquid: bool, burning: bool, tables: Tables, c: Array, terms: Integers, work: Work, out: Array,
     values: Array,
 ) -> None:  # fmt: skip
-    """Positive before an event and negative after (switches: either way); ``work`` and ``out`` are those of ``rates`` at ``y``."""
+    """Positive before an event and negative after (switches: either way); ``work`` and ``out`` are those of
+    ``rates`` at ``y``."""
     values[LIQUID_OUT] = liquid_mass(tables[0], c[VOLUME], y[TANK], y[TEMPERATURE]) if liquid else 1.0
     values[FUEL_OUT] = c[OUTER_RADIUS] - y[RADIUS] if burning else 1.0
     values[GROUND] = y[ALTITUDE] - c[LAUNCH_ALTITUDE] + PAD if c[FLIES] > 0.0 else 1.0
@@ -126,11 +127,11 @@ def event_values(
         address = terms[k, SWITCH_ADDRESS]
         value = 1.0
         if address != 0:
-            value = call_switch(address, t, work[0], c, terms[k, PARAMETERS_AT], y, terms[k, STATES_AT])
+            value = call_switch(address, t, work[0], c, terms[k, PARAMETERS_AT], y, terms[k, STATES_AT])  # type: ignore[call-arg]
         values[OWN_EVENTS + k] = value
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def change(event: int, c: Array, sat: Table, y: Array) -> None:
     """What an event does to the state."""
     if event == LIQUID_OUT:
@@ -145,7 +146,7 @@ def change(event: int, c: Array, sat: Table, y: Array) -> None:
         y[ALTITUDE], y[SPEED] = c[LAUNCH_ALTITUDE], 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def jacobian(
     t: float, y: Array, f: Array, active: Integers, scales: Array, liquid: bool, burning: bool, tables: Tables,
     c: Array, terms: Integers, work: Work, out: Array, moved: Array, jac: Array,
@@ -167,7 +168,7 @@ def jacobian(
             jac[row, column] = (moved[active[row]] - f[active[row]]) / step
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def stages(
     t: float, y: Array, h: float, f: Array, slope: Array, jac: Array, active: Integers, liquid: bool, burning: bool,
     tables: Tables, c: Array, terms: Integers, work: Work, out: Array, u: Array, dy: Array,
@@ -202,7 +203,7 @@ def stages(
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def error_norm(y: Array, trial: Array, u: Array, active: Integers, scales: Array, rtol: float, counted: int) -> float:
     """Root mean square of the error in units of its tolerance; of the first ``counted`` states."""
     total, n = 0.0, 0
@@ -215,7 +216,7 @@ def error_norm(y: Array, trial: Array, u: Array, active: Integers, scales: Array
     return float(np.sqrt(total / n))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def integrate(
     y0: Array, longest: float, run_on: bool, rtol: float, scales: Array, tables: Tables, c: Array, terms: Integers
 ) -> tuple[int, int, Array, Array, Array, Array, Array, Integers, Integers, Array, Integers]:
@@ -367,7 +368,7 @@ def integrate(
             phases[:n].copy(), events[:n].copy(), happened, active)  # fmt: skip
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _dense(u: Array, active: Integers, dense: Array) -> None:
     dense[:] = 0.0
     for i in range(active.size):
@@ -376,21 +377,21 @@ def _dense(u: Array, active: Integers, dense: Array) -> None:
                 dense[k, active[i]] += DENSE[k, s] * u[s, i]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _longer(rows: Array, room: int) -> Array:
     out = np.empty((room, rows.shape[1]))
     out[: rows.shape[0]] = rows
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _longer3(rows: Array, room: int) -> Array:
     out = np.zeros((room, rows.shape[1], rows.shape[2]))
     out[: rows.shape[0]] = rows
     return out
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def sample(
     at: Array, times: Array, begin: Array, end: Array, dense: Array, phases: Integers, tables: Tables, c: Array,
     terms: Integers,

@@ -1,8 +1,8 @@
 """What an effect is: a small object that plugs into the engine's sites, and how several are composed.
 
-An effect acts through a compiled ``term`` (:mod:`hfanalysis.engine.sites`), which may have states of its own and a switch
-where it has a corner, or through ``distort``, which changes what a sensor reads. At strength 0 an effect is left out
-altogether, so that the engine is exactly the base model; active effects act in the order of their names.
+An effect acts through a compiled ``term`` (:mod:`hfanalysis.engine.sites`), which may have states of its own and a
+switch where it has a corner, or through ``distort``, which changes what a sensor reads. At strength 0 an effect is
+left out altogether, so that the engine is exactly the base model; active effects act in the order of their names.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ EQUATIONS = (
 class Parameter:
     """A number of an effect, in SI: its name, unit, what it says, and its prior.
 
-    ``typical`` is the physical scale: the prior's standard deviation about ``center`` (a strength's center is 0), ``low``
-    and ``high`` bound it. A ``given`` parameter is stated by the test and not estimated.
+    ``typical`` is the physical scale: the prior's standard deviation about ``center`` (a strength's center is 0),
+    ``low`` and ``high`` bound it. A ``given`` parameter is stated by the test and not estimated.
     """
 
     name: str
@@ -113,8 +113,8 @@ class Active:
 class Composition:
     """Active terms as the compiled equations read them.
 
-    ``constants`` are the engine's, followed by the terms' parameters; ``terms`` has a row per term (addresses, where its
-    parameters and states begin); ``scales`` of the own states; ``active`` in the order of the rows.
+    ``constants`` are the engine's, followed by the terms' parameters; ``terms`` has a row per term (addresses,
+    where its parameters and states begin); ``scales`` of the own states; ``active`` in the order of the rows.
     """
 
     constants: Array
@@ -130,8 +130,8 @@ class Composition:
 def compose(effects: Sequence[Active], constants: Array, states: int, idle: bool = False) -> Composition:
     """Effects with terms in canonical order; ``states`` of the engine precede their own.
 
-    Idle effects are left out unless they are asked for (their tangents need them). Raises ValueError for an effect that
-    is named twice.
+    Idle effects are left out unless they are asked for (their tangents need them). Raises ValueError for an effect
+    that is named twice.
     """
     names = [a.effect.name for a in effects]
     if len(set(names)) < len(names):

@@ -4,8 +4,8 @@ Tank, feed line, injector, grain, chamber, nozzle and the rocket's ascent. The c
 masses by the gas law. Every equation has its sites (:mod:`hfanalysis.engine.sites`); with no terms active they are the
 neutral element and the equations are the report's.
 
-Beyond the report: nitrogen in tank and chamber (only terms bring it in), the enthalpy of the nitrous oxide that is in the
-chamber, and, after burn-out, gas that enters unburnt and cold.
+Beyond the report: nitrogen in tank and chamber (only terms bring it in), the enthalpy of the nitrous oxide that is in
+the chamber, and, after burn-out, gas that enters unburnt and cold.
 """
 
 from __future__ import annotations
@@ -91,20 +91,20 @@ OUTPUTS = (
 """SI; oxidizer_flow is all that passes the injector, nitrogen_share that of nitrogen in it by mass."""
 
 (O_TANK_PRESSURE, O_CHAMBER_PRESSURE, O_RT, O_THRUST, O_OXIDIZER_FLOW, O_FUEL_FLOW, O_NOZZLE_FLOW, O_OF, O_ACCELERATION,
- O_RUN_PRESSURE, O_GAMMA, O_ENTHALPY, O_SHARE, O_AMBIENT, O_NITROGEN_INFLOW, O_OUTFLOW) = range(len(OUTPUTS))  # fmt: skip
+ O_RUN_PRESSURE, O_GAMMA, O_ENTHALPY, O_SHARE, O_AMBIENT, O_NITROGEN_INFLOW, O_OUTFLOW) = range(16)  # fmt: skip
 
 CONSTANTS = (
     "volume", "area", "loss_factor", "polytropic_exponent", "liquid_loss", "vapor_loss", "grain_length", "a", "n",
     "dead_volume", "fuel_density", "throat_area", "exit_area", "outer_radius", "oxidizer_enthalpy", "dry_mass",
     "drag_area", "climb", "launch_altitude", "ambient_pressure", "flies", "fuel_mass", "oxidizer_mass", "temperature",
 )  # fmt: skip
-"""SI. A negative liquid_loss stands for the quadratic law, a NaN oxidizer_enthalpy for that of what leaves the tank, a NaN
-polytropic_exponent for c_p/c_v when the liquid runs out, a NaN ambient_pressure for that of the altitude; parameters of
-effects follow."""
+"""SI. A negative liquid_loss stands for the quadratic law, a NaN oxidizer_enthalpy for that of what leaves the tank, a
+NaN polytropic_exponent for c_p/c_v when the liquid runs out, a NaN ambient_pressure for that of the altitude;
+parameters of effects follow."""
 
 (VOLUME, AREA, LOSS_FACTOR, POLYTROPIC_EXPONENT, LIQUID_LOSS, VAPOR_LOSS, GRAIN_LENGTH, REGRESSION_A, REGRESSION_N,
  DEAD_VOLUME, FUEL_DENSITY, THROAT_AREA, EXIT_AREA, OUTER_RADIUS, OXIDIZER_ENTHALPY, DRY_MASS, DRAG_AREA, CLIMB,
- LAUNCH_ALTITUDE, AMBIENT_PRESSURE, FLIES, FUEL_MASS, OXIDIZER_MASS, INITIAL_TEMPERATURE) = range(len(CONSTANTS))  # fmt: skip
+ LAUNCH_ALTITUDE, AMBIENT_PRESSURE, FLIES, FUEL_MASS, OXIDIZER_MASS, INITIAL_TEMPERATURE) = range(24)  # fmt: skip
 
 PAD = 1e-3
 """Height [m] above which a rocket has left its pad."""
@@ -125,7 +125,7 @@ COLDEST_VAPOR, WARMEST_VAPOR = 185.0, 305.0
 """Temperatures [K] between which the vapour's heat capacity and enthalpy are read from the saturation line."""
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def flux_power(flux: float, n: float) -> float:
     """G^n, below SMALL_FLUX the parabola that joins it smoothly and ends in 0 with a finite slope."""
     if flux >= SMALL_FLUX:
@@ -134,7 +134,7 @@ def flux_power(flux: float, n: float) -> float:
     return float(SMALL_FLUX**n * x * (2.0 - n - (1.0 - n) * x))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def neutral(site: Array) -> None:
     """Sources to 0, factors to 1."""
     site[:] = 0.0
@@ -142,15 +142,16 @@ def neutral(site: Array) -> None:
     site[TEMPERATURE_FACTOR] = site[THROAT_FACTOR] = site[THRUST_FACTOR] = 1.0
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _act(terms: NDArray[np.int64], hook: int, t: float, env: Array, c: Array, y: Array, site: Array, dy: Array) -> None:
     for k in range(terms.shape[0]):
-        call_term(terms[k, ADDRESS], hook, t, env, c, terms[k, PARAMETERS_AT], y, terms[k, STATES_AT], site, dy)
+        p_at, x_at = terms[k, PARAMETERS_AT], terms[k, STATES_AT]
+        call_term(terms[k, ADDRESS], hook, t, env, c, p_at, y, x_at, site, dy)  # type: ignore[call-arg]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def chamber_gas(gas: Grid, c: Array, y: Array, guess: float) -> tuple[float, float, float, float, float, float]:
-    """p, R T, gamma, mass, O/F and oxidizer enthalpy of what the chamber holds: burnt gas and, after burn-out, cold gas."""
+    """p, R T, gamma, mass, O/F and oxidizer enthalpy of what the chamber holds: burnt gas, later cold gas too."""
     volume = c[DEAD_VOLUME] + pi * y[RADIUS] * y[RADIUS] * c[GRAIN_LENGTH]
     entered = y[OXIDIZER] + y[CHAMBER_NITROGEN]
     hot = max(entered + y[FUEL], LEAST_GAS)
@@ -168,7 +169,7 @@ def chamber_gas(gas: Grid, c: Array, y: Array, guess: float) -> tuple[float, flo
     return p, rt, gamma, mass, ratio, h
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def rates(
     t: float,
     y: Array,
@@ -212,13 +213,8 @@ def rates(
             h_leaving = evaluate(sat[0], sat[1], sat[2], sat[3], VAPOR_ENTHALPY, t_vapor)[0]
     if any_terms:
         env[IS_LIQUID], env[IS_BURNING], env[P_AMBIENT] = (1.0 if liquid else 0.0), (1.0 if burning else 0.0), ambient
-        env[P_TANK], env[T_TANK], env[M_TANK], env[M_LIQUID], env[M_NITROGEN] = (
-            p_t,
-            y[TEMPERATURE],
-            y[TANK],
-            m_l,
-            nitrogen,
-        )
+        env[P_TANK], env[T_TANK], env[M_TANK], env[M_LIQUID] = p_t, y[TEMPERATURE], y[TANK], m_l
+        env[M_NITROGEN] = nitrogen
         env[PORT_RADIUS], env[RHO_FEED] = port, density
         _act(terms, AT_TANK, t, env, c, y, site, dy)
         p_t += site[TANK_PRESSURE]

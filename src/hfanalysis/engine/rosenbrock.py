@@ -1,10 +1,10 @@
 """Rodas5P, the linearly implicit method that integrates the engine, and the small linear algebra it needs.
 
-Order 5, eight stages, stiffly accurate, with an embedded error estimate and a fourth-order interpolant. Coefficients: G.
-Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks within the Julia Differential
-Equations package, BIT Numerical Mathematics 63 (2023) 27, in the transformed form of Hairer and Wanner, Solving Ordinary
-Differential Equations II, section IV.7: every stage solves (1/(h gamma) - J) u_i = f(y + sum a_ij u_j) + sum c_ij u_j / h
-+ h d_i f_t.
+Order 5, eight stages, stiffly accurate, with an embedded error estimate and a fourth-order interpolant.
+Coefficients: G. Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks within the
+Julia Differential Equations package, BIT Numerical Mathematics 63 (2023) 27, in the transformed form of Hairer and
+Wanner, Solving Ordinary Differential Equations II, section IV.7: every stage solves (1/(h gamma) - J) u_i = f(y +
+sum a_ij u_j) + sum c_ij u_j / h + h d_i f_t.
 """
 
 from __future__ import annotations
@@ -76,10 +76,11 @@ DENSE = np.array(
          -59.78993625266729, -0.15582684282751913, 4.883087185713722],
     ]
 )  # fmt: skip
-"""Interpolant: y(theta) = (1-theta) y_0 + theta (y_1 + (1-theta)(d_0 + theta (d_1 + theta d_2))), d_k = sum DENSE_ki u_i."""
+"""Interpolant: y(theta) = (1-theta) y_0 + theta (y_1 + (1-theta)(d_0 + theta (d_1 + theta d_2))), d_k = sum
+DENSE_ki u_i."""
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
     """LU factors with partial pivoting in place, ``pivots`` the row swaps; False for a singular matrix."""
     n = a.shape[0]
@@ -104,7 +105,7 @@ def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
     """Solve with the factors of :func:`factorize`, in place."""
     n = lu.shape[0]
@@ -123,7 +124,7 @@ def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
         b[i] = total / lu[i, i]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def interpolate(theta: float, y0: Array, y1: Array, dense: Array, y: Array) -> None:
     """The state at a fraction ``theta`` of a step, into ``y``; ``dense`` has the shape (3, states)."""
     rest = 1.0 - theta

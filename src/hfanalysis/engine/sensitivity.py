@@ -44,8 +44,8 @@ SHIFT = 1e-6
 class Tangents:
     """A run and its sensitivities to ``parameters``.
 
-    ``states`` (n, 4, states, parameters) and ``outputs`` (n, 4, outputs, parameters) on four nodes of each of the solver's n
-    steps; ``liquid_out`` and ``burn_time`` (parameters,), NaN where the event does not take place.
+    ``states`` (n, 4, states, parameters) and ``outputs`` (n, 4, outputs, parameters) on four nodes of each of the
+    solver's n steps; ``liquid_out`` and ``burn_time`` (parameters,), NaN where the event does not take place.
     """
 
     burn: Burn
@@ -69,7 +69,8 @@ class Tangents:
 def shifted(engine: Engine, name: str) -> tuple[Engine, float]:
     """The engine with one parameter moved a little, and by how much [SI].
 
-    ``name`` is one of ENGINE_PARAMETERS, or "EFFECT.PARAMETER" of an effect the engine has. Raises ValueError for others.
+    ``name`` is one of ENGINE_PARAMETERS, or "EFFECT.PARAMETER" of an effect the engine has. Raises ValueError for
+    others.
     """
     if "." in name:
         return _shifted_effect(engine, *name.split(".", 1))

@@ -1,7 +1,8 @@
 """The named places in the governing equations at which an effect can act, and how compiled terms are called.
 
-A *term* is a small compiled function that adds to sources or multiplies factors at these places. It is called once per
-hook: each hook comes where the quantities that it may read are known and those that it may change are not yet used::
+A *term* is a small compiled function that adds to sources or multiplies factors at these places. It is called once
+per hook: each hook comes where the quantities that it may read are known and those that it may change are not yet
+used::
 
     @term
     def blankets(hook, t, env, c, p, x, site, dx):
@@ -23,7 +24,8 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 AT_TANK, AT_CHAMBER, AT_FLOW, RATES = range(4)
-"""Hooks: the tank's pressure is known; the chamber's gas; the flow into the chamber; all that the rates are made of."""
+"""Hooks: the tank's pressure is known; the chamber's gas; the flow into the chamber; all that the rates are made
+of."""
 
 SITES = (
     "tank_pressure",
@@ -58,14 +60,14 @@ ENVIRONMENT = (
     "is_liquid", "is_burning", "p_ambient", "p_tank", "t_tank", "m_tank", "m_liquid", "m_nitrogen", "rho_feed",
     "p_chamber", "rt_chamber", "gamma_chamber", "of_ratio", "oxidizer_flow", "fuel_flow", "port_radius", "p_run",
 )  # fmt: skip
-"""What a term may read, SI; ``p_tank`` and the rest of the tank from AT_TANK on, the chamber from AT_CHAMBER, ``rho_feed``
-from AT_FLOW, flows and ``p_run`` from RATES on."""
+"""What a term may read, SI; ``p_tank`` and the rest of the tank from AT_TANK on, the chamber from AT_CHAMBER,
+``rho_feed`` from AT_FLOW, flows and ``p_run`` from RATES on."""
 
 (IS_LIQUID, IS_BURNING, P_AMBIENT, P_TANK, T_TANK, M_TANK, M_LIQUID, M_NITROGEN, RHO_FEED, P_CHAMBER, RT_CHAMBER,
  GAMMA_CHAMBER, OF_RATIO, OXIDIZER_FLOW, FUEL_FLOW, PORT_RADIUS, P_RUN) = range(len(ENVIRONMENT))  # fmt: skip
 
 _REAL = types.float64
-_POINTER = types.CPointer(_REAL)
+_POINTER = types.CPointer(_REAL)  # type: ignore[no-untyped-call]
 TERM = types.void(types.int64, _REAL, *[_POINTER] * 6)
 SWITCH = types.float64(_REAL, *[_POINTER] * 4)
 
@@ -80,10 +82,10 @@ ADDRESS, SWITCH_ADDRESS, PARAMETERS_AT, STATES_AT = range(4)
 
 
 def _data(context: Any, builder: Any, kind: Any, array: Any) -> Any:
-    return cgutils.create_struct_proxy(kind)(context, builder, array).data
+    return cgutils.create_struct_proxy(kind)(context, builder, array).data  # type: ignore[no-untyped-call]
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def call_term(
     _typing: Any, address: Any, hook: Any, t: Any, env: Any, c: Any, p_at: Any, y: Any, x_at: Any, site: Any, dy: Any
 ) -> Any:
@@ -91,7 +93,7 @@ def call_term(
     signature = types.void(types.int64, types.int64, _REAL, env, c, types.int64, y, types.int64, site, dy)
 
     def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        where, hook_, t_, env_, c_, p_at_, y_, x_at_, site_, dy_ = args
+        where, hook_, t_, _, _, p_at_, _, x_at_, _, _ = args
         data = {i: _data(context, builder, sig.args[i], args[i]) for i in (3, 4, 6, 8, 9)}
         real = ir.DoubleType()
         pointer = real.as_pointer()
@@ -105,7 +107,7 @@ def call_term(
     return signature, generate
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def call_switch(_typing: Any, address: Any, t: Any, env: Any, c: Any, p_at: Any, y: Any, x_at: Any) -> Any:
     """Value of a switch by its address."""
     signature = types.float64(types.int64, _REAL, env, c, types.int64, y, types.int64)

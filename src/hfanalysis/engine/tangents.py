@@ -1,9 +1,10 @@
 """Sensitivities of a run: how every state and output moves with every parameter, right through the events.
 
-Along a finished run the variational equation S' = f_y S + f_p is linear. It is integrated over the run's own steps by the
-three-stage Radau IIA method (order 5, stiffly accurate); f_y and f_p are forward differences of the same compiled
-equations at the nodes, so that outputs' sensitivities out_y S + out_p come along. Where an event g(y, p) = 0 changes the
-equations, its time moves by dt = -(g_y S + g_p) / (g_y f + g_t), and S jumps by change_y (S + f dt) + change_p - f_after dt.
+Along a finished run the variational equation S' = f_y S + f_p is linear. It is integrated over the run's own steps
+by the three-stage Radau IIA method (order 5, stiffly accurate); f_y and f_p are forward differences of the same
+compiled equations at the nodes, so that outputs' sensitivities out_y S + out_p come along. Where an event g(y, p) =
+0 changes the equations, its time moves by dt = -(g_y S + g_p) / (g_y f + g_t), and S jumps by change_y (S + f dt) +
+change_p - f_after dt.
 
 A parameter is anything that changes the engine's constants or its initial state: it is given as a second set of them.
 """
@@ -34,11 +35,11 @@ RADAU = np.array(
 """Radau IIA, order 5 (Hairer and Wanner, Solving Ordinary Differential Equations II, table IV.5.6)."""
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def linearize(
-    t: float, y: Array, liquid: bool, burning: bool, tables: Tables, c: Array, shifted: Array, steps: Array, used: Integers,
-    scales: Array, terms: Integers, work: Work, f: Array, out: Array, moved: Array, moved_out: Array, f_y: Array, f_p: Array,
-    out_y: Array, out_p: Array,
+    t: float, y: Array, liquid: bool, burning: bool, tables: Tables, c: Array, shifted: Array, steps: Array,
+    used: Integers, scales: Array, terms: Integers, work: Work, f: Array, out: Array, moved: Array, moved_out: Array,
+    f_y: Array, f_p: Array, out_y: Array, out_p: Array,
 ) -> None:  # fmt: skip
     """f, f_y (of the ``used`` states), f_p and the same of the outputs, by forward differences."""
     rates(t, y, liquid, burning, tables, c, terms, work, f, out)
@@ -62,7 +63,7 @@ def linearize(
             out_p[i, k] = (moved_out[i] - out[i]) / steps[k]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def used_states(size: int, flies: bool) -> Integers:
     """All states but the impulse, on which nothing depends, and on a stand the rocket's."""
     out = np.empty(size, dtype=np.int64)
@@ -75,16 +76,17 @@ def used_states(size: int, flies: bool) -> Integers:
     return out[:n].copy()
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def propagate(
-    times: Array, begin: Array, end: Array, dense: Array, phases: Integers, events: Integers, tables: Tables, c: Array,
-    shifted: Array, steps: Array, scales: Array, terms: Integers, start: Array,
-) -> tuple[Array, Array, Array]:  # fmt: skip
+    times: Array, begin: Array, end: Array, dense: Array, phases: Integers, events: Integers, tables: Tables, c:
+    Array, shifted: Array, steps: Array, scales: Array, terms: Integers, start: Array, ) -> tuple[Array, Array,
+    Array]:  # fmt: skip
     """Sensitivities at four nodes of every step (its start and NODES) and of the event times.
 
     ``shifted`` (parameters, constants) are the constants with each parameter moved by ``steps``, ``start`` (states,
     parameters) the sensitivities of the initial state. Returns those of the states (n, 4, states, parameters), of the
-    outputs (n, 4, outputs, parameters), and of the time of the event at each step's end (n, parameters; 0 without one).
+    outputs (n, 4, outputs, parameters), and of the time of the event at each step's end (n, parameters; 0 without
+    one).
     """
     count, size, number = times.shape[0], begin.shape[1], steps.size
     outs = len(OUTPUTS)
@@ -106,14 +108,14 @@ def propagate(
         restarted = n == 0 or events[n - 1] >= 0
         if restarted:
             y[:] = begin[n]
-            linearize(t, y, liquid, burning, tables, c, shifted, steps, used, scales, terms, work, f, out, moved, moved_out,
-                      f_y[3], f_p[3], out_y[3], out_p[3])  # fmt: skip
+            linearize(t, y, liquid, burning, tables, c, shifted, steps, used, scales, terms, work, f, out, moved,
+                      moved_out, f_y[3], f_p[3], out_y[3], out_p[3])  # fmt: skip
         states[n, 0] = s
         _outputs_of(s, used, out_y[3], out_p[3], outputs[n, 0])
         for k in range(3):
             interpolate(NODES[k], begin[n], end[n], dense[n], y)
-            linearize(t + NODES[k] * h, y, liquid, burning, tables, c, shifted, steps, used, scales, terms, work, f, out,
-                      moved, moved_out, f_y[k], f_p[k], out_y[k], out_p[k])  # fmt: skip
+            linearize(t + NODES[k] * h, y, liquid, burning, tables, c, shifted, steps, used, scales, terms, work, f,
+                      out, moved, moved_out, f_y[k], f_p[k], out_y[k], out_p[k])  # fmt: skip
         for a in range(3):
             for b in range(3):
                 for i in range(m):
@@ -155,7 +157,7 @@ def propagate(
     return states, outputs, moments
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _outputs_of(s: Array, used: Integers, out_y: Array, out_p: Array, result: Array) -> None:
     for o in range(out_y.shape[0]):
         for p in range(s.shape[1]):
@@ -165,7 +167,7 @@ def _outputs_of(s: Array, used: Integers, out_y: Array, out_p: Array, result: Ar
             result[o, p] = total
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _through_event(
     t: float, y: Array, event: int, liquid: bool, burning: bool, goes_on: bool, y_after: Array, phase_after: Integers,
     tables: Tables, c: Array, shifted: Array, steps: Array, scales: Array, terms: Integers, work: Work, s: Array,
@@ -230,7 +232,7 @@ def _through_event(
             s[i, p] -= f_after[i] * moment[p]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def at_times(at: Array, times: Array, values: Array) -> Array:
     """Sensitivities (times, rows, parameters) at increasing times: cubics through each step's four nodes."""
     out = np.empty((at.size, values.shape[2], values.shape[3]))

@@ -50,7 +50,8 @@ def split(saturation: Saturation, volume: float, mass: float, temperature: float
 
 
 def compressibility(pressure: float, volume: float, mass: float, temperature: float) -> float:
-    """Z = p V / (m R T) of the vapour at the end of the liquid (report, section 4.2.2); pressure [Pa], volume [m^3]."""
+    """Z = p V / (m R T) of the vapour at the end of the liquid (report, section 4.2.2); pressure [Pa], volume
+    [m^3]."""
     return pressure * volume / (mass * SPECIFIC_GAS_CONSTANT * temperature)
 
 
@@ -58,13 +59,13 @@ def mass_along_blowdown(saturation: Saturation, volume: float, t_empty: float, t
     """Total mass [kg] that an adiabatic saturated tank held at each temperature [K] before it ran dry at t_empty.
 
     Integrates dM/dT = U_T / (h_l - U_M), which follows from dU = h_l dM, upwards from M = V / v_v(t_empty). No flow
-    measurement enters: the thermodynamics alone tie mass to temperature. Shape as ``temperatures``, which must not fall
-    below ``t_empty``.
+    measurement enters: the thermodynamics alone tie mass to temperature. Shape as ``temperatures``, which must not
+    fall below ``t_empty``.
     """
     return _mass_along_blowdown(saturation.kernel_table, volume, t_empty, np.asarray(temperatures, dtype=np.float64))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def liquid_mass(table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float) -> float:
     """m_l = (M v_v - V) / (v_v - v_l)."""
     v_l, _ = evaluate(*table, LIQUID_VOLUME, temperature)
@@ -72,7 +73,7 @@ def liquid_mass(table: tuple[Array, float, float, float], volume: float, mass: f
     return float((mass * v_v - volume) / (v_v - v_l))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def energy_derivatives(
     table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float
 ) -> tuple[float, float, float]:
@@ -81,11 +82,12 @@ def energy_derivatives(
     return by_mass, by_temperature, h_l
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def saturated_tank(
     table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float
 ) -> tuple[float, float, float, float, float, float]:
-    """p_sat [Pa], rho_l [kg/m^3], m_l [kg], U_M [J/kg], U_T [J/K], h_l [J/kg]: the whole tank from one place in the table."""
+    """p_sat [Pa], rho_l [kg/m^3], m_l [kg], U_M [J/kg], U_T [J/K], h_l [J/kg]: the whole tank from one place in the
+    table."""
     rows = table[0]
     k, x, d = place(*table, temperature)
     ln_p, _ = row_at(rows, LN_PRESSURE, k, x, d)
@@ -104,7 +106,7 @@ def saturated_tank(
     return np.exp(ln_p), 1.0 / v_l, m_l, by_mass, by_temperature, h_l
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def temperature_rate(
     table: tuple[Array, float, float, float],
     volume: float,
@@ -121,7 +123,7 @@ def temperature_rate(
     return (heat + outflow * (by_mass - h_l)) / by_temperature
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _mass_along_blowdown(
     table: tuple[Array, float, float, float], volume: float, t_empty: float, temperatures: Array
 ) -> Array:
@@ -143,7 +145,7 @@ def _mass_along_blowdown(
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _mass_slope(table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float) -> float:
     by_mass, by_temperature, h_l = energy_derivatives(table, volume, mass, temperature)
     return by_temperature / (h_l - by_mass)

@@ -1,7 +1,7 @@
 """The unsteady engine (report, chapter 3): from ignition to burn-out, and on through cold gas where asked.
 
-The equations are in :mod:`hfanalysis.engine.model`, the integration in :mod:`hfanalysis.engine.course`; here an engine in
-plain numbers becomes what they read, and their steps become histories.
+The equations are in :mod:`hfanalysis.engine.model`, the integration in :mod:`hfanalysis.engine.course`; here an engine
+in plain numbers becomes what they read, and their steps become histories.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
 from hfanalysis.engine.model import (
     COMPRESSIBILITY,
     CONSTANTS,
+    LEAST_GAS,
     OUTPUTS,
     PAD,
     STATES,
@@ -29,7 +30,7 @@ from hfanalysis.engine.model import (
 from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.thermo.air import air
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
-from hfanalysis.thermo.combustion_table import CombustionTable, gas_at
+from hfanalysis.thermo.combustion_table import CombustionTable, gas_at, temperatures
 from hfanalysis.thermo.saturation import Property, Saturation
 
 Array = NDArray[np.float64]
@@ -47,8 +48,8 @@ POINTS_PER_STEP = 4
 class Engine:
     """An engine in SI units: what an engine file states.
 
-    ``oxidizer_enthalpy`` on the formation scale [J/kg]: one number for the whole run (the report), or None for that of the
-    liquid or vapour leaving the tank. An engine without a ``vehicle`` stands at ``ambient_pressure`` [Pa].
+    ``oxidizer_enthalpy`` on the formation scale [J/kg]: one number for the whole run (the report), or None for that of
+    the liquid or vapour leaving the tank. An engine without a ``vehicle`` stands at ``ambient_pressure`` [Pa].
     """
 
     saturation: Saturation
@@ -140,6 +141,14 @@ class Burn:
         """One of STATES over time."""
         return self.states[:, STATES.index(name)]
 
+    def chamber_temperature(self) -> Array:
+        """Temperature of the burnt gas [K]."""
+        nitrogen = self.state("chamber_nitrogen")
+        share = nitrogen / np.maximum(self.state("chamber_oxidizer") + nitrogen, LEAST_GAS)
+        ln_p, ln_r = np.log(self.output("chamber_pressure")), np.log(self.output("of_ratio"))
+        gas = self.steps.engine.combustion.kernel
+        return temperatures(gas, ln_p, ln_r, self.output("oxidizer_enthalpy"), share)
+
 
 def constants(e: Engine) -> Array:
     """The engine's numbers in the order of CONSTANTS."""
@@ -147,9 +156,9 @@ def constants(e: Engine) -> Array:
     v = e.vehicle
     exponent = np.nan if e.polytropic_exponent is None else e.polytropic_exponent
     enthalpy = np.nan if e.oxidizer_enthalpy is None else e.oxidizer_enthalpy
-    rocket = (
-        (1.0, 0.0, 1.0, 0.0) if v is None else (v.dry_mass, v.frontal_area, np.cos(v.launch_angle), v.launch_altitude)
-    )
+    rocket = (1.0, 0.0, 1.0, 0.0)
+    if v is not None:
+        rocket = (v.dry_mass, v.frontal_area, float(np.cos(v.launch_angle)), v.launch_altitude)
     values = (
         e.feed.volume, e.feed.area, e.feed.loss_factor, exponent, liquid_loss, vapor_loss, e.grain_length, e.a, e.n,
         e.dead_volume, e.fuel_density, e.throat_area, e.exit_area, e.outer_radius, enthalpy, *rocket,
@@ -231,7 +240,8 @@ def burn(
     """From ignition until the fuel is gone, or with ``run_on`` to ``longest`` seconds through vapour and cold gas.
 
     The histories are on POINTS_PER_STEP points of each of the solver's steps, or at increasing ``times`` [s] (then the
-    ends are held). Effects of strength 0 are left out unless ``keep_idle``. Raises ValueError for an engine that cannot be, ArithmeticError where the solver gives up.
+    ends are held). Effects of strength 0 are left out unless ``keep_idle``. Raises ValueError for an engine that cannot
+    be, ArithmeticError where the solver gives up.
     """
     check(engine)
     composition = compose(engine.effects, constants(engine), len(STATES), keep_idle)

@@ -16,7 +16,6 @@ from hfanalysis.flight.vehicle import STANDARD_GRAVITY, Vehicle, gravity
 from hfanalysis.quantity import Quantity
 from hfanalysis.simulate import build, flown, heading, propellant
 from hfanalysis.testdata.engine_file import EngineFile, Needs
-from hfanalysis.thermo.combustion_table import temperatures
 
 Array = NDArray[np.float64]
 
@@ -42,9 +41,7 @@ def simulate(file: EngineFile) -> Simulation:
     tank = build.tank(needs)
     engine = build.engine(needs, tank)
     burnt = run(file, engine)
-    ln_p, ln_r = np.log(burnt.output("chamber_pressure")), np.log(burnt.output("of_ratio"))
-    entering = np.full(ln_p.size, engine.oxidizer_enthalpy)
-    hot = temperatures(engine.combustion.kernel, ln_p, ln_r, entering, np.zeros(ln_p.size))
+    hot = burnt.chamber_temperature()
     product = {
         **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
         **_engine(engine, burnt, hot),

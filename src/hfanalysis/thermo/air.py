@@ -11,7 +11,7 @@ from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
 AIR_GAMMA = 1.4
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def air(altitude: float) -> tuple[float, float, float]:
     """Pressure [Pa], density [kg/m^3] and speed of sound [m/s] at an altitude above sea level [m].
 

@@ -106,9 +106,11 @@ class Nozzle:
 
 def nozzle_along(engine: Engine, pressure: Array, of_ratio: Array, ambient: float) -> Nozzle:
     """What the nozzle does with gas of this mixture at this pressure [Pa]; NaN where there is no mixture."""
+    enthalpy = engine.oxidizer_enthalpy
+    assert enthalpy is not None
     found = _nozzle_along(
         engine.combustion.kernel, np.ascontiguousarray(pressure), np.ascontiguousarray(of_ratio), ambient,
-        engine.throat_area, engine.exit_area, engine.oxidizer_enthalpy,
+        engine.throat_area, engine.exit_area, enthalpy,
     )  # fmt: skip
     return Nozzle(*found)
 

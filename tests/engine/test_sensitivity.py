@@ -1,0 +1,101 @@
+"""Tangents against differences of whole runs, through the end of the liquid, of the fuel, and an opening valve."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.engine.stand import engine_on_stand
+
+from hfanalysis.effects import effect
+from hfanalysis.engine import sensitivity
+from hfanalysis.engine.course import FUEL_OUT, LIQUID_OUT
+from hfanalysis.engine.sensitivity import ENGINE_PARAMETERS, Tangents, run_with_tangents
+from hfanalysis.engine.unsteady import Burn, Engine, burn
+
+Array = NDArray[np.float64]
+
+SECONDS = 12.0
+GRID = np.linspace(0.01, SECONDS, 1200)
+CHANNELS = ("tank_pressure", "run_pressure", "chamber_pressure", "thrust")
+OF_EFFECTS = ("tank_heat.power", "n2_purge.area", "n2_purge.supply_pressure", "n2_purge.cracking_pressure")
+TYPICAL = {f"{name}.{p.name}": p.typical for name in ("tank_heat", "n2_purge") for p in effect(name).parameters}
+
+
+@cache
+def heated_and_purged() -> Engine:
+    return engine_on_stand(
+        effects=(effect("tank_heat").at(power=500.0), effect("n2_purge").at(area=4e-6, supply_pressure=35e5))
+    )
+
+
+@cache
+def tangents() -> Tangents:
+    names = (*ENGINE_PARAMETERS, *OF_EFFECTS)
+    return run_with_tangents(heated_and_purged(), names, SECONDS, rtol=1e-6, run_on=True, times=GRID)
+
+
+def differences(name: str) -> tuple[Burn, Burn, float]:
+    """Two whole runs with the parameter moved up and down, and by how much they lie apart."""
+    step = 1e-4 * {**ENGINE_PARAMETERS, **TYPICAL}[name]
+    runs = []
+    for sign in (1.0, -1.0):
+        moved = replace(heated_and_purged())
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(sensitivity, "SHIFT", sign * 1e-4)
+            moved, _ = sensitivity.shifted(moved, name)
+        runs.append(burn(moved, SECONDS, rtol=1e-8, run_on=True, times=GRID))
+    return runs[0], runs[1], 2.0 * step
+
+
+def away_from_events() -> Array:
+    """An event's own motion makes a spike in a difference quotient that is no sensitivity at a time."""
+    found = np.ones(GRID.size, dtype=bool)
+    steps = tangents().burn.steps
+    for at in steps.times[steps.events >= 0, 1]:
+        found &= np.abs(GRID - at) > 0.06
+    return found
+
+
+@pytest.mark.parametrize("name", [*ENGINE_PARAMETERS, *OF_EFFECTS])
+def test_tangents_are_the_differences_of_runs(name: str) -> None:
+    up, down, apart = differences(name)
+    column, quiet = tangents().parameters.index(name), away_from_events()
+    for channel in CHANNELS:
+        quotient = ((up.output(channel) - down.output(channel)) / apart)[quiet]
+        tangent = tangents().output(channel, GRID)[quiet, column]
+        # a difference of two runs at the tolerance 1e-8 sees nothing smaller
+        visible = 1e-4 * np.ptp(up.output(channel)) / {**ENGINE_PARAMETERS, **TYPICAL}[name]
+        assert np.abs(tangent - quotient).max() < 5e-3 * np.abs(quotient).max() + visible
+
+
+@pytest.mark.parametrize("name", ["area", "oxidizer_mass", "temperature", "a", "n", "tank_heat.power"])
+def test_the_times_of_events_move_as_tangents_say(name: str) -> None:
+    up, down, apart = differences(name)
+    column = tangents().parameters.index(name)
+    assert up.liquid_out is not None
+    assert down.liquid_out is not None
+    liquid, fuel = (up.liquid_out - down.liquid_out) / apart, (up.burn_time - down.burn_time) / apart
+    assert tangents().event(LIQUID_OUT)[column] == pytest.approx(liquid, rel=1e-4)
+    assert tangents().event(FUEL_OUT)[column] == pytest.approx(fuel, rel=1e-3)
+
+
+def test_an_effect_of_strength_zero_has_a_tangent() -> None:
+    idle = engine_on_stand(effects=(effect("tank_heat").at(power=0.0),))
+    found = run_with_tangents(idle, ["tank_heat.power"], SECONDS, run_on=True)
+    warmer = burn(replace(idle, effects=(effect("tank_heat").at(power=1.0),)), SECONDS, 1e-8, True, times=GRID)
+    base = burn(idle, SECONDS, 1e-8, True, times=GRID)
+    wet = base.liquid_out or 0.0
+    before = wet - 0.05 > GRID
+    expected = warmer.output("tank_pressure") - base.output("tank_pressure")
+    assert found.output("tank_pressure", GRID)[before, 0] == pytest.approx(expected[before], rel=2e-3, abs=1e-3)
+
+
+def test_an_unknown_parameter_is_refused_with_those_there_are() -> None:
+    with pytest.raises(ValueError, match="throat_area"):
+        run_with_tangents(engine_on_stand(), ["throat"])
+    with pytest.raises(ValueError, match="no effect 'tank_heat'"):
+        run_with_tangents(engine_on_stand(), ["tank_heat.power"])
