@@ -52,7 +52,7 @@ def drag_coefficient(mach: float, table: Array) -> float:
         return float(table[1, 0])
     if mach >= table[0, last]:
         return float(table[1, last])
-    i = int(np.searchsorted(table[0], mach)) - 1
+    i = min(int(np.searchsorted(table[0], mach)), last) - 1
     share = (mach - table[0, i]) / (table[0, i + 1] - table[0, i])
     return float(table[1, i] + share * (table[1, i + 1] - table[1, i]))
 
