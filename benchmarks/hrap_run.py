@@ -63,7 +63,7 @@ def hf5() -> Engine:
 
 def run(engine: Engine) -> Burn:
     """From ignition through vapour and cold gas."""
-    return burn(engine, longest=SECONDS)
+    return burn(engine, longest=SECONDS, run_on=True)
 
 
 def for_hrap(engine: Engine, repeats: int) -> dict[str, Any]:
