@@ -178,6 +178,7 @@ def _validate(context: Context, console: Console) -> None:
 def _flight(context: Context, console: Console) -> None:
     product = context.read_json("flight.json")
     _values(console, quantities(product), f"flight, thrust {product['thrust']}")
+    _values(console, quantities(product["stability"]), "stability")
     for name, check in product["checks"].items():
         style = {"passed": "green", "failed": "red"}.get(check["result"], "yellow")
         line = Text.assemble(f"  {in_words(name)}: ", (check["result"], style), f": {check['why']}")

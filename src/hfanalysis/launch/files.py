@@ -8,11 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.flight import rasp, rocksim
+from hfanalysis.flight.aerodynamics import Shape
 from hfanalysis.flight.motor import Motor, Points, points_of
+from hfanalysis.flight.rocketpy_script import Scripted, script
 from hfanalysis.launch.product import Launch
+from hfanalysis.launch.stability import Stability
+from hfanalysis.simulate.shape import shape
 from hfanalysis.testdata.definition import TestDefinition
 
 Array = NDArray[np.float64]
+
+SLENDER = 25.0
+"""Length over diameter of a rocket whose geometry is not known; only RocketPy's inertia follows it."""
 
 BY_THEMSELVES = "total mass: propellant alone, the empty engine belongs to the rocket's dry mass"
 
@@ -37,24 +44,53 @@ class Export:
         return rocksim.text(self.motor, self.points, self.comments, self.radii)
 
 
-def export(found: Launch, definition: TestDefinition, center: Array | None = None) -> Export:
+def rocketpy(found: Launch, definition: TestDefinition, stable: Stability | str, motor: Export) -> str:
+    """The flight as a script for RocketPy; without a geometry the rocket has no surfaces and flies in still air."""
+    firing, weighed = found.firing, None if isinstance(stable, str) else stable
+    outside = shape(definition.rocket)
+    known = outside if isinstance(outside, Shape) else None
+    length = known.length if known is not None else SLENDER * 2.0 * float(np.sqrt(firing.vehicle.frontal_area / np.pi))
+    engine = weighed.place.dry if weighed is not None else None
+    return script(
+        Scripted(
+            vehicle=firing.vehicle,
+            motor=motor.motor,
+            points=motor.points,
+            shape=known,
+            canopies=None if isinstance(firing.canopies, str) else firing.canopies,
+            rail_length=firing.rail_length,
+            empty_mass=float(engine.mass) if engine is not None else 0.0,
+            pitch_inertia=firing.vehicle.dry_mass * length**2 / 12.0,
+            center_of_mass=length - (float(weighed.place.fixed[0].center) if weighed is not None else 0.5 * length),
+            nozzle_radius=motor.radii[1],
+        ),
+        f"{definition.test.id}_rocketpy.py",
+        motor.comments[0],
+    )
+
+
+def export(found: Launch, definition: TestDefinition, stable: Stability | str) -> Export:
     """The firing along its flight: thrust at the altitudes flown through, propellant that burns.
 
-    ``center``: the engine's centre of gravity [m from its front] on the curve's clock, where it is known.
+    The engine's centre of gravity is that of ``stable``, where it is known.
     """
+    center = None if isinstance(stable, str) else stable.engine_center
     curve, trace = found.firing.curve, found.ascent
     time = curve.time
     thrust = np.interp(time, trace.column("time"), trace.column("thrust"))
     mass = np.maximum(curve.mass - curve.mass_after, 0.0)
     points = points_of(time, thrust, mass, center)
-    return Export(_motor(found, definition, float(mass[0])), points, _comments(found, definition), _radii(definition))
+    motor = _motor(found, definition, float(mass[0]), stable)
+    return Export(motor, points, _comments(found, definition), _radii(definition))
 
 
-def _motor(found: Launch, definition: TestDefinition, burnt: float) -> Motor:
+def _motor(found: Launch, definition: TestDefinition, burnt: float, stable: Stability | str) -> Motor:
     geometry = definition.rocket.geometry if definition.rocket is not None else None
     engine = geometry.engine_mass.value if geometry is not None and geometry.engine_mass is not None else 0.0
     loaded = float(found.firing.propellant.total[0])
-    return Motor(definition.test.id, *_size(definition), burnt, engine + loaded)
+    diameter, length = _size(definition)
+    length = length if isinstance(stable, str) else stable.place.length
+    return Motor(definition.test.id, diameter, length, burnt, engine + loaded)
 
 
 def _size(definition: TestDefinition) -> tuple[float, float]:

@@ -27,8 +27,8 @@ Array = NDArray[np.float64]
 
 RAW, CORRECTED = "as measured on the stand", "from the stand's ambient pressure to the altitude's"
 
-GAMMAS = 60
-"""Equilibria over a burn; the heat capacity ratio changes slowly, and thrust hardly follows it."""
+EQUILIBRIA = 60
+"""Over a burn; the gas changes slowly, and thrust hardly follows its heat capacity ratio."""
 
 LIT = 1.3
 """Chamber over ambient pressure from which on the gas is worth an equilibrium; below, the nearest one holds."""
@@ -36,7 +36,10 @@ LIT = 1.3
 
 @dataclass(frozen=True)
 class Firing:
-    """What flies: the rocket, its rail [m] and canopies, thrust and mass over the burn, and what they come from."""
+    """What flies: the rocket, its rail [m] and canopies, thrust and mass over the burn, and what they come from.
+
+    ``gas_mass``: in the chamber [kg] on the curve's clock, None where its pressure or size is not known.
+    """
 
     vehicle: Vehicle
     rail_length: float | None
@@ -44,6 +47,7 @@ class Firing:
     curve: Curve
     thrust: MeasuredThrust
     propellant: Propellant
+    gas_mass: Array | None
     thrust_is: str
     notes: tuple[str, ...]
 
@@ -70,9 +74,10 @@ def firing(
     mass = vehicle.dry_mass + np.interp(thrust.time, load.time, load.total)
     carried = 0.0 if definition.model.conventions == "report" else float(load.total[-1])
     curve = even_curve(thrust.time, accumulated(thrust.time, thrust.thrust), mass, vehicle.dry_mass + carried)
-    curve, said = (
-        (curve, "raw thrust was asked for") if raw_thrust else _at_altitude(curve, log, segments, definition, load)
-    )
+    gas = _chamber_gas(curve.time, log, segments, definition, load)
+    said = "raw thrust was asked for" if raw_thrust else _no_correction(gas, definition)
+    if gas is not None and not said:
+        curve = _at_altitude(curve, gas, definition)
     rail = definition.rocket.rail_length
     return Firing(
         vehicle,
@@ -81,6 +86,7 @@ def firing(
         curve,
         thrust,
         load,
+        None if gas is None else _gas_mass(curve.time, gas, definition, load),
         RAW if said else CORRECTED,
         (*thrust.notes, *((f"thrust as measured on the stand: {said}",) if said else ()), _coasting(carried, load)),
     )
@@ -101,30 +107,59 @@ def launch_altitude(definition: TestDefinition) -> float:
     return atmosphere.altitude_of(definition.ambient_pressure.value)
 
 
-def _at_altitude(
-    curve: Curve, log: TestLog, segments: Segments | None, definition: TestDefinition, load: Propellant
-) -> tuple[Curve, str]:
-    """The curve with the nozzle's gain by ambient pressure; else the curve as it is, and why."""
-    nozzle, channel = definition.nozzle, log.get("p_chamber")
+def _no_correction(gas: Gas | None, definition: TestDefinition) -> str:
+    """Why the thrust cannot be taken to altitude; empty where it can."""
+    nozzle = definition.nozzle
     if nozzle is None or nozzle.throat_radius is None or nozzle.exit_radius is None:
-        return curve, "[nozzle] throat_radius and exit_radius are not both given"
-    if channel is None or Signal.of(channel).dead:
-        return curve, "the log has no live p_chamber"
-    assert segments is not None
+        return "[nozzle] throat_radius and exit_radius are not both given"
+    return "the log has no live p_chamber" if gas is None else ""
+
+
+def _at_altitude(curve: Curve, gas: Gas, definition: TestDefinition) -> Curve:
+    """The curve with the nozzle's gain by ambient pressure."""
+    nozzle = definition.nozzle
+    assert nozzle is not None
+    assert nozzle.throat_radius is not None
+    assert nozzle.exit_radius is not None
+    areas = [pi * radius.value**2 for radius in (nozzle.throat_radius, nozzle.exit_radius)]
+    gain, ambients = altitude_gain(gas.gamma, gas.pressure, definition.ambient_pressure.value, areas[0], areas[1])
+    return replace(curve, gain=gain, ambients=ambients)
+
+
+@dataclass(frozen=True)
+class Gas:
+    """In the chamber over time: measured pressure [Pa]; frozen heat capacity ratio and R T [J/kg] at equilibrium."""
+
+    pressure: Array
+    gamma: Array
+    specific_temperature: Array
+
+
+def _chamber_gas(
+    time: Array, log: TestLog, segments: Segments | None, definition: TestDefinition, load: Propellant
+) -> Gas | None:
+    """At the O/F of the flows, as the quasi-steady chamber has it; None without a live chamber pressure."""
+    channel = log.get("p_chamber")
+    if channel is None or segments is None or Signal.of(channel).dead:
+        return None
     signal = Signal.of(channel).shifted(segments.t_open.value or 0.0)
-    pressure = signal.reduced(curve.step).at(curve.time)
-    stand = definition.ambient_pressure.value
-    gamma = _gamma(curve.time, pressure, stand, load)
-    throat, exit_area = (pi * radius.value**2 for radius in (nozzle.throat_radius, nozzle.exit_radius))
-    gain, ambients = altitude_gain(gamma, pressure, stand, throat, exit_area)
-    return replace(curve, gain=gain, ambients=ambients), ""
-
-
-def _gamma(time: Array, pressure: Array, stand: float, load: Propellant) -> Array:
-    """Heat capacity ratio of the chamber gas over time, frozen, at the O/F of the flows."""
+    pressure = signal.reduced(float(time[1] - time[0])).at(time)
+    ambient = definition.ambient_pressure.value
     combustion.restart()
-    lit = np.flatnonzero(pressure > LIT * stand)
-    chosen = lit[:: max(lit.size // GAMMAS, 1)] if lit.size else np.array([int(np.argmax(pressure))])
+    lit = np.flatnonzero(pressure > LIT * ambient)
+    chosen = lit[:: max(lit.size // EQUILIBRIA, 1)] if lit.size else np.array([int(np.argmax(pressure))])
     ratio = np.interp(time, load.time, load.of_ratio)
-    found = [combustion.equilibrium(max(float(pressure[i]), stand), float(ratio[i])).gamma for i in chosen]
-    return np.interp(time, time[chosen], found)
+    found = [combustion.equilibrium(max(float(pressure[i]), ambient), float(ratio[i])) for i in chosen]
+    gamma, rt = np.array([(gas.gamma, gas.gas_constant * gas.temperature) for gas in found]).T
+    return Gas(pressure, np.interp(time, time[chosen], gamma), np.interp(time, time[chosen], rt))
+
+
+def _gas_mass(time: Array, gas: Gas, definition: TestDefinition, load: Propellant) -> Array | None:
+    """m = p V / (R T) [kg], the port as wide as the fuel left it; None where the chamber's size is not known."""
+    grain, chamber = definition.grain, definition.chamber
+    if chamber is None or grain is None or grain.density is None or grain.outer_radius is None or grain.length is None:
+        return None
+    dead = sum(volume.value for volume in (chamber.pre_volume, chamber.post_volume) if volume is not None)
+    casing = pi * grain.outer_radius.value**2 * grain.length.value
+    volume = dead + casing - np.interp(time, load.time, load.fuel) / grain.density.value
+    return np.asarray(np.maximum(gas.pressure, 0.0) * volume / gas.specific_temperature)

@@ -17,9 +17,11 @@ from hfanalysis.flight import summary
 from hfanalysis.flight.ascent import TRACE, Ascent, ascend
 from hfanalysis.flight.descent import Leg, descend, fall
 from hfanalysis.flight.vehicle import gravity
+from hfanalysis.launch import stability
 from hfanalysis.launch.firing import Firing
 from hfanalysis.launch.uncertainty import Dispersion, disperse, inputs, rows
 from hfanalysis.quantity import Quantity
+from hfanalysis.simulate.rocket import drag_from
 from hfanalysis.testdata.rocket import Rocket
 
 Array = NDArray[np.float64]
@@ -54,8 +56,8 @@ def launch(firing: Firing, rocket: Rocket, samples: int, seed: int, progress: Pr
                   samples, seed)  # fmt: skip
 
 
-def product(found: Launch) -> dict[str, Any]:
-    """The content of flight.json, without what the stability adds."""
+def product(found: Launch, rocket: Rocket, stable: stability.Stability | str) -> dict[str, Any]:
+    """The content of flight.json."""
     firing = found.firing
     flown = summary.quantities(
         firing.vehicle, found.ascent, firing.rail_length, firing.canopies, found.dispersion.spreads()
@@ -63,10 +65,15 @@ def product(found: Launch) -> dict[str, Any]:
     return {
         **flown,
         **_on_pad(found),
-        "checks": {"rail_departure_velocity": rail_check(flown["rail_departure_velocity"])},
+        "checks": {
+            "rail_departure_velocity": rail_check(flown["rail_departure_velocity"]),
+            "static_margin": stability.check(stable),
+        },
         "thrust": firing.thrust_is,
+        "drag": drag_from(rocket),
         "masses": dict(firing.propellant.how),
         "dispersion": {"flights": found.samples, "seed": found.seed, "inputs": found.inputs},
+        "stability": stability.product(stable),
         "notes": list(firing.notes),
     }
 
@@ -96,8 +103,10 @@ def rail_check(speed: Quantity) -> dict[str, Any]:
     return {**limit, "result": result, "why": f"{speed.value:.1f} m/s, 95 % from {low:.1f} to {high:.1f}"}
 
 
-def write_histories(path: Path, found: Launch, provenance: Mapping[str, Any]) -> None:
-    """flight.h5: groups ``ascent`` (the flight itself), ``bands``, ``drogue``, ``main`` and ``ballistic``, in SI."""
+def write_histories(
+    path: Path, found: Launch, stable: stability.Stability | str, provenance: Mapping[str, Any]
+) -> None:
+    """flight.h5: groups ``ascent``, ``bands``, the ways down, ``balance`` and ``stability``, in SI."""
     with h5py.File(path, "w") as file:
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
         file.attrs["launch_altitude"] = found.firing.vehicle.launch_altitude
@@ -117,6 +126,21 @@ def write_histories(path: Path, found: Launch, provenance: Mapping[str, Any]) ->
                 "speed": leg.speed,
             }
             _write(file, name, columns, {"time": "s", "height": "m", "speed": "m/s"})
+        if not isinstance(stable, str):
+            _write_stability(file, found, stable)
+
+
+def _write_stability(file: Any, found: Launch, stable: stability.Stability) -> None:
+    """Group ``balance`` over the burn, and ``stability/N`` for every wind."""
+    weighed = stable.balance
+    columns = {"mass": weighed.mass, "center_of_gravity": weighed.center, "pitch_inertia": weighed.inertia}
+    units = {"time": "s", "mass": "kg", "center_of_gravity": "m", "pitch_inertia": "kg m^2"}
+    _write(file, "balance", {"time": found.firing.curve.time, **columns}, units)
+    for i, margin in enumerate(stable.margins):
+        series = {"time": margin.time, "margin_mean": margin.mean, "margin_std": margin.std}
+        units = {"time": "s", "margin_mean": "1", "margin_std": "1", "angle_of_attack": "rad"}
+        _write(file, f"stability/{i}", {**series, "angle_of_attack": margin.attack}, units)
+        file[f"stability/{i}"].attrs["wind"] = margin.wind
 
 
 MASSES = {"oxidizer_mass": "kg", "fuel_mass": "kg"}

@@ -5,8 +5,10 @@ from __future__ import annotations
 from math import pi
 from pathlib import Path
 
+from hfanalysis.flight.aerodynamics import Shape, drag_table
 from hfanalysis.flight.descent import Parachute
 from hfanalysis.flight.vehicle import Vehicle
+from hfanalysis.simulate import shape
 from hfanalysis.testdata.drag_table import read_drag_table
 from hfanalysis.testdata.rocket import Rocket
 
@@ -16,8 +18,10 @@ def vehicle(rocket: Rocket | None, folder: Path, launch_altitude: float) -> Vehi
     if rocket is None:
         return "no [rocket] is given"
     area = frontal_area(rocket)
+    outside = shape.shape(rocket)
+    built = outside if isinstance(outside, Shape) else None
     missing = {
-        "drag_coefficient (or drag_table)": rocket.drag_coefficient or rocket.drag_table,
+        "drag_coefficient (or drag_table, or geometry)": rocket.drag_coefficient or rocket.drag_table or built,
         "frontal_area (or diameter)": area,
         "launch_angle": rocket.launch_angle,
     }
@@ -27,11 +31,21 @@ def vehicle(rocket: Rocket | None, folder: Path, launch_altitude: float) -> Vehi
     assert area is not None
     assert rocket.launch_angle is not None
     site = (area, rocket.launch_angle.value, launch_altitude)
-    if rocket.drag_table is None:
-        assert rocket.drag_coefficient is not None
+    if rocket.drag_coefficient is not None:
         return Vehicle(rocket.dry_mass.value, rocket.drag_coefficient, *site)
-    table = read_drag_table(folder / rocket.drag_table)
-    return Vehicle(rocket.dry_mass.value, table.coefficient[0], *site, table.mach, table.coefficient)
+    if rocket.drag_table is not None:
+        table = read_drag_table(folder / rocket.drag_table)
+        return Vehicle(rocket.dry_mass.value, table.coefficient[0], *site, table.mach, table.coefficient)
+    assert isinstance(outside, Shape)
+    mach, coefficient = drag_table(outside, launch_altitude)
+    return Vehicle(rocket.dry_mass.value, coefficient[0], *site, mach, coefficient)
+
+
+def drag_from(rocket: Rocket) -> str:
+    """Where the drag comes from, in words."""
+    if rocket.drag_coefficient is not None:
+        return "one coefficient, as stated"
+    return f"against Mach number, {rocket.drag_table}" if rocket.drag_table else "built up from the geometry"
 
 
 def frontal_area(rocket: Rocket) -> float | None:

@@ -12,9 +12,10 @@ from hfanalysis.stages.base import Context, Stage
 
 def run(context: Context) -> None:
     """Fly the test's rocket."""
-    from hfanalysis.launch.files import export
+    from hfanalysis.launch.files import export, rocketpy
     from hfanalysis.launch.firing import firing
     from hfanalysis.launch.product import launch, product, write_histories
+    from hfanalysis.launch.stability import stability
     from hfanalysis.segment.phases import Segments
     from hfanalysis.testdata.log import read_log
 
@@ -28,18 +29,21 @@ def run(context: Context) -> None:
     found = launch(
         flown, definition.rocket, int(context.parameter("flights")), int(context.parameter("seed")), context.progress
     )
-    files = export(found, definition)
+    winds, seeds = context.parameter("winds"), int(context.parameter("gust_seeds"))
+    stable = stability(flown, definition, winds, seeds, found.ascent.end[0] + 5.0, context.progress)
+    files = export(found, definition, stable)
     context.scratch("{test}.eng").write_text(files.eng, encoding="utf-8")
     context.scratch("{test}.rse").write_text(files.rse, encoding="utf-8")
-    write_histories(context.scratch("flight.h5"), found, context.provenance())
-    context.write_json("flight.json", {**product(found), "warnings": []})
+    context.scratch("{test}_rocketpy.py").write_text(rocketpy(found, definition, stable, files), encoding="utf-8")
+    write_histories(context.scratch("flight.h5"), found, stable, context.provenance())
+    context.write_json("flight.json", {**product(found, definition.rocket, stable), "warnings": []})
 
 
 STAGE = Stage(
     name="flight",
     needs=("ingest", "segment"),
     wants=("calibrate",),
-    products=("flight.json", "flight.h5", "{test}.eng", "{test}.rse"),
+    products=("flight.json", "flight.h5", "{test}.eng", "{test}.rse", "{test}_rocketpy.py"),
     run=run,
-    parameters={"flights": 10_000, "seed": 1, "raw_thrust": False},
+    parameters={"flights": 10_000, "seed": 1, "raw_thrust": False, "winds": [2.235, 4.47, 6.706], "gust_seeds": 20},
 )

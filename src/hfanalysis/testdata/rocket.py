@@ -74,13 +74,14 @@ class Structure(Section):
 
 @section
 class Geometry(Section):
-    """[rocket.geometry]: lengths [m] from the nose tip."""
+    """[rocket.geometry]: lengths [m] from the nose tip; roughness of the surface [m]."""
 
     nose: Nose | None = None
     body: Body | None = None
     fins: Fins | None = None
     tail: Tail | None = None
     structure: Structure | None = None
+    roughness: Length | None = None
     tank_position: Place | None = None
     chamber_position: Place | None = None
     engine_mass: Mass | None = None

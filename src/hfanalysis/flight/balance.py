@@ -1,0 +1,63 @@
+"""Centre of gravity and pitch inertia of the rocket over the burn: CG_total(t) of the report (section 3.2.5).
+
+Liquid and vapour lie over each other in the tank; grain, chamber gas, empty engine and structure stay where they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Part:
+    """Mass [kg], centre of gravity [m from the nose tip] and length [m] of a part, each over time or constant."""
+
+    mass: Array | float
+    center: Array | float
+    length: Array | float = 0.0
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Mass [kg], centre of gravity [m from the nose tip], pitch inertia about it [kg m^2] over time."""
+
+    mass: Array
+    center: Array
+    inertia: Array
+
+
+def balance(parts: Iterable[Part]) -> Balance:
+    """Of parts taken as slender rods: CG = sum m x / sum m, I = sum m (L^2/12 + (x - CG)^2)."""
+    known = list(parts)
+    mass = sum((np.asarray(p.mass, dtype=np.float64) for p in known), np.zeros(1))
+    center = sum((np.asarray(p.mass) * p.center for p in known), np.zeros(1)) / mass
+    rods = (np.asarray(p.mass) * (np.square(p.length) / 12.0 + np.square(center - p.center)) for p in known)
+    return Balance(np.asarray(mass), np.asarray(center), np.asarray(sum(rods, np.zeros(1))))
+
+
+@dataclass(frozen=True)
+class TankPlace:
+    """Where the tank is: its top [m from the nose tip], length [m] and volume [m^3]."""
+
+    top: float
+    length: float
+    volume: float
+
+
+def oxidizer(place: TankPlace, liquid: Array, vapor: Array, liquid_volume: Array) -> list[Part]:
+    """The tank's content: ``liquid`` and ``vapor`` [kg] over time, the liquid's specific volume [m^3/kg].
+
+    The liquid fills the tank from below; each phase has its centre in the middle of the length it takes.
+    """
+    height = np.clip(liquid * liquid_volume / place.volume, 0.0, 1.0) * place.length
+    bottom = place.top + place.length
+    return [
+        Part(liquid, bottom - 0.5 * height, height),
+        Part(vapor, place.top + 0.5 * (place.length - height), place.length - height),
+    ]
