@@ -117,8 +117,7 @@ def fly(
     while t < LONGEST:
         burning = now < last
         h = burn_step if burning else COAST_STEP
-        force, m = _push(thrust, mass, gain, fixed, row, now, 0.0, z)
-        a, mach, pressure, resistance = _acceleration(z, v, force, m, climb, base, table, fixed[3] * row[DRAG])
+        a, mach, pressure, resistance, force, m = _felt(thrust, mass, gain, table, fixed, row, now, 0.0, z, v, climb)
         steps = _note(trace, steps, t, z, v, a, force, resistance, m, mach)
         while next_path < path.shape[0] and next_path * every < t + h:
             late = next_path * every - t
@@ -127,14 +126,12 @@ def fly(
         _peaks(results, z - base, v, mach, a if burning else 0.0, pressure)
         # four slopes of the classical Runge-Kutta method
         k1, s1 = a, v
-        force2, m2 = _push(thrust, mass, gain, fixed, row, now, 0.5, z + 0.5 * h * s1 * climb)
         s2 = v + 0.5 * h * k1
-        k2 = _acceleration(z + 0.5 * h * s1 * climb, s2, force2, m2, climb, base, table, fixed[3] * row[DRAG])[0]
+        k2 = _felt(thrust, mass, gain, table, fixed, row, now, 0.5, z + 0.5 * h * s1 * climb, s2, climb)[0]
         s3 = v + 0.5 * h * k2
-        k3 = _acceleration(z + 0.5 * h * s2 * climb, s3, force2, m2, climb, base, table, fixed[3] * row[DRAG])[0]
+        k3 = _felt(thrust, mass, gain, table, fixed, row, now, 0.5, z + 0.5 * h * s2 * climb, s3, climb)[0]
         s4 = v + h * k3
-        force4, m4 = _push(thrust, mass, gain, fixed, row, now, 1.0, z + h * s3 * climb)
-        k4 = _acceleration(z + h * s3 * climb, s4, force4, m4, climb, base, table, fixed[3] * row[DRAG])[0]
+        k4 = _felt(thrust, mass, gain, table, fixed, row, now, 1.0, z + h * s3 * climb, s4, climb)[0]
         new_v = v + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
         new_z = z + h / 6.0 * (s1 + 2.0 * (s2 + s3) + s4) * climb
         if np.isnan(results[LIFT_OFF]) and new_z > base:
@@ -158,10 +155,30 @@ def fly(
 
 
 @njit(cache=True, nogil=True, inline="always")
+def _felt(
+    thrust: Array, mass: Array, gain: Array, table: Array, fixed: Array, row: Array, now: int, share: float, z: float,
+    v: float, climb: float,
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    """dv/dt = (F - D)/m - g cos(theta) [m/s^2] (0 on the pad), ``share`` of a step on, at an altitude and a speed.
+
+    Then Mach number, dynamic pressure [Pa], drag [N], thrust [N] and mass [kg].
+    """
+    ambient, rho, sound = air(z)
+    force, m = _push(thrust, mass, gain, fixed, row, now, share, ambient)
+    mach, pressure = abs(v) / sound, 0.5 * rho * v * v
+    resistance = drag_coefficient(mach, table) * fixed[3] * row[DRAG] * pressure
+    pull = STANDARD_GRAVITY * (EARTH_RADIUS / (EARTH_RADIUS + z)) ** 2 * climb
+    net = (force - (resistance if v >= 0.0 else -resistance)) / m - pull
+    if z <= fixed[5] + PAD and net <= 0.0 and v <= 0.0:
+        net = 0.0
+    return net, mach, pressure, resistance, force, m
+
+
+@njit(cache=True, nogil=True, inline="always")
 def _push(
-    thrust: Array, mass: Array, gain: Array, fixed: Array, row: Array, now: int, share: float, z: float
+    thrust: Array, mass: Array, gain: Array, fixed: Array, row: Array, now: int, share: float, ambient: float
 ) -> tuple[float, float]:
-    """Thrust [N] at the altitude and mass [kg], ``share`` of a step on; none and the rest after the burn."""
+    """Thrust [N] at the ambient pressure and mass [kg], ``share`` of a step on; none and the rest after the burn."""
     last = thrust.size - 1
     if now >= last:
         return 0.0, fixed[1] + row[MASS] + row[PROPELLANT] * (fixed[2] - fixed[1])
@@ -169,7 +186,7 @@ def _push(
     m = mass[now] + share * (mass[now + 1] - mass[now])
     columns = gain.shape[1]
     if columns > 1:
-        x = min(max((air(z)[0] - fixed[7]) / fixed[8], 0.0), columns - 1.0)
+        x = min(max((ambient - fixed[7]) / fixed[8], 0.0), columns - 1.0)
         i = min(int(x), columns - 2)
         x -= i
         here = gain[now, i] + x * (gain[now, i + 1] - gain[now, i])
@@ -177,21 +194,6 @@ def _push(
         force += here + share * (there - here)
     force = row[THRUST_SCALE] * force + row[THRUST_BIAS] + row[THRUST_DRIFT] * (now + share) / last
     return force, fixed[1] + row[MASS] + row[PROPELLANT] * (m - fixed[1])
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _acceleration(
-    z: float, v: float, force: float, m: float, climb: float, base: float, table: Array, area: float
-) -> tuple[float, float, float, float]:
-    """dv/dt = (F - D)/m - g cos(theta) [m/s^2] (0 on the pad), Mach number, dynamic pressure [Pa], drag [N]."""
-    _, rho, sound = air(z)
-    mach, pressure = abs(v) / sound, 0.5 * rho * v * v
-    resistance = drag_coefficient(mach, table) * area * pressure
-    pull = STANDARD_GRAVITY * (EARTH_RADIUS / (EARTH_RADIUS + z)) ** 2 * climb
-    net = (force - (resistance if v >= 0.0 else -resistance)) / m - pull
-    if z <= base + PAD and net <= 0.0 and v <= 0.0:
-        return 0.0, mach, pressure, resistance
-    return net, mach, pressure, resistance
 
 
 @njit(cache=True, nogil=True, inline="always")

@@ -45,5 +45,5 @@ STAGE = Stage(
     wants=("calibrate",),
     products=("flight.json", "flight.h5", "{test}.eng", "{test}.rse", "{test}_rocketpy.py"),
     run=run,
-    parameters={"flights": 10_000, "seed": 1, "raw_thrust": False, "winds": [2.235, 4.47, 6.706], "gust_seeds": 20},
+    parameters={"flights": 4000, "seed": 1, "raw_thrust": False, "winds": [2.235, 4.47, 6.706], "gust_seeds": 20},
 )
