@@ -15,7 +15,7 @@ export TEST
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) all test lint format benchmark recovery blind-cases readme lock clean
+.PHONY: help setup $(STAGES) all test lint format benchmark rocketpy recovery blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -57,11 +57,17 @@ lint: $(STAMP) ## ruff and mypy
 format: $(STAMP) ## format the code with ruff
 	$(BIN)/ruff format
 
-benchmark: $(STAMP) ## start-up, the engine beside a plain solver and HRAP, a 1 GB log beside pandas
+benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers, a 1 GB log beside pandas
 	$(BIN)/python benchmarks/startup.py
 	$(BIN)/python benchmarks/reference_engine.py
 	$(BIN)/python benchmarks/hrap_run.py
+	$(BIN)/python benchmarks/flights.py
 	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python benchmarks/ingest_1gb.py --gigabytes 1; fi
+
+rocketpy: $(STAMP) ## install RocketPy into .venv-rocketpy/, to compare flights with
+	@test -x .venv-rocketpy/bin/python || { $(BIN)/uv venv --quiet --python '$(PYTHON)' .venv-rocketpy && \
+		$(BIN)/uv pip install --quiet --only-binary :all: --python .venv-rocketpy/bin/python 'rocketpy>=1.9'; } || \
+		echo "make rocketpy: RocketPy cannot be installed here; flights are not compared with it" >&2
 
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 	$(BIN)/python benchmarks/recovery.py $(FLAGS)

@@ -1,0 +1,130 @@
+"""RocketPy flies the exported motor as high as we do.
+
+It runs in a process of its own: with the Python of the environment variable HFA_ROCKETPY, of .venv-rocketpy (make
+rocketpy), or this one where it has RocketPy.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hfanalysis.flight.aerodynamics import Fins, Nose, Shape, Tail, center_of_pressure, components
+from hfanalysis.flight.ascent import RAIL, SPEED, Ascent, ascend
+from hfanalysis.launch.firing import firing
+from hfanalysis.segment.phases import Segments
+from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.runner import run_to
+from hfanalysis.testdata.log import read_log
+
+ROOT = Path(__file__).resolve().parents[2]
+
+GEOMETRY = """
+[rocket.geometry]
+nose = { kind = "ogive", length = "0.6 m" }
+body = { length = "3.64 m" }
+fins = { count = 4, root = "0.30 m", tip = "0.12 m", span = "0.16 m" }
+structure = { mass = "40 kg", center_of_gravity = "1.75 m" }
+tank_position = "2.1 m"
+chamber_position = "3.4 m"
+engine_mass = "12.5 kg"
+engine_center_of_gravity = "3.1 m"
+"""
+"""A rocket of the report's length and diameter; the rest is made up."""
+
+
+def interpreter() -> str:
+    """Of a Python that has RocketPy."""
+    own = ROOT / ".venv-rocketpy" / "bin" / "python"
+    stated = os.environ.get("HFA_ROCKETPY") or (str(own) if own.exists() else None)
+    if stated is None and importlib.util.find_spec("rocketpy") is None:
+        pytest.skip("no RocketPy: make rocketpy installs it, or HFA_ROCKETPY names a Python that has it")
+    return stated or sys.executable
+
+
+def asked(code: str) -> list[float]:
+    """What a Python with RocketPy answers with a list of numbers."""
+    ended = subprocess.run([interpreter(), "-W", "ignore", "-c", code], capture_output=True, text=True, check=True)
+    found: list[float] = json.loads(ended.stdout.splitlines()[-1])
+    return found
+
+
+@pytest.fixture(scope="module", params=["", GEOMETRY], ids=["bare", "with its geometry"])
+def exported(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Ascent]:
+    """The script of a replica, and our flight of it straight up."""
+    interpreter()
+    root = tmp_path_factory.mktemp("exported")
+    folder = root / "raw_tests" / "HF5"
+    shutil.copytree(ROOT / "raw_tests" / "HF5", folder)
+    volume = 'volume = "16.5 L"\n'
+    text = (folder / "test.toml").read_text().replace(volume, f'{volume}inner_diameter = "128 mm"\n')
+    (folder / "test.toml").write_text(text + request.param)
+    context = run_to("flight", open_test(root, "HF5", settings={"flight.flights": 100, "flight.gust_seeds": 2}))
+    segments = Segments.from_json(context.read_json("segments.json"))
+    log, calibration = read_log(context.product("ingest.h5")), context.read_json("calibration.json")
+    found = firing(log, segments, calibration, context.definition)
+    upright = replace(found.vehicle, launch_angle=0.0)
+    return context.out / "HF5_rocketpy.py", ascend(found.curve, upright, found.rail_length)
+
+
+def test_it_reaches_the_same_apogee_straight_up_without_wind(exported: tuple[Path, Ascent]) -> None:
+    script, ours = exported
+    code = (
+        f"import runpy, json; s = runpy.run_path({str(script)!r}); f = s['fly'](90.0); "
+        "print(json.dumps([f.apogee - s['ELEVATION'], f.apogee_time, f.out_of_rail_velocity, f.max_speed]))"
+    )
+    apogee, time, rail, peak = asked(code)
+    assert apogee == pytest.approx(ours.height, rel=0.01)
+    assert time == pytest.approx(ours.end[0], rel=0.01)
+    assert rail == pytest.approx(ours.results[RAIL], rel=0.01)
+    assert peak == pytest.approx(ours.results[SPEED], rel=0.01)
+
+
+def test_the_script_runs_by_itself(exported: tuple[Path, Ascent]) -> None:
+    ended = subprocess.run(
+        [interpreter(), "-W", "ignore", str(exported[0])], capture_output=True, text=True, check=True
+    )
+    assert "apogee above ground" in ended.stdout
+
+
+def test_it_reads_the_engine_files(exported: tuple[Path, Ascent]) -> None:
+    folder = exported[0].parent
+    code = (
+        "import json; from rocketpy import GenericMotor as G; "
+        f"m = G.load_from_eng_file({str(folder / 'HF5.eng')!r}, nozzle_radius=0.0381); "
+        f"n = G.load_from_rse_file({str(folder / 'HF5.rse')!r}, nozzle_radius=0.0381); "
+        "print(json.dumps([float(m.total_impulse), float(n.total_impulse), float(m.propellant_initial_mass)]))"
+    )
+    eng, rse, propellant = asked(code)
+    ours = exported[1]
+    impulse = float(np.trapezoid(ours.column("thrust"), ours.column("time")))
+    assert [eng, rse] == pytest.approx([impulse, impulse], rel=5e-3)
+    assert propellant == pytest.approx(9.944, rel=1e-3)
+
+
+def test_slopes_and_margin_are_rocketpy_s() -> None:
+    """Halcyon's shape at Mach 0.3; both are to agree within 2 %."""
+    code = (
+        "import json; from rocketpy import Rocket; "
+        "r = Rocket(radius=0.0762, mass=14.613, inertia=(9, 9, 0.05), power_off_drag=0.4, power_on_drag=0.4, "
+        "center_of_mass_without_motor=2.344, coordinate_system_orientation='tail_to_nose'); "
+        "r.add_nose(length=0.46, kind='von karman', position=3.556); "
+        "r.add_trapezoidal_fins(n=4, root_chord=0.247, tip_chord=0.045, span=0.125, position=0.263); "
+        "r.add_tail(top_radius=0.0762, bottom_radius=0.0496, length=0.254, position=0.254); "
+        "print(json.dumps([float(r.total_lift_coeff_der(0.3)), float(r.static_margin(0))]))"
+    )
+    slope, margin = asked(code)
+    shape = Shape(0.1524, Nose("von_karman", 0.46), 2.842, Fins(4, 0.247, 0.045, 0.125, 0.202, 3.293),
+                  Tail(0.254, 0.0992, 3.302))  # fmt: skip
+    assert center_of_pressure(components(shape, 0.3))[0] == pytest.approx(slope, rel=0.02)
+    still = center_of_pressure(components(shape, 0.0))[1]
+    assert (still - (3.556 - 2.344)) / 0.1524 == pytest.approx(margin, rel=0.02)
