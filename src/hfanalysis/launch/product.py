@@ -67,7 +67,7 @@ def product(found: Launch, rocket: Rocket, stable: stability.Stability | str) ->
         **_on_pad(found),
         "checks": {
             "rail_departure_velocity": rail_check(flown["rail_departure_velocity"]),
-            "static_margin": stability.check(stable),
+            **stability.checks(stable),
         },
         "thrust": firing.thrust_is,
         "drag": drag_from(rocket),

@@ -123,12 +123,19 @@ def product(found: Stability | str) -> dict[str, Any]:
     }
 
 
-def check(found: Stability | str) -> dict[str, Any]:
+def checks(found: Stability | str) -> dict[str, dict[str, Any]]:
     """Whether the margin keeps within its limits, two standard deviations included, in every wind."""
-    limit = {"limit": [LOW, HIGH], "unit": "calibers", "is": "between"}
+    return {
+        "least_static_margin": _check(found, {"limit": LOW, "is": "at least"}, "least", lambda margin: margin >= LOW),
+        "largest_static_margin": _check(found, {"limit": HIGH, "is": "at most"}, "largest", lambda m: m <= HIGH),
+    }
+
+
+def _check(found: Stability | str, limit: dict[str, Any], key: str, holds: Callable[[float], bool]) -> dict[str, Any]:
+    stated = {**limit, "unit": "calibers"}
     if isinstance(found, str):
-        return {**limit, "result": "unknown", "why": found}
+        return {**stated, "result": "unknown", "why": found}
     said = [m.to_json() for m in found.margins]
-    broken = [m for m in said if m["result"] == "failed"]
-    words = "; ".join(f"{m['least']:.2f} to {m['largest']:.2f} in {m['wind']:.1f} m/s" for m in broken or said)
-    return {**limit, "result": "failed" if broken else "passed", "why": f"{words} (mean and two standard deviations)"}
+    words = ", ".join(f"{m[key]:.2f} in a wind of {m['wind']:.1f} m/s" for m in said)
+    kept = all(holds(m[key]) for m in said)
+    return {**stated, "result": "passed" if kept else "failed", "why": f"{words}; mean and two standard deviations"}
