@@ -1,13 +1,17 @@
-"""A case of the blind generator without an effect goes through the whole way, and its calibration finds the truth."""
+"""The blind generator and the package, each without the other, agree on tests without an effect."""
 
 from __future__ import annotations
 
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from tests.blind import slots as s
+from tests.blind import stand as st
 from tests.blind.plan import Case
 from tests.blind.write import write_case
 
@@ -28,3 +32,58 @@ def test_a_test_without_an_effect_is_accepted_and_calibrates_to_its_truth(tmp_pa
     assert found["K_loss"]["value"] == pytest.approx(truth["K_loss"], rel=0.1)
     assert segments["t_v"]["value"] == pytest.approx(truth["t_v"], abs=0.01)
     assert segments["t_purge"]["value"] == pytest.approx(truth["t_purge"], abs=0.05)
+
+
+def engine_file(x: st.Stand) -> str:
+    """A stand of the generator as an engine file, on a rocket too heavy to fly."""
+    return f"""schema = 1
+[engine]
+id = "stand"
+[tank]
+oxidizer_mass = "{x.mass} kg"
+temperature = "{x.temperature} K"
+volume = "{x.volume} m^3"
+polytropic_exponent = {x.m}
+[feed]
+K_loss = "{x.K_loss} 1/m^4"
+[injector]
+holes = {x.holes}
+hole_area = "{x.hole_area} m^2"
+C_i = {x.C_i}
+[grain]
+mass = "{x.fuel_mass} kg"
+length = "{x.grain_length} m"
+density = "{x.fuel_density} kg/m^3"
+outer_radius = "{x.outer_radius} m"
+a = {x.a}
+n = {x.n}
+[chamber]
+pre_volume = "{x.pre_volume} m^3"
+post_volume = "{x.post_volume} m^3"
+[nozzle]
+throat_radius = "{x.throat_radius} m"
+exit_radius = "{x.exit_radius} m"
+[site]
+altitude = "0 m"
+[rocket]
+dry_mass = "1e7 kg"
+drag_coefficient = 0.5
+diameter = "157 mm"
+launch_angle = "6 deg"
+rail_length = "6.05 m"
+launch_altitude = "0 m"
+"""
+
+
+@pytest.mark.parametrize("seed", [1, 4])
+def test_two_independent_engines_agree_on_a_test_without_an_effect(seed: int, tmp_path: Path) -> None:
+    stand = replace(st.draw(np.random.default_rng(seed)), ambient=101_496.0)
+    (tmp_path / "stand.toml").write_text(engine_file(stand))
+    command = [sys.executable, "-m", "hfanalysis", "simulate", str(tmp_path / "stand.toml"), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    theirs, ours = json.loads(done.stdout), st.simulate(stand)
+    assert theirs["liquid_depletion_time"]["value"] == pytest.approx(ours.t_v, abs=1e-3)
+    assert theirs["peak_chamber_pressure"]["value"] == pytest.approx(ours.trace(s.P_CHAMBER).max(), rel=1e-3)
+    assert theirs["peak_thrust"]["value"] == pytest.approx(ours.trace(s.THRUST).max(), rel=1e-3)
+    assert theirs["total_impulse"]["value"] == pytest.approx(ours.trace(s.THRUST).sum() * 1e-3, rel=3e-3)

@@ -1,7 +1,7 @@
 """What may be hidden in a case: the eighteen effects a library is expected to have, and fourteen it is not.
 
 Each has one strength in its own unit, 0 for none, and a shape drawn per stand. The closures are written out in
-kernel.py and sensed.py; docs/blind.md lists them with their sources.
+closures.py, kernel.py and sensed.py; docs/blind.md lists them with their sources.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ LIBRARY = (
     Effect("injector_two_phase", "", 0.01, 1.0, ("injector",), True, s.TWO_PHASE, source=LEUNG, sudden=True),
     Effect("injector_choked_vapor", "", 0.2, 1.6, ("injector",), True, s.VAPOR_CHOKING, source=VALVES, sudden=True),
     Effect("combustion_efficiency", "", 0.02, 0.3, ("chamber_energy",), True, s.EFFICIENCY, sudden=True),
-    Effect("chamber_heat_loss", "W", 3e4, 8e5, ("chamber_energy",), True, s.CHAMBER_HEAT, source=BARTZ, sudden=True,
+    Effect("chamber_heat_loss", "W", 3e4, 5e5, ("chamber_energy",), True, s.CHAMBER_HEAT, source=BARTZ, sudden=True,
            shape={s.CHAMBER_HEAT_FADE: between(1.0, 8.0)}),
     Effect("grain_pressure_regression", "", 0.1, 1.2, ("grain",), True, s.PRESSURE_BURNING, sudden=True,
            shape={s.REFERENCE_PRESSURE: between(6e5, 12e5)}),

@@ -22,3 +22,15 @@ SLOTS = 44
 TRACES = 25
 CHANNELS = ("p_tank", "p_run", "p_chamber", "p_purge", "thrust", "m_tank")
 """The first six traces are the channels."""
+
+# states; the first SLOW of them are integrated by their rates
+(Y_MASS, Y_ENERGY, Y_EXPONENT, Y_WALL, Y_DRAWN, Y_NITROGEN, Y_HEAT, Y_PORT, Y_THROAT, Y_DEFICIT, Y_NUCLEI, Y_CHAMBER,
+ Y_RATIO, Y_SHARE, Y_P_C, Y_P_RUN, Y_P_PURGE, Y_CLOSED, Y_TEMPERATURE, Y_WET, Y_MASS_BEFORE, Y_LIQUID, Y_FRESH,
+ Y_M_V, Y_T_V, Y_P_V, Y_GRUENEISEN, Y_ULLAGE) = range(28)  # fmt: skip
+SLOW, STATES = 7, 28
+
+# what holds during a step
+(N_P_TANK, N_P_VAPOR, N_FULL, N_LIQUID_DENSITY, N_DENSITY, N_ENTHALPY, N_GAS_SHARE, N_BLOWN, N_LEAK, N_TANK_FLOW,
+ N_INJECTED, N_P_C_THERE, N_P_RUN_SEEN, N_FUEL, N_FUEL_PLAIN, N_SPEED, N_RT, N_GAMMA, N_LOST, N_ROOM, N_EXTRA, N_THROAT,
+ N_LEAVING, N_THRUST, N_THRUST_PLAIN) = range(25)  # fmt: skip
+NOWS = 25

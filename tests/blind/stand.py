@@ -13,8 +13,10 @@ from . import slots as s
 
 Array = NDArray[np.float64]
 
-LONGEST = 20.0
-"""When the valve is closed at the latest [s]."""
+SHORTEST, LONGEST = 11.5, 20.0
+"""When the valve is closed [s]."""
+RESIDUAL = 0.6e5
+"""Pressure above ambient that is left in the tank at least when its valve is closed [Pa]."""
 SPEED = 1550.0
 """c* [m/s] from which the throat is sized."""
 
@@ -156,8 +158,10 @@ def draw(rng: np.random.Generator, burns_out: bool = False, purge: bool | None =
 
 
 def plausible(base: Histories, stand: Stand) -> bool:
-    """A chamber well above ambient and well below p_run, which is nearly empty long before LONGEST."""
+    """A chamber well above ambient and well below p_run, empty long before LONGEST, and a tank that is so only late."""
     p_c = float(base.trace(s.P_CHAMBER)[1000])
+    if base.trace(s.P_TANK)[int(SHORTEST / kernel.STEP)] < stand.ambient + RESIDUAL:
+        return False
     return 6e5 < p_c < 0.75 * float(base.trace(s.P_RUN)[1000]) and _cold_from(base, stand) + 2.0 < LONGEST
 
 
@@ -167,9 +171,11 @@ def _cold_from(base: Histories, stand: Stand) -> float:
 
 
 def closed(rng: np.random.Generator, stand: Stand, base: Histories) -> Stand:
-    """With the valve closed only when nothing is to be seen of it in the chamber."""
-    late = max(_between(rng, 12.0, 17.0), _cold_from(base, stand) + _between(rng, 0.5, 1.5))
-    return replace(stand, closing=round(late, 3))
+    """With the valve closed when nothing is to be seen of it in the chamber any more, and the tank is not yet empty."""
+    cold = _cold_from(base, stand)
+    empty = base.time[np.flatnonzero(base.trace(s.P_TANK) > stand.ambient + RESIDUAL)[-1]]
+    late = max(_between(rng, 12.0, 17.0), cold + _between(rng, 0.5, 1.5))
+    return replace(stand, closing=round(max(min(late, float(empty)), cold + 0.3), 3))
 
 
 def _draw_once(rng: np.random.Generator, burns_out: bool, purge: bool | None) -> Stand:
