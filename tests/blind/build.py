@@ -39,9 +39,14 @@ class Built:
     weighed: dict[str, float]
 
 
+BURNS_OUT = 0.15
+"""Share of the stands whose fuel is gone early, whatever is hidden: burn-out must not give an effect away."""
+
+
 def _needs(case: Case) -> dict[str, Any]:
     """What a stand must be like for the effect to exist at all."""
-    return {"burns_out": "fuel_sliver" in case.effects, "purge": True if "n2_purge" in case.effects else None}
+    out = np.random.default_rng([case.stand_seed, 2]).uniform() < BURNS_OUT
+    return {"burns_out": out or "fuel_sliver" in case.effects, "purge": True if "n2_purge" in case.effects else None}
 
 
 def build(case: Case) -> Built:

@@ -31,8 +31,10 @@ Array = NDArray[np.float64]
 
 STEP = 1e-3
 """Time step [s]."""
-NITROGEN_GAS = 296.8
-"""Gas constant of nitrogen [J/(kg K)]."""
+NITROGEN_GAS, NITROUS_GAS = 296.8, 188.9
+"""Gas constants [J/(kg K)]."""
+LEANEST = 100.0
+"""O/F at entry above which there is no flame: what enters stays cold. Without fuel, nitrous oxide does not burn."""
 
 
 @njit(cache=True)
@@ -52,6 +54,7 @@ def start(c: Array, tab: Array) -> Array:
     y[s.Y_PORT], y[s.Y_THROAT], y[s.Y_NUCLEI] = c[s.PORT], c[s.THROAT_RADIUS], 0.12
     y[s.Y_CHAMBER], y[s.Y_RATIO], y[s.Y_P_C], y[s.Y_P_RUN] = -1.0, 1.0, c[s.AMBIENT], c[s.AMBIENT]
     y[s.Y_WET], y[s.Y_LIQUID], y[s.Y_FRESH] = liquid, 1.0, 1.0
+    y[s.Y_ENTHALPY] = nitrous.saturated(tab, nitrous.H_L, c[s.TEMPERATURE]) + c[s.FORMATION]
     y[s.Y_M_V], y[s.Y_T_V], y[s.Y_GRUENEISEN] = 1.0, c[s.TEMPERATURE], 0.3
     return y
 
@@ -105,7 +108,7 @@ def dry_tank(c: Array, tab: Array, y: Array, now: Array) -> None:
     y[s.Y_TEMPERATURE] = y[s.Y_T_V] * share ** (c[s.POLYTROPE] - 1.0) * warmed
     now[s.N_P_TANK], now[s.N_FULL], now[s.N_LIQUID_DENSITY] = now[s.N_P_VAPOR], c[s.VOLUME], 0.0
     now[s.N_DENSITY] = (y[s.Y_MASS] + y[s.Y_NITROGEN]) / c[s.VOLUME]
-    now[s.N_ENTHALPY] = nitrous.saturated(tab, nitrous.H_V, y[s.Y_T_V])
+    now[s.N_ENTHALPY] = nitrous.saturated(tab, nitrous.H_V, y[s.Y_TEMPERATURE])
 
 
 @njit(cache=True)
@@ -194,10 +197,15 @@ def chamber_state(c: Array, e: Array, gas: Array, y: Array, now: Array, t: float
     room = c[s.DEAD_VOLUME] + pi * min(port, c[s.OUTER]) ** 2 * c[s.LENGTH]
     if y[s.Y_CHAMBER] < 0.0:  # full of equilibrium gas at ambient pressure and the ratio that enters
         y[s.Y_RATIO] = now[s.N_INJECTED] / max(now[s.N_FUEL], 1e-9)
-        rt = hot_gas(gas, e, c[s.ENTHALPY], y[s.Y_SHARE], c[s.AMBIENT], y[s.Y_RATIO], inflow, 1.0, t)[0]
+        rt = hot_gas(gas, e, y[s.Y_ENTHALPY], y[s.Y_SHARE], c[s.AMBIENT], y[s.Y_RATIO], inflow, 1.0, t)[0]
         y[s.Y_CHAMBER] = c[s.AMBIENT] * room / rt
     burnt = min(port / c[s.PORT], c[s.OUTER] / c[s.PORT])
-    rt, gamma, lost = hot_gas(gas, e, c[s.ENTHALPY], y[s.Y_SHARE], y[s.Y_P_C], y[s.Y_RATIO], inflow, burnt, t)
+    rt, gamma, lost = hot_gas(gas, e, y[s.Y_ENTHALPY], y[s.Y_SHARE], y[s.Y_P_C], y[s.Y_RATIO], inflow, burnt, t)
+    if y[s.Y_COLD] > 0.0:
+        constant = NITROUS_GAS + now[s.N_GAS_SHARE] * (NITROGEN_GAS - NITROUS_GAS)
+        rt += y[s.Y_COLD] * (constant * y[s.Y_TEMPERATURE] - rt)
+        gamma += y[s.Y_COLD] * (1.3 - gamma)
+        lost *= 1.0 - y[s.Y_COLD]
     y[s.Y_P_C] = y[s.Y_CHAMBER] * rt / room
     if y[s.Y_P_C] < c[s.AMBIENT]:  # air comes back in
         y[s.Y_P_C], y[s.Y_CHAMBER] = c[s.AMBIENT], c[s.AMBIENT] * room / rt
@@ -297,8 +305,12 @@ def breathe(c: Array, y: Array, now: Array) -> None:
     if injected > 0.0:
         slope += 0.5 * injected / max(now[s.N_P_TANK] - now[s.N_P_C_THERE], 5.0) * now[s.N_RT] / now[s.N_ROOM]
     new = chamber + (inflow + now[s.N_EXTRA] - leaving) * (1.0 - np.exp(-slope * STEP)) / slope
-    if inflow > 1e-7:
-        mix = 1.0 - np.exp(-inflow * STEP / chamber)
+    mix = 1.0 - np.exp(-inflow * STEP / chamber)
+    if injected > LEANEST * now[s.N_FUEL]:
+        y[s.Y_COLD] += (1.0 - y[s.Y_COLD]) * mix
+    elif inflow > 1e-7:
+        y[s.Y_COLD] -= y[s.Y_COLD] * mix
+        y[s.Y_ENTHALPY] += (now[s.N_ENTHALPY] + c[s.FORMATION] - y[s.Y_ENTHALPY]) * mix
         part = y[s.Y_RATIO] / (1.0 + y[s.Y_RATIO])
         part += (injected / inflow - part) * mix
         y[s.Y_RATIO] = min(max(part / max(1.0 - part, 1e-9), 1e-3), 1e6)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 # constants of stand and test
 (VOLUME, AREA, K_LOSS, POLYTROPE, REGRESSION_A, REGRESSION_N, LENGTH, PORT, OUTER, FUEL_DENSITY, DEAD_VOLUME,
- THROAT_RADIUS, EXIT_AREA, AMBIENT, CRACKING, SUPPLY, CLOSING, MASS, TEMPERATURE, ENTHALPY) = range(20)  # fmt: skip
+ THROAT_RADIUS, EXIT_AREA, AMBIENT, CRACKING, SUPPLY, CLOSING, MASS, TEMPERATURE, FORMATION) = range(20)  # fmt: skip
 CONSTANTS = 20
 
 # effects: strengths and shapes; see effects.py for what they mean
@@ -26,8 +26,8 @@ CHANNELS = ("p_tank", "p_run", "p_chamber", "p_purge", "thrust", "m_tank")
 # states; the first SLOW of them are integrated by their rates
 (Y_MASS, Y_ENERGY, Y_EXPONENT, Y_WALL, Y_DRAWN, Y_NITROGEN, Y_HEAT, Y_PORT, Y_THROAT, Y_DEFICIT, Y_NUCLEI, Y_CHAMBER,
  Y_RATIO, Y_SHARE, Y_P_C, Y_P_RUN, Y_P_PURGE, Y_CLOSED, Y_TEMPERATURE, Y_WET, Y_MASS_BEFORE, Y_LIQUID, Y_FRESH,
- Y_M_V, Y_T_V, Y_P_V, Y_GRUENEISEN, Y_ULLAGE) = range(28)  # fmt: skip
-SLOW, STATES = 7, 28
+ Y_M_V, Y_T_V, Y_P_V, Y_GRUENEISEN, Y_ULLAGE, Y_ENTHALPY, Y_COLD) = range(30)  # fmt: skip
+SLOW, STATES = 7, 30
 
 # what holds during a step
 (N_P_TANK, N_P_VAPOR, N_FULL, N_LIQUID_DENSITY, N_DENSITY, N_ENTHALPY, N_GAS_SHARE, N_BLOWN, N_LEAK, N_TANK_FLOW,

@@ -55,12 +55,6 @@ class Stand:
         """Outer radius of the grain [m]."""
         return sqrt(self.port_radius**2 + self.fuel_mass / (pi * self.fuel_density * self.grain_length))
 
-    @property
-    def enthalpy(self) -> float:
-        """Of the liquid in the tank before the test, formation scale [J/kg]."""
-        h = nitrous.saturated(nitrous.table(), nitrous.H_L, self.temperature)
-        return float(h) + nitrous.formation_offset()
-
     def constants(self) -> Array:
         """As compiled code reads them."""
         c = np.zeros(s.CONSTANTS)
@@ -70,11 +64,11 @@ class Stand:
         c[s.FUEL_DENSITY], c[s.DEAD_VOLUME] = self.fuel_density, self.pre_volume + self.post_volume
         c[s.THROAT_RADIUS], c[s.EXIT_AREA] = self.throat_radius, pi * self.exit_radius**2
         c[s.AMBIENT], c[s.CRACKING], c[s.SUPPLY] = self.ambient, self.cracking, self.supply or 0.0
-        c[s.CLOSING], c[s.MASS], c[s.TEMPERATURE], c[s.ENTHALPY] = (
+        c[s.CLOSING], c[s.MASS], c[s.TEMPERATURE], c[s.FORMATION] = (
             self.closing,
             self.mass,
             self.temperature,
-            self.enthalpy,
+            nitrous.formation_offset(),
         )
         return c
 
