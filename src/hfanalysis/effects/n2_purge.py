@@ -47,6 +47,8 @@ EFFECT = Effect(
     meaning="nitrogen enters the tank through the purge line's check valve",
     reference="report, section 4.2.2: the valve opens when the tank is below the purge line by its cracking pressure; "
     "flow of an orifice by ISO 6358, the spring taking the cracking pressure",
+    formula="mdot = A p_s sqrt(gamma / (R T_s)) (2/(gamma+1))^((gamma+1)/(2 (gamma-1))) phi(p_T + p_crack, p_s)",
+    sites=("nitrogen_inflow", "tank_heat"),
     parameters=(
         Parameter("area", "m^2", "effective area of line and check valve", typical=1e-5, low=0.0, high=2e-4),
         Parameter(

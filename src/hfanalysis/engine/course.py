@@ -59,7 +59,15 @@ from hfanalysis.engine.rosenbrock import (
     interpolate,
     substitute,
 )
-from hfanalysis.engine.sites import ENVIRONMENT, PARAMETERS_AT, SITES, STATES_AT, SWITCH_ADDRESS, call_switch
+from hfanalysis.engine.sites import (
+    ENVIRONMENT,
+    PARAMETERS_AT,
+    SITES,
+    STATES_AT,
+    SWITCH_ADDRESS,
+    THROAT_FACTOR,
+    call_switch,
+)
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, liquid_mass
 from hfanalysis.thermo.saturation import LN_PRESSURE, LN_VAPOR_CP, LN_VAPOR_CV, evaluate
 
@@ -121,7 +129,7 @@ def event_values(
     values[LIQUID_OUT] = liquid_mass(tables[0], c[VOLUME], y[TANK], y[TEMPERATURE]) if liquid else 1.0
     values[FUEL_OUT] = c[OUTER_RADIUS] - y[RADIUS] if burning else 1.0
     values[GROUND] = y[ALTITUDE] - c[LAUNCH_ALTITUDE] + PAD if c[FLIES] > 0.0 else 1.0
-    subsonic = mach_at_area(c[EXIT_AREA] / c[THROAT_AREA], out[O_GAMMA], False)
+    subsonic = mach_at_area(c[EXIT_AREA] / (c[THROAT_AREA] * work[1][THROAT_FACTOR]), out[O_GAMMA], False)
     values[CHOKING] = out[O_CHAMBER_PRESSURE] * pressure_ratio(subsonic, out[O_GAMMA]) - out[O_AMBIENT]
     for k in range(terms.shape[0]):
         address = terms[k, SWITCH_ADDRESS]

@@ -57,7 +57,12 @@ class OwnState:
 
 @dataclass(frozen=True)
 class Effect:
-    """A physical or sensor effect that the report's model lacks; the first parameter is its strength."""
+    """A physical or sensor effect that the report's model lacks; the first parameter is its strength.
+
+    ``sites`` are those of :mod:`hfanalysis.engine.sites` that its term sets, or the channels that it distorts. Where
+    the first ``strengths`` parameters are strengths of their own kind (one per transducer), it is the base model when
+    all of them are 0.
+    """
 
     name: str
     equation: str
@@ -71,6 +76,9 @@ class Effect:
     distort: Distortion | None = None
     twins: tuple[str, ...] = ()
     decisive: str = ""
+    formula: str = ""
+    sites: tuple[str, ...] = ()
+    strengths: int = 1
 
     def __post_init__(self) -> None:
         if self.equation not in EQUATIONS:
@@ -105,8 +113,8 @@ class Active:
 
     @property
     def idle(self) -> bool:
-        """Whether the strength is 0."""
-        return self.values[0] == 0.0
+        """Whether every strength is 0."""
+        return not any(self.values[: self.effect.strengths])
 
 
 @dataclass(frozen=True)

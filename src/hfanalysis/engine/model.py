@@ -28,6 +28,7 @@ from hfanalysis.engine.sites import (
     FUEL_FLOW,
     FUEL_SOURCE,
     GAMMA_CHAMBER,
+    HOT_SHARE,
     INJECTOR_FACTOR,
     IS_BURNING,
     IS_LIQUID,
@@ -223,6 +224,7 @@ def rates(
     p_c, rt, gamma, mass, ratio, h = chamber_gas(gas, c, y, ambient)
     if any_terms:
         env[P_CHAMBER], env[RT_CHAMBER], env[GAMMA_CHAMBER], env[OF_RATIO] = p_c, rt, gamma, ratio
+        env[HOT_SHARE] = 1.0 - max(y[COLD], 0.0) / mass
         _act(terms, AT_CHAMBER, t, env, c, y, site, dy)
         p_c *= site[TEMPERATURE_FACTOR]
         rt *= site[TEMPERATURE_FACTOR]

@@ -59,12 +59,14 @@ HOOK_OF_SITE = {
 ENVIRONMENT = (
     "is_liquid", "is_burning", "p_ambient", "p_tank", "t_tank", "m_tank", "m_liquid", "m_nitrogen", "rho_feed",
     "p_chamber", "rt_chamber", "gamma_chamber", "of_ratio", "oxidizer_flow", "fuel_flow", "port_radius", "p_run",
+    "hot_share",
 )  # fmt: skip
-"""What a term may read, SI; ``p_tank`` and the rest of the tank from AT_TANK on, the chamber from AT_CHAMBER,
-``rho_feed`` from AT_FLOW, flows and ``p_run`` from RATES on."""
+"""What a term may read, SI; ``p_tank`` and the rest of the tank from AT_TANK on, the chamber from AT_CHAMBER
+(``hot_share``: of burnt gas in its mass), ``rho_feed`` from AT_FLOW, flows and ``p_run`` from RATES on."""
 
 (IS_LIQUID, IS_BURNING, P_AMBIENT, P_TANK, T_TANK, M_TANK, M_LIQUID, M_NITROGEN, RHO_FEED, P_CHAMBER, RT_CHAMBER,
- GAMMA_CHAMBER, OF_RATIO, OXIDIZER_FLOW, FUEL_FLOW, PORT_RADIUS, P_RUN) = range(len(ENVIRONMENT))  # fmt: skip
+ GAMMA_CHAMBER, OF_RATIO, OXIDIZER_FLOW, FUEL_FLOW, PORT_RADIUS, P_RUN,
+ HOT_SHARE) = range(len(ENVIRONMENT))  # fmt: skip
 
 _REAL = types.float64
 _POINTER = types.CPointer(_REAL)  # type: ignore[no-untyped-call]

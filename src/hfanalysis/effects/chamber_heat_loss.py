@@ -1,0 +1,52 @@
+"""Heat that the burnt gas gives to the chamber's walls."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.model import THROAT_AREA
+from hfanalysis.engine.nozzle import choked_flow_factor
+from hfanalysis.engine.sites import (
+    AT_CHAMBER,
+    GAMMA_CHAMBER,
+    HOT_SHARE,
+    P_CHAMBER,
+    RT_CHAMBER,
+    TEMPERATURE_FACTOR,
+    term,
+)
+
+LOSS, EXPONENT = range(2)
+REFERENCE_PRESSURE = 20e5
+"""Chamber pressure [Pa] at which the loss is stated."""
+
+
+@term
+def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
+    if hook != AT_CHAMBER:
+        return
+    gamma, rt, pressure = env[GAMMA_CHAMBER], env[RT_CHAMBER], env[P_CHAMBER]
+    # the choked nozzle carries mdot c_p T = p A_t (mdot sqrt(RT) / (A_t p)) sqrt(R T) gamma / (gamma - 1)
+    carried = pressure * c[THROAT_AREA] * choked_flow_factor(gamma) * sqrt(rt) * gamma / (gamma - 1.0)
+    share = p[LOSS] * (pressure / REFERENCE_PRESSURE) ** p[EXPONENT] / carried
+    site[TEMPERATURE_FACTOR] *= 1.0 - env[HOT_SHARE] * share / (1.0 + share)
+
+
+EFFECT = Effect(
+    name="chamber_heat_loss",
+    equation="chamber_energy",
+    meaning="the burnt gas gives heat to the walls of the chamber, which the report takes as adiabatic",
+    reference="report, section 5.1 (sources of error: adiabatic combustion chamber); turbulent convection goes with "
+    "p^0.8: Bartz, Jet Propulsion 27 (1957) 49",
+    formula="T = T_ad / (1 + Q / (mdot c_p T_ad)),  Q = Q_20 (p_c / 20 bar)^k",
+    sites=("temperature_factor",),
+    parameters=(
+        Parameter("loss", "W", "heat flow into the walls at 20 bar", typical=1e5, low=0.0, high=2e6),
+        Parameter("exponent", "-", "power of the chamber pressure", 0.2, center=0.8, low=0.0, high=1.0, given=True),
+    ),
+    phases=("liquid", "vapor", "nitrogen"),
+    term=_term,
+    twins=("combustion_efficiency",),
+    decisive="thermocouples in the chamber's wall, at two depths",
+)

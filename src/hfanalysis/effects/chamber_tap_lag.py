@@ -1,0 +1,48 @@
+"""A chamber pressure that reaches its transducer late, through a tap and a tube."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numba import njit
+
+from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
+
+
+@njit(cache=True, error_model="numpy")
+def lagged(times: Array, true: Array, lag: float) -> Array:
+    """What a sensor of first order reads that starts at rest: exact for values taken linear between ``times`` [s]."""
+    out = np.empty_like(true)
+    behind = 0.0
+    for i in range(true.size):
+        if i > 0:
+            h = times[i] - times[i - 1]
+            if h > 0.0:
+                kept = np.exp(-h / lag) if lag > 0.0 else 0.0
+                behind = behind * kept - lag * (true[i] - true[i - 1]) / h * (1.0 - kept)
+            else:
+                behind -= true[i] - true[i - 1]
+        out[i] = true[i] + behind
+    return out
+
+
+def _distort(times: Array, channels: Channels, values: Mapping[str, float]) -> dict[str, Array]:
+    true = np.ascontiguousarray(channels["p_chamber"], dtype=np.float64)
+    return {**channels, "p_chamber": lagged(np.ascontiguousarray(times, dtype=np.float64), true, values["lag"])}
+
+
+EFFECT = Effect(
+    name="chamber_tap_lag",
+    equation="sensor",
+    meaning="the chamber's pressure transducer lags behind, at the end of a tap and tube",
+    reference="Doebelin, Measurement Systems, chapters 3 and 6: first-order lag of transducer and tubing; Bergh and "
+    "Tijdeman, NLR-TR F.238 (1965), for the tube itself",
+    formula="tau dp_read/dt = p_c - p_read",
+    sites=("p_chamber",),
+    parameters=(Parameter("lag", "s", "time constant of tap, tube and transducer", typical=0.03, low=0.0, high=2.0),),
+    phases=("liquid", "vapor", "nitrogen"),
+    distort=_distort,
+    twins=("nozzle_throat_erosion",),
+    decisive="a second transducer flush with the chamber's wall, or the throat's diameter after the test",
+)

@@ -1,0 +1,45 @@
+"""Extra gas right after ignition."""
+
+from __future__ import annotations
+
+from hfanalysis.engine.effect import Effect, OwnState, Parameter
+from hfanalysis.engine.sites import FUEL_SOURCE, OXIDIZER_SOURCE, RATES, term
+
+MASS, DURATION, RATIO = range(3)
+NORM = 1.875
+"""Over the integral of (1 - s^2)^2 from 0 to 1."""
+
+
+@term
+def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
+    if hook != RATES or t >= p[DURATION]:
+        return
+    left = 1.0 - (t / p[DURATION]) ** 2
+    flow = p[MASS] * NORM / p[DURATION] * left * left
+    fuel = flow / (1.0 + p[RATIO])
+    site[FUEL_SOURCE] += fuel
+    site[OXIDIZER_SOURCE] += flow - fuel
+    dx[0] = -flow
+
+
+EFFECT = Effect(
+    name="ignition_transient",
+    equation="chamber_mass",
+    meaning="the igniter, and fuel that it melted or broke off, add gas to the chamber for a while",
+    reference="report, section 4.4: HF4's peak in chamber pressure with its abrupt fall, which the model lacks; "
+    "Sutton and Biblarz, Rocket Propulsion Elements, chapters 14 and 16 (igniters, start transients)",
+    formula="mdot = 15/8 m/tau (1 - (t/tau)^2)^2 for t < tau, of which 1/(1 + O/F) as fuel",
+    sites=("fuel_source", "oxidizer_source"),
+    parameters=(
+        Parameter("mass", "kg", "gas that is added in all", typical=0.05, low=0.0, high=1.0),
+        Parameter("duration", "s", "when it ends", 0.4, center=0.8, low=0.05, high=5.0),
+        Parameter(
+            "of_ratio", "-", "oxidizer over fuel of the added gas", 2.0, center=4.0, low=0.2, high=20.0, given=True
+        ),
+    ),
+    phases=("liquid",),
+    term=_term,
+    states=(OwnState("igniter_mass", "kg", 1e-4, lambda engine, values: values["mass"]),),
+    twins=(),
+    decisive="the igniter's charge, weighed, and its pressure in a test without oxidizer",
+)

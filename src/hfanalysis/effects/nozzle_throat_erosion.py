@@ -1,0 +1,43 @@
+"""A throat that grows while the engine burns."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+from hfanalysis.engine.effect import Effect, OwnState, Parameter
+from hfanalysis.engine.model import THROAT_AREA
+from hfanalysis.engine.sites import HOT_SHARE, IS_BURNING, P_CHAMBER, RATES, THROAT_FACTOR, term
+
+RATE, EXPONENT = range(2)
+REFERENCE_PRESSURE = 20e5
+"""Chamber pressure [Pa] at which the rate is stated."""
+
+
+@term
+def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
+    if hook != RATES:
+        return
+    widening = 1.0 + x[0] / sqrt(c[THROAT_AREA] / pi)
+    site[THROAT_FACTOR] *= widening * widening
+    if env[IS_BURNING] > 0.0:
+        dx[0] = p[RATE] * env[HOT_SHARE] * (env[P_CHAMBER] / REFERENCE_PRESSURE) ** p[EXPONENT]
+
+
+EFFECT = Effect(
+    name="nozzle_throat_erosion",
+    equation="nozzle",
+    meaning="the throat's radius grows by chemical erosion of its graphite",
+    reference="diffusion of the oxidizing species to the wall limits it, so that it goes with p_c^0.8: Bianchi and "
+    "Nasuti, J. Propulsion and Power 29 (2013) 547",
+    formula="r_t = r_t0 + x,  dx/dt = s (p_c / 20 bar)^0.8 while fuel burns",
+    sites=("throat_factor",),
+    parameters=(
+        Parameter("rate", "m/s", "growth of the throat's radius at 20 bar", typical=1e-4, low=0.0, high=2e-3),
+        Parameter("exponent", "-", "power of the chamber pressure", 0.1, center=0.8, low=0.0, high=1.2, given=True),
+    ),
+    phases=("liquid", "vapor", "nitrogen"),
+    term=_term,
+    states=(OwnState("throat_growth", "m", 1e-6, lambda engine, values: 0.0),),
+    twins=("chamber_tap_lag",),
+    decisive="the throat's diameter after the test",
+)

@@ -1,0 +1,50 @@
+"""The tank's wall gives its heat to the oxidizer that cools while the tank empties."""
+
+from __future__ import annotations
+
+from hfanalysis.engine.effect import Effect, OwnState, Parameter
+from hfanalysis.engine.sites import IS_LIQUID, RATES, T_TANK, TANK_HEAT, term
+
+CAPACITY, TIME, EXCESS, VAPOR_SHARE = range(4)
+
+
+@term
+def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
+    if hook != RATES:
+        return
+    cooling = (x[0] - env[T_TANK]) / p[TIME]
+    if env[IS_LIQUID] == 0.0:
+        cooling *= p[VAPOR_SHARE]
+    site[TANK_HEAT] += p[CAPACITY] * cooling
+    dx[0] = -cooling
+
+
+EFFECT = Effect(
+    name="tank_wall_heat_capacity",
+    equation="tank_energy",
+    meaning="the tank's wall is a store of heat for the oxidizer",
+    reference="report, section 5.1 (sources of error: adiabatic oxidizer tank) and 4.1 (blankets left hot); a lumped "
+    "wall as in Whitmore and Chandler, J. Propulsion and Power 26 (2010) 706, and Zimmerman et al., AIAA 2013-4045",
+    formula="Q = C (T_w - T) / tau,  dT_w/dt = -(T_w - T) / tau,  T_w(0) = T_0 + dT; slower by a share in vapour",
+    sites=("tank_heat",),
+    parameters=(
+        Parameter("capacity", "J/K", "m c_p of the wall that takes part", typical=4000.0, low=0.0, high=40e3),
+        Parameter("time", "s", "m c_p / (h A) of wall against liquid", 15.0, center=25.0, low=2.0, high=200.0),
+        Parameter("excess", "K", "wall above the oxidizer at ignition", 5.0, center=0.0, low=-20.0, high=100.0),
+        Parameter(
+            "vapor_share",
+            "-",
+            "heat transfer to vapour over that to liquid",
+            0.1,
+            center=0.2,
+            low=0.0,
+            high=1.0,
+            given=True,
+        ),
+    ),
+    phases=("liquid", "vapor", "nitrogen"),
+    term=_term,
+    states=(OwnState("wall_temperature", "K", 0.1, lambda engine, values: engine.temperature + values["excess"]),),
+    twins=("tank_heat",),
+    decisive="a thermocouple on the tank's wall",
+)
