@@ -172,3 +172,65 @@ def test_halcyon_s_altitude_follows_its_altimeter(halcyon: tuple[dict[str, Any],
     at = np.arange(1.0, 27.0, 0.5)
     difference = np.interp(at, time, height) - np.interp(at + late, clock, measured)
     assert np.abs(difference).max() < 0.05 * 3450.0
+
+
+GEOMETRY = """
+[rocket.geometry]
+nose = { kind = "ogive", length = "0.6 m" }
+body = { length = "3.64 m" }
+fins = { count = 4, root = "0.30 m", tip = "0.12 m", span = "0.16 m" }
+structure = { mass = "40 kg", center_of_gravity = "1.75 m" }
+tank_position = "2.1 m"
+chamber_position = "3.4 m"
+engine_mass = "12.5 kg"
+engine_center_of_gravity = "3.1 m"
+"""
+"""A rocket of the report's length and diameter; the rest is made up."""
+
+
+@pytest.fixture(scope="module")
+def shaped(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], Path]:
+    """HF5 in a rocket whose geometry is known and whose drag is not."""
+    root = tmp_path_factory.mktemp("shaped")
+    folder = root / "raw_tests" / "HF5"
+    shutil.copytree(ROOT / "raw_tests" / "HF5", folder)
+    text = (folder / "test.toml").read_text().replace("drag_coefficient = 0.529\n", "", 1)
+    volume = 'volume = "16.5 L"\n'
+    text = text.replace(volume, f'{volume}inner_diameter = "128.194 mm"\n')
+    (folder / "test.toml").write_text(text + GEOMETRY)
+    return flown(root, "HF5")
+
+
+def test_a_geometry_stands_in_for_a_drag_coefficient(shaped: tuple[dict[str, Any], Path]) -> None:
+    assert shaped[0]["drag"] == "built up from the geometry"
+    assert shaped[0]["apogee"]["value"] > 2000.0
+
+
+def test_the_margin_is_least_at_the_rail_s_end_and_in_the_strongest_wind(shaped: tuple[dict[str, Any], Path]) -> None:
+    winds = shaped[0]["stability"]["winds"]
+    at_rail = [wind["departure"]["mean"] for wind in winds]
+    assert at_rail == sorted(at_rail, reverse=True)
+    assert all(wind["least"] < wind["departure"]["mean"] < wind["largest"] for wind in winds)
+    assert shaped[0]["checks"]["least_static_margin"]["result"] == "passed"
+    assert shaped[0]["checks"]["largest_static_margin"]["result"] == "failed"
+
+
+def test_the_centre_of_gravity_moves_ahead_as_the_tank_empties(shaped: tuple[dict[str, Any], Path]) -> None:
+    """By hand: structure, engine and what is loaded, about the nose tip."""
+    with h5py.File(shaped[1] / "flight.h5") as file:
+        center, mass = file["balance/center_of_gravity"][:], file["balance/mass"][:]
+    assert mass[0] == pytest.approx(52.5 + 8.35 + 1.594, abs=0.02)
+    assert center[0] == pytest.approx((40.0 * 1.75 + 12.5 * 3.1 + 8.35 * 2.87 + 1.594 * 3.75) / mass[0], abs=0.02)
+    assert center[-1] == pytest.approx((40.0 * 1.75 + 12.5 * 3.1) / 52.5, abs=1e-3)
+
+
+def test_the_rocksim_file_carries_the_engine_s_centre_of_gravity(shaped: tuple[dict[str, Any], Path]) -> None:
+    motor, points, _, _ = rocksim.read((shaped[1] / "HF5.rse").read_text())
+    assert motor.total_mass == pytest.approx(12.5 + 9.944, abs=1e-3)
+    assert points.center is not None
+    assert points.center[-1] == pytest.approx(3.1 - 2.1, abs=1e-3)
+    assert points.center[0] != pytest.approx(points.center[-1], abs=0.02)
+
+
+def test_without_a_geometry_stability_says_what_is_missing(replicas: dict[str, Any]) -> None:
+    assert "[rocket.geometry]" in replicas["HF5"][0]["stability"]["margin_at_rail_departure"]["reason"]

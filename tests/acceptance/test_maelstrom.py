@@ -116,6 +116,18 @@ def test_the_apogee_of_the_design_point(simulated: dict[str, Any]) -> None:
     assert simulated["flight"]["time_to_apogee"]["value"] == pytest.approx(25.4, abs=0.05)
 
 
+def test_a_drag_table_flies_as_its_numbers_say(simulated: dict[str, Any], tmp_path: Path) -> None:
+    """A table of one number is that number; a rising one costs height, in both models."""
+    table = varied(tmp_path, ("drag_coefficient = 0.529", 'drag_table = "drag.csv"'), ('target_apogee = "3048 m"', ""))
+    (tmp_path / "drag.csv").write_text("Mach,Cd\n0.1,0.529\n0.9,0.529\n")
+    flat, design = hfa("simulate", table), hfa("design", table)
+    assert flat["flight"]["apogee"]["value"] == pytest.approx(simulated["flight"]["apogee"]["value"], rel=1e-6)
+    assert set(flat["provenance"]["drag_table"]) == {"drag.csv"}
+    (tmp_path / "drag.csv").write_text("0.1 0.529\n0.9 0.8\n")
+    assert hfa("simulate", table)["flight"]["apogee"]["value"] < 0.97 * flat["flight"]["apogee"]["value"]
+    assert hfa("design", table)["apogee"]["value"] < 0.97 * design["apogee"]["value"]
+
+
 def test_the_propellant_for_the_target_apogee(simulated: dict[str, Any], designed: tuple[dict[str, Any], Path]) -> None:
     needed = simulated["propellant_for_target_apogee"]
     oxidizer, fuel = needed["oxidizer_mass"]["value"], needed["fuel_mass"]["value"]
