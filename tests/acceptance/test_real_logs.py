@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.runner import run_to
 from hfanalysis.testdata.definition import find_definition, load_definition
 from hfanalysis.testdata.ingest import ingest
 from hfanalysis.testdata.log import TestLog, read_log
@@ -46,6 +49,21 @@ def test_the_cell_that_does_not_return_to_zero_is_told(tmp_path: Path) -> None:
     log = read(tmp_path, "MRT-HF3.1")
     assert log["thrust"].drift == pytest.approx(190.0, abs=10.0)
     assert any("thrust: does not return to zero" in warning for warning in log.warnings)
+
+
+@pytest.mark.parametrize(
+    ("test", "faults"),
+    [("MRT-HF3.1", ["thrust does not return to zero", "thrust and p_c A_t disagree"]), ("MRT-HF3.4", [])],
+)
+def test_the_verdict_of_the_page_names_by_itself_what_is_wrong_with_the_sensors(
+    test: str, faults: list[str], tmp_path: Path
+) -> None:
+    read(tmp_path, test)
+    context = run_to("report", open_test(tmp_path, test))
+    lead = re.findall(r'<p class="lead">(.*?)</p>', context.product("report.html").read_text(encoding="utf-8"))
+    assert len(lead) == 1
+    assert [fault for fault in faults if fault in lead[0]] == faults
+    assert ("Sensors:" in lead[0]) == bool(faults)
 
 
 def test_peaks_are_those_of_the_teams_own_table(tmp_path: Path) -> None:

@@ -127,7 +127,8 @@ class Page:
     def settle(self) -> None:
         """Wait until what was asked for has been drawn."""
         frames = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))"
-        self.call("Runtime.evaluate", expression=frames, awaitPromise=True)
+        self.ask(frames)
+        self.ask("(async () => { while ('busy' in document.documentElement.dataset) await " + frames + " })()")
 
     def ask(self, expression: str) -> Any:
         """The value of an expression of the page."""

@@ -94,6 +94,21 @@ def test_zooming_fits_the_values_to_what_is_seen(opened: Page) -> None:
     assert values[-1] - values[0] < 1.0
 
 
+def test_zooming_in_shows_every_sample_of_the_log(opened: Page) -> None:
+    left, top, width, height = opened.show(f"{PRESSURES} .plot")
+    line = f"document.querySelector('{PRESSURES} .chart > .line.p_tank').getAttribute('d').split(/[ML]/).length - 1"
+    for _ in range(2):
+        opened.drag((left + 0.4 * width, top + 0.5 * height), (left + 0.45 * width, top + 0.5 * height))
+    first, last = ticks(opened)[0], ticks(opened)[-1]
+    assert last - first < 0.2
+    assert opened.ask(line) >= 200.0 * (last - first)
+
+
+def test_a_page_is_ready_at_once(opened: Page) -> None:
+    before = opened.ask("performance.getEntriesByType('navigation')[0].domContentLoadedEventEnd")
+    assert before < 3000.0
+
+
 def test_the_wheel_zooms_about_the_pointer_and_leaves_scrolling_alone(opened: Page) -> None:
     left, top, width, height = opened.show(f"{PRESSURES} .plot")
     place = (left + 0.5 * width, top + 0.5 * height)

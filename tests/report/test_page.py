@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import itertools
 import json
 import re
 from dataclasses import replace
@@ -225,6 +226,26 @@ def test_every_section_is_left_out_with_its_reason(tmp_path: Path) -> None:
     assert "no model" in page(bare)
 
 
+def test_what_lacks_the_same_thing_is_named_together(tmp_path: Path) -> None:
+    names = ("segments", "calibration", "validation", "residuals", "performance", "flight")
+    text = page(without(material(tmp_path), **dict.fromkeys(names, "nothing opens")))
+    absent = text[text.index('id="absent"') :]
+    assert absent.count("nothing opens") == 1
+    assert "Performance, Phases, Model against measurement, Calibration" in absent
+
+
+def test_the_page_has_its_landmarks_and_a_way_past_them(text: str) -> None:
+    reader = Reader(text)
+    for landmark in ("header", "nav", "main", "footer", "h1"):
+        assert len(reader.all(landmark)) == 1, landmark
+    skip = next(attrs for attrs in reader.all("a") if attrs.get("class") == "skip")
+    ids = {attrs.get("id") for _, attrs in reader.tags}
+    assert {attrs["href"] for attrs in reader.all("a")} <= {f"#{name}" for name in ids if name}
+    assert skip["href"] == "#main"
+    levels = [int(tag[1]) for tag, _ in reader.tags if re.fullmatch("h[1-6]", tag)]
+    assert all(after - before <= 1 for before, after in itertools.pairwise(levels))
+
+
 def test_every_section_says_what_it_needs() -> None:
     known = {"ingest", "segments", "calibration", "validation", "residuals", "performance", "flight", "diagnosis"}
     for _, section in sections():
@@ -294,8 +315,33 @@ def test_colours_reach_wcag_aa(dark: bool) -> None:
         assert _contrast(colours[verdict], colours[f"{verdict}-tint"]) >= 4.5, verdict
 
 
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_names_of_phases_stand_out_from_their_tints(dark: bool) -> None:
+    colours = {name: pair[dark] for name, pair in COLOURS.items()}
+    share = float(re.findall(r"\.phase \{ opacity: ([\d.]+)", sheet())[0])
+    for tint in ("fill", "liquid", "vapor", "nitrogen"):
+        ground = _mixed(colours[tint], colours["paper"], share)
+        assert _contrast(colours["soft"], ground) >= 4.5, tint
+        assert _contrast(colours["ink"], ground) >= 4.5, tint
+
+
+def _mixed(a: str, b: str, share: float) -> str:
+    parts = ((int(a[i : i + 2], 16), int(b[i : i + 2], 16)) for i in (1, 3, 5))
+    return "#" + "".join(f"{round(share * x + (1 - share) * y):02x}" for x, y in parts)
+
+
 def test_every_colour_that_the_style_sheet_asks_for_is_there() -> None:
     assert set(re.findall(r"var\(--([\w-]+)[),]", sheet())) - {"c"} <= set(COLOURS)
+
+
+def test_a_drift_that_could_not_be_removed_is_told(tmp_path: Path) -> None:
+    made = material(tmp_path)
+    doubtful = replace(
+        made.log.channels["thrust"],
+        history=("tare: no settled level after the firing: drift not removed",),
+    )
+    text = page(replace(made, log=TestLog({**made.log.channels, "thrust": doubtful})))
+    assert "No settled level after the firing: drift not removed." in text
 
 
 def test_the_index_lists_every_test() -> None:

@@ -46,8 +46,7 @@ def compare(request: perform.Request, other: str, as_pdf: bool) -> None:
         raise InputError(f"compare {request.test} {other}: one test twice; expected two different ones")
     if as_pdf:
         pdf.find_browser()
-    quiet = replace(request, quiet=True, as_json=False)
-    contexts = [perform.stage("report", quiet), perform.stage("report", replace(quiet, test=other))]
+    contexts = [perform.bring("report", replace(request, test=test)) for test in (request.test, other)]
     path = contexts[0].product(f"compare_{other}.html")
     with atomic(path) as scratch:
         scratch.write_text(page(*map(load, contexts)), encoding="utf-8")

@@ -35,8 +35,8 @@ class Request:
     settings: tuple[str, ...] = ()
 
 
-def stage(name: str, request: Request) -> Context:
-    """Bring a stage (or, for "run", all of them) up to date and show it; returns its context."""
+def bring(name: str, request: Request) -> Context:
+    """Bring a stage (or, for "run", all of them) up to date, silently; returns its context."""
     with _watch(request) as progress:
         context = open_test(
             request.root, request.test, request.out, progress=progress, settings=_settings(request.settings)
@@ -46,6 +46,12 @@ def stage(name: str, request: Request) -> Context:
         from hfanalysis.report.index import write_index
 
         write_index(context.out.parent)
+    return context
+
+
+def stage(name: str, request: Request) -> Context:
+    """Bring a stage (or, for "run", all of them) up to date and show it; returns its context."""
+    context = bring(name, request)
     _show(name, context, request)
     for text in _warnings(context, name):
         tell(f"warning: {text}")

@@ -22,7 +22,7 @@ from hfanalysis.report.sections import Laid, lay_out
 from hfanalysis.report.sections.verdict import key_numbers, sentence
 from hfanalysis.report.spark import spark
 from hfanalysis.report.style import sheet
-from hfanalysis.report.wording import in_words, shown
+from hfanalysis.report.wording import in_words, listed, shown
 
 SUMMARY = '<script type="application/json" id="summary">'
 """How the part of a page begins that the index reads."""
@@ -70,10 +70,19 @@ def page(material: Material) -> str:
         test=material.definition.test,
         kind=kind(material),
         sections=[(section, body(section)) for section in laid if section.blocks],
-        absent=[section for section in laid if not section.blocks],
+        absent=absences(laid),
         summary=as_json(summary(material)),
         data=payload(charts),
     )
+
+
+def absences(laid: Sequence[Laid]) -> list[tuple[str, str]]:
+    """What is not on the page and why: sections that lack the same thing together."""
+    by_reason: dict[str, list[str]] = {}
+    for section in laid:
+        if not section.blocks:
+            by_reason.setdefault(section.absent, []).append(section.title)
+    return [(listed(titles), reason) for reason, titles in by_reason.items()]
 
 
 def body(section: Laid) -> Markup:

@@ -78,9 +78,15 @@ function namePhases(chart, svg) {
   }
 }
 
+// As many as fit beside each other: the times of a log may have ten digits.
+function mostTicks(x) {
+  const letters = Math.max(String(Math.round(x.low)).length, String(Math.round(x.high)).length) + 3;
+  return clamp(Math.floor((x.to - x.from) / (letters * 8 + 16)), 2, 12);
+}
+
 function drawAxes(chart, svg) {
   const { x, y, m, width, height, unit } = chart.place;
-  const rows = ticks(y.low, y.high, 6), columns = ticks(x.low, x.high, width < WIDE ? 5 : 12);
+  const rows = ticks(y.low, y.high, 6), columns = ticks(x.low, x.high, mostTicks(x));
   for (const value of rows.values) {
     element(svg, "path", { class: "grid", d: `M${x.from} ${y(value)}H${x.to}` });
     element(svg, "text", { class: "tick y-tick", x: m.left - 8, y: y(value) + 4, "text-anchor": "end" },

@@ -50,13 +50,41 @@ function schedule() {
   });
 }
 
-function drawAll(width) {
-  for (const chart of charts) {
-    draw(chart, width || Math.max(280, Math.round(chart.frame.clientWidth)), ...spanOf(chart));
-    showCursor(chart);
-  }
+// What is on the screen is drawn at once, the others one by one while nothing else is to be done.
+function drawAll() {
+  for (const chart of charts) chart.stale = true;
+  root.dataset.busy = "";
+  for (const [chart, width] of charts.filter(onScreen).map((chart) => [chart, widthOf(chart)])) refresh(chart, width);
+  setTimeout(drawNext, 50);
   const reset = document.getElementById("reset-zoom");
   if (reset) reset.disabled = Object.values(views).every((view) => view.span === null);
+}
+
+function drawNext() {
+  const chart = charts.find((other) => other.stale);
+  if (!chart) { delete root.dataset.busy; return; }
+  if (pending) return;
+  refresh(chart, widthOf(chart));
+  setTimeout(drawNext, 0);
+}
+
+function drawForPaper() {
+  for (const chart of charts) refresh(chart, 960);
+}
+
+function refresh(chart, width) {
+  chart.stale = false;
+  draw(chart, width, ...spanOf(chart));
+  showCursor(chart);
+}
+
+function widthOf(chart) {
+  return Math.max(280, Math.round(chart.frame.clientWidth));
+}
+
+function onScreen(chart) {
+  const box = chart.frame.getBoundingClientRect();
+  return box.bottom > -200 && box.top < innerHeight + 200;
 }
 
 function moveCursor(chart, t) {
@@ -65,6 +93,7 @@ function moveCursor(chart, t) {
 }
 
 function showCursor(chart) {
+  if (!chart.place) return;
   const { x, y, unit } = chart.place, t = viewOf(chart).cursor, inside = t !== null && t >= x.low && t <= x.high;
   chart.overlay.replaceChildren();
   chart.instant.textContent = inside ? `t = ${fixed(t, finer(x.low, x.high))} s` : "";

@@ -3,6 +3,7 @@ const WHEEL = 1.25, DRAG = 5, STEPS = 100;
 let scrolled = false;
 
 function timeAt(chart, event) {
+  if (!chart.place) refresh(chart, widthOf(chart));
   const box = chart.svg.getBoundingClientRect(), { x, width } = chart.place;
   return clamp(x.back((event.clientX - box.left) * width / box.width), x.low, x.high);
 }
@@ -52,6 +53,7 @@ function wheel(chart, event) {
 
 function key(chart, event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
+  if (!chart.place) refresh(chart, widthOf(chart));
   const [start, end] = spanOf(chart), step = (end - start) / STEPS * (event.shiftKey ? 10 : 1);
   const at = viewOf(chart).cursor, cursor = at === null ? (start + end) / 2 : clamp(at, start, end);
   const moves = {

@@ -61,7 +61,7 @@ function start() {
   drawAll();
   document.getElementById("reset-zoom")?.addEventListener("click", lookAtAll);
   new ResizeObserver(schedule).observe(document.querySelector("main"));
-  addEventListener("beforeprint", () => drawAll(960));
+  addEventListener("beforeprint", drawForPaper);
   addEventListener("afterprint", () => drawAll());
 }
 

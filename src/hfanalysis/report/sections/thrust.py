@@ -36,11 +36,17 @@ def cell(material: Material, channel: Channel) -> Iterator[Series]:
 def about_zero(material: Material, channel: Channel) -> Markup:
     """What was subtracted, and which readings the chart leaves outside."""
     if channel.raw is None:
-        return Markup("As logged: no zero was taken.") + beyond(material, channel)
+        return Markup("As logged: no zero was taken.") + _doubts(channel) + beyond(material, channel)
     words = Markup("Zero of {} subtracted").format(html.amount(channel.zero, channel.unit, 3))
     if channel.drift:
         words += Markup("; drift of {} removed, linear in time").format(html.amount(channel.drift, channel.unit, 3))
-    return words + Markup(".") + beyond(material, channel)
+    return words + Markup(".") + _doubts(channel) + beyond(material, channel)
+
+
+def _doubts(channel: Channel) -> Markup:
+    """What the taking of the zero could not do."""
+    said = [text.partition(": ")[2] for text in channel.history if text.startswith("tare: no ")]
+    return Markup().join(Markup(" {}.").format(text.capitalize()) for text in said)
 
 
 def beyond(material: Material, channel: Channel) -> Markup:
