@@ -194,8 +194,9 @@ def finish(rng: np.random.Generator, stand: Stand, base: Histories, burns_out: b
     fuel = base.trace(s.FUEL)
     burnt = float(fuel[: int(stand.closing / kernel.STEP)].sum()) * kernel.STEP
     if burns_out:
-        # gone somewhere between late in the liquid phase and early in the vapour phase
-        out = _between(rng, 0.75, 1.6) * base.t_v
+        # late in the liquid phase or early in the vapour phase, and well apart from the end of the liquid
+        share = _between(rng, 0.7, 1.45)
+        out = (share if share < 0.88 else share + 0.24) * base.t_v
         loaded = float(fuel[: int(out / kernel.STEP)].sum()) * kernel.STEP
     else:
         loaded = burnt * _between(rng, 1.08, 1.5)
