@@ -1,0 +1,120 @@
+"""What the effects of tank and feed line do: signs, sizes and limits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.effects.runs import channel, only, own_state, plain, with_effects
+from tests.engine.stand import engine_on_stand
+
+from hfanalysis.effects import effect
+from hfanalysis.engine.tank import energy_derivatives
+from hfanalysis.engine.unsteady import Burn
+
+
+def test_heat_keeps_the_tank_warmer_by_the_energy_it_brings() -> None:
+    """Before anything flows much: m c dT = Q t, with the saturated tank's own heat capacity."""
+    warm = only("tank_heat", power=2000.0)
+    gain = channel(warm, "tank_temperature", 0.2) - channel(plain(), "tank_temperature", 0.2)
+    _, by_temperature, _ = energy_derivatives(engine_on_stand().saturation.kernel_table, 16.5e-3, 8.2, 292.6)
+    assert gain == pytest.approx(2000.0 * 0.2 / by_temperature, rel=0.02)
+
+
+def test_nitrogen_enters_from_the_opening_on_and_is_conserved() -> None:
+    found = with_effects(effect("n2_purge").at(area=4e-6, supply_pressure=35e5))
+    pressure, inflow = found.output("tank_pressure"), found.output("nitrogen_inflow")
+    assert (inflow[pressure > (35e5 - 4.27e5)] == 0.0).all()
+    assert inflow[-1] > 0.0
+    held = found.state("tank_nitrogen")[-1]
+    entered = np.trapezoid(inflow, found.time)
+    left = np.trapezoid(found.output("oxidizer_flow") * found.output("nitrogen_share"), found.time)
+    assert held + left == pytest.approx(entered, rel=2e-3)
+    assert held > 0.0
+
+
+def test_the_wall_gives_what_it_loses_and_cools_behind_the_oxidizer() -> None:
+    found = only("tank_wall_heat_capacity", capacity=4000.0)
+    wall, oxidizer = own_state(found, 0, 5.0), channel(found, "tank_temperature", 5.0)
+    assert oxidizer < wall < 293.0
+    given = 4000.0 * (293.0 - wall)
+    _, by_temperature, _ = energy_derivatives(engine_on_stand().saturation.kernel_table, 16.5e-3, 2.5, 280.0)
+    warmer = oxidizer - channel(plain(), "tank_temperature", 5.0)
+    # most of it came early, into a tank that held more
+    assert 0.3 * given < by_temperature * warmer < given
+
+
+def test_a_wall_left_hot_by_blankets_gives_kilowatts() -> None:
+    """C dT / tau: 4 kJ/K at 40 K above the oxidizer over 25 s are 6.4 kW at ignition."""
+    hot, level = (only("tank_wall_heat_capacity", capacity=4000.0, excess=k) for k in (40.0, 0.0))
+    gain = channel(hot, "tank_temperature", 0.2) - channel(level, "tank_temperature", 0.2)
+    _, by_temperature, _ = energy_derivatives(engine_on_stand().saturation.kernel_table, 16.5e-3, 8.2, 292.6)
+    assert gain * by_temperature == pytest.approx(6400.0 * 0.2, rel=0.03)
+
+
+def test_late_boiling_dips_by_its_depth_and_rebounds() -> None:
+    found = only("tank_nonequilibrium", depth=3e5, delay=0.25)
+    assert gap(found, 0.25) == pytest.approx(-3e5, rel=0.02)
+    assert abs(gap(found, 0.0)) < 1.0
+    # what did not flow out meanwhile is still there
+    assert 0.0 < gap(found, 3.0) < 0.03 * 3e5
+
+
+def gap(run: Burn, at: float) -> float:
+    """Tank pressure against the plain engine's [Pa]."""
+    return channel(run, "tank_pressure", at) - channel(plain(), "tank_pressure", at)
+
+
+def test_a_hot_ullage_starts_at_its_own_saturation_and_falls_to_the_bulks() -> None:
+    found = only("tank_stratification", excess=2.0)
+    saturation = engine_on_stand().saturation
+    above = float(saturation.pressure(295.0) - saturation.pressure(293.0))
+    assert gap(found, 0.0) == pytest.approx(above, rel=0.02)
+    assert 0.0 < gap(found, 0.3) < 0.6 * above
+    assert abs(gap(found, 3.0)) < 0.02 * above
+
+
+def test_a_hot_ullage_is_spent_by_what_flows_out_not_by_time() -> None:
+    """Half the injector: half the flow, the same excess after the same mass."""
+    full = only("tank_stratification", excess=2.0)
+    feed = engine_on_stand().feed
+    half = with_effects(
+        effect("tank_stratification").at(excess=2.0), rtol=1e-7, feed=replace(feed, area=0.5 * feed.area)
+    )
+    out = 8.35 - channel(full, "tank_mass", 0.3)
+    later = float(np.interp(out, 8.35 - half.state("tank_mass"), half.time))
+    assert later > 0.4
+    assert own_state(half, 0, later) == pytest.approx(own_state(full, 0, 0.3), rel=0.02)
+
+
+def test_an_empty_line_takes_its_fill_from_the_tank_and_holds_back_the_chamber() -> None:
+    found = only("feed_line_fill", volume=3e-4)
+    density = float(engine_on_stand().saturation.liquid_density(293.0))
+    assert own_state(found, 0, 1.0) == pytest.approx(3e-4 * density, rel=0.01)
+    missing = channel(plain(), "tank_mass", 1.0) - channel(found, "tank_mass", 1.0)
+    assert 0.3 * 3e-4 * density < missing < 3e-4 * density
+    assert channel(found, "run_pressure", 0.02) < 0.6 * channel(found, "run_pressure", 1.0)
+    assert channel(found, "chamber_pressure", 0.02) < 0.7 * channel(plain(), "chamber_pressure", 0.02)
+
+
+def test_a_larger_line_takes_longer_to_fill_within_tenths_of_a_second() -> None:
+    filled = [filling_time(volume) for volume in (1e-4, 3e-4, 6e-4)]
+    assert filled == sorted(filled)
+    assert 0.03 < filled[0] < filled[2] < 0.5
+
+
+def filling_time(volume: float) -> float:
+    """When the run line first reaches 98 % of its highest pressure [s]."""
+    found = only("feed_line_fill", volume=volume)
+    pressure = found.output("run_pressure")
+    return float(found.time[np.argmax(pressure > 0.98 * pressure.max())])
+
+
+def test_a_full_line_feeds_on_when_the_tanks_liquid_is_gone() -> None:
+    found = only("feed_line_fill", volume=3e-4)
+    assert found.liquid_out is not None
+    after = [own_state(found, 0, found.liquid_out + wait) for wait in (0.0, 0.15, 0.6)]
+    assert after[0] > 0.2
+    assert after[1] < 0.7 * after[0]
+    assert 0.0 < after[2] < 0.1 * after[0]
