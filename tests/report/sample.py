@@ -174,7 +174,16 @@ def _performance() -> dict[str, Column]:
 FLIGHT: dict[str, Any] = {
     "apogee": quantity(2815.0, "m", 74.0),
     "peak_mach": quantity(0.56, "", 0.004),
-    "checks": {"rail_departure_velocity": {"limit": 30.48, "unit": "m/s", "is": "at least", "result": "failed"}},
+    "checks": {
+        "rail_departure_velocity": {
+            "limit": 30.48,
+            "unit": "m/s",
+            "is": "at least",
+            "result": "failed",
+            "why": "20 m/s",
+        }
+    },
+    "stability": {"margin_at_rail_departure": quantity(1.9, "calibers", 0.1)},
     "notes": ["burn from the opening to 17.00 s"],
     "warnings": [],
 }

@@ -344,6 +344,13 @@ def test_a_drift_that_could_not_be_removed_is_told(tmp_path: Path) -> None:
     assert "No settled level after the firing: drift not removed." in text
 
 
+def test_the_flight_tells_its_checks_and_its_margin(text: str) -> None:
+    flight = text[text.index('<section id="flight"') :]
+    assert re.search(r"failed</span> velocity leaving the rail: at least <span[^>]*>30\.48 m/s</span>", flight)
+    assert "margin at rail departure" in flight
+    assert "calibers" in flight
+
+
 def test_the_index_lists_every_test() -> None:
     rows = [
         {

@@ -22,7 +22,8 @@ def render(material: Material) -> Iterator[Block]:
     product = material.product("flight")
     caption = "One standard deviation and 95 % interval from flights that differ in what is uncertain."
     columns = ("quantity", ">value", ">95 % interval", "remark")
-    yield html.table("Flight", caption, columns, (_row(*item) for item in quantities(product).items()))
+    found = quantities(product) | quantities(product.get("stability") or {})
+    yield html.table("Flight", caption, columns, (_row(*item) for item in found.items()))
     yield html.bullets((_check(*item) for item in (product.get("checks") or {}).items()), "plain")
     for name, (title, unit) in _CURVES.items():
         yield _curve(material, name, title, unit)
@@ -40,8 +41,9 @@ def _check(name: str, check: Mapping[str, Any]) -> Markup:
     kind = _SIGNS.get(result, "open")
     badge = Markup('<span class="verdict {}"><span aria-hidden="true">{}</span> {}</span>')
     limit = html.amount(check.get("limit"), str(check.get("unit", "")))
-    words = Markup("{} {}: {} {} {}")
-    return words.format(badge.format(kind, html.MARKS[kind], result), in_words(name), check.get("is", ""), limit, "")
+    why = Markup(' <span class="because">{}</span>').format(check["why"]) if check.get("why") else Markup()
+    words = Markup("{} {}: {} {}{}")
+    return words.format(badge.format(kind, html.MARKS[kind], result), in_words(name), check.get("is", ""), limit, why)
 
 
 def _curve(material: Material, name: str, title: str, unit: str) -> Chart | None:
