@@ -39,6 +39,16 @@ def recover(folder: Path) -> dict[str, Any]:
     """Take one test folder through ingest, segment and calibrate: value, std and interval by name."""
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.segment.phases import find_phases
+
+    log, definition = read_folder(folder)
+    segments = find_phases(log, definition)
+    calibration = calibrate(log, segments, definition, 400)
+    found = {**calibration.quantities, **segments.events, "t_open": segments.t_open}
+    return {n: found[n].to_json() for n in QUANTITIES}
+
+
+def read_folder(folder: Path) -> tuple[Any, Any]:
+    """Log and definition of a test folder."""
     from hfanalysis.testdata.definition import load_definition
     from hfanalysis.testdata.ingest import ingest
     from hfanalysis.testdata.log import read_log
@@ -47,11 +57,7 @@ def recover(folder: Path) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as scratch:
         product = Path(scratch) / "ingest.h5"
         ingest(definition, product)
-        log = read_log(product)
-    segments = find_phases(log, definition)
-    calibration = calibrate(log, segments, definition, 400)
-    found = {**calibration.quantities, **segments.events, "t_open": segments.t_open}
-    return {n: found[n].to_json() for n in QUANTITIES}
+        return read_log(product), definition
 
 
 def own_case(seed: int) -> dict[str, Any]:
@@ -64,6 +70,36 @@ def own_case(seed: int) -> dict[str, Any]:
         truth = make_log(folder, seed)
         found = recover(folder)
     return {"case": seed, "truth": {n: getattr(truth, n) for n in QUANTITIES}, "found": found}
+
+
+def engine_case(seed: int) -> dict[str, Any]:
+    """One log of a whole engine, and what is found of its regression."""
+    from benchmarks.virtual_engine import make_log
+
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch) / f"E{seed:04d}"
+        folder.mkdir()
+        truth = make_log(folder, seed)
+        found = recover_regression(folder)
+    flux = found.pop("reference_flux")
+    known = {"a": truth.a, "n": truth.n, "C_i": truth.stand.C_i}
+    known["regression_rate_reference"] = None if flux is None else truth.a * flux**truth.n
+    return {"case": seed, "truth": known, "found": found}
+
+
+def recover_regression(folder: Path) -> dict[str, Any]:
+    """Take one test folder through to its regression."""
+    from hfanalysis.calibrate.of_test import regress
+    from hfanalysis.calibrate.tank import calibrate
+    from hfanalysis.segment.phases import find_phases
+
+    log, definition = read_folder(folder)
+    segments = find_phases(log, definition)
+    tank = calibrate(log, segments, definition, 400)
+    found = regress(log, segments, definition, tank)
+    out = {n: found.quantities[n].to_json() for n in ("a", "n", "regression_rate_reference")}
+    flux = found.about.get("reference_flux", {}).get("value")
+    return {**out, "C_i": tank.quantities["C_i"].to_json(), "reference_flux": flux}
 
 
 def blind_case(folder: Path) -> dict[str, Any]:

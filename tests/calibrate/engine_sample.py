@@ -64,6 +64,7 @@ def evidence(
     anchor = (start, float(np.interp(start, burnt.time, burnt.output("tank_pressure"))))
     return Evidence(
         "T", replace(lit, a=1e-3, n=0.0), time, pressure, seen, None, burnt.burn_time, anchor, np.diag(std**2), noise,
+        np.zeros((time.size, time.size)),
     )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.calibrate.engine_of_test import Regression, engine_of_test, exponent, starting_for
+from hfanalysis.calibrate.histories import quiet_noises
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.model import RADIUS
 from hfanalysis.engine.unsteady import Burn, Engine, burn
@@ -48,7 +49,9 @@ SLIVER = 0.02
 WEIGHED = 0.01
 """Standard deviation of a fuel mass stated without one, as part of the grain."""
 
-NUISANCES = ("oxidizer_mass", "area", "loss_factor", "exponent", "volume", "tank_pressure", "chamber_pressure")
+NUISANCES = ("oxidizer_mass", "area", "loss_factor", "exponent", "volume", "tank_pressure", "chamber_pressure",
+             "fuel_mass", "throat_area")  # fmt: skip
+"""What the model takes from elsewhere, in the order of the covariance."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,8 @@ class Evidence:
 
     ``time`` [s] and ``chamber`` [Pa]: block means of the chamber pressure; ``burn_time`` [s]: the fuel is gone;
     ``fuel_left`` [kg] at ``end`` [s]; ``anchor``: instant [s] and tank pressure [Pa] from which the start is
-    extrapolated; ``covariance`` (7, 7) of NUISANCES [SI]; ``least`` [Pa]: scatter of a block mean by the sensor alone.
+    extrapolated; ``covariance`` of NUISANCES [SI], a square matrix; ``least`` [Pa]: scatter of a block mean by the
+    sensor alone; ``wander`` [Pa^2]: covariance of the chamber pressures by the slow wander of their sensor.
     ``remarks`` say what the fit rests on.
     """
 
@@ -80,6 +84,7 @@ class Evidence:
     anchor: tuple[float, float]
     covariance: Array
     least: float
+    wander: Array
     remarks: tuple[str, ...] = ()
 
     @cached_property
@@ -116,7 +121,7 @@ class Evidence:
         return 2.0 * max(self.end, float(self.time[-1])) + 5.0
 
     def sensitivities(self, law: Regression) -> Array:
-        """Change of ``observed`` per standard deviation of each nuisance, (observations, 7)."""
+        """Change of ``observed`` per standard deviation of each nuisance, (observations, nuisances)."""
         centre = self.predict(law)
         columns = np.zeros((self.observed.size, len(NUISANCES)))
         for j, (name, step) in enumerate(zip(NUISANCES, np.sqrt(np.diag(self.covariance)), strict=True)):
@@ -143,8 +148,8 @@ def _shifted(engine: Engine, name: str, step: float) -> Engine:
     feed = engine.feed
     if name in ("area", "loss_factor", "volume"):
         return replace(engine, feed=replace(feed, **{name: getattr(feed, name) + step}))
-    if name == "oxidizer_mass":
-        return replace(engine, oxidizer_mass=engine.oxidizer_mass + step)
+    if name in ("oxidizer_mass", "fuel_mass", "throat_area"):
+        return replace(engine, **{name: getattr(engine, name) + step})
     if name == "exponent":
         return replace(engine, polytropic_exponent=(engine.polytropic_exponent or 1.0) + step)
     return engine
@@ -155,13 +160,19 @@ def _predicted(evidence: Evidence, engine: Engine) -> Array | None:
         burnt = burn(engine, longest=evidence.longest)
     except (ValueError, ArithmeticError):
         return None
-    return np.concatenate((chamber_at(engine, burnt, evidence.time), _scalars(evidence, engine, burnt)))
+    timed = evidence.burn_time is not None
+    return np.concatenate((chamber_at(engine, burnt, evidence.time, timed), _scalars(evidence, engine, burnt)))
 
 
-def chamber_at(engine: Engine, burnt: Burn, time: Array) -> Array:
-    """Modelled chamber pressure [Pa] at given times; ambient after the burn."""
-    pressure = np.interp(time, burnt.time, burnt.output("chamber_pressure"), right=engine.ambient)
-    return np.asarray(pressure)
+def chamber_at(engine: Engine, burnt: Burn, time: Array, timed: bool = True) -> Array:
+    """Modelled chamber pressure [Pa] at given times.
+
+    After the burn it is that of its end where the end itself is ``timed``, so that a burn that is short by a moment is
+    not held against the constants twice, and far too heavily; else ambient.
+    """
+    pressure = burnt.output("chamber_pressure")
+    later = float(pressure[-1]) if timed else engine.ambient
+    return np.asarray(np.interp(time, burnt.time, pressure, right=later))
 
 
 def _scalars(evidence: Evidence, engine: Engine, burnt: Burn) -> list[float]:
@@ -215,8 +226,14 @@ def evidence_of(
     covariance = _covariance(draws, definition, calibration)
     return Evidence(
         definition.test.id, first, part.time, part.value, burn_time, fuel_left, end, (start, pressure), covariance,
-        chamber.noise / np.sqrt(max(width / chamber.step, 1.0)), remarks,
+        chamber.noise / np.sqrt(max(width / chamber.step, 1.0)), _wander(log, segments, part.time), remarks,
     )  # fmt: skip
+
+
+def _wander(log: TestLog, segments: Segments, time: Array) -> Array:
+    """Covariance by the wander of the chamber's sensor, as all pressure sensors show it before the opening."""
+    noise = quiet_noises(log, segments)["p_chamber"]
+    return replace(noise, white=0.0).covariance(time)
 
 
 def line_at(signal: Signal, instant: float) -> float:
@@ -272,7 +289,7 @@ def _std(stated: Value, default: float) -> float:
 def _window_end(segments: Segments, calibration: Mapping[str, Any], t_v: float, end: float) -> tuple[float, str]:
     """Until when the chamber pressure is one that the model can have, and why."""
     t_purge, t_fuel_out = segments.time("t_purge"), segments.time("t_fuel_out")
-    ends = [(end, "the end of the burn")]
+    ends = [(end - SETTLE, "the end of the burn")]
     if t_purge is not None:
         ends.append((t_purge, "then nitrogen enters, which the model does not have"))
     if t_fuel_out is not None:
@@ -303,7 +320,20 @@ def _covariance(draws: Draws, definition: TestDefinition, calibration: Mapping[s
     good = np.isfinite(table).all(axis=1)
     if good.sum() < 20:
         raise AbsentError("the repetitions of the calibration do not give the errors of what a and n rest on")
-    return np.cov(table[good], rowvar=False)
+    out = np.zeros((len(NUISANCES), len(NUISANCES)))
+    out[: len(columns), : len(columns)] = np.cov(table[good], rowvar=False)
+    return out + np.diag([*[0.0] * len(columns), *_stated_variances(definition)])
+
+
+def _stated_variances(definition: TestDefinition) -> tuple[float, float]:
+    """Of grain mass [kg^2] and throat area [m^4], as far as test.toml states deviations."""
+    grain, nozzle = definition.grain, definition.nozzle
+    assert grain is not None
+    assert grain.mass is not None
+    assert nozzle is not None
+    assert nozzle.throat_radius is not None
+    radius = nozzle.throat_radius
+    return (grain.mass.std or 0.0) ** 2, (2.0 * pi * radius.value * (radius.std or 0.0)) ** 2
 
 
 def _standard(size: int) -> Array:

@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 BREAK = 3.0
 """Standard deviations by which the slopes on both sides of an instant must differ to count as a break."""
 
+PRESSURES = ("p_tank", "p_run", "p_chamber", "p_purge")
 READING_POINTS = 150
 """Block means over the window of a reading: few enough for a full covariance."""
 
@@ -48,8 +49,7 @@ class Histories:
     def of(cls, log: TestLog, segments: Segments, definition: TestDefinition, end: float) -> Histories:
         """From the opening to ``end`` [s]. Raises AbsentError where the log has no p_tank or no p_run."""
         origin = segments.t_open.value or 0.0
-        wanted = ("p_tank", "p_run", "p_chamber", "p_purge")
-        signals = {name: signal.shifted(origin) for name, signal in live_signals(log).items() if name in wanted}
+        signals = {name: signal.shifted(origin) for name, signal in live_signals(log).items() if name in PRESSURES}
         noises = _noises(signals, segments)
         burning = segments.kind.name == "hot_fire"
         for name in ("p_tank", "p_run", *(("p_chamber",) if burning else ())):
@@ -119,6 +119,13 @@ def read_at_break(signal: Signal, noise: Noise, instant: float, before: float, a
         return Reading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
     weights = np.linalg.pinv(np.vander(window.time - instant, 4, increasing=True), rcond=1e-9)
     return Reading(float(weights[0] @ window.value), float(weights[1] @ window.value), weights[0], window.time)
+
+
+def quiet_noises(log: TestLog, segments: Segments) -> dict[str, Noise]:
+    """Noise of each live pressure sensor of the log."""
+    origin = segments.t_open.value or 0.0
+    signals = {n: s.shifted(origin) for n, s in live_signals(log).items() if n in PRESSURES}
+    return _noises(signals, segments)
 
 
 def _noises(signals: Mapping[str, Signal], segments: Segments) -> dict[str, Noise]:

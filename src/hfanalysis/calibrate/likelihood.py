@@ -72,17 +72,23 @@ def first_guess(samples: int, level: float, scales: Array) -> Weights:
     return Weights(np.diag(1.0 / variances), 4.0, 0.03 * level, 0.1 * samples)
 
 
-def weights_from(
-    residual: Array, samples: int, scales: Array, sensitivities: Array, correlation: Array, least: float
-) -> Weights:
-    """Weights from what a fit leaves; what the nuisances can explain of it counts as theirs.
+def weights_from(residual: Array, samples: int, scales: Array, nuisance: Array, wander: Array, least: float) -> Weights:
+    """Weights from what a fit leaves.
 
-    ``sensitivities`` are per standard deviation of a nuisance, ``correlation`` theirs; ``least`` [Pa] is the scatter
-    that the sensor alone has.
+    ``nuisance`` is the covariance of the observations by what the calibration leaves open, ``wander`` that by the slow
+    wander of the chamber's sensor; ``least`` [Pa] is the scatter that the sensor alone has. Where these explain the
+    residual, they are its covariance. Where the residual is larger, the model has another shape than the fire: then it
+    is its own measure, with as many independent values as its own correlation leaves.
     """
-    common = sensitivities @ correlation @ sensitivities.T
+    found = _weights(residual, samples, scales, nuisance + wander, least)
+    if found.misfit(residual) <= residual.size + 3.0 * np.sqrt(2.0 * residual.size):
+        return found
+    return _weights(residual, samples, scales, nuisance, least)
+
+
+def _weights(residual: Array, samples: int, scales: Array, common: Array, least: float) -> Weights:
+    """Weights under a ``common`` covariance: what it can explain of the residual counts as its, the rest as scatter."""
     scatter, effective = least, float(samples)
-    own = residual
     for _ in range(3):
         free = _diagonal(samples, scatter, effective, scales)
         own = residual - common @ np.linalg.solve(common + free, residual)

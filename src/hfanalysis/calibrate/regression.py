@@ -162,13 +162,18 @@ def _misfit(evidence: Evidence, weights: Weights, law: Regression) -> float:
 def _weighed(evidence: Evidence, law: Regression) -> Weights:
     predicted = evidence.predict(law)
     assert predicted is not None
+    size, residual = evidence.time.size, evidence.observed - predicted
+    wander = np.zeros((residual.size, residual.size))
+    wander[:size, :size] = evidence.wander
+    return weights_from(residual, size, evidence.scales, _by_nuisances(evidence, law), wander, evidence.least)
+
+
+def _by_nuisances(evidence: Evidence, law: Regression) -> Array:
+    """Covariance of the observations by what is not known of tank, grain, nozzle and sensors."""
     std = np.sqrt(np.diag(evidence.covariance))
     scale = np.where(std > 0.0, std, 1.0)
-    correlation = evidence.covariance / np.outer(scale, scale)
-    return weights_from(
-        evidence.observed - predicted, evidence.time.size, evidence.scales, evidence.sensitivities(law), correlation,
-        evidence.least,
-    )  # fmt: skip
+    slopes = evidence.sensitivities(law)
+    return np.asarray(slopes @ (evidence.covariance / np.outer(scale, scale)) @ slopes.T)
 
 
 def _covariance(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> Array:
