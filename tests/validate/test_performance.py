@@ -128,7 +128,9 @@ def test_a_thrust_that_no_nozzle_gives_is_named(burn: Trial, factor: float) -> N
 def test_histories_are_read_with_their_units(burn: Trial, tmp_path: Path) -> None:
     log, segments = log_of(burn), segments_of(burn)
     time = clock(log, segments, 6.0)
-    found = Histories(time, measured_histories(log, segments, time), {"of_ratio": "a and n are missing"})
+    found = Histories(
+        time, measured_histories(log, segments, definition(burn.stand), time), {"of_ratio": "a and n are missing"}
+    )
     write_histories(tmp_path / "performance.h5", found, {"version": "1"})
     with h5py.File(tmp_path / "performance.h5") as file:
         assert set(file) == {"time", "thrust_raw", "thrust_corrected", "p_chamber"}

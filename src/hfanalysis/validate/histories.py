@@ -16,10 +16,12 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.segment.ending import CRITICAL_RATIO
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import Channel, TestLog
 from hfanalysis.validate.flows import STEP, Flows, ideal_characteristic_velocity, nozzle_along
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import FORMAT
+from hfanalysis.validate.thrust import thrust_of
 
 Array = NDArray[np.float64]
 
@@ -69,13 +71,13 @@ def clock(log: TestLog, segments: Segments, end: float) -> Array:
     return np.arange(np.ceil(first / STEP), np.floor(last / STEP) + 1.0) * STEP
 
 
-def measured_histories(log: TestLog, segments: Segments, time: Array) -> dict[str, Array]:
+def measured_histories(log: TestLog, segments: Segments, definition: TestDefinition, time: Array) -> dict[str, Array]:
     """Thrust, raw and corrected, and chamber pressure, as far as they are logged."""
     out = {}
     if "thrust" in log:
         channel = log["thrust"]
         out["thrust_raw"] = _on(channel, segments, time, channel.raw)
-        out["thrust_corrected"] = _on(channel, segments, time, None)
+        out["thrust_corrected"] = thrust_of(log, segments, definition).signal.reduced(STEP).at(time)
     if "p_chamber" in log:
         out["p_chamber"] = _on(log["p_chamber"], segments, time, None)
     return out

@@ -31,7 +31,10 @@ RATIO_NAMES = ("c_star", "c_star_efficiency", "thrust_coefficient", "thrust_coef
 
 @dataclass(frozen=True)
 class Validation:
-    """Residuals by mode, the performance table, histories, and what looks wrong with the sensors."""
+    """Residuals by mode, the performance table, histories, and what looks wrong with the sensors.
+
+    ``told``: verdicts of which ingest has warned.
+    """
 
     residuals: dict[str, list[Residual]]
     measured: dict[str, Quantity]
@@ -39,6 +42,7 @@ class Validation:
     histories: Histories
     sensors: list[Finding]
     absent: dict[str, str] = field(default_factory=dict)
+    told: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """The content of validation.json."""
@@ -50,7 +54,7 @@ class Validation:
             "sensors": self.sensors,
             "absent": self.absent,
             "notes": list(dict.fromkeys(notes)),
-            "warnings": [finding.text for finding in self.sensors if finding.verdict != ZERO],
+            "warnings": [finding.text for finding in self.sensors if finding.verdict not in self.told],
         }
 
 
@@ -93,7 +97,7 @@ class _Work:
     def result(self) -> Validation:
         """All modes, tables and histories."""
         full = self._try("full", self._full)
-        flows = self._try("flows", lambda: self._flows(full))
+        flows = self._try("histories", lambda: self._flows(full))
         residuals = {
             "tank_free": self._try("tank_free", self._tank_free),
             "chamber_forced": self._try("chamber_forced", lambda: self._chamber_forced(full, flows)),
@@ -106,7 +110,8 @@ class _Work:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
         sensors = findings(self.log, self.segments, self.definition, self.fire)
         kept = {mode: found for mode, found in residuals.items() if found}
-        return Validation(kept, measured, model, self._histories(full, flows), sensors, self.absent)
+        told = (ZERO,) if any(ZERO in warning for warning in self.log.warnings) else ()
+        return Validation(kept, measured, model, self._histories(full, flows), sensors, self.absent, told)
 
     def _try(self, name: str, work: Callable[[], Found]) -> Found | None:
         try:
@@ -135,15 +140,15 @@ class _Work:
 
     def _chamber_forced(self, full: FullRun | None, flows: Flows | None) -> list[Residual]:
         if full is None or flows is None or isinstance(self.fire, str):
-            raise AbsentError(self.absent.get("full") or self.absent["flows"])
+            raise AbsentError(self.absent.get("full") or self.absent["histories"])
         return run_chamber_forced(self.log, self.segments, full.engine, flows, self.ambient, self.fire.end)
 
     def _histories(self, full: FullRun | None, flows: Flows | None) -> Histories:
         end = self.fire.end if isinstance(self.fire, Fire) else 10.0
         time = histories_of.clock(self.log, self.segments, end)
-        values = histories_of.measured_histories(self.log, self.segments, time)
+        values = histories_of.measured_histories(self.log, self.segments, self.definition, time)
         if full is None or flows is None or isinstance(self.fire, str):
-            reason = self.absent.get("flows", "")
+            reason = self.absent.get("histories", "")
             return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason))
         ratios = histories_of.efficiencies(values, flows, full.engine, self.ambient, self.fire)
         closed = histories_of.closure(flows, values, full.engine, self.ambient, self.fire)

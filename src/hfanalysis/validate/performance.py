@@ -20,6 +20,7 @@ from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import Channel, TestLog
 from hfanalysis.units import Value
 from hfanalysis.validate.full import FullRun, moved
+from hfanalysis.validate.thrust import Thrust, thrust_of
 
 Array = NDArray[np.float64]
 
@@ -65,11 +66,12 @@ def measured(
         none = {name: Quantity.absent(fire) for name in NAMES}
         return none | {"oxidizer_mass": _oxidizer(log, segments, definition, calibration)}
     out = {"burn_time": Quantity(fire.end, "s", fire.std, why=fire.source)}
-    out["total_impulse"] = impulse = _impulse(log, segments, fire)
+    thrust = thrust_of(log, segments, definition) if "thrust" in log else None
+    out["total_impulse"] = impulse = _impulse(log, thrust, fire)
     oxidizer, fuel = _oxidizer(log, segments, definition, calibration), _fuel(definition)
     out["specific_impulse"] = specific_impulse(impulse, oxidizer, fuel)
-    out["peak_chamber_pressure"] = _peak(log, segments, "p_chamber", fire)
-    out["peak_thrust"] = _peak(log, segments, "thrust", fire)
+    out["peak_chamber_pressure"] = _peak(log, "p_chamber", _signal(log, segments, "p_chamber"), fire)
+    out["peak_thrust"] = _peak(log, "thrust", thrust.signal if thrust else "the log has no thrust", fire)
     out["average_thrust"] = _average(impulse, out["burn_time"])
     out |= {"oxidizer_mass": oxidizer, "fuel_mass": fuel}
     out["mean_chamber_pressure"] = _mean(log, segments, "p_chamber", fire)
@@ -92,21 +94,22 @@ def _bias(channel: Channel) -> float:
     return float(np.hypot(channel.zero_std, SPAN * channel.accuracy))
 
 
-def _impulse(log: TestLog, segments: Segments, fire: Fire) -> Quantity:
+def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     """Integral of the thrust over the burn, the cell's drift taken off."""
-    signal = _signal(log, segments, "thrust")
-    if isinstance(signal, str):
-        return Quantity.absent(signal)
+    if thrust is None:
+        return Quantity.absent("the log has no thrust")
+    signal, channel = thrust.signal, log["thrust"]
+    if signal.time.size < 9:
+        return Quantity.absent("thrust has too few good samples")
     if signal.time[-1] < fire.end - 0.5:
         return Quantity.absent(f"the log ends at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)")
     edges = np.array([0.0, fire.end])
     inner = signal.between(*edges)
     time = np.concatenate((edges[:1], inner.time, edges[1:]))
     value = float(np.trapezoid(signal.at(time), time))
-    channel = log["thrust"]
     last = abs(signal.mean(fire.end - 0.2, fire.end + 0.2))
-    errors = (_bias(channel) * fire.end, SPAN * channel.drift * 0.5 * fire.end, last * fire.std)
-    drift = f"; {channel.drift:.0f} N of drift taken off" if channel.drift else ""
+    errors = (_bias(channel) * fire.end, SPAN * thrust.error * 0.5 * fire.end, last * fire.std)
+    drift = f"; {thrust.error:.0f} N of the cell's drift taken off" if thrust.error else ""
     return Quantity(value, "N s", float(np.linalg.norm(errors)), why=f"over the burn{drift}")
 
 
@@ -135,9 +138,8 @@ def specific_impulse(impulse: Quantity, oxidizer: Quantity, fuel: Quantity) -> Q
     return Quantity(value, "s", float(np.hypot((impulse.std or 0.0) / (STANDARD_GRAVITY * mass), by_mass)))
 
 
-def _peak(log: TestLog, segments: Segments, name: str, fire: Fire) -> Quantity:
+def _peak(log: TestLog, name: str, signal: Signal | str, fire: Fire) -> Quantity:
     """Largest value of the mean curve: flagged samples left out, the chamber's oscillation averaged."""
-    signal = _signal(log, segments, name)
     if isinstance(signal, str):
         return Quantity.absent(signal)
     part = signal.between(0.0, fire.end)
@@ -148,7 +150,9 @@ def _peak(log: TestLog, segments: Segments, name: str, fire: Fire) -> Quantity:
     place = int(np.argmax(np.where(inside, smooth, -np.inf)))
     count = max(SMOOTHING / part.step, 1.0)
     error = np.hypot(_bias(log[name]), part.noise / np.sqrt(count))
-    return Quantity(float(smooth[place]), log[name].unit, float(error), why=f"at {part.time[place]:.2f} s")
+    return Quantity(
+        float(smooth[place]), log[name].unit, float(error), why=f"of the mean curve, at {part.time[place]:.2f} s"
+    )
 
 
 def _mean(log: TestLog, segments: Segments, name: str, fire: Fire) -> Quantity:

@@ -15,6 +15,7 @@ from hfanalysis.segment.signals import Signal
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
 from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.thrust import thrust_of
 
 ZERO = "does not return to zero"
 """Of this ingest has warned already."""
@@ -50,29 +51,27 @@ def findings(log: TestLog, segments: Segments, definition: TestDefinition, fire:
     """Everything that looks wrong."""
     if isinstance(fire, str) or "thrust" not in log:
         return []
-    found = [_zero(log, segments, fire), _coefficient(log, segments, definition, fire)]
+    found = [_zero(log, segments, definition, fire), _coefficient(log, segments, definition, fire)]
     return [f for f in found if f is not None]
 
 
-def _zero(log: TestLog, segments: Segments, fire: Fire) -> Finding | None:
+def _zero(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> Finding | None:
     """The thrust cell that does not come back to its zero after the burn."""
-    channel = log["thrust"]
-    signal = Signal.of(channel).shifted(segments.t_open.value or 0.0)
-    drift, where = channel.drift, "after the burn"
-    if drift == 0.0:
-        tail = signal.between(max(fire.end + 2.0, signal.time[-1] - 5.0), np.inf).value
-        drift = float(np.median(tail)) if tail.size > 8 else 0.0
-        where = "at the end of the log"
-    burning = signal.between(0.0, fire.end)
-    peak = float(np.percentile(burning.value, 99.0)) if burning.time.size else 0.0
-    std = channel.zero_std if channel.zero_std is not None else channel.accuracy
-    if abs(drift) < max(ZERO_SHARE * peak, 5.0 * std):
+    channel, thrust = log["thrust"], thrust_of(log, segments, definition)
+    burning = thrust.signal.between(0.0, fire.end)
+    if not burning.time.size:
         return None
+    error, peak = thrust.error, float(np.percentile(burning.value, 99.0))
+    std = channel.zero_std if channel.zero_std is not None else channel.accuracy
+    if abs(error) < max(ZERO_SHARE * peak, 5.0 * std):
+        return None
+    where = f"with the chamber back at ambient ({thrust.since:.1f} s)" if thrust.since > 0.0 else "after the burn"
     text = (
-        f"the thrust cell does not return to zero: {drift:+.0f} N {where}, {100.0 * abs(drift) / peak:.0f} % of the "
-        f"peak; left in, it adds up to {abs(drift) * fire.end:.0f} N s to the impulse of the burn"
+        f"the thrust cell does not return to zero: it reads {error:+.0f} N {where}, "
+        f"{100.0 * abs(error) / peak:.0f} % of the peak; left in, up to {abs(error) * fire.end:.0f} N s of impulse are "
+        "its drift"
     )
-    return Finding(("thrust",), ZERO, text, Quantity(drift, "N", std))
+    return Finding(("thrust",), ZERO, text, Quantity(error, "N", std))
 
 
 def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> Finding | None:
@@ -80,7 +79,7 @@ def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, f
     if "p_chamber" not in log:
         return None
     ambient = definition.ambient_pressure.value
-    means = _steady(log, segments, fire)
+    means = _steady(log, segments, definition, fire)
     throat = _throat(log, segments, definition, fire)
     if means is None or throat is None:
         return None
@@ -99,12 +98,13 @@ def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, f
     return Finding(("thrust", "p_chamber"), "thrust and p_c A_t disagree", text, Quantity(value, "", value * relative))
 
 
-def _steady(log: TestLog, segments: Segments, fire: Fire) -> tuple[float, float] | None:
+def _steady(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> tuple[float, float] | None:
     """Mean thrust [N] and chamber pressure [Pa] of the steady part: line full, liquid and fuel still there."""
     origin = segments.t_open.value or 0.0
     ends = [t for name in ("t_v", "t_fuel_out", "t_end") if (t := segments.time(name)) is not None]
     start, end = max(segments.time("t_feed") or 0.0, 0.5), min([*ends, fire.end])
-    means = [Signal.of(log[n]).shifted(origin).mean(start, end) for n in ("thrust", "p_chamber")]
+    chamber = Signal.of(log["p_chamber"]).shifted(origin)
+    means = [s.mean(start, end) for s in (thrust_of(log, segments, definition).signal, chamber)]
     return (means[0], means[1]) if np.isfinite(means).all() and end > start + 0.5 else None
 
 

@@ -1,0 +1,63 @@
+"""The cell's zero after the burn: an engine without chamber pressure has no thrust, whatever the cell reads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from stand import AMBIENT, Trial, definition, fire, log_of, segments_of
+
+from hfanalysis.testdata.log import TestLog
+from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.sensors import findings
+from hfanalysis.validate.thrust import thrust_of
+
+
+@pytest.fixture(scope="module")
+def burn() -> Trial:
+    """A firing whose chamber is back at ambient pressure 9 s after the opening, logged for 10 s more."""
+    test = fire(rate=200.0, after=14.0)
+    out = test.time > 9.0
+    values = {n: np.where(out, AMBIENT if n == "p_chamber" else 0.0, v) for n, v in test.values.items()
+              if n in ("p_chamber", "thrust")}  # fmt: skip
+    return replace(test, values={**test.values, **values})
+
+
+def heated(test: Trial, size: float) -> TestLog:
+    """The cell drifts by ``size`` [N] until the fire is out and then recovers half of that."""
+    log = log_of(test, white=0.0)
+    drift = np.interp(test.time, [0.0, 9.0, 21.0], [0.0, size, 0.5 * size])
+    thrust = replace(log["thrust"], values=log["thrust"].values + drift, zero_std=1.0)
+    chamber = replace(log["p_chamber"], zero_std=100.0)
+    return replace(log, channels={**log.channels, "thrust": thrust, "p_chamber": chamber})
+
+
+@pytest.mark.parametrize("size", [200.0, -150.0])
+def test_the_drift_up_to_the_end_of_the_fire_is_taken_off(burn: Trial, size: float) -> None:
+    found = thrust_of(heated(burn, size), segments_of(burn), definition(burn.stand))
+    assert found.since == pytest.approx(9.0, abs=0.6)
+    assert found.error == pytest.approx(size, rel=0.15)
+    true = burn.values["thrust"]
+    assert np.abs(found.signal.value - true).max() < 0.1 * abs(size)
+
+
+def test_it_is_named_though_the_log_ends_before_the_cell_settles(burn: Trial) -> None:
+    stated = definition(burn.stand)
+    found = findings(heated(burn, 200.0), segments_of(burn), stated, Fire(9.0, 0.1, "video"))
+    assert [f.verdict for f in found] == ["does not return to zero"]
+    assert not findings(heated(burn, 5.0), segments_of(burn), stated, Fire(9.0, 0.1, "video"))
+
+
+def test_without_a_zeroed_chamber_gauge_nothing_is_changed(burn: Trial) -> None:
+    log = heated(burn, 200.0)
+    blind = replace(log, channels={**log.channels, "p_chamber": replace(log["p_chamber"], zero_std=None)})
+    found = thrust_of(blind, segments_of(burn), definition(burn.stand))
+    np.testing.assert_array_equal(found.signal.value, log["thrust"].values)
+    assert np.isnan(found.since)
+
+
+def test_a_cell_that_reads_next_to_nothing_is_left_alone(burn: Trial) -> None:
+    log = heated(burn, 10.0)
+    found = thrust_of(log, segments_of(burn), definition(burn.stand))
+    np.testing.assert_array_equal(found.signal.value, log["thrust"].values)
