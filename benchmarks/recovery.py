@@ -1,7 +1,8 @@
-"""Does the calibration find what is in a log, and do its intervals hold it? Two studies, each resumable.
+"""Does the calibration find what is in a log, and do its intervals hold it? Three studies, each resumable.
 
 ``own``: 400 logs of the virtual stand (random truth, noise, declared biases, line filling, purge), each taken through
-ingest, segment and calibrate. ``blind``: the cases without an effect of another generator, where its folder is given.
+ingest, segment and calibrate. ``engine``: logs of whole engines (benchmarks/virtual_engine.py), for a and n.
+``blind``: the cases without an effect of another generator, where its folder is given.
 Results are written as they come to .cache/recovery-*.jsonl; the table goes to docs/recovery.md.
 
     python benchmarks/recovery.py --cases 400 [--blind FOLDER]
@@ -33,6 +34,7 @@ Made by `make recovery` (the second table, if there is one, with `FLAGS='--blind
 stated standard deviation.
 """
 QUANTITIES = ("C_i", "m", "K_loss", "t_v", "t_purge", "t_open")
+REGRESSION = ("regression_rate_reference", "a", "n", "C_i")
 
 
 def recover(folder: Path) -> dict[str, Any]:
@@ -129,19 +131,42 @@ def run(name: str, cases: Iterable[Any], work: Any, processes: int) -> list[dict
 def _code() -> str:
     """Results are of one state of the code: any change to it starts the study anew."""
     digest = hashlib.sha256()
-    for path in sorted([*ROOT.glob("src/**/*.py"), ROOT / "benchmarks" / "virtual_stand.py"]):
+    for path in sorted([*ROOT.glob("src/**/*.py"), *ROOT.glob("benchmarks/virtual_*.py")]):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
 
 
-def table(results: list[dict[str, Any]]) -> str:
+def separable(results: list[dict[str, Any]]) -> str:
+    """How many tests tell a and n apart, and how far off n is where they do not."""
+    found = [(r["truth"]["n"], r["found"]["n"]) for r in results]
+    blurred = [abs(f["value"] - t) for t, f in found if f["value"] is not None and f["verdict"] == "not identifiable"]
+    absent = sum(f["value"] is None for _, f in found)
+    error = f"; there n is off by {np.median(blurred):.2f} in the median" if blurred else ""
+    told = len(found) - len(blurred) - absent
+    return (
+        f"a and n are called identified in {told} of {len(found)} logs, not told apart in {len(blurred)}{error};\n"
+        f"{absent} give no answer. Rows a and n count the identified ones. The rate at the reference flux is the\n"
+        "combination ln a + n ln G_ref."
+    )
+
+
+def identified(results: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The same results without values that are called not identifiable."""
+
+    def kept(found: dict[str, Any]) -> dict[str, Any]:
+        return {"value": None} if found.get("verdict") == "not identifiable" else found
+
+    return [{**r, "found": {n: kept(f) for n, f in r["found"].items()}} for r in results]
+
+
+def table(results: list[dict[str, Any]], quantities: tuple[str, ...] = QUANTITIES) -> str:
     """Per quantity: cases, mean and scatter of (found - truth)/std, relative bias, coverage with its 95 % limits."""
     rows = [
         "| quantity | cases | answered | median relative or absolute error | mean z | std z "
         "| 95 % interval covers | 95 % limits |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    for name in QUANTITIES:
+    for name in quantities:
         pairs = [(r["truth"][name], r["found"][name]) for r in results if name in r["truth"]]
         answered = [(t, f) for t, f in pairs if f["value"] is not None]
         if not answered:
@@ -181,12 +206,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=400)
     parser.add_argument("--first", type=int, default=0, help="first seed; others than the default are a check on it")
+    parser.add_argument("--engines", type=int, default=400, help="logs of whole engines")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--blind", type=Path)
     arguments = parser.parse_args()
     text = TITLE
     own = run("own", range(arguments.first, arguments.first + arguments.cases), own_case, arguments.processes)
     text += f"\n## {len(own)} logs of the project's own tank model\n\n{table(own)}\n"
+    engines = run(
+        "engine", range(arguments.first, arguments.first + arguments.engines), engine_case, arguments.processes
+    )
+    text += f"\n## {len(engines)} logs of whole engines\n\n{separable(engines)}\n\n"
+    text += f"{table(identified(engines), REGRESSION)}\n"
     if arguments.blind is not None and arguments.blind.is_dir():
         blind = run("blind", blind_folders(arguments.blind), blind_case, arguments.processes)
         text += f"\n## {len(blind)} cases without an effect from another generator\n\n{table(blind)}\n"

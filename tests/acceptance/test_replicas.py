@@ -18,6 +18,7 @@ from hfanalysis.calibrate.engine_of_test import Regression
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.of_test import evidence_for
 from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.cli.regression import product_of
 from hfanalysis.segment.phases import Segments
 from hfanalysis.stages.opening import open_test
 from hfanalysis.stages.runner import run_to
@@ -188,6 +189,16 @@ def test_efficiencies_are_those_of_an_engine(products: dict[str, Any], name: str
         for efficiency in ("c_star_efficiency", "thrust_coefficient_efficiency"):
             assert 0.9 < np.nanmean(file[efficiency][:][liquid]) < 1.1
         assert 8.0 < np.nanmean(file["of_ratio"][:][liquid]) < 15.0
+
+
+def test_both_together_have_one_rate_but_not_one_law(products: dict[str, Any]) -> None:
+    """docs/calibration.md: the same rate where each is known best, within 10 %; common constants fit worse."""
+    together = product_of(["HF4", "HF5"], products["HF4"]["folder"].parent.parent, None)
+    assert together["tests"] == ["HF4", "HF5"]
+    assert together["agreement"]["verdict"].startswith("disagree")
+    rates = [together["alone"][name]["regression_rate_reference"]["value"] for name in ("HF4", "HF5")]
+    assert rates[0] == pytest.approx(rates[1], rel=0.1)
+    assert together["n"]["value"] == pytest.approx(0.14, abs=0.05)
 
 
 @pytest.mark.parametrize("name", ["HF4", "HF5"])

@@ -63,6 +63,24 @@ def test_calibrate_prints_a_table_for_people(run: Run, root: Path) -> None:
     assert "REPLICA: generated, not measured" in ended.out
 
 
+def test_calibrate_says_what_a_and_n_belong_to(run: Run, root: Path) -> None:
+    ended = run("calibrate", "HF5", "--root", root)
+    assert "without nitrogen" in ended.out
+    assert "burn time 17.0" in ended.out
+
+
+def test_validate_prints_the_performance(run: Run, root: Path) -> None:
+    ended = run("validate", "HF5", "--root", root)
+    for name in ("total impulse", "specific impulse", "peak thrust", "chamber_forced", "full"):
+        assert name in ended.out
+
+
+def test_a_regression_of_one_test_is_no_regression_of_several(run: Run, root: Path) -> None:
+    ended = run("regression", "HF5", "HF5", "--root", root)
+    assert ended.status == 2
+    assert "expected at least two: hfa regression TEST OTHER" in ended.err
+
+
 def test_json_is_the_product_and_nothing_else(run: Run, root: Path) -> None:
     ended = run("calibrate", "HF5", "--root", root, "--json")
     assert ended.out == (root / "processed/HF5/calibration.json").read_text()

@@ -19,6 +19,9 @@ Misfit = Callable[[Array], float]
 FEWEST = 3.0
 """Independent residuals that are counted at least."""
 
+KNOWN = 10.0
+"""Degrees of freedom of the wander's size: read off a few seconds before the opening, to a factor of two or so."""
+
 NODES = 9
 REACH = 1.6
 """Runs per direction of the likelihood's surface, and how far it is followed as a multiple of the 95 % limit."""
@@ -80,14 +83,19 @@ def weights_from(residual: Array, samples: int, scales: Array, nuisance: Array, 
     residual, they are its covariance. Where the residual is larger, the model has another shape than the fire: then it
     is its own measure, with as many independent values as its own correlation leaves.
     """
-    found = _weights(residual, samples, scales, nuisance + wander, least)
+    found = _weights(residual, samples, scales, nuisance + wander, least, KNOWN if wander.any() else np.inf)
     if found.misfit(residual) <= residual.size + 3.0 * np.sqrt(2.0 * residual.size):
         return found
     return _weights(residual, samples, scales, nuisance, least)
 
 
-def _weights(residual: Array, samples: int, scales: Array, common: Array, least: float) -> Weights:
-    """Weights under a ``common`` covariance: what it can explain of the residual counts as its, the rest as scatter."""
+def _weights(
+    residual: Array, samples: int, scales: Array, common: Array, least: float, known: float = np.inf
+) -> Weights:
+    """Weights under a ``common`` covariance: what it can explain of the residual counts as its, the rest as scatter.
+
+    ``known``: degrees of freedom with which the common covariance is known.
+    """
     scatter, effective = least, float(samples)
     for _ in range(3):
         free = _diagonal(samples, scatter, effective, scales)
@@ -97,7 +105,7 @@ def _weights(residual: Array, samples: int, scales: Array, common: Array, least:
         lost = effective / max(effective - 2.0, 1.0)
         scatter = max(float(np.sqrt(pressures @ pressures / samples * lost)), least)
     precision = np.asarray(np.linalg.inv(common + _diagonal(samples, scatter, effective, scales)), dtype=np.float64)
-    freedom = max(effective - 2.0, 1.0) + scales.size
+    freedom = min(max(effective - 2.0, 1.0) + scales.size, known)
     return Weights(precision, float(student.ppf(0.975, freedom)) ** 2, scatter, effective)
 
 

@@ -37,6 +37,7 @@ PHYSICAL_N = (0.0, 1.0)
 
 RANGE_N = (-0.3, 1.3)
 SCAN_N = (0.1, 0.3, 0.5, 0.7, 0.9)
+RESTARTS = (0.15, 0.45, 0.75)
 SCAN_RATE = (0.6, 0.85, 1.2, 1.7)
 """Exponents, and rates over that which burns the web in the burn time, from which the best start is taken."""
 
@@ -99,7 +100,7 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
         law = law_at(best, flux)
         evidence = [e.with_regression(law) for e in evidence]
         weights = [_weighed(e, law) for e in evidence]
-        best = _minimum(evidence, weights, flux, best)
+        best = _least(evidence, weights, flux, best)
     return _surveyed(evidence, weights, flux, best)
 
 
@@ -144,6 +145,13 @@ def _minimum(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: flo
     solver.set_xtol_abs([1e-4, 1e-4])
     solver.set_maxeval(200)
     return np.asarray(solver.optimize(start), dtype=np.float64)
+
+
+def _least(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> Array:
+    """The least of the minima found from the best so far and from other exponents: the valley may have several."""
+    objective = _objective(evidence, weights, flux)
+    starts = [best, *(np.array([best[0], n]) for n in RESTARTS if abs(n - best[1]) > 0.1)]
+    return min((_minimum(evidence, weights, flux, s) for s in starts), key=objective)
 
 
 def _objective(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float) -> Any:
