@@ -87,6 +87,23 @@ def test_json_is_the_product_and_nothing_else(run: Run, root: Path) -> None:
     assert json.loads(ended.out)["test"] == "HF5"
 
 
+def test_a_test_without_a_rocket_has_nothing_to_fly(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "raw_tests" / "HF5"
+    shutil.copytree(REPOSITORY / "raw_tests" / "HF5", folder)
+    text = (folder / "test.toml").read_text()
+    (folder / "test.toml").write_text(text[: text.index("[rocket]")])
+    ended = run("flight", "HF5", "--root", tmp_path, "-q")
+    assert ended.status == 3
+    assert "no [rocket] to fly" in ended.err
+
+
+def test_raw_thrust_flies_lower(run: Run, root: Path) -> None:
+    flights = ("--root", root, "--json", "--set", "flight.flights=50")
+    corrected, raw = (run("flight", "HF5", *flights, *more).out for more in ((), ("--raw-thrust",)))
+    assert json.loads(raw)["thrust"] == "as measured on the stand"
+    assert json.loads(raw)["apogee"]["value"] < json.loads(corrected)["apogee"]["value"]
+
+
 @pytest.mark.parametrize("stage", ["ingest", "segment", "calibrate", "validate", "flight", "report", "run"])
 def test_every_stage_speaks_json(run: Run, root: Path, stage: str) -> None:
     ended = run(stage, "HF5", "--root", root, "--json")

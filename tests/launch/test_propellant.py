@@ -152,6 +152,20 @@ def test_the_nozzle_gains_what_the_ambient_pressure_loses_while_it_flows_full() 
     assert gained == pytest.approx((101_300.0 - 84_623.0) * np.pi * 0.0381**2, rel=1e-6)
 
 
+def test_a_coarse_log_keeps_its_straight_lines() -> None:
+    """Thrust sampled every 0.2 s: between two samples the curve lies on the line through them."""
+    log, segments, calibration = analysed()
+    thrust = log["thrust"]
+    coarse = replace(thrust, **{name: getattr(thrust, name)[::200] for name in ("time", "values", "flags")}, raw=None)
+    sparse = replace(log, channels={**log.channels, "thrust": coarse})
+    curve = firing(sparse, segments, calibration, definition(), raw_thrust=True).curve
+    times = coarse.time[coarse.good] - (segments.t_open.value or 0.0)
+    inside = (curve.time > 1.0) & (curve.time < 16.0)
+    expected = np.interp(curve.time, times, coarse.values[coarse.good])
+    assert curve.thrust[inside] == pytest.approx(expected[inside], abs=0.02 * float(expected.max()))
+    assert np.median(np.abs(curve.thrust[inside] - expected[inside])) < 1e-6 * float(expected.max())
+
+
 def test_without_an_exit_radius_the_thrust_stays_the_stand_s() -> None:
     raw = replica(('exit_radius = "38.1 mm"\n', ""))
     assert raw.curve.gain.shape == (1, 1)

@@ -11,6 +11,7 @@ from hfanalysis.flight import rasp, rocksim
 from hfanalysis.flight.aerodynamics import Shape
 from hfanalysis.flight.motor import Motor, Points, points_of
 from hfanalysis.flight.rocketpy_script import Scripted, script
+from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.launch.product import Launch
 from hfanalysis.launch.stability import Stability
 from hfanalysis.simulate.shape import shape
@@ -20,6 +21,8 @@ Array = NDArray[np.float64]
 
 SLENDER = 25.0
 """Length over diameter of a rocket whose geometry is not known; only RocketPy's inertia follows it."""
+
+NO_LENGTH = "length: not known; the diameter stands in for it"
 
 BY_THEMSELVES = "total mass: propellant alone, the empty engine belongs to the rocket's dry mass"
 
@@ -88,19 +91,21 @@ def _motor(found: Launch, definition: TestDefinition, burnt: float, stable: Stab
     geometry = definition.rocket.geometry if definition.rocket is not None else None
     engine = geometry.engine_mass.value if geometry is not None and geometry.engine_mass is not None else 0.0
     loaded = float(found.firing.propellant.total[0])
-    diameter, length = _size(definition)
+    diameter, length = _size(definition, found.firing.vehicle)
     length = length if isinstance(stable, str) else stable.place.length
     return Motor(definition.test.id, diameter, length, burnt, engine + loaded)
 
 
-def _size(definition: TestDefinition) -> tuple[float, float]:
-    """Diameter and length [m] of the motor, from what is known of casing, tank and grain."""
-    grain, tank, rocket = definition.grain, definition.tank, definition.rocket
+def _size(definition: TestDefinition, vehicle: Vehicle) -> tuple[float, float]:
+    """Diameter and length [m] of the motor, from what is known of casing, tank and grain; else as wide as the rocket.
+
+    A length that is not known is the diameter's, since no file can do without one.
+    """
+    grain, tank = definition.grain, definition.tank
     widths = [2.0 * grain.outer_radius.value] if grain is not None and grain.outer_radius is not None else []
     widths += [tank.inner_diameter.value] if tank is not None and tank.inner_diameter is not None else []
-    widths += [rocket.diameter.value] if not widths and rocket is not None and rocket.diameter is not None else []
-    length = grain.length.value if grain is not None and grain.length is not None else 0.0
-    return max(widths, default=0.0), length
+    width = max(widths, default=2.0 * float(np.sqrt(vehicle.frontal_area / np.pi)))
+    return width, grain.length.value if grain is not None and grain.length is not None else width
 
 
 def _radii(definition: TestDefinition) -> tuple[float, float]:
@@ -116,4 +121,5 @@ def _comments(found: Launch, definition: TestDefinition) -> tuple[str, ...]:
     said = [f"{definition.test.id}: {source.get(definition.test.source, 'measured on the stand')}"]
     said += [f"thrust {found.firing.thrust_is}, along the flight from {altitude:.0f} m"]
     said += [] if geometry is not None and geometry.engine_mass is not None else [BY_THEMSELVES]
+    said += [] if definition.grain is not None and definition.grain.length is not None else [NO_LENGTH]
     return tuple(said)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.errors import AbsentError
-from hfanalysis.flight.curve import Curve, accumulated, altitude_gain, even_curve
+from hfanalysis.flight.curve import STEPS, Curve, accumulated, altitude_gain, even_curve
 from hfanalysis.flight.descent import Parachute
 from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.launch.propellant import Propellant, propellant
@@ -71,9 +71,12 @@ def firing(
     assert definition.rocket is not None
     thrust = measured_thrust(log, segments, definition)
     load = propellant(log, segments, calibration, definition, thrust)
-    mass = vehicle.dry_mass + np.interp(thrust.time, load.time, load.total)
+    # samples may be further apart than the curve's steps: what is linear between them stays so
+    time = np.union1d(thrust.time, np.linspace(0.0, thrust.burn_time, 2 * STEPS + 1))
+    impulse = accumulated(time, np.interp(time, thrust.time, thrust.thrust))
+    mass = vehicle.dry_mass + np.interp(time, load.time, load.total)
     carried = 0.0 if definition.model.conventions == "report" else float(load.total[-1])
-    curve = even_curve(thrust.time, accumulated(thrust.time, thrust.thrust), mass, vehicle.dry_mass + carried)
+    curve = even_curve(time, impulse, mass, vehicle.dry_mass + carried)
     gas = _chamber_gas(curve.time, log, segments, definition, load)
     said = "raw thrust was asked for" if raw_thrust else _no_correction(gas, definition)
     if gas is not None and not said:
