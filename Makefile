@@ -75,8 +75,9 @@ recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 blind-cases: $(STAMP) ## tests with hidden effects under .cache/blind/; FLAGS='--n 20' (docs/blind.md)
 	$(BIN)/python -m tests.blind write --jobs 2 $(FLAGS)
 
-readme: $(STAMP) ## write the sample output in README.md anew
+readme: $(STAMP) ## write the sample output in README.md and the library in docs/effects.md anew
 	@$(BIN)/python pipeline/readme.py
+	@$(BIN)/python pipeline/effects_page.py
 
 lock: $(STAMP) ## write requirements.lock anew from pyproject.toml
 	$(BIN)/uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --only-binary :all: --upgrade \

@@ -192,6 +192,15 @@ def _regression(
         regression.regression(tests, root, out, as_json)
 
 
+@app.command("effects")
+def _effects(root: Root = Path(), as_json: EngineJson = False) -> None:
+    """List the effects that can be added to the model, with those in ROOT/effects/."""
+    with ending():
+        from hfanalysis.cli import effects
+
+        effects.effects(root, as_json)
+
+
 @app.command("new")
 def _new(
     test: Annotated[str, typer.Argument(metavar="ID", help="Name of the new test.")],

@@ -205,6 +205,29 @@ def show_engine(product: Mapping[str, Any]) -> None:
             _values(console, quantities(part), in_words(name))
 
 
+def show_effects(product: Mapping[str, Any]) -> None:
+    """Print the library of effects: where each acts, when, and how strong it typically is."""
+    console = _Paper(highlight=False)
+    if not console.is_terminal:
+        console.width = max(console.width, _NARROWEST)
+    table = _table("effect", "equation", "phases", "typical strength", "", title="effects")
+    for name, found in product["effects"].items():
+        table.add_row(name, found["equation"], _phases(found["phases"]), _strength(found), Text(found["meaning"]))
+    console.print(table)
+    console.print(Text("docs/effects.md has their equations, priors and sources; --json all of it"), soft_wrap=True)
+
+
+def _phases(phases: list[str]) -> str:
+    return "all" if {"liquid", "vapor", "nitrogen"} <= set(phases) else " ".join(phases)
+
+
+def _strength(effect: Mapping[str, Any]) -> str:
+    """Of the first strength: what is typical of it, in the unit of people at a stand."""
+    name, typical = next((name, p) for name, p in effect["parameters"].items() if p["strength"])
+    factor, unit = wording.people_unit(typical["unit"])
+    return f"{name} {wording.tidy(factor * typical['typical'], 6)} {unit.strip('-')}".strip()
+
+
 def _values(console: Console, found: Mapping[str, Mapping[str, Any]], title: str) -> None:
     """A table of values, with intervals where any has one, and below it what cannot be had, by reason."""
     spread = any(quantity.get("std") for quantity in found.values())

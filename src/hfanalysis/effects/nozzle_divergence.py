@@ -23,6 +23,6 @@ EFFECT = Effect(
     parameters=(Parameter("loss", "-", "share of the thrust that is lost", typical=0.02, low=-0.05, high=0.3),),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,
-    twins=("combustion_efficiency",),
+    twins=(),
     decisive="the nozzle's contour, or thrust and chamber pressure of a firing with cold gas",
 )
