@@ -131,6 +131,11 @@ class Surface:
         return float(inside.min()), float(inside.max())
 
     @property
+    def lowest(self) -> Array:
+        """Where the misfit is least."""
+        return np.asarray(self.points[int(np.argmin(self.rise))])
+
+    @property
     def bounded(self) -> bool:
         """Whether the 95 % region ends before the rim."""
         return not bool((self.edge & (self.rise <= self.threshold)).any())
@@ -151,4 +156,4 @@ def surface(misfit: Misfit, best: Array, covariance: Array, threshold: float) ->
     fine = RectBivariateSpline(nodes, nodes, values)(axis, axis).ravel()
     x, y = (grid.ravel() for grid in np.meshgrid(axis, axis, indexing="ij"))
     edge = (np.abs(x) > 0.999) | (np.abs(y) > 0.999)
-    return Surface(best + np.column_stack((x, y)) @ spread.T, fine - fine.min(), edge, threshold)
+    return Surface(best + np.column_stack((x, y)) @ spread.T, np.maximum(fine, 0.0), edge, threshold)

@@ -45,6 +45,10 @@ LARGEST_STEP = 0.2
 """Standard deviation of n [-] to which the likelihood's surface is followed at most."""
 
 ROUNDS = 2
+RESURVEYS = 3
+NEGLIGIBLE = 0.05
+"""Times the surface is followed from a lower point that it has shown, and the misfit by which that has to be lower."""
+
 TESTS_DISAGREE = 0.01
 """Probability of the rise in misfit by common constants below which tests are said to disagree."""
 
@@ -78,8 +82,12 @@ class Fitted:
         return float(np.sqrt(low * high))
 
     def _narrowest(self) -> tuple[float, float]:
-        """Fluxes between which the interval of ln r is within a twentieth of its least width."""
-        shifts = np.linspace(-2.5, 2.5, 201)
+        """Fluxes of the (first test's) burn between which the interval of ln r is within a twentieth of its least."""
+        first = self.evidence[0]
+        burnt = first.burnt(self.law)
+        flux = burnt.output("oxidizer_flow") / (pi * burnt.state("port_radius") ** 2)
+        least, most = np.quantile(flux[burnt.time > 0.1], (0.0, 1.0))
+        shifts = np.linspace(log(max(least, 0.05 * self.flux) / self.flux), log(most / self.flux), 201)
         widths = np.array([np.ptp(self.surface.interval(np.array([1.0, s]))) for s in shifts])
         near = shifts[widths <= 1.05 * widths.min()]
         return self.flux * exp(float(near[0])), self.flux * exp(float(near[-1]))
@@ -107,7 +115,12 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
 def _surveyed(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> Fitted:
     """The fit with its likelihood's surface."""
     objective, threshold = _objective(evidence, weights, flux), max(w.threshold for w in weights)
-    found = surface(objective, best, _covariance(evidence, weights, flux, best), threshold)
+    for _ in range(RESURVEYS):
+        found = surface(objective, best, _covariance(evidence, weights, flux, best), threshold)
+        lower = _minimum(evidence, weights, flux, found.lowest)
+        if objective(lower) > objective(best) - NEGLIGIBLE:
+            break
+        best = lower
     return Fitted(tuple(evidence), tuple(weights), flux, best, found, objective(best))
 
 
