@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from ctypes import POINTER, c_double
+from dataclasses import replace
 from itertools import product
 from math import pi
 from random import Random
@@ -72,6 +73,14 @@ def test_any_subset_conserves_mass(names: list[str]) -> None:
 @pytest.mark.parametrize("name", WITH_TERMS)
 def test_mass_is_conserved(name: str) -> None:
     found = with_effects(typical(name), rtol=1e-8)
+    assert mass_unaccounted_for(found) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", WITH_TERMS)
+def test_every_effect_fits_an_engine_with_the_reports_constant_losses(name: str) -> None:
+    feed = replace(engine_on_stand().feed, loss_factor=0.0, constant_losses=(12e5, 8e5))
+    found = with_effects(typical(name), rtol=1e-8, feed=feed)
+    assert np.isfinite(found.outputs).all()
     assert mass_unaccounted_for(found) == pytest.approx(0.0, abs=1e-6)
 
 
