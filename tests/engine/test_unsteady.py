@@ -284,13 +284,10 @@ def test_some_random_engines_run_and_some_do_not() -> None:
 
 
 def test_states_that_are_not_numbers_give_rates_that_are_not_and_no_crash() -> None:
-    from hfanalysis.engine.model import OUTPUTS, STATES, rates
-    from hfanalysis.engine.sites import ENVIRONMENT, SITES
+    from hfanalysis.engine.model import OUTPUTS, STATES, evaluate_rates
 
-    steps = burnt().steps
-    work = (np.zeros(len(ENVIRONMENT)), np.zeros(len(SITES)))
+    equations = engine().equations(burnt().steps.composition)
     dy, out = np.zeros(len(STATES)), np.zeros(len(OUTPUTS))
-    c, terms = steps.composition.constants, steps.composition.terms
     for liquid in (True, False):
-        rates(0.0, np.full(len(STATES), np.nan), liquid, True, engine().tables, c, terms, work, dy, out)
+        evaluate_rates(0.0, np.full(len(STATES), np.nan), liquid, True, equations, dy, out)
         assert np.isnan(dy[:2]).all()

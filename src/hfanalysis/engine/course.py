@@ -7,10 +7,12 @@ change only between steps.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from hfanalysis.compiled import compiled, inlined, separate
 from hfanalysis.engine.model import (
     ALTITUDE,
     CHAMBER_NITROGEN,
@@ -18,10 +20,10 @@ from hfanalysis.engine.model import (
     COLD_ENERGY,
     COMPRESSIBILITY,
     ENTHALPY,
+    EVALUATION,
     EXIT_AREA,
     EXPONENT,
     FLIES,
-    FUEL,
     IMPULSE,
     LAUNCH_ALTITUDE,
     NITROGEN,
@@ -30,21 +32,20 @@ from hfanalysis.engine.model import (
     O_GAMMA,
     OUTER_RADIUS,
     OUTPUTS,
-    OXIDIZER,
     OXIDIZER_ENTHALPY,
     PAD,
     POLYTROPIC_EXPONENT,
     RADIUS,
     SPEED,
-    STATES,
     TANK,
     TEMPERATURE,
     THROAT_AREA,
     VOLUME,
-    Table,
-    Tables,
-    Work,
-    rates,
+    Equations,
+    address_of,
+    call,
+    equations_at,
+    rates_at,
 )
 from hfanalysis.engine.nozzle import mach_at_area, pressure_ratio
 from hfanalysis.engine.rosenbrock import (
@@ -55,19 +56,12 @@ from hfanalysis.engine.rosenbrock import (
     TIME_SLOPE,
     A,
     C,
+    copy,
     factorize,
     interpolate,
     substitute,
 )
-from hfanalysis.engine.sites import (
-    ENVIRONMENT,
-    PARAMETERS_AT,
-    SITES,
-    STATES_AT,
-    SWITCH_ADDRESS,
-    THROAT_FACTOR,
-    call_switch,
-)
+from hfanalysis.engine.sites import PARAMETERS_AT, STATES_AT, SWITCH_ADDRESS, THROAT_FACTOR, call_switch
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, liquid_mass
 from hfanalysis.thermo.saturation import LN_PRESSURE, LN_VAPOR_CP, LN_VAPOR_CV, evaluate
 
@@ -81,7 +75,7 @@ LIQUID_OUT, FUEL_OUT, GROUND, CHOKING = range(4)
 """Events of the engine; those from OWN_EVENTS on are the switches of its terms."""
 OWN_EVENTS = 4
 
-REACHED_END, BURNT_OUT, GIVEN_UP, STUCK = range(4)
+REACHED_END, BURNT_OUT, GIVEN_UP = range(3)
 """How a run ends."""
 
 MOST_STEPS = 8000
@@ -91,328 +85,419 @@ FIRST_STEP = 1e-5
 """Seconds; after an event a step begins anew with ten times this at most."""
 
 LEAST_STEP = 1e-13
+"""Seconds, or relative to the time."""
+
+ROOM = 256
+"""Steps that there is room for at first."""
+
+TICK = 1e-6
+"""Seconds: the difference with which slopes in time are formed."""
 
 INCREMENT = 1e-7
 """Relative to a state, or to its scale: the difference with which Jacobians are formed."""
 
 
-@njit(cache=True, error_model="numpy")
-def active_states(c: Array, y: Array, liquid: bool, burning: bool, terms: Integers) -> Integers:
-    """Indices of the states that move in a phase; the others stay, and the linear algebra is spared them."""
-    out = np.empty(y.size, dtype=np.int64)
-    n = 0
-    for i in range(y.size):
-        moves = i in (TANK, TEMPERATURE, OXIDIZER, FUEL, IMPULSE) or i >= len(STATES)
-        if i == RADIUS:
-            moves = burning
-        elif i in (ALTITUDE, SPEED):
-            moves = c[FLIES] > 0.0
-        elif i in (NITROGEN, CHAMBER_NITROGEN):
-            moves = terms.shape[0] > 0
-        elif i == ENTHALPY:
-            moves = np.isnan(c[OXIDIZER_ENTHALPY])
-        elif i in (COLD, COLD_ENERGY):
-            moves = not burning
-        if moves:
+@compiled
+def moves(i: int, burning: bool, c: Array, terms: int) -> bool:
+    """Whether a state changes in a phase."""
+    if i == RADIUS:
+        return burning
+    if i in (ALTITUDE, SPEED):
+        return bool(c[FLIES] > 0.0)
+    if i in (NITROGEN, CHAMBER_NITROGEN):
+        return terms > 0
+    if i == ENTHALPY:
+        return bool(np.isnan(c[OXIDIZER_ENTHALPY]))
+    if i in (COLD, COLD_ENERGY):
+        return not burning
+    return i not in (COMPRESSIBILITY, EXPONENT)
+
+
+@compiled
+def active_states(size: int, burning: bool, c: Array, terms: int) -> Integers:
+    """Indices of the states that change in a phase; the others stay, and the linear algebra is spared them."""
+    out, n = np.empty(size, dtype=np.int64), 0
+    for i in range(size):
+        if moves(i, burning, c, terms):
             out[n] = i
             n += 1
     return out[:n].copy()
 
 
-@njit(cache=True, error_model="numpy")
-def event_values(
-    t: float, y: Array, liquid: bool, burning: bool, tables: Tables, c: Array, terms: Integers, work: Work, out: Array,
-    values: Array,
-) -> None:  # fmt: skip
-    """Positive before an event and negative after (switches: either way); ``work`` and ``out`` are those of
+class Scratch(NamedTuple):
+    """Room for a step in one phase.
+
+    ``active`` states; stages ``u``, Jacobian, its factors; rates at the start (``f``), at the end (``g``), on the way
+    (``moved``), and their ``slope`` in time; the state tried; outputs at the start and of the last evaluation; values
+    of the events at the start, at the end, on the way.
+    """
+
+    active: Integers
+    u: Array
+    jac: Array
+    lu: Array
+    pivots: Integers
+    f: Array
+    g: Array
+    moved: Array
+    slope: Array
+    trial: Array
+    start_out: Array
+    out: Array
+    before: Array
+    after: Array
+    values: Array
+
+
+class History(NamedTuple):
+    """Steps as :func:`integrate` returns them, with room for more."""
+
+    times: Array
+    begin: Array
+    end: Array
+    outputs: Array
+    dense: Array
+    phases: Integers
+    events: Integers
+
+
+@separate(EVALUATION)
+def event_values(t: float, y: Array, liquid: bool, burning: bool, model: int, out: Array, values: Array) -> None:
+    """Positive before an event and negative after (switches: either way); ``out`` and ENVIRONMENT are those of
     ``rates`` at ``y``."""
-    values[LIQUID_OUT] = liquid_mass(tables[0], c[VOLUME], y[TANK], y[TEMPERATURE]) if liquid else 1.0
+    m, dry = equations_at(model), 1.0
+    c = m.c
+    if liquid:
+        dry = liquid_mass(m.saturation, c[VOLUME], y[TANK], y[TEMPERATURE])
+    values[LIQUID_OUT] = dry
     values[FUEL_OUT] = c[OUTER_RADIUS] - y[RADIUS] if burning else 1.0
     values[GROUND] = y[ALTITUDE] - c[LAUNCH_ALTITUDE] + PAD if c[FLIES] > 0.0 else 1.0
-    subsonic = mach_at_area(c[EXIT_AREA] / (c[THROAT_AREA] * work[1][THROAT_FACTOR]), out[O_GAMMA], False)
+    subsonic = mach_at_area(c[EXIT_AREA] / (c[THROAT_AREA] * m.site[THROAT_FACTOR]), out[O_GAMMA], False)
     values[CHOKING] = out[O_CHAMBER_PRESSURE] * pressure_ratio(subsonic, out[O_GAMMA]) - out[O_AMBIENT]
-    for k in range(terms.shape[0]):
-        address = terms[k, SWITCH_ADDRESS]
+    for k in range(m.terms.shape[0]):
+        address = m.terms[k, SWITCH_ADDRESS]
         value = 1.0
         if address != 0:
-            value = call_switch(address, t, work[0], c, terms[k, PARAMETERS_AT], y, terms[k, STATES_AT])  # type: ignore[call-arg]
+            value = call_switch(address, t, m.env, c, m.terms[k, PARAMETERS_AT], y, m.terms[k, STATES_AT])  # type: ignore[call-arg]
         values[OWN_EVENTS + k] = value
 
 
-@njit(cache=True, error_model="numpy")
-def change(event: int, c: Array, sat: Table, y: Array) -> None:
+@inlined
+def events_at(t: float, y: Array, liquid: bool, burning: bool, model: int, out: Array, values: Array) -> None:
+    """:func:`event_values`, for other compiled code: called, not merged into it."""
+    call(equations_at(model).events, t, y, liquid, burning, model, out, values)
+
+
+@compiled
+def evaluate_events(t: float, y: Array, liquid: bool, burning: bool, m: Equations, out: Array, values: Array) -> None:
+    """:func:`event_values`, for Python."""
+    call(m.events, t, y, liquid, burning, address_of(m), out, values)
+
+
+@compiled
+def change(event: int, m: Equations, y: Array) -> None:
     """What an event does to the state."""
     if event == LIQUID_OUT:
-        p = np.exp(evaluate(sat[0], sat[1], sat[2], sat[3], LN_PRESSURE, y[TEMPERATURE])[0])
-        y[COMPRESSIBILITY] = p * c[VOLUME] / (y[TANK] * SPECIFIC_GAS_CONSTANT * y[TEMPERATURE])
-        y[EXPONENT] = c[POLYTROPIC_EXPONENT]
+        p = np.exp(at_saturation(m, LN_PRESSURE, y[TEMPERATURE]))
+        y[COMPRESSIBILITY] = p * m.c[VOLUME] / (y[TANK] * SPECIFIC_GAS_CONSTANT * y[TEMPERATURE])
+        y[EXPONENT] = m.c[POLYTROPIC_EXPONENT]
         if np.isnan(y[EXPONENT]):
-            cv = evaluate(sat[0], sat[1], sat[2], sat[3], LN_VAPOR_CV, y[TEMPERATURE])[0]
-            cp = evaluate(sat[0], sat[1], sat[2], sat[3], LN_VAPOR_CP, y[TEMPERATURE])[0]
+            cp, cv = at_saturation(m, LN_VAPOR_CP, y[TEMPERATURE]), at_saturation(m, LN_VAPOR_CV, y[TEMPERATURE])
             y[EXPONENT] = np.exp(cp - cv)
     elif event == GROUND:
-        y[ALTITUDE], y[SPEED] = c[LAUNCH_ALTITUDE], 0.0
+        y[ALTITUDE], y[SPEED] = m.c[LAUNCH_ALTITUDE], 0.0
 
 
-@njit(cache=True, error_model="numpy")
-def jacobian(
-    t: float, y: Array, f: Array, active: Integers, scales: Array, liquid: bool, burning: bool, tables: Tables,
-    c: Array, terms: Integers, work: Work, out: Array, moved: Array, jac: Array,
-) -> None:  # fmt: skip
-    """df/dy of the active states by forward differences; the impulse moves nothing."""
-    moved[:] = 0.0
-    for column in range(active.size):
-        j = active[column]
-        if j == IMPULSE:
-            jac[:, column] = 0.0
-            continue
-        kept = y[j]
-        step = INCREMENT * max(abs(kept), scales[j])
-        y[j] = kept + step
-        step = y[j] - kept
-        rates(t, y, liquid, burning, tables, c, terms, work, moved, out)
-        y[j] = kept
-        for row in range(active.size):
-            jac[row, column] = (moved[active[row]] - f[active[row]]) / step
+@compiled
+def at_saturation(m: Equations, row: int, temperature: float) -> float:
+    """A row of the table of saturated nitrous oxide."""
+    table, start, step, critical = m.saturation
+    return float(evaluate(table, start, step, critical, row, temperature)[0])
 
 
-@njit(cache=True, error_model="numpy")
-def stages(
-    t: float, y: Array, h: float, f: Array, slope: Array, jac: Array, active: Integers, liquid: bool, burning: bool,
-    tables: Tables, c: Array, terms: Integers, work: Work, out: Array, u: Array, dy: Array,
-    trial: Array, lu: Array, pivots: Integers,
-) -> bool:  # fmt: skip
-    """The eight stages ``u`` of a step and its result ``trial``; the last stage is the error. False: singular."""
-    n = active.size
+@compiled
+def enter(t: float, y: Array, liquid: bool, burning: bool, model: int) -> Scratch:
+    """Room for the steps of a phase, with rates, outputs and events at its start."""
+    m, size, outs = equations_at(model), y.size, len(OUTPUTS)
+    active = active_states(size, burning, m.c, m.terms.shape[0])
+    n, kinds = active.size, OWN_EVENTS + m.terms.shape[0]
+    s = Scratch(
+        active, np.zeros((STAGES, n)), np.zeros((n, n)), np.zeros((n, n)), np.zeros(n, dtype=np.int64),
+        np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size),
+        np.zeros(outs), np.zeros(outs), np.ones(kinds), np.ones(kinds), np.ones(kinds),
+    )  # fmt: skip
+    rates_at(t, y, liquid, burning, model, s.f, s.out)
+    events_at(t, y, liquid, burning, model, s.out, s.before)
+    copy(s.out, s.start_out, outs)
+    return s
+
+
+@compiled
+def linearize(t: float, y: Array, liquid: bool, burning: bool, scales: Array, model: int, s: Scratch) -> None:
+    """Jacobian of the active states and slope in time, by forward differences; the impulse moves nothing."""
+    for column in range(s.active.size):
+        j = s.active[column]
+        if j != IMPULSE:
+            kept = y[j]
+            y[j] = kept + INCREMENT * max(abs(kept), scales[j])
+            step = y[j] - kept
+            rates_at(t, y, liquid, burning, model, s.moved, s.out)
+            y[j] = kept
+            for row in range(s.active.size):
+                s.jac[row, column] = (s.moved[s.active[row]] - s.f[s.active[row]]) / step
+    if equations_at(model).terms.shape[0] > 0:
+        rates_at(t + TICK, y, liquid, burning, model, s.moved, s.out)
+        for i in range(y.size):
+            s.slope[i] = (s.moved[i] - s.f[i]) / TICK
+
+
+@compiled
+def attempt(t: float, y: Array, h: float, liquid: bool, burning: bool, model: int, s: Scratch) -> bool:
+    """The stages ``u`` of a step and its result, ``trial``; the last stage is the error. False: singular."""
+    n = s.active.size
     for i in range(n):
         for j in range(n):
-            lu[i, j] = -jac[i, j]
-        lu[i, i] += 1.0 / (h * GAMMA)
-    if not factorize(lu, pivots):
+            s.lu[i, j] = -s.jac[i, j]
+        s.lu[i, i] += 1.0 / (h * GAMMA)
+    if not factorize(s.lu, s.pivots):
         return False
-    for s in range(STAGES):
-        trial[:] = y
-        for k in range(s):
-            if A[s, k] != 0.0:
-                for i in range(n):
-                    trial[active[i]] += A[s, k] * u[k, i]
-        if s == 0:
-            dy[:] = f
-        else:
-            rates(t + TIME[s] * h, trial, liquid, burning, tables, c, terms, work, dy, out)
-        for i in range(n):
-            total = dy[active[i]] + h * TIME_SLOPE[s] * slope[active[i]]
-            for k in range(s):
-                total += C[s, k] / h * u[k, i]
-            u[s, i] = total
-        substitute(lu, pivots, u[s])
+    for k in range(STAGES):
+        stage(k, t, y, h, liquid, burning, model, s)
     for i in range(n):
-        trial[active[i]] += u[STAGES - 1, i]
+        s.trial[s.active[i]] += s.u[STAGES - 1, i]
     return True
 
 
-@njit(cache=True, error_model="numpy")
-def error_norm(y: Array, trial: Array, u: Array, active: Integers, scales: Array, rtol: float, counted: int) -> float:
-    """Root mean square of the error in units of its tolerance; of the first ``counted`` states."""
-    total, n = 0.0, 0
-    for i in range(active.size):
-        j = active[i]
-        if j < counted:
-            unit = rtol * (scales[j] + max(abs(y[j]), abs(trial[j])))
-            total += (u[STAGES - 1, i] / unit) ** 2
-            n += 1
-    return float(np.sqrt(total / n))
+@compiled
+def stage(k: int, t: float, y: Array, h: float, liquid: bool, burning: bool, model: int, s: Scratch) -> None:
+    """Stage ``k``, from those before it; leaves the state it was evaluated at in ``trial``."""
+    copy(y, s.trial, y.size)
+    for j in range(k):
+        if A[k, j] != 0.0:
+            for i in range(s.active.size):
+                s.trial[s.active[i]] += A[k, j] * s.u[j, i]
+    rate = s.f
+    if k > 0:
+        rates_at(t + TIME[k] * h, s.trial, liquid, burning, model, s.moved, s.out)
+        rate = s.moved
+    for i in range(s.active.size):
+        total = rate[s.active[i]] + h * TIME_SLOPE[k] * s.slope[s.active[i]]
+        for j in range(k):
+            total += C[k, j] / h * s.u[j, i]
+        s.u[k, i] = total
+    substitute(s.lu, s.pivots, s.u[k])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
+def error_norm(y: Array, scales: Array, rtol: float, s: Scratch) -> float:
+    """Root mean square of the error in units of its tolerance."""
+    total = 0.0
+    for i in range(s.active.size):
+        j = s.active[i]
+        unit = rtol * (scales[j] + max(abs(y[j]), abs(s.trial[j])))
+        total += (s.u[STAGES - 1, i] / unit) ** 2
+    return float(np.sqrt(total / s.active.size))
+
+
+@compiled
+def arrive(t: float, liquid: bool, burning: bool, model: int, s: Scratch, dense: Array) -> None:
+    """Rates, outputs and events at the end of a step, and its interpolant."""
+    rates_at(t, s.trial, liquid, burning, model, s.g, s.out)
+    events_at(t, s.trial, liquid, burning, model, s.out, s.after)
+    for k in range(3):
+        for i in range(s.trial.size):
+            dense[k, i] = 0.0
+        for i in range(s.active.size):
+            for j in range(STAGES):
+                dense[k, s.active[i]] += DENSE[k, j] * s.u[j, i]
+
+
+@compiled
+def passed(event: int, before: float, after: float) -> bool:
+    """Whether an event lies between two values of its function: the engine's own downwards, switches either way."""
+    return before > 0.0 >= after if event < OWN_EVENTS else before * after < 0.0
+
+
+@compiled
+def value_within(
+    event: int, theta: float, t: float, y: Array, h: float, dense: Array, liquid: bool, burning: bool, model: int,
+    s: Scratch,
+) -> float:  # fmt: skip
+    """An event's value at a fraction of a step."""
+    between = np.empty_like(y)
+    interpolate(theta, y, s.trial, dense, between)
+    out = np.empty_like(s.out)
+    rates_at(t + theta * h, between, liquid, burning, model, s.moved, out)
+    events_at(t + theta * h, between, liquid, burning, model, out, s.values)
+    return float(s.values[event])
+
+
+@compiled
+def locate(
+    event: int, latest: float, t: float, y: Array, h: float, dense: Array, liquid: bool, burning: bool, model: int,
+    s: Scratch,
+) -> float:  # fmt: skip
+    """The fraction of a step at which an event happens, by false position and halving; 2 if not up to ``latest``."""
+    low, low_value, high, high_value = 0.0, s.before[event], latest, s.after[event]
+    if latest < 1.0:
+        high_value = value_within(event, latest, t, y, h, dense, liquid, burning, model, s)
+        if low_value * high_value > 0.0:
+            return 2.0
+    for turn in range(60):
+        share = low_value / (low_value - high_value) if turn % 3 < 2 else 0.5
+        theta = min(max(low + (high - low) * share, low), high)
+        value = value_within(event, theta, t, y, h, dense, liquid, burning, model, s)
+        if value * low_value > 0.0:
+            low, low_value = theta, value
+        else:
+            high, high_value = theta, value
+        if (high - low) * h < 1e-12 * max(1.0, t) or value == 0.0:
+            break
+    return high
+
+
+@compiled
+def first_event(
+    t: float, y: Array, h: float, dense: Array, liquid: bool, burning: bool, model: int, s: Scratch
+) -> tuple[int, float]:
+    """The earliest event within a step (-1: none) and the fraction of the step at which it happens."""
+    event, theta = -1, 1.0
+    for k in range(s.before.size):
+        if passed(k, s.before[k], s.after[k]):
+            found = locate(k, theta, t, y, h, dense, liquid, burning, model, s)
+            if found <= 1.0:
+                event, theta = k, found
+    return event, theta
+
+
+@compiled
+def empty_history(room: int, size: int) -> History:
+    """Room for so many steps."""
+    return History(
+        np.empty((room, 2)), np.empty((room, size)), np.empty((room, size)), np.empty((room, 2, len(OUTPUTS))),
+        np.empty((room, 3, size)), np.empty((room, 2), dtype=np.int64), np.empty(room, dtype=np.int64),
+    )  # fmt: skip
+
+
+@compiled
+def first(steps: History, n: int, room: int) -> History:
+    """The first ``n`` steps, with room for ``room``."""
+    out = empty_history(room, steps.begin.shape[1])
+    copy(steps.times, out.times, 2 * n)
+    copy(steps.begin, out.begin, n * steps.begin.shape[1])
+    copy(steps.end, out.end, n * steps.end.shape[1])
+    copy(steps.outputs, out.outputs, n * 2 * len(OUTPUTS))
+    copy(steps.dense, out.dense, n * 3 * steps.begin.shape[1])
+    for i in range(n):
+        out.phases[i, 0], out.phases[i, 1], out.events[i] = steps.phases[i, 0], steps.phases[i, 1], steps.events[i]
+    return out
+
+
+@compiled
+def record(
+    steps: History, n: int, t: float, y: Array, h: float, liquid: bool, burning: bool, event: int, s: Scratch
+) -> None:
+    """Keep a step."""
+    steps.times[n, 0], steps.times[n, 1] = t, t + h
+    steps.phases[n, 0], steps.phases[n, 1], steps.events[n] = int(liquid), int(burning), event
+    copy(y, steps.begin[n], y.size)
+    copy(s.trial, steps.end[n], y.size)
+    copy(s.start_out, steps.outputs[n, 0], s.out.size)
+    copy(s.out, steps.outputs[n, 1], s.out.size)
+
+
+@compiled
+def shortened(h: float, error: float) -> float:
+    """The step to try after one whose error was too large."""
+    return h * max(0.2, 0.9 * error**-0.2) if np.isfinite(error) else 0.1 * h
+
+
+@compiled
+def next_step(h: float, error: float, old_error: float, rejected: bool) -> float:
+    """The step after an accepted one (PI control)."""
+    factor = 0.9 * max(error, 1e-10) ** -0.14 * old_error**0.08
+    return h * min(max(factor, 0.2), 1.0 if rejected else 6.0)
+
+
+@compiled
+def advance(y: Array, s: Scratch) -> None:
+    """The end of a step becomes the start of the next."""
+    copy(s.trial, y, y.size)
+    copy(s.g, s.f, y.size)
+    copy(s.after, s.before, s.before.size)
+    copy(s.out, s.start_out, s.out.size)
+
+
+@compiled(nogil=True)
 def integrate(
-    y0: Array, longest: float, run_on: bool, rtol: float, scales: Array, tables: Tables, c: Array, terms: Integers
-) -> tuple[int, int, Array, Array, Array, Array, Array, Integers, Integers, Array, Integers]:
-    """From ignition until the fuel is gone, or on to ``longest`` seconds where it is to ``run_on``.
+    y0: Array, longest: float, run_on: bool, rtol: float, scales: Array, m: Equations, liquid: bool, burning: bool
+) -> tuple[int, History, Array]:
+    """From ignition (``liquid``, ``burning``) until the fuel is gone, or to ``longest`` seconds if it is to ``run_on``.
 
-    Returns how it ended, the number of steps n, and per step: times (n, 2) of start and end, states at start and end,
-    outputs at start and end (before an event changes the equations), interpolants (n, 3, states), phases (n, 2: liquid,
-    burning), the event at its end (-1: none); and the number of every event's last occurrence with its time.
+    Returns how it ended and per step: times (n, 2) of start and end, states at start and end, outputs at start and end
+    (before an event changes the equations), interpolants (n, 3, states), phases (n, 2: liquid, burning), the event at
+    its end (-1: none); and the time of every event's last occurrence (NaN: none).
     """
-    size, kinds = y0.size, OWN_EVENTS + terms.shape[0]
-    room = 256
-    times, begin, end = np.empty((room, 2)), np.empty((room, size)), np.empty((room, size))
-    outputs = np.empty((room, 2, len(OUTPUTS)))
-    dense = np.zeros((room, 3, size))
-    phases, events = np.empty((room, 2), dtype=np.int64), np.empty(room, dtype=np.int64)
-    work, out = (np.zeros(len(ENVIRONMENT)), np.zeros(len(SITES))), np.zeros(len(OUTPUTS))
-    f, g, trial, middle = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
-    moved, slope, later = np.zeros(size), np.zeros(size), np.zeros(size)
-    before, after, values = np.ones(kinds), np.ones(kinds), np.ones(kinds)
-    happened = np.full(kinds, np.nan)
-    y = y0.copy()
-    t, n, h, liquid, burning, ending = 0.0, 0, FIRST_STEP, True, True, REACHED_END
-    counted = size
-    active = active_states(c, y, liquid, burning, terms)
-    u, jac = np.zeros((STAGES, active.size)), np.zeros((active.size, active.size))
-    lu, pivots = np.zeros((active.size, active.size)), np.zeros(active.size, dtype=np.int64)
-    rates(t, y, liquid, burning, tables, c, terms, work, f, out)
-    event_values(t, y, liquid, burning, tables, c, terms, work, out, before)
-    old_error, rejected, attempts = 1.0, False, 0
-    fresh = True
-    start_out = out.copy()
-    while t < longest:
-        if attempts > MOST_STEPS:
+    y, steps = y0.copy(), empty_history(ROOM, y0.size)
+    t, n, h, ending, model = 0.0, 0, FIRST_STEP, REACHED_END, address_of(m)
+    s = enter(t, y, liquid, burning, model)
+    happened = np.full(s.before.size, np.nan)
+    old_error, rejected, fresh, attempts = 1.0, False, True, 0
+    while t < longest and ending == REACHED_END:
+        attempts += 1
+        h, least = min(h, longest - t), LEAST_STEP * max(1.0, t)
+        if attempts > MOST_STEPS or (h < least and longest - t > 2.0 * least):
             ending = GIVEN_UP
             break
-        attempts += 1
         if fresh:
-            jacobian(t, y, f, active, scales, liquid, burning, tables, c, terms, work, out, moved, jac)
-            slope[:] = 0.0
-            if terms.shape[0] > 0:
-                tick = 1e-6
-                rates(t + tick, y, liquid, burning, tables, c, terms, work, later, out)
-                for i in range(size):
-                    slope[i] = (later[i] - f[i]) / tick
-            fresh = False
-        h = min(h, longest - t)
-        if h < LEAST_STEP * max(1.0, t) and longest - t > LEAST_STEP * max(1.0, t) * 2.0:
-            ending = STUCK
-            break
-        fine = stages(t, y, h, f, slope, jac, active, liquid, burning, tables, c, terms, work, out, u, g, trial,
-                      lu, pivots)  # fmt: skip
-        error = error_norm(y, trial, u, active, scales, rtol, counted) if fine else np.inf
-        if not error <= 1.0:
-            h *= max(0.2, 0.9 * error**-0.2) if np.isfinite(error) else 0.1
-            rejected = True
+            linearize(t, y, liquid, burning, scales, model, s)
+        error = error_norm(y, scales, rtol, s) if attempt(t, y, h, liquid, burning, model, s) else np.inf
+        rejected, fresh = rejected or not error <= 1.0, error <= 1.0
+        if not fresh:
+            h = shortened(h, error)
             continue
-        rates(t + h, trial, liquid, burning, tables, c, terms, work, g, out)
-        event_values(t + h, trial, liquid, burning, tables, c, terms, work, out, after)
-        event, theta = -1, 1.0
-        # the interpolant, for events and for output
-        if n == room:
-            room *= 2
-            times, begin, end = _longer(times, room), _longer(begin, room), _longer(end, room)
-            outputs, dense = _longer3(outputs, room), _longer3(dense, room)
-            more, more_events = np.empty((room, 2), dtype=np.int64), np.empty(room, dtype=np.int64)
-            more[:n], more_events[:n] = phases, events
-            phases, events = more, more_events
-        _dense(u, active, dense[n])
-        for k in range(kinds):
-            passed = before[k] > 0.0 >= after[k] if k < OWN_EVENTS else before[k] * after[k] < 0.0
-            if passed:
-                low, high, low_value, high_value = 0.0, theta, before[k], after[k]
-                if theta < 1.0:
-                    interpolate(theta, y, trial, dense[n], middle)
-                    rates(t + theta * h, middle, liquid, burning, tables, c, terms, work, moved, out)
-                    event_values(t + theta * h, middle, liquid, burning, tables, c, terms, work, out, values)
-                    high_value = values[k]
-                    if low_value * high_value > 0.0:
-                        continue
-                for turn in range(60):
-                    guess = (
-                        low + (high - low) * low_value / (low_value - high_value)
-                        if turn % 3 < 2
-                        else 0.5 * (low + high)
-                    )
-                    guess = min(max(guess, low), high)
-                    interpolate(guess, y, trial, dense[n], middle)
-                    rates(t + guess * h, middle, liquid, burning, tables, c, terms, work, moved, out)
-                    event_values(t + guess * h, middle, liquid, burning, tables, c, terms, work, out, values)
-                    if values[k] * low_value > 0.0:
-                        low, low_value = guess, values[k]
-                    else:
-                        high, high_value = guess, values[k]
-                    if (high - low) * h < 1e-12 * max(1.0, t) or values[k] == 0.0:
-                        break
-                event, theta = k, high
-        if event >= 0 and theta < 1.0:
+        if n == steps.times.shape[0]:
+            steps = first(steps, n, 2 * n)
+        arrive(t + h, liquid, burning, model, s, steps.dense[n])
+        event, theta = first_event(t, y, h, steps.dense[n], liquid, burning, model, s)
+        if theta < 1.0:
             h *= theta
-            stages(t, y, h, f, slope, jac, active, liquid, burning, tables, c, terms, work, out, u, g, trial, lu,
-                   pivots)  # fmt: skip
-            _dense(u, active, dense[n])
-            rates(t + h, trial, liquid, burning, tables, c, terms, work, g, out)
-            event_values(t + h, trial, liquid, burning, tables, c, terms, work, out, after)
-        times[n, 0], times[n, 1] = t, t + h
-        begin[n], end[n] = y, trial
-        outputs[n, 0], outputs[n, 1] = start_out, out
-        phases[n, 0], phases[n, 1], events[n] = int(liquid), int(burning), event
-        n += 1
-        t += h
-        y[:], f[:] = trial, g
-        beyond = -1e-300 if event >= 0 and before[event] > 0.0 else 1e-300
-        before[:] = after
-        start_out[:] = out
-        fresh = True
-        if event >= 0:
-            happened[event] = t
-            if event == FUEL_OUT:
-                if not run_on:
-                    ending = BURNT_OUT
-                    break
-                burning = False
-            elif event == LIQUID_OUT:
-                liquid = False
-            change(event, c, tables[0], y)
-            if burning and y[RADIUS] >= c[OUTER_RADIUS]:
-                happened[FUEL_OUT] = t
-                if not run_on:
-                    ending = BURNT_OUT
-                    break
-                burning = False
-            active = active_states(c, y, liquid, burning, terms)
-            u, jac = np.zeros((STAGES, active.size)), np.zeros((active.size, active.size))
-            lu, pivots = np.zeros((active.size, active.size)), np.zeros(active.size, dtype=np.int64)
-            rates(t, y, liquid, burning, tables, c, terms, work, f, out)
-            start_out[:] = out
-            event_values(t, y, liquid, burning, tables, c, terms, work, out, before)
-            if event >= CHOKING:
-                before[event] = beyond  # by definition, or the same crossing would be found again
-            if event != CHOKING:
-                h = min(h, 10.0 * FIRST_STEP)
-            old_error, rejected = 1.0, False
+            attempt(t, y, h, liquid, burning, model, s)
+            arrive(t + h, liquid, burning, model, s, steps.dense[n])
+        record(steps, n, t, y, h, liquid, burning, event, s)
+        n, t, falling = n + 1, t + h, event >= 0 and s.before[event] > 0.0
+        advance(y, s)
+        if event < 0:
+            h = next_step(h, error, old_error, rejected)
+            old_error, rejected = max(error, 1e-4), False
             continue
-        factor = 0.9 * max(error, 1e-10) ** -0.14 * old_error**0.08
-        h *= min(max(factor, 0.2), 1.0 if rejected else 6.0)
-        old_error, rejected = max(error, 1e-4), False
-    if ending == REACHED_END and n == 0:
-        ending = STUCK
-    return (ending, n, times[:n].copy(), begin[:n].copy(), end[:n].copy(), outputs[:n].copy(), dense[:n].copy(),
-            phases[:n].copy(), events[:n].copy(), happened, active)  # fmt: skip
+        happened[event] = t
+        liquid = liquid and event != LIQUID_OUT
+        change(event, m, y)
+        if burning and (event == FUEL_OUT or y[RADIUS] >= m.c[OUTER_RADIUS]):
+            burning, happened[FUEL_OUT] = False, t
+            ending = REACHED_END if run_on else BURNT_OUT
+        s = enter(t, y, liquid, burning, model)
+        if event >= CHOKING:
+            s.before[event] = -1e-300 if falling else 1e-300  # or the same crossing would be found again
+        if event != CHOKING:
+            h = min(h, 10.0 * FIRST_STEP)
+        old_error, rejected = 1.0, False
+    return ending, first(steps, n, n), happened
 
 
-@njit(cache=True, error_model="numpy")
-def _dense(u: Array, active: Integers, dense: Array) -> None:
-    dense[:] = 0.0
-    for i in range(active.size):
-        for s in range(STAGES):
-            for k in range(3):
-                dense[k, active[i]] += DENSE[k, s] * u[s, i]
-
-
-@njit(cache=True, error_model="numpy")
-def _longer(rows: Array, room: int) -> Array:
-    out = np.empty((room, rows.shape[1]))
-    out[: rows.shape[0]] = rows
-    return out
-
-
-@njit(cache=True, error_model="numpy")
-def _longer3(rows: Array, room: int) -> Array:
-    out = np.zeros((room, rows.shape[1], rows.shape[2]))
-    out[: rows.shape[0]] = rows
-    return out
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def sample(
-    at: Array, times: Array, begin: Array, end: Array, dense: Array, phases: Integers, tables: Tables, c: Array,
-    terms: Integers,
-) -> tuple[Array, Array]:  # fmt: skip
+@compiled(nogil=True)
+def sample(at: Array, steps: History, m: Equations) -> tuple[Array, Array]:
     """States and outputs at increasing times, from the steps' interpolants; the ends are held."""
-    states, outputs = np.empty((at.size, begin.shape[1])), np.empty((at.size, len(OUTPUTS)))
-    work, dy = (np.zeros(len(ENVIRONMENT)), np.zeros(len(SITES))), np.zeros(begin.shape[1])
+    size = steps.begin.shape[1]
+    states, outputs, dy = np.empty((at.size, size)), np.empty((at.size, len(OUTPUTS))), np.zeros(size)
+    times, phases, model = steps.times, steps.phases, address_of(m)
     k, last = 0, times.shape[0] - 1
     for i in range(at.size):
         while k < last and at[i] > times[k, 1]:
             k += 1
         t = min(max(at[i], times[0, 0]), times[last, 1])
         theta = (t - times[k, 0]) / (times[k, 1] - times[k, 0])
-        interpolate(theta, begin[k], end[k], dense[k], states[i])
-        rates(t, states[i], phases[k, 0] == 1, phases[k, 1] == 1, tables, c, terms, work, dy, outputs[i])
+        interpolate(theta, steps.begin[k], steps.end[k], steps.dense[k], states[i])
+        rates_at(t, states[i], phases[k, 0] == 1, phases[k, 1] == 1, model, dy, outputs[i])
     return states, outputs

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.course import FUEL_OUT, GROUND, LIQUID_OUT, OWN_EVENTS, SCALES, change, event_values
+from hfanalysis.engine.course import FUEL_OUT, GROUND, LIQUID_OUT, OWN_EVENTS, SCALES, change, evaluate_events
 from hfanalysis.engine.effect import Composition, compose
-from hfanalysis.engine.model import OUTPUTS, STATES, rates
-from hfanalysis.engine.sites import ENVIRONMENT, SITES
+from hfanalysis.engine.model import OUTPUTS, STATES, evaluate_rates
 from hfanalysis.engine.unsteady import Engine, check, constants, initial
 
 Array = NDArray[np.float64]
@@ -43,7 +42,7 @@ def burn_by_cvode(engine: Engine, longest: float = 120.0, rtol: float = 1e-8, ru
         if event is None:
             break
         events[event] = t
-        change(event, composition.constants, engine.saturation.kernel_table, y)
+        change(event, engine.equations(composition), y)
         liquid, burning = liquid and event != LIQUID_OUT, burning and event != FUEL_OUT
     return Course(np.concatenate(times), np.concatenate(states), events)
 
@@ -54,17 +53,16 @@ def _phase(
 ) -> tuple[Array, Array, int | None]:  # fmt: skip
     from sksundae.cvode import CVODE
 
-    tables, c, terms = engine.tables, composition.constants, composition.terms
-    work, out = (np.zeros(len(ENVIRONMENT)), np.zeros(len(SITES))), np.zeros(len(OUTPUTS))
-    own = np.ones(OWN_EVENTS + len(terms))
+    m, out = engine.equations(composition), np.zeros(len(OUTPUTS))
+    own = np.ones(OWN_EVENTS + len(composition.terms))
     watched = (LIQUID_OUT, FUEL_OUT, GROUND)
 
     def rhs(t: float, state: Array, dy: Array) -> None:
-        rates(t, state, liquid, burning, tables, c, terms, work, dy, out)
+        evaluate_rates(t, state, liquid, burning, m, dy, out)
 
     def events(t: float, state: Array, values: Array) -> None:
         rhs(t, state, np.empty_like(state))
-        event_values(t, state, liquid, burning, tables, c, terms, work, out, own)
+        evaluate_events(t, state, liquid, burning, m, out, own)
         values[:] = own[list(watched)]
 
     events.terminal = [True] * len(watched)  # type: ignore[attr-defined]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from math import sqrt
 
-from numba import njit
+from hfanalysis.compiled import compiled
 
 SMALL_DROP = 1000.0
 """Pressure drop [Pa] below which the square root is bent to a finite slope, at which no solver stalls."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def root(pressure_drop: float) -> float:
     """sqrt(dp) [Pa^0.5], zero for dp <= 0; below SMALL_DROP the parabola that joins it smoothly."""
     if pressure_drop >= SMALL_DROP:
@@ -19,7 +19,7 @@ def root(pressure_drop: float) -> float:
     return sqrt(SMALL_DROP) * 0.5 * x * (3.0 - x)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def mass_flow(area: float, density: float, pressure_drop: float) -> float:
     """mdot = C_i N_i A_i sqrt(2 rho dp) [kg/s], zero for dp <= 0: flow reverses for nobody.
 
@@ -31,7 +31,7 @@ def mass_flow(area: float, density: float, pressure_drop: float) -> float:
     return area * sqrt(2.0 * density) * root(pressure_drop)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def mass_flow_with_feed(area: float, feed_loss_factor: float, density: float, pressure_drop: float) -> float:
     """mdot [kg/s] through a feed line that loses K_loss mdot^2 / rho and the injector behind it.
 

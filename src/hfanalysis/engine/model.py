@@ -11,11 +11,13 @@ the chamber, and, after burn-out, gas that enters unburnt and cold.
 from __future__ import annotations
 
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import types
 from numpy.typing import NDArray
 
+from hfanalysis.compiled import by_address, caller, compiled, inlined, separate
 from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
 from hfanalysis.engine.nozzle import expand
 from hfanalysis.engine.sites import (
@@ -28,14 +30,18 @@ from hfanalysis.engine.sites import (
     FUEL_FLOW,
     FUEL_SOURCE,
     GAMMA_CHAMBER,
+    H_CHAMBER,
+    H_LEAVING,
     HOT_SHARE,
     INJECTOR_FACTOR,
     IS_BURNING,
     IS_LIQUID,
+    M_CHAMBER,
     M_LIQUID,
     M_NITROGEN,
     M_TANK,
     NITROGEN_INFLOW,
+    NITROGEN_SHARE,
     OF_RATIO,
     OXIDIZER_FLOW,
     OXIDIZER_SOURCE,
@@ -57,6 +63,8 @@ from hfanalysis.engine.sites import (
     TEMPERATURE_FACTOR,
     THROAT_FACTOR,
     THRUST_FACTOR,
+    U_BY_MASS,
+    U_BY_TEMPERATURE,
     call_term,
 )
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, saturated_tank
@@ -68,10 +76,40 @@ from hfanalysis.thermo.constants import GAS_CONSTANT, NITROGEN_MOLAR_MASS
 from hfanalysis.thermo.saturation import LN_VAPOR_CV, VAPOR_ENTHALPY, evaluate
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
 Table = tuple[Array, float, float, float]
-Tables = tuple[Table, Grid, Array]
-"""Saturated nitrous oxide, burnt gas, drag coefficient over Mach number."""
-Work = tuple[Array, Array]
+
+
+class Equations(NamedTuple):
+    """An engine as compiled code reads it.
+
+    Addresses of :func:`rates` and of the events' function; saturated nitrous oxide, burnt gas and the drag coefficient
+    over Mach number as tables; CONSTANTS and the effects' parameters; the active terms; ENVIRONMENT and SITES, which
+    every evaluation writes anew.
+    """
+
+    rates: int
+    events: int
+    saturation: Table
+    gas: Grid
+    drag: Array
+    c: Array
+    terms: Integers
+    env: Array
+    site: Array
+
+
+_VECTOR, _REAL, _FLAG = types.float64[::1], types.float64, types.boolean
+_TABLE = types.Tuple((types.float64[:, :, ::1], _REAL, _REAL, _REAL))
+_GRID = types.Tuple((types.float64[:, ::1], types.float64[:, ::1], types.float64[:, :, :, ::1]))
+EQUATIONS = types.NamedTuple(
+    (types.int64, types.int64, _TABLE, _GRID, types.float64[:, ::1], _VECTOR, types.int64[:, ::1], _VECTOR, _VECTOR),
+    Equations,
+)
+EVALUATION = types.none(_REAL, _VECTOR, _FLAG, _FLAG, types.int64, _VECTOR, _VECTOR)
+address_of, equations_at = by_address(EQUATIONS)
+call = caller(EVALUATION)
+"""In compiled code, :class:`Equations` are passed on as ``model = address_of(m)``."""
 
 STATES = (
     "tank_mass", "tank_temperature", "port_radius", "chamber_oxidizer", "chamber_fuel", "altitude", "speed", "impulse",
@@ -122,11 +160,14 @@ COLD_GAMMA = 1.3
 SPECIFIC_NITROGEN = GAS_CONSTANT / NITROGEN_MOLAR_MASS
 NITROGEN_CV = 2.5 * SPECIFIC_NITROGEN
 
+LEAST_ULLAGE = 1e-9
+"""Volume [m^3] that nitrogen in a full tank has at least."""
+
 COLDEST_VAPOR, WARMEST_VAPOR = 185.0, 305.0
 """Temperatures [K] between which the vapour's heat capacity and enthalpy are read from the saturation line."""
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def flux_power(flux: float, n: float) -> float:
     """G^n, below SMALL_FLUX the parabola that joins it smoothly and ends in 0 with a finite slope."""
     if flux >= SMALL_FLUX:
@@ -135,7 +176,7 @@ def flux_power(flux: float, n: float) -> float:
     return float(SMALL_FLUX**n * x * (2.0 - n - (1.0 - n) * x))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def neutral(site: Array) -> None:
     """Sources to 0, factors to 1."""
     site[:] = 0.0
@@ -143,24 +184,125 @@ def neutral(site: Array) -> None:
     site[TEMPERATURE_FACTOR] = site[THROAT_FACTOR] = site[THRUST_FACTOR] = 1.0
 
 
-@njit(cache=True, error_model="numpy")
-def _act(terms: NDArray[np.int64], hook: int, t: float, env: Array, c: Array, y: Array, site: Array, dy: Array) -> None:
-    for k in range(terms.shape[0]):
-        p_at, x_at = terms[k, PARAMETERS_AT], terms[k, STATES_AT]
-        call_term(terms[k, ADDRESS], hook, t, env, c, p_at, y, x_at, site, dy)  # type: ignore[call-arg]
+@inlined
+def act(hook: int, t: float, y: Array, m: Equations, dy: Array) -> None:
+    """Every active term at one hook."""
+    for k in range(m.terms.shape[0]):
+        p_at, x_at = m.terms[k, PARAMETERS_AT], m.terms[k, STATES_AT]
+        call_term(m.terms[k, ADDRESS], hook, t, m.env, m.c, p_at, y, x_at, m.site, dy)  # type: ignore[call-arg]
 
 
-@njit(cache=True, error_model="numpy")
-def chamber_gas(gas: Grid, c: Array, y: Array, guess: float) -> tuple[float, float, float, float, float, float]:
+@compiled
+def evaluate_rates(t: float, y: Array, liquid: bool, burning: bool, m: Equations, dy: Array, out: Array) -> None:
+    """:func:`rates`, for Python."""
+    call(m.rates, t, y, liquid, burning, address_of(m), dy, out)
+
+
+@inlined
+def rates_at(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array, out: Array) -> None:
+    """:func:`rates`, for other compiled code: called, not merged into it."""
+    call(equations_at(model).rates, t, y, liquid, burning, model, dy, out)
+
+
+@separate(EVALUATION)
+def rates(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array, out: Array) -> None:
+    """dy/dt and OUTPUTS in one phase; ENVIRONMENT and SITES keep what was found on the way."""
+    m = equations_at(model)
+    neutral(m.site)
+    for i in range(y.size):
+        dy[i] = 0.0
+    surroundings(y, liquid, burning, m)
+    tank_pressure(y, liquid, m)
+    act(AT_TANK, t, y, m, dy)
+    m.env[P_TANK] += m.site[TANK_PRESSURE]
+    chamber(y, m)
+    act(AT_CHAMBER, t, y, m, dy)
+    m.env[P_CHAMBER] *= m.site[TEMPERATURE_FACTOR]
+    m.env[RT_CHAMBER] *= m.site[TEMPERATURE_FACTOR]
+    act(AT_FLOW, t, y, m, dy)
+    feed(liquid, m)
+    opening, surface = grain(y, burning, m)
+    act(RATES, t, y, m, dy)
+    opening *= m.site[REGRESSION_FACTOR]
+    m.env[FUEL_FLOW] = surface * opening + m.site[FUEL_SOURCE]
+    dy[RADIUS] = opening
+    ejected, thrust = nozzle(m)
+    dy[IMPULSE] = thrust
+    tank_rates(y, liquid, m, dy)
+    chamber_rates(y, burning, ejected, m, dy)
+    ascent(y, thrust, m, dy)
+    report(ejected, thrust, dy, m, out)
+
+
+@inlined
+def surroundings(y: Array, liquid: bool, burning: bool, m: Equations) -> None:
+    """Phase, ambient pressure, and what of the state terms may read."""
+    env = m.env
+    env[IS_LIQUID], env[IS_BURNING] = (1.0 if liquid else 0.0), (1.0 if burning else 0.0)
+    env[P_AMBIENT] = air(y[ALTITUDE])[0] if m.c[FLIES] > 0.0 else m.c[AMBIENT_PRESSURE]
+    env[T_TANK], env[M_TANK], env[M_NITROGEN], env[PORT_RADIUS] = y[TEMPERATURE], y[TANK], y[NITROGEN], y[RADIUS]
+
+
+@inlined
+def tank_pressure(y: Array, liquid: bool, m: Equations) -> None:
+    """Pressure, density and enthalpy of what leaves the tank."""
+    if liquid:
+        saturated(y, m)
+    else:
+        superheated(y, m)
+
+
+@inlined
+def saturated(y: Array, m: Equations) -> None:
+    """Liquid under its vapour, with nitrogen in the ullage."""
+    env, volume = m.env, m.c[VOLUME]
+    p, density, liquid, by_mass, by_temperature, h = saturated_tank(m.saturation, volume, y[TANK], y[TEMPERATURE])
+    if y[NITROGEN] > 0.0:
+        p += y[NITROGEN] * SPECIFIC_NITROGEN * y[TEMPERATURE] / max(volume - liquid / density, LEAST_ULLAGE)
+    env[P_TANK], env[RHO_FEED], env[M_LIQUID], env[H_LEAVING], env[NITROGEN_SHARE] = p, density, liquid, h, 0.0
+    env[U_BY_MASS], env[U_BY_TEMPERATURE] = by_mass, by_temperature
+
+
+@inlined
+def superheated(y: Array, m: Equations) -> None:
+    """Vapour and nitrogen, mixed."""
+    env, volume, held = m.env, m.c[VOLUME], y[TANK] + y[NITROGEN]
+    by_pressure = y[COMPRESSIBILITY] * SPECIFIC_GAS_CONSTANT * y[TANK] + SPECIFIC_NITROGEN * y[NITROGEN]
+    env[P_TANK], env[RHO_FEED], env[M_LIQUID] = by_pressure * y[TEMPERATURE] / volume, held / volume, 0.0
+    env[NITROGEN_SHARE], env[H_LEAVING] = y[NITROGEN] / held, 0.0
+    if np.isnan(m.c[OXIDIZER_ENTHALPY]):
+        env[H_LEAVING] = vapor(m, VAPOR_ENTHALPY, y[TEMPERATURE])
+
+
+@inlined
+def vapor(m: Equations, row: int, temperature: float) -> float:
+    """A row of the table at the vapour's temperature, inside the range where it is read."""
+    inside = min(max(temperature, COLDEST_VAPOR), WARMEST_VAPOR)
+    table, start, step, critical = m.saturation
+    return float(evaluate(table, start, step, critical, row, inside)[0])
+
+
+@inlined
+def chamber(y: Array, m: Equations) -> None:
+    """Pressure and gas of the chamber; the pressure that the last evaluation found is where the search begins."""
+    env = m.env
+    guess = env[P_CHAMBER] if env[P_CHAMBER] > 0.0 else env[P_AMBIENT]
+    volume = m.c[DEAD_VOLUME] + pi * y[RADIUS] * y[RADIUS] * m.c[GRAIN_LENGTH]
+    p, rt, gamma, mass, ratio, h = chamber_gas(m.gas, m.c[OXIDIZER_ENTHALPY], y, volume, guess)
+    env[P_CHAMBER], env[RT_CHAMBER], env[GAMMA_CHAMBER], env[OF_RATIO] = p, rt, gamma, ratio
+    env[M_CHAMBER], env[H_CHAMBER], env[HOT_SHARE] = mass, h, 1.0 - max(y[COLD], 0.0) / mass
+
+
+@inlined
+def chamber_gas(
+    gas: Grid, enthalpy: float, y: Array, volume: float, guess: float
+) -> tuple[float, float, float, float, float, float]:
     """p, R T, gamma, mass, O/F and oxidizer enthalpy of what the chamber holds: burnt gas, later cold gas too."""
-    volume = c[DEAD_VOLUME] + pi * y[RADIUS] * y[RADIUS] * c[GRAIN_LENGTH]
     entered = y[OXIDIZER] + y[CHAMBER_NITROGEN]
     hot = max(entered + y[FUEL], LEAST_GAS)
     ratio = min(max(entered, LEAST_GAS) / max(y[FUEL], LEAST_GAS), 1e4)
     share = y[CHAMBER_NITROGEN] / max(entered, LEAST_GAS) if y[CHAMBER_NITROGEN] > 0.0 else 0.0
-    h = c[OXIDIZER_ENTHALPY]
-    if np.isnan(h):
-        h = y[ENTHALPY] / max(y[OXIDIZER], LEAST_GAS)
+    h = y[ENTHALPY] / max(y[OXIDIZER], LEAST_GAS) if np.isnan(enthalpy) else enthalpy
     p, rt, gamma = chamber_pressure(gas, hot, volume, np.log(ratio), h, min(share, 1.0), guess)
     cold = max(y[COLD], 0.0)
     mass = hot + cold
@@ -170,134 +312,99 @@ def chamber_gas(gas: Grid, c: Array, y: Array, guess: float) -> tuple[float, flo
     return p, rt, gamma, mass, ratio, h
 
 
-@njit(cache=True, error_model="numpy")
-def rates(
-    t: float,
-    y: Array,
-    liquid: bool,
-    burning: bool,
-    tables: Tables,
-    c: Array,
-    terms: NDArray[np.int64],
-    work: Work,
-    dy: Array,
-    out: Array,
-) -> None:
-    """dy/dt and OUTPUTS in one phase; ``work`` is scratch: arrays of the lengths of ENVIRONMENT and SITES."""
-    sat, gas, drag_table = tables
-    env, site = work
-    neutral(site)
-    any_terms = terms.shape[0] > 0
-    for i in range(len(STATES), y.size):
-        dy[i] = 0.0
-    volume, port = c[VOLUME], y[RADIUS]
-    if c[FLIES] > 0.0:
-        ambient, _, _ = air(y[ALTITUDE])
-    else:
-        ambient = c[AMBIENT_PRESSURE]
-    # tank
-    nitrogen = y[NITROGEN]
-    by_mass = by_temperature = 0.0
-    t_vapor = min(max(y[TEMPERATURE], COLDEST_VAPOR), WARMEST_VAPOR)
-    if liquid:
-        p_t, density, m_l, by_mass, by_temperature, h_leaving = saturated_tank(sat, volume, y[TANK], y[TEMPERATURE])
-        if nitrogen > 0.0:
-            p_t += nitrogen * SPECIFIC_NITROGEN * y[TEMPERATURE] / max(volume - m_l / density, 1e-9)
-        tank_share = 0.0
-    else:
-        m_l, density = 0.0, (y[TANK] + nitrogen) / volume
-        p_t = y[COMPRESSIBILITY] * SPECIFIC_GAS_CONSTANT * y[TEMPERATURE] * y[TANK] / volume
-        p_t += nitrogen * SPECIFIC_NITROGEN * y[TEMPERATURE] / volume
-        tank_share = nitrogen / (y[TANK] + nitrogen)
-        h_leaving = 0.0
-        if np.isnan(c[OXIDIZER_ENTHALPY]):
-            h_leaving = evaluate(sat[0], sat[1], sat[2], sat[3], VAPOR_ENTHALPY, t_vapor)[0]
-    if any_terms:
-        env[IS_LIQUID], env[IS_BURNING], env[P_AMBIENT] = (1.0 if liquid else 0.0), (1.0 if burning else 0.0), ambient
-        env[P_TANK], env[T_TANK], env[M_TANK], env[M_LIQUID] = p_t, y[TEMPERATURE], y[TANK], m_l
-        env[M_NITROGEN] = nitrogen
-        env[PORT_RADIUS], env[RHO_FEED] = port, density
-        _act(terms, AT_TANK, t, env, c, y, site, dy)
-        p_t += site[TANK_PRESSURE]
-        env[P_TANK] = p_t
-    # chamber
-    p_c, rt, gamma, mass, ratio, h = chamber_gas(gas, c, y, ambient)
-    if any_terms:
-        env[P_CHAMBER], env[RT_CHAMBER], env[GAMMA_CHAMBER], env[OF_RATIO] = p_c, rt, gamma, ratio
-        env[HOT_SHARE] = 1.0 - max(y[COLD], 0.0) / mass
-        _act(terms, AT_CHAMBER, t, env, c, y, site, dy)
-        p_c *= site[TEMPERATURE_FACTOR]
-        rt *= site[TEMPERATURE_FACTOR]
-        env[P_CHAMBER], env[RT_CHAMBER] = p_c, rt
-        _act(terms, AT_FLOW, t, env, c, y, site, dy)
-    # feed line and injector
-    drop = p_t - p_c - site[FEED_LOSS]
+@inlined
+def feed(liquid: bool, m: Equations) -> None:
+    """Flow through feed line and injector, and the pressure between them."""
+    c, env, site = m.c, m.env, m.site
+    drop = env[P_TANK] - env[P_CHAMBER] - site[FEED_LOSS]
     if c[LIQUID_LOSS] >= 0.0:
         loss = c[LIQUID_LOSS] if liquid else c[VAPOR_LOSS]
-        flow = mass_flow(c[AREA], density, drop - loss) * site[INJECTOR_FACTOR]
+        flow = mass_flow(c[AREA], env[RHO_FEED], drop - loss) * site[INJECTOR_FACTOR]
     else:
         factor = c[LOSS_FACTOR] * site[FEED_FACTOR]
-        flow = mass_flow_with_feed(c[AREA], factor, density, drop) * site[INJECTOR_FACTOR]
-        loss = factor * flow * flow / density
-    # grain
-    opening = c[REGRESSION_A] * flux_power(flow / (pi * port * port), c[REGRESSION_N]) if burning else 0.0
-    surface = 2.0 * pi * port * c[GRAIN_LENGTH] * c[FUEL_DENSITY]
-    if any_terms:
-        env[OXIDIZER_FLOW], env[FUEL_FLOW], env[P_RUN] = flow, surface * opening, p_t - loss - site[FEED_LOSS]
-        _act(terms, RATES, t, env, c, y, site, dy)
-        opening *= site[REGRESSION_FACTOR]
-    fuel_flow = surface * opening + site[FUEL_SOURCE]
-    # nozzle
-    nozzle, thrust, _, _, _ = expand(gamma, rt, p_c, ambient, c[THROAT_AREA] * site[THROAT_FACTOR], c[EXIT_AREA])
-    thrust *= site[THRUST_FACTOR]
-    # rates of the tank
-    outflow = flow + site[TANK_LEAK]
-    inert = tank_share * outflow
+        flow = mass_flow_with_feed(c[AREA], factor, env[RHO_FEED], drop) * site[INJECTOR_FACTOR]
+        loss = factor * flow * flow / env[RHO_FEED]
+    env[OXIDIZER_FLOW], env[P_RUN] = flow, env[P_TANK] - loss - site[FEED_LOSS]
+
+
+@inlined
+def grain(y: Array, burning: bool, m: Equations) -> tuple[float, float]:
+    """Regression rate [m/s], and fuel that it frees per metre [kg/m]."""
+    port = y[RADIUS]
+    flux = m.env[OXIDIZER_FLOW] / (pi * port * port)
+    opening = m.c[REGRESSION_A] * flux_power(flux, m.c[REGRESSION_N]) if burning else 0.0
+    surface = 2.0 * pi * port * m.c[GRAIN_LENGTH] * m.c[FUEL_DENSITY]
+    m.env[FUEL_FLOW] = surface * opening
+    return opening, surface
+
+
+@inlined
+def nozzle(m: Equations) -> tuple[float, float]:
+    """Mass flow [kg/s] and thrust [N]."""
+    env, throat = m.env, m.c[THROAT_AREA] * m.site[THROAT_FACTOR]
+    flow, thrust, _, _, _ = expand(
+        env[GAMMA_CHAMBER], env[RT_CHAMBER], env[P_CHAMBER], env[P_AMBIENT], throat, m.c[EXIT_AREA]
+    )
+    return flow, thrust * m.site[THRUST_FACTOR]
+
+
+@inlined
+def tank_rates(y: Array, liquid: bool, m: Equations, dy: Array) -> None:
+    """Masses and temperature of the tank (report, eq. 3.9 and the polytropic vapour)."""
+    env, site, outflow = m.env, m.site, m.env[OXIDIZER_FLOW] + m.site[TANK_LEAK]
+    inert = env[NITROGEN_SHARE] * outflow
     dy[TANK] = inert - outflow
     dy[NITROGEN] = site[NITROGEN_INFLOW] - inert
     if liquid:
-        dy[TEMPERATURE] = (site[TANK_HEAT] + outflow * (by_mass - h_leaving)) / by_temperature
-    else:
-        held = y[TANK] + nitrogen
-        dy[TEMPERATURE] = y[TEMPERATURE] * (y[EXPONENT] - 1.0) * -outflow / held
-        if site[TANK_HEAT] != 0.0:
-            cv = np.exp(evaluate(sat[0], sat[1], sat[2], sat[3], LN_VAPOR_CV, t_vapor)[0])
-            dy[TEMPERATURE] += site[TANK_HEAT] / (y[TANK] * cv + nitrogen * NITROGEN_CV)
-    dy[RADIUS] = opening
-    # rates of the chamber: what enters burns, or after burn-out stays cold
-    leaving = nozzle / mass
-    fresh = flow * (1.0 - tank_share)
-    into = fresh + site[OXIDIZER_SOURCE]
+        dy[TEMPERATURE] = (site[TANK_HEAT] + outflow * (env[U_BY_MASS] - env[H_LEAVING])) / env[U_BY_TEMPERATURE]
+        return
+    dy[TEMPERATURE] = y[TEMPERATURE] * (y[EXPONENT] - 1.0) * -outflow / (y[TANK] + y[NITROGEN])
+    if site[TANK_HEAT] != 0.0:
+        cv = np.exp(vapor(m, LN_VAPOR_CV, y[TEMPERATURE]))
+        dy[TEMPERATURE] += site[TANK_HEAT] / (y[TANK] * cv + y[NITROGEN] * NITROGEN_CV)
+
+
+@inlined
+def chamber_rates(y: Array, burning: bool, ejected: float, m: Equations, dy: Array) -> None:
+    """What enters burns, or after burn-out stays cold; all leaves in the same proportion."""
+    env, leaving = m.env, ejected / m.env[M_CHAMBER]
+    into, share = m.site[OXIDIZER_SOURCE], env[NITROGEN_SHARE]
+    for i in (OXIDIZER, CHAMBER_NITROGEN, ENTHALPY, COLD, COLD_ENERGY, FUEL):
+        dy[i] = -leaving * y[i]
     if burning:
-        dy[OXIDIZER] = into - leaving * y[OXIDIZER]
-        dy[CHAMBER_NITROGEN] = flow * tank_share - leaving * y[CHAMBER_NITROGEN]
-        dy[ENTHALPY] = into * (FORMATION_OFFSET + h_leaving) - leaving * y[ENTHALPY]
-        dy[COLD] = -leaving * y[COLD]
-        dy[COLD_ENERGY] = -leaving * y[COLD_ENERGY]
+        into += env[OXIDIZER_FLOW] * (1.0 - share)
+        dy[CHAMBER_NITROGEN] += env[OXIDIZER_FLOW] * share
     else:
-        dy[OXIDIZER] = site[OXIDIZER_SOURCE] - leaving * y[OXIDIZER]
-        dy[CHAMBER_NITROGEN] = -leaving * y[CHAMBER_NITROGEN]
-        dy[ENTHALPY] = site[OXIDIZER_SOURCE] * (FORMATION_OFFSET + h_leaving) - leaving * y[ENTHALPY]
-        constant = tank_share * SPECIFIC_NITROGEN + (1.0 - tank_share) * SPECIFIC_GAS_CONSTANT
-        dy[COLD] = flow - leaving * y[COLD]
-        dy[COLD_ENERGY] = flow * constant * y[TEMPERATURE] - leaving * y[COLD_ENERGY]
-    dy[FUEL] = fuel_flow - leaving * y[FUEL]
-    dy[COMPRESSIBILITY] = 0.0
-    dy[EXPONENT] = 0.0
-    dy[IMPULSE] = thrust
-    # ascent
-    dy[ALTITUDE] = dy[SPEED] = 0.0
-    if c[FLIES] > 0.0:
-        fuel = c[FUEL_DENSITY] * pi * c[GRAIN_LENGTH] * (c[OUTER_RADIUS] * c[OUTER_RADIUS] - port * port)
-        total = c[DRY_MASS] + y[TANK] + nitrogen + fuel + mass
-        pull = total * STANDARD_GRAVITY * (EARTH_RADIUS / (EARTH_RADIUS + y[ALTITUDE])) ** 2 * c[CLIMB]
-        net = thrust - drag(y[ALTITUDE], y[SPEED], c[DRAG_AREA], drag_table) - pull
-        # on its pad the rocket stands; what lifts it is the thrust alone
-        stands = y[ALTITUDE] <= c[LAUNCH_ALTITUDE] + PAD
-        dy[ALTITUDE] = y[SPEED] * c[CLIMB]
-        dy[SPEED] = 0.0 if stands and net <= 0.0 else net / total
-    out[O_TANK_PRESSURE], out[O_CHAMBER_PRESSURE], out[O_RT], out[O_THRUST] = p_t, p_c, rt, thrust
-    out[O_OXIDIZER_FLOW], out[O_FUEL_FLOW], out[O_NOZZLE_FLOW], out[O_OF] = flow, fuel_flow, nozzle, ratio
-    out[O_ACCELERATION], out[O_RUN_PRESSURE] = dy[SPEED], p_t - loss - site[FEED_LOSS]
-    out[O_GAMMA], out[O_ENTHALPY], out[O_SHARE], out[O_AMBIENT] = gamma, h, tank_share, ambient
-    out[O_NITROGEN_INFLOW], out[O_OUTFLOW] = site[NITROGEN_INFLOW], outflow
+        constant = share * SPECIFIC_NITROGEN + (1.0 - share) * SPECIFIC_GAS_CONSTANT
+        dy[COLD] += env[OXIDIZER_FLOW]
+        dy[COLD_ENERGY] += env[OXIDIZER_FLOW] * constant * y[TEMPERATURE]
+    dy[OXIDIZER] += into
+    dy[ENTHALPY] += into * (FORMATION_OFFSET + env[H_LEAVING])
+    dy[FUEL] += env[FUEL_FLOW]
+
+
+@inlined
+def ascent(y: Array, thrust: float, m: Equations, dy: Array) -> None:
+    """The rocket climbs; on its pad it stands, and what lifts it is the thrust alone."""
+    c, port = m.c, y[RADIUS]
+    if not c[FLIES] > 0.0:
+        return
+    fuel = c[FUEL_DENSITY] * pi * c[GRAIN_LENGTH] * (c[OUTER_RADIUS] * c[OUTER_RADIUS] - port * port)
+    total = c[DRY_MASS] + y[TANK] + y[NITROGEN] + fuel + m.env[M_CHAMBER]
+    pull = total * STANDARD_GRAVITY * (EARTH_RADIUS / (EARTH_RADIUS + y[ALTITUDE])) ** 2 * c[CLIMB]
+    net = thrust - drag(y[ALTITUDE], y[SPEED], c[DRAG_AREA], m.drag) - pull
+    stands = y[ALTITUDE] <= c[LAUNCH_ALTITUDE] + PAD
+    dy[ALTITUDE] = y[SPEED] * c[CLIMB]
+    dy[SPEED] = 0.0 if stands and net <= 0.0 else net / total
+
+
+@inlined
+def report(ejected: float, thrust: float, dy: Array, m: Equations, out: Array) -> None:
+    """OUTPUTS."""
+    env, site = m.env, m.site
+    out[O_TANK_PRESSURE], out[O_CHAMBER_PRESSURE], out[O_RT] = env[P_TANK], env[P_CHAMBER], env[RT_CHAMBER]
+    out[O_THRUST], out[O_OXIDIZER_FLOW], out[O_FUEL_FLOW] = thrust, env[OXIDIZER_FLOW], env[FUEL_FLOW]
+    out[O_NOZZLE_FLOW], out[O_OF], out[O_ACCELERATION] = ejected, env[OF_RATIO], dy[SPEED]
+    out[O_RUN_PRESSURE], out[O_GAMMA], out[O_ENTHALPY] = env[P_RUN], env[GAMMA_CHAMBER], env[H_CHAMBER]
+    out[O_SHARE], out[O_AMBIENT] = env[NITROGEN_SHARE], env[P_AMBIENT]
+    out[O_NITROGEN_INFLOW], out[O_OUTFLOW] = site[NITROGEN_INFLOW], env[OXIDIZER_FLOW] + site[TANK_LEAK]

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
+from hfanalysis.compiled import compiled
 from hfanalysis.thermo.combustion import Gas
 
 SUBSONIC, SHOCK, SUPERSONIC = 0, 1, 2
@@ -43,7 +43,7 @@ def nozzle_flow(gas: Gas, pressure: float, ambient: float, throat_area: float, e
     return Flow(flow[0], flow[1], flow[2], flow[3], REGIMES[int(flow[4])])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def area_ratio(mach: float, gamma: float) -> float:
     """A/A* = ((2/(g+1)) (1 + (g-1)/2 M^2))^((g+1)/(2(g-1))) / M (report, eq. 3.37).
 
@@ -54,7 +54,7 @@ def area_ratio(mach: float, gamma: float) -> float:
     return float(base ** (0.5 * (gamma + 1.0) / (gamma - 1.0)) / mach)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def mach_at_area(ratio: float, gamma: float, supersonic: bool) -> float:
     """Mach number at A/A* = ``ratio`` >= 1 on one branch: Halley on ln(A/A*) in ln M, kept on its side of M = 1."""
     if ratio <= 1.0:
@@ -85,7 +85,7 @@ def mach_at_area(ratio: float, gamma: float, supersonic: bool) -> float:
     return float(np.exp(x))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def pressure_ratio(mach: float, gamma: float) -> float:
     """p/p_0 of isentropic flow at a Mach number (report, eq. 3.38).
 
@@ -95,7 +95,7 @@ def pressure_ratio(mach: float, gamma: float) -> float:
     return float((1.0 + 0.5 * (gamma - 1.0) * mach * mach) ** (-gamma / (gamma - 1.0)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def pressure_after_shock(mach: float, gamma: float) -> float:
     """p_2/p_1 across a normal shock (report, eq. 3.41).
 
@@ -105,7 +105,7 @@ def pressure_after_shock(mach: float, gamma: float) -> float:
     return (2.0 * gamma * mach * mach - (gamma - 1.0)) / (gamma + 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def stagnation_after_shock(mach: float, gamma: float) -> float:
     """p_0y/p_0x across a normal shock (report, eq. 3.43).
 
@@ -118,19 +118,19 @@ def stagnation_after_shock(mach: float, gamma: float) -> float:
     return float(first ** (-1.0 / (gamma - 1.0)) * second ** (gamma / (gamma - 1.0)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def choked_flow_factor(gamma: float) -> float:
     """mdot sqrt(R T) / (A p_0) of a choked throat."""
     return float(np.sqrt(gamma) * (0.5 * (gamma + 1.0)) ** (-0.5 * (gamma + 1.0) / (gamma - 1.0)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def mach_at_pressure(ratio: float, gamma: float) -> float:
     """Mach number at p/p_0 = ``ratio`` <= 1 (the inverse of :func:`pressure_ratio`)."""
     return float(np.sqrt(2.0 / (gamma - 1.0) * (ratio ** (-(gamma - 1.0) / gamma) - 1.0)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def expand(
     gamma: float, specific_temperature: float, pressure: float, ambient: float, throat_area: float, exit_area: float
 ) -> tuple[float, float, float, float, int]:
@@ -160,7 +160,7 @@ def expand(
     return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, np.sqrt(square), ambient, SHOCK)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _ejected(
     gamma: float,
     specific_temperature: float,

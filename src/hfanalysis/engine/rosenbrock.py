@@ -10,8 +10,9 @@ sum a_ij u_j) + sum c_ij u_j / h + h d_i f_t.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from hfanalysis.compiled import compiled
 
 Array = NDArray[np.float64]
 
@@ -80,7 +81,15 @@ DENSE = np.array(
 DENSE_ki u_i."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
+def copy(source: Array, target: Array, count: int) -> None:
+    """The first ``count`` numbers of an array into another (numba takes seconds to compile assignments of slices)."""
+    a, b = source.reshape(-1), target.reshape(-1)
+    for i in range(count):
+        b[i] = a[i]
+
+
+@compiled
 def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
     """LU factors with partial pivoting in place, ``pivots`` the row swaps; False for a singular matrix."""
     n = a.shape[0]
@@ -105,7 +114,7 @@ def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
     """Solve with the factors of :func:`factorize`, in place."""
     n = lu.shape[0]
@@ -124,7 +133,7 @@ def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
         b[i] = total / lu[i, i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def interpolate(theta: float, y0: Array, y1: Array, dense: Array, y: Array) -> None:
     """The state at a fraction ``theta`` of a step, into ``y``; ``dense`` has the shape (3, states)."""
     rest = 1.0 - theta

@@ -123,11 +123,8 @@ def run_with_tangents(
         constant_rows.append(other.constants)
         steps.append(step)
         start.append((initial(moved, other) - y) / step)
-    s = done.steps
     scales = np.concatenate([SCALES, composition.scales])
     shifted_constants = np.array(constant_rows).reshape(len(steps), composition.constants.size)
-    found = tangents.propagate(
-        s.times, s.begin, s.end, s.dense, s.phases, s.events, engine.tables, composition.constants, shifted_constants,
-        np.array(steps), scales, composition.terms, np.ascontiguousarray(np.array(start).T),
-    )  # fmt: skip
+    equations, moved_start = engine.equations(composition), np.ascontiguousarray(np.array(start).T)
+    found = tangents.propagate(done.steps.history, equations, shifted_constants, np.array(steps), scales, moved_start)
     return Tangents(done, tuple(parameters), *found)

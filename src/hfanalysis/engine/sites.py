@@ -16,12 +16,15 @@ through raw pointers, so that one compiled model serves every combination of eff
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
-from numba import cfunc, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
+
+from hfanalysis.compiled import Callback
 
 AT_TANK, AT_CHAMBER, AT_FLOW, RATES = range(4)
 """Hooks: the tank's pressure is known; the chamber's gas; the flow into the chamber; all that the rates are made
@@ -59,25 +62,32 @@ HOOK_OF_SITE = {
 ENVIRONMENT = (
     "is_liquid", "is_burning", "p_ambient", "p_tank", "t_tank", "m_tank", "m_liquid", "m_nitrogen", "rho_feed",
     "p_chamber", "rt_chamber", "gamma_chamber", "of_ratio", "oxidizer_flow", "fuel_flow", "port_radius", "p_run",
-    "hot_share",
+    "hot_share", "nitrogen_share", "h_leaving", "h_chamber", "m_chamber", "u_by_mass", "u_by_temperature",
 )  # fmt: skip
 """What a term may read, SI; ``p_tank`` and the rest of the tank from AT_TANK on, the chamber from AT_CHAMBER
-(``hot_share``: of burnt gas in its mass), ``rho_feed`` from AT_FLOW, flows and ``p_run`` from RATES on."""
+(``hot_share``: of burnt gas in its mass), ``rho_feed`` from AT_FLOW, flows and ``p_run`` from RATES on. ``nitrogen_share`` by mass and ``h_leaving`` (on the
+properties' own scale) are of what leaves the tank, ``h_chamber`` of the chamber's nitrous oxide on the formation scale;
+``u_by_*`` the saturated tank's."""
 
 (IS_LIQUID, IS_BURNING, P_AMBIENT, P_TANK, T_TANK, M_TANK, M_LIQUID, M_NITROGEN, RHO_FEED, P_CHAMBER, RT_CHAMBER,
- GAMMA_CHAMBER, OF_RATIO, OXIDIZER_FLOW, FUEL_FLOW, PORT_RADIUS, P_RUN,
- HOT_SHARE) = range(len(ENVIRONMENT))  # fmt: skip
+ GAMMA_CHAMBER, OF_RATIO, OXIDIZER_FLOW, FUEL_FLOW, PORT_RADIUS, P_RUN, HOT_SHARE, NITROGEN_SHARE, H_LEAVING,
+ H_CHAMBER, M_CHAMBER, U_BY_MASS, U_BY_TEMPERATURE) = range(len(ENVIRONMENT))  # fmt: skip
 
 _REAL = types.float64
 _POINTER = types.CPointer(_REAL)  # type: ignore[no-untyped-call]
 TERM = types.void(types.int64, _REAL, *[_POINTER] * 6)
 SWITCH = types.float64(_REAL, *[_POINTER] * 4)
 
-term = cfunc(TERM, cache=True)
-"""Compiles ``f(hook, t, env, c, p, x, site, dx)``."""
 
-switch = cfunc(SWITCH, cache=True)
-"""Compiles ``f(t, env, c, p, x)``: where it changes sign the solver stops, for a term has a corner there."""
+def term(function: Callable[..., None]) -> Callback:
+    """Compiles ``f(hook, t, env, c, p, x, site, dx)``."""
+    return Callback(function, TERM)
+
+
+def switch(function: Callable[..., float]) -> Callback:
+    """Compiles ``f(t, env, c, p, x)``: where it changes sign the solver stops, for a term has a corner there."""
+    return Callback(function, SWITCH)
+
 
 ADDRESS, SWITCH_ADDRESS, PARAMETERS_AT, STATES_AT = range(4)
 """Columns of the table of active terms: addresses (0: none), where parameters begin in ``c`` and states in ``y``."""

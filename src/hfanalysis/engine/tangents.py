@@ -11,17 +11,21 @@ A parameter is anything that changes the engine's constants or its initial state
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from hfanalysis.engine.course import INCREMENT, OWN_EVENTS, change, event_values
-from hfanalysis.engine.model import ALTITUDE, FLIES, IMPULSE, OUTPUTS, SPEED, Tables, Work, rates
-from hfanalysis.engine.rosenbrock import factorize, interpolate, substitute
-from hfanalysis.engine.sites import ENVIRONMENT, SITES
+from hfanalysis.compiled import compiled
+from hfanalysis.engine.course import INCREMENT, LIQUID_OUT, OWN_EVENTS, TICK, History, change, events_at
+from hfanalysis.engine.model import ALTITUDE, FLIES, IMPULSE, OUTPUTS, SPEED, Equations, address_of, rates_at
+from hfanalysis.engine.rosenbrock import copy, factorize, interpolate, substitute
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+NUDGE = 1e-6
+"""Relative to a state, or to its scale: the difference with which an event's change of the state is followed."""
 
 _ROOT = np.sqrt(6.0)
 NODES = np.array([(4.0 - _ROOT) / 10.0, (4.0 + _ROOT) / 10.0, 1.0])
@@ -35,204 +39,281 @@ RADAU = np.array(
 """Radau IIA, order 5 (Hairer and Wanner, Solving Ordinary Differential Equations II, table IV.5.6)."""
 
 
-@njit(cache=True, error_model="numpy")
+class Parameters(NamedTuple):
+    """``shifted`` (parameters, constants) are the constants with each parameter moved by ``steps``."""
+
+    shifted: Array
+    steps: Array
+    scales: Array
+    used: Integers
+
+
+class Slopes(NamedTuple):
+    """Derivatives of the rates and of the outputs by the used states and by the parameters, at one point."""
+
+    f_y: Array
+    f_p: Array
+    out_y: Array
+    out_p: Array
+
+
+class Spare(NamedTuple):
+    """Rates and outputs at a point, and at one beside it."""
+
+    f: Array
+    out: Array
+    moved: Array
+    moved_out: Array
+
+
+@compiled
+def with_constants(m: Equations, c: Array) -> Equations:
+    """The equations of an engine with other constants."""
+    return Equations(m.rates, m.events, m.saturation, m.gas, m.drag, c, m.terms, m.env, m.site)
+
+
+@compiled
+def quotient(spare: Spare, step: float, f_column: Array, out_column: Array) -> None:
+    """Difference quotients of rates and outputs, into columns."""
+    for i in range(f_column.size):
+        f_column[i] = (spare.moved[i] - spare.f[i]) / step
+    for i in range(out_column.size):
+        out_column[i] = (spare.moved_out[i] - spare.out[i]) / step
+
+
+@compiled
 def linearize(
-    t: float, y: Array, liquid: bool, burning: bool, tables: Tables, c: Array, shifted: Array, steps: Array,
-    used: Integers, scales: Array, terms: Integers, work: Work, f: Array, out: Array, moved: Array, moved_out: Array,
-    f_y: Array, f_p: Array, out_y: Array, out_p: Array,
-) -> None:  # fmt: skip
-    """f, f_y (of the ``used`` states), f_p and the same of the outputs, by forward differences."""
-    rates(t, y, liquid, burning, tables, c, terms, work, f, out)
-    for column in range(used.size):
-        j = used[column]
+    t: float, y: Array, liquid: bool, burning: bool, m: Equations, p: Parameters, slopes: Slopes, spare: Spare
+) -> None:
+    """All the slopes at one point, by forward differences."""
+    model = address_of(m)
+    rates_at(t, y, liquid, burning, model, spare.f, spare.out)
+    for column in range(p.used.size):
+        j = p.used[column]
         kept = y[j]
-        step = INCREMENT * max(abs(kept), scales[j])
-        y[j] = kept + step
+        y[j] = kept + INCREMENT * max(abs(kept), p.scales[j])
         step = y[j] - kept
-        rates(t, y, liquid, burning, tables, c, terms, work, moved, moved_out)
+        rates_at(t, y, liquid, burning, model, spare.moved, spare.moved_out)
         y[j] = kept
-        for i in range(y.size):
-            f_y[i, column] = (moved[i] - f[i]) / step
-        for i in range(out.size):
-            out_y[i, column] = (moved_out[i] - out[i]) / step
-    for k in range(steps.size):
-        rates(t, y, liquid, burning, tables, shifted[k], terms, work, moved, moved_out)
-        for i in range(y.size):
-            f_p[i, k] = (moved[i] - f[i]) / steps[k]
-        for i in range(out.size):
-            out_p[i, k] = (moved_out[i] - out[i]) / steps[k]
+        quotient(spare, step, slopes.f_y[:, column], slopes.out_y[:, column])
+    for k in range(p.steps.size):
+        other = address_of(with_constants(m, p.shifted[k]))
+        rates_at(t, y, liquid, burning, other, spare.moved, spare.moved_out)
+        quotient(spare, p.steps[k], slopes.f_p[:, k], slopes.out_p[:, k])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def used_states(size: int, flies: bool) -> Integers:
     """All states but the impulse, on which nothing depends, and on a stand the rocket's."""
-    out = np.empty(size, dtype=np.int64)
-    n = 0
-    for i in range(size):
-        if i == IMPULSE or (i in (ALTITUDE, SPEED) and not flies):
-            continue
-        out[n] = i
-        n += 1
-    return out[:n].copy()
+    used = [i for i in range(size) if i != IMPULSE and (flies or i not in (ALTITUDE, SPEED))]
+    return np.array(used)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def propagate(
-    times: Array, begin: Array, end: Array, dense: Array, phases: Integers, events: Integers, tables: Tables, c:
-    Array, shifted: Array, steps: Array, scales: Array, terms: Integers, start: Array, ) -> tuple[Array, Array,
-    Array]:  # fmt: skip
+@compiled
+def radau_matrix(h: float, f_y: Array, used: Integers, matrix: Array) -> None:
+    """1 - h (RADAU x f_y) of the used states."""
+    m = used.size
+    for a in range(3):
+        for b in range(3):
+            for i in range(m):
+                for j in range(m):
+                    matrix[a * m + i, b * m + j] = -h * RADAU[a, b] * f_y[b, used[i], j]
+    for i in range(3 * m):
+        matrix[i, i] += 1.0
+
+
+@compiled
+def radau_stages(h: float, k: int, s: Array, f_p: Array, used: Integers, lu: Array, pivots: Integers, u: Array) -> None:
+    """Sensitivities ``u`` of the used states at the three nodes to parameter ``k``."""
+    m = used.size
+    for a in range(3):
+        for i in range(m):
+            total = s[used[i], k]
+            for b in range(3):
+                total += h * RADAU[a, b] * f_p[b, used[i], k]
+            u[a * m + i] = total
+    substitute(lu, pivots, u)
+
+
+@compiled
+def spread(h: float, k: int, s: Array, slopes: Slopes, used: Integers, u: Array, states: Array) -> None:
+    """The stages of parameter ``k`` into ``states`` (nodes, states, parameters); the impulse is a quadrature."""
+    m = used.size
+    for a in range(3):
+        for i in range(s.shape[0]):
+            states[a + 1, i, k] = s[i, k]
+        for i in range(m):
+            states[a + 1, used[i], k] = u[a * m + i]
+    for b in range(3):
+        rate = slopes.f_p[b, IMPULSE, k]
+        for j in range(m):
+            rate += slopes.f_y[b, IMPULSE, j] * u[b * m + j]
+        for a in range(3):
+            states[a + 1, IMPULSE, k] += h * RADAU[a, b] * rate
+
+
+@compiled
+def outputs_of(s: Array, used: Integers, out_y: Array, out_p: Array, result: Array) -> None:
+    """Sensitivities of the outputs: out_y S + out_p."""
+    copy(out_p, result, out_p.size)
+    for o in range(out_y.shape[0]):
+        for j in range(used.size):
+            for p in range(s.shape[1]):
+                result[o, p] += out_y[o, j] * s[used[j], p]
+
+
+@compiled
+def at_node(slopes: Slopes, node: int) -> Slopes:
+    """Of slopes at several points, those at one."""
+    return Slopes(slopes.f_y[node], slopes.f_p[node], slopes.out_y[node], slopes.out_p[node])
+
+
+@compiled
+def empty_slopes(size: int, used: int, number: int) -> Slopes:
+    """Room for the slopes at four points: NODES, and the start of a step."""
+    outs = len(OUTPUTS)
+    return Slopes(
+        np.zeros((4, size, used)), np.zeros((4, size, number)), np.zeros((4, outs, used)), np.zeros((4, outs, number))
+    )
+
+
+@compiled
+def copy_slopes(slopes: Slopes, source: int, target: int) -> None:
+    """What holds at a step's end holds at the start of the next."""
+    copy(slopes.f_y[source], slopes.f_y[target], slopes.f_y[source].size)
+    copy(slopes.f_p[source], slopes.f_p[target], slopes.f_p[source].size)
+    copy(slopes.out_y[source], slopes.out_y[target], slopes.out_y[source].size)
+    copy(slopes.out_p[source], slopes.out_p[target], slopes.out_p[source].size)
+
+
+@compiled
+def linearize_step(n: int, run: History, y: Array, m: Equations, p: Parameters, slopes: Slopes, spare: Spare) -> None:
+    """Slopes at the nodes of a step, and at its start where an event comes before it."""
+    t, h = run.times[n, 0], run.times[n, 1] - run.times[n, 0]
+    liquid, burning = run.phases[n, 0] == 1, run.phases[n, 1] == 1
+    if n > 0 and run.events[n - 1] < 0:
+        copy_slopes(slopes, 2, 3)
+    else:
+        copy(run.begin[n], y, y.size)
+        linearize(t, y, liquid, burning, m, p, at_node(slopes, 3), spare)
+    for k in range(3):
+        interpolate(NODES[k], run.begin[n], run.end[n], run.dense[n], y)
+        linearize(t + NODES[k] * h, y, liquid, burning, m, p, at_node(slopes, k), spare)
+
+
+@compiled(nogil=True)
+def propagate(run: History, m: Equations, shifted: Array, steps: Array, scales: Array, start: Array) -> tuple[
+    Array, Array, Array
+]:  # fmt: skip
     """Sensitivities at four nodes of every step (its start and NODES) and of the event times.
 
-    ``shifted`` (parameters, constants) are the constants with each parameter moved by ``steps``, ``start`` (states,
-    parameters) the sensitivities of the initial state. Returns those of the states (n, 4, states, parameters), of the
-    outputs (n, 4, outputs, parameters), and of the time of the event at each step's end (n, parameters; 0 without
-    one).
+    ``shifted`` and ``steps`` as in Parameters, ``start`` (states, parameters) the sensitivities of the initial state.
+    Returns those of the states (n, 4, states, parameters), of the outputs (n, 4, outputs, parameters), and of the time
+    of the event at each step's end (n, parameters; 0 without one).
     """
-    count, size, number = times.shape[0], begin.shape[1], steps.size
-    outs = len(OUTPUTS)
-    states = np.zeros((count, 4, size, number))
-    outputs = np.zeros((count, 4, outs, number))
+    count, size, number, outs = run.times.shape[0], run.begin.shape[1], steps.size, len(OUTPUTS)
+    states, outputs = np.zeros((count, 4, size, number)), np.zeros((count, 4, outs, number))
     moments = np.zeros((count, number))
-    used = used_states(size, c[FLIES] > 0.0)
-    m = used.size
-    s = start.copy()
-    work = (np.zeros(len(ENVIRONMENT)), np.zeros(len(SITES)))
-    f, out, moved, moved_out, y = np.zeros(size), np.zeros(outs), np.zeros(size), np.zeros(outs), np.zeros(size)
-    f_y, f_p = np.zeros((4, size, m)), np.zeros((4, size, number))
-    out_y, out_p = np.zeros((4, outs, m)), np.zeros((4, outs, number))
-    matrix, pivots = np.zeros((3 * m, 3 * m)), np.zeros(3 * m, dtype=np.int64)
-    stage = np.zeros(3 * m)
+    used = used_states(size, m.c[FLIES] > 0.0)
+    p, slopes = Parameters(shifted, steps, scales, used), empty_slopes(size, used.size, number)
+    spare = Spare(np.zeros(size), np.zeros(outs), np.zeros(size), np.zeros(outs))
+    matrix, pivots = np.zeros((3 * used.size, 3 * used.size)), np.zeros(3 * used.size, dtype=np.int64)
+    s, y, stage = start.copy(), np.zeros(size), np.zeros(3 * used.size)
     for n in range(count):
-        t, h = times[n, 0], times[n, 1] - times[n, 0]
-        liquid, burning = phases[n, 0] == 1, phases[n, 1] == 1
-        restarted = n == 0 or events[n - 1] >= 0
-        if restarted:
-            y[:] = begin[n]
-            linearize(t, y, liquid, burning, tables, c, shifted, steps, used, scales, terms, work, f, out, moved,
-                      moved_out, f_y[3], f_p[3], out_y[3], out_p[3])  # fmt: skip
-        states[n, 0] = s
-        _outputs_of(s, used, out_y[3], out_p[3], outputs[n, 0])
-        for k in range(3):
-            interpolate(NODES[k], begin[n], end[n], dense[n], y)
-            linearize(t + NODES[k] * h, y, liquid, burning, tables, c, shifted, steps, used, scales, terms, work, f,
-                      out, moved, moved_out, f_y[k], f_p[k], out_y[k], out_p[k])  # fmt: skip
-        for a in range(3):
-            for b in range(3):
-                for i in range(m):
-                    for j in range(m):
-                        matrix[a * m + i, b * m + j] = -h * RADAU[a, b] * f_y[b, used[i], j]
-            for i in range(m):
-                matrix[a * m + i, a * m + i] += 1.0
+        h = run.times[n, 1] - run.times[n, 0]
+        linearize_step(n, run, y, m, p, slopes, spare)
+        radau_matrix(h, slopes.f_y, used, matrix)
         factorize(matrix, pivots)
-        for p in range(number):
-            for a in range(3):
-                for i in range(m):
-                    total = s[used[i], p]
-                    for b in range(3):
-                        total += h * RADAU[a, b] * f_p[b, used[i], p]
-                    stage[a * m + i] = total
-            substitute(matrix, pivots, stage)
-            for a in range(3):
-                states[n, a + 1, :, p] = s[:, p]
-                for i in range(m):
-                    states[n, a + 1, used[i], p] = stage[a * m + i]
-            # the impulse: a quadrature
-            for a in range(3):
-                total = s[IMPULSE, p]
-                for b in range(3):
-                    rate = f_p[b, IMPULSE, p]
-                    for j in range(m):
-                        rate += f_y[b, IMPULSE, j] * stage[b * m + j]
-                    total += h * RADAU[a, b] * rate
-                states[n, a + 1, IMPULSE, p] = total
-        s[:] = states[n, 3]
+        copy(s, states[n, 0], s.size)
+        outputs_of(s, used, slopes.out_y[3], slopes.out_p[3], outputs[n, 0])
+        for k in range(number):
+            radau_stages(h, k, s, slopes.f_p, used, matrix, pivots, stage)
+            spread(h, k, s, slopes, used, stage, states[n])
         for a in range(3):
-            _outputs_of(states[n, a + 1], used, out_y[a], out_p[a], outputs[n, a + 1])
-        f_y[3], f_p[3], out_y[3], out_p[3] = f_y[2], f_p[2], out_y[2], out_p[2]
-        if events[n] >= 0:
-            y[:] = end[n]
-            _through_event(times[n, 1], y, events[n], liquid, burning, n + 1 < count, begin[min(n + 1, count - 1)],
-                           phases[min(n + 1, count - 1)], tables, c, shifted, steps, scales, terms, work, s,
-                           moments[n])  # fmt: skip
+            outputs_of(states[n, a + 1], used, slopes.out_y[a], slopes.out_p[a], outputs[n, a + 1])
+        copy(states[n, 3], s, s.size)
+        if run.events[n] >= 0:
+            through_event(n, run, m, p, spare, s, moments[n])
     return states, outputs, moments
 
 
-@njit(cache=True, error_model="numpy")
-def _outputs_of(s: Array, used: Integers, out_y: Array, out_p: Array, result: Array) -> None:
-    for o in range(out_y.shape[0]):
-        for p in range(s.shape[1]):
-            total = out_p[o, p]
-            for j in range(used.size):
-                total += out_y[o, j] * s[used[j], p]
-            result[o, p] = total
+@compiled
+def event_value(
+    event: int, t: float, y: Array, liquid: bool, burning: bool, m: Equations, spare: Spare, values: Array
+) -> float:
+    """Value of an event; leaves the rates in ``spare.moved``."""
+    model = address_of(m)
+    rates_at(t, y, liquid, burning, model, spare.moved, spare.moved_out)
+    events_at(t, y, liquid, burning, model, spare.moved_out, values)
+    return float(values[event])
 
 
-@njit(cache=True, error_model="numpy")
-def _through_event(
-    t: float, y: Array, event: int, liquid: bool, burning: bool, goes_on: bool, y_after: Array, phase_after: Integers,
-    tables: Tables, c: Array, shifted: Array, steps: Array, scales: Array, terms: Integers, work: Work, s: Array,
-    moment: Array,
+@compiled
+def event_slopes(
+    event: int, here: float, t: float, y: Array, liquid: bool, burning: bool, m: Equations, p: Parameters, s: Array,
+    spare: Spare, values: Array, moment: Array,
 ) -> None:  # fmt: skip
-    """Move ``s`` across an event, and tell how its time moves."""
-    size, number, kinds = y.size, steps.size, OWN_EVENTS + terms.shape[0]
-    f, f_after, dy, out = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(len(OUTPUTS))
-    here, there = np.ones(kinds), np.ones(kinds)
-    rates(t, y, liquid, burning, tables, c, terms, work, f, out)
-    event_values(t, y, liquid, burning, tables, c, terms, work, out, here)
-    g_y = np.zeros(size)
-    for i in range(size):
-        if i == IMPULSE:
-            continue
-        kept = y[i]
-        step = INCREMENT * max(abs(kept), scales[i])
-        y[i] = kept + step
-        rates(t, y, liquid, burning, tables, c, terms, work, dy, out)
-        event_values(t, y, liquid, burning, tables, c, terms, work, out, there)
-        y[i] = kept
-        g_y[i] = (there[event] - here[event]) / step
-    tick = 1e-6
-    rates(t + tick, y, liquid, burning, tables, c, terms, work, dy, out)
-    event_values(t + tick, y, liquid, burning, tables, c, terms, work, out, there)
-    slope = (there[event] - here[event]) / tick
-    for i in range(size):
-        slope += g_y[i] * f[i]
-    if slope == 0.0:
-        return
-    for p in range(number):
-        rates(t, y, liquid, burning, tables, shifted[p], terms, work, dy, out)
-        event_values(t, y, liquid, burning, tables, shifted[p], terms, work, out, there)
-        total = (there[event] - here[event]) / steps[p]
-        for i in range(size):
-            total += g_y[i] * s[i, p]
-        moment[p] = -total / slope
-    if not goes_on:
-        return
-    rates(t, y_after.copy(), phase_after[0] == 1, phase_after[1] == 1, tables, c, terms, work, f_after, out)
-    base, changed = y.copy(), y.copy()
-    change(event, c, tables[0], base)
-    for p in range(number):
-        # the state where the shifted run meets the event, changed as it would be, then back to the unshifted time
-        small = 1e-6
-        largest = 0.0
-        for i in range(size):
-            changed[i] = s[i, p] + f[i] * moment[p]
-            largest = max(largest, abs(changed[i]) / max(abs(y[i]), scales[i]))
-        scale = small / max(largest, 1e-300)
-        for i in range(size):
-            changed[i] = y[i] + scale * changed[i]
-        change(event, c, tables[0], changed)
-        for i in range(size):
-            s[i, p] = (changed[i] - base[i]) / scale
-        if event == 0:
-            changed[:] = y
-            change(event, shifted[p], tables[0], changed)
-            for i in range(size):
-                s[i, p] += (changed[i] - base[i]) / steps[p]
-        for i in range(size):
-            s[i, p] -= f_after[i] * moment[p]
+    """How the time of an event moves with every parameter: -(g_y S + g_p) / (g_y f + g_t)."""
+    slope = (event_value(event, t + TICK, y, liquid, burning, m, spare, values) - here) / TICK
+    for k in range(p.steps.size):
+        moved = event_value(event, t, y, liquid, burning, with_constants(m, p.shifted[k]), spare, values)
+        moment[k] = (moved - here) / p.steps[k]
+    for i in range(y.size):
+        if i != IMPULSE:
+            kept, step = y[i], INCREMENT * max(abs(y[i]), p.scales[i])
+            y[i] = kept + step
+            by_state = (event_value(event, t, y, liquid, burning, m, spare, values) - here) / step
+            y[i] = kept
+            slope += by_state * spare.f[i]
+            for k in range(moment.size):
+                moment[k] += by_state * s[i, k]
+    for k in range(p.steps.size):
+        moment[k] = -moment[k] / slope if slope != 0.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
+def through_event(n: int, run: History, m: Equations, p: Parameters, spare: Spare, s: Array, moment: Array) -> None:
+    """Move ``s`` across the event at the end of step ``n``, and tell how its time moves."""
+    t, y, event = run.times[n, 1], run.end[n].copy(), run.events[n]
+    liquid, burning = run.phases[n, 0] == 1, run.phases[n, 1] == 1
+    values = np.ones(OWN_EVENTS + m.terms.shape[0])
+    here = event_value(event, t, y, liquid, burning, m, spare, values)
+    f, after = spare.f, spare.moved
+    copy(spare.moved, f, f.size)
+    event_slopes(event, here, t, y, liquid, burning, m, p, s, spare, values, moment)
+    if n + 1 == run.times.shape[0]:
+        return
+    y_after, liquid, burning = run.begin[n + 1].copy(), run.phases[n + 1, 0] == 1, run.phases[n + 1, 1] == 1
+    rates_at(t, y_after, liquid, burning, address_of(m), after, spare.moved_out)
+    base = y.copy()
+    change(event, m, base)
+    for k in range(p.steps.size):
+        for i in range(y.size):
+            s[i, k] += f[i] * moment[k]
+        follow(event, m, p, k, y, s, base)
+        for i in range(y.size):
+            s[i, k] -= after[i] * moment[k]
+
+
+@compiled
+def follow(event: int, m: Equations, p: Parameters, k: int, y: Array, s: Array, base: Array) -> None:
+    """Column ``k`` of ``s`` across the change of the state, from ``y`` to ``base``, that an event makes."""
+    largest, changed = 1e-300, y.copy()
+    for i in range(y.size):
+        largest = max(largest, abs(s[i, k]) / max(abs(y[i]), p.scales[i]))
+    for i in range(y.size):
+        changed[i] = y[i] + NUDGE / largest * s[i, k]
+    change(event, m, changed)
+    for i in range(y.size):
+        s[i, k] = (changed[i] - base[i]) / (NUDGE / largest)
+    if event == LIQUID_OUT:
+        copy(y, changed, y.size)
+        change(event, with_constants(m, p.shifted[k]), changed)
+        for i in range(y.size):
+            s[i, k] += (changed[i] - base[i]) / p.steps[k]
+
+
+@compiled
 def at_times(at: Array, times: Array, values: Array) -> Array:
     """Sensitivities (times, rows, parameters) at increasing times: cubics through each step's four nodes."""
     out = np.empty((at.size, values.shape[2], values.shape[3]))

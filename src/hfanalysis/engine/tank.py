@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
+from hfanalysis.compiled import compiled
 from hfanalysis.thermo.constants import GAS_CONSTANT, OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.saturation import (
     LIQUID_ENERGY,
@@ -65,7 +65,7 @@ def mass_along_blowdown(saturation: Saturation, volume: float, t_empty: float, t
     return _mass_along_blowdown(saturation.kernel_table, volume, t_empty, np.asarray(temperatures, dtype=np.float64))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def liquid_mass(table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float) -> float:
     """m_l = (M v_v - V) / (v_v - v_l)."""
     v_l, _ = evaluate(*table, LIQUID_VOLUME, temperature)
@@ -73,7 +73,7 @@ def liquid_mass(table: tuple[Array, float, float, float], volume: float, mass: f
     return float((mass * v_v - volume) / (v_v - v_l))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def energy_derivatives(
     table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float
 ) -> tuple[float, float, float]:
@@ -82,7 +82,7 @@ def energy_derivatives(
     return by_mass, by_temperature, h_l
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def saturated_tank(
     table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float
 ) -> tuple[float, float, float, float, float, float]:
@@ -106,7 +106,7 @@ def saturated_tank(
     return np.exp(ln_p), 1.0 / v_l, m_l, by_mass, by_temperature, h_l
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def temperature_rate(
     table: tuple[Array, float, float, float],
     volume: float,
@@ -123,7 +123,7 @@ def temperature_rate(
     return (heat + outflow * (by_mass - h_l)) / by_temperature
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _mass_along_blowdown(
     table: tuple[Array, float, float, float], volume: float, t_empty: float, temperatures: Array
 ) -> Array:
@@ -145,7 +145,7 @@ def _mass_along_blowdown(
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _mass_slope(table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float) -> float:
     by_mass, by_temperature, h_l = energy_derivatives(table, volume, mass, temperature)
     return by_temperature / (h_l - by_mass)

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hfanalysis.engine import course
 from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.course import History
 from hfanalysis.engine.effect import Active, Composition, compose
 from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
 from hfanalysis.engine.model import (
@@ -24,9 +25,11 @@ from hfanalysis.engine.model import (
     OUTPUTS,
     PAD,
     STATES,
-    Tables,
+    Equations,
     flux_power,
+    rates,
 )
+from hfanalysis.engine.sites import ENVIRONMENT, SITES
 from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.thermo.air import air
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
@@ -39,6 +42,8 @@ __all__ = ["OUTPUTS", "PAD", "STATES", "Burn", "Engine", "burn", "check", "flux_
 
 ACCURACY = 3e-5
 """Default relative tolerance of a run."""
+
+NO_DRAG = np.zeros((2, 1))
 
 POINTS_PER_STEP = 4
 """Points of the histories per step of the solver, where no times are asked for."""
@@ -86,34 +91,47 @@ class Engine:
             raise ValueError("an engine without a vehicle needs an ambient pressure")
         return self.ambient_pressure
 
-    @property
-    def tables(self) -> Tables:
-        """What the compiled equations read beside the constants."""
-        drag = np.zeros((2, 1)) if self.vehicle is None else self.vehicle.drag_table
-        return self.saturation.kernel_table, self.combustion.kernel, drag
+    def equations(self, composition: Composition) -> Equations:
+        """What compiled code reads, with scratch of its own."""
+        drag = NO_DRAG if self.vehicle is None else self.vehicle.drag_table
+        return Equations(
+            rates.address, course.event_values.address, self.saturation.kernel_table, self.combustion.kernel, drag,
+            composition.constants, composition.terms, np.zeros(len(ENVIRONMENT)), np.zeros(len(SITES)),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Steps:
     """The solver's steps as :func:`hfanalysis.engine.course.integrate` returns them, and what they were made with."""
 
-    times: Array
-    begin: Array
-    end: Array
-    outputs: Array
-    dense: Array
-    phases: NDArray[np.int64]
-    events: NDArray[np.int64]
+    history: History
     engine: Engine
     composition: Composition
+
+    @property
+    def times(self) -> Array:
+        """Start and end of every step [s], (n, 2)."""
+        return self.history.times
+
+    @property
+    def begin(self) -> Array:
+        """States at the start of every step."""
+        return self.history.begin
+
+    @property
+    def end(self) -> Array:
+        """States at the end of every step, before an event changes them."""
+        return self.history.end
+
+    @property
+    def events(self) -> NDArray[np.int64]:
+        """The event at the end of every step (-1: none)."""
+        return self.history.events
 
     def at(self, times: ArrayLike) -> tuple[Array, Array]:
         """States and outputs at increasing ``times`` [s]; the ends are held."""
         where = np.ascontiguousarray(times, dtype=np.float64)
-        c = self.composition
-        return course.sample(
-            where, self.times, self.begin, self.end, self.dense, self.phases, self.engine.tables, c.constants, c.terms
-        )
+        return course.sample(where, self.history, self.engine.equations(self.composition))  # type: ignore[no-any-return]
 
 
 @dataclass(frozen=True)
@@ -247,12 +265,12 @@ def burn(
     composition = compose(engine.effects, constants(engine), len(STATES), keep_idle)
     y = initial(engine, composition)
     scales = np.concatenate([course.SCALES, composition.scales])
-    found = course.integrate(y, longest, run_on, rtol, scales, engine.tables, composition.constants, composition.terms)
-    ending, count, happened = found[0], found[1], found[9]
-    if ending in (course.GIVEN_UP, course.STUCK):
-        reached = found[2][-1, 1] if count else 0.0
+    equations = engine.equations(composition)
+    ending, history, happened = course.integrate(y, float(longest), bool(run_on), rtol, scales, equations, True, True)
+    if ending == course.GIVEN_UP or not len(history.times):
+        reached = history.times[-1, 1] if len(history.times) else 0.0
         raise ArithmeticError(f"the engine cannot be integrated beyond {reached:.4f} s: the solver hardly advances")
-    steps = Steps(*found[2:9], engine=engine, composition=composition)
+    steps = Steps(history, engine, composition)
     time = _refined(steps.times) if times is None else np.ascontiguousarray(times, dtype=np.float64)
     states, outputs = steps.at(time)
     out, fuel = happened[course.LIQUID_OUT], happened[course.FUEL_OUT]

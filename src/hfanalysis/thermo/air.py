@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from hfanalysis.compiled import compiled
 from hfanalysis.thermo.atmosphere import HIGHEST
 from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
 
 AIR_GAMMA = 1.4
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def air(altitude: float) -> tuple[float, float, float]:
     """Pressure [Pa], density [kg/m^3] and speed of sound [m/s] at an altitude above sea level [m].
 

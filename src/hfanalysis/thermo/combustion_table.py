@@ -28,9 +28,9 @@ from dataclasses import dataclass
 from importlib.metadata import version
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from hfanalysis.compiled import compiled, inlined
 from hfanalysis.thermo import combustion
 from hfanalysis.thermo.cache import cached
 from hfanalysis.thermo.combustion import FUEL_MOLAR_MASS, PROPEP_OXIDIZER_ENTHALPY, equilibrium
@@ -272,7 +272,7 @@ def _spline_slopes(x: Array) -> Array:
     return np.asarray(np.linalg.solve(left, right))
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _cell(x: float, count: int) -> tuple[int, float]:
     """Cell and position within it for ``x`` in units of nodes; ends held, and no number stays none."""
     x = min(max(x, 0.0), count - 1.0)
@@ -280,28 +280,28 @@ def _cell(x: float, count: int) -> tuple[int, float]:
     return i, x - i
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _hermite(t: float, width: float) -> Four:
     """Weights of value and slope at the near node of a cell and at the far one."""
     s = 1.0 - t
     return s * s * (1.0 + 2.0 * t), width * t * s * s, t * t * (3.0 - 2.0 * t), -width * t * t * s
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _hermite_slope(t: float, width: float) -> Four:
     """Derivatives of :func:`_hermite` with the coordinate."""
     s = 1.0 - t
     return -6.0 * t * s / width, s * (1.0 - 3.0 * t), 6.0 * t * s / width, t * (3.0 * t - 2.0)
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _levels(h: float) -> Four:
     """Weights of the cubic through the four levels of enthalpy."""
     a, b, c, d = h - _H0, h - _H1, h - _H2, h - _H3
     return _L0 * b * c * d, _L1 * a * c * d, _L2 * a * b * d, _L3 * a * b * c
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _share_cell(share: float, count: int) -> Shares:
     """First level of the share, how many levels count, their weights; without nitrogen there is but the first."""
     if share <= 0.0:
@@ -311,7 +311,7 @@ def _share_cell(share: float, count: int) -> Shares:
     return k, 2, _hermite(t, 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _pressure_cell(ln_pressure: float, count: int) -> tuple[int, Four, Four]:
     """Cell, weights and their derivatives with ln p (none where the end is held)."""
     scale = (count - 1) / (_P1 - _P0)
@@ -322,7 +322,7 @@ def _pressure_cell(ln_pressure: float, count: int) -> tuple[int, Four, Four]:
     return i, _hermite(t, 1.0), (scale * a, scale * b, scale * c, scale * d)
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _zone(x: float, edge: float) -> tuple[int, float, float]:
     """Zone, coordinate from 0 at its kink to 1 at its far end, and the coordinate's derivative with the edge."""
     if x < edge:
@@ -339,7 +339,7 @@ def _zone(x: float, edge: float) -> tuple[int, float, float]:
     return 2, here, 0.5 * here / half
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _mixture_cell(here: float, count: int) -> tuple[int, Four, Four]:
     """Cell of a zone, weights and their derivatives with the zone's coordinate."""
     j = min(int(np.sqrt(here) * (count - 1)), count - 2) if here > 0.0 else 0
@@ -349,7 +349,7 @@ def _mixture_cell(here: float, count: int) -> tuple[int, Four, Four]:
     return j, _hermite(t, width), _hermite_slope(t, width)
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _edge(curve: Array, k: int, many: int, shares: Four, i: int, levels: Four) -> Four:
     """Carbon edge and its slope at the near and the far node of pressure."""
     e0 = e1 = e2 = e3 = 0.0
@@ -364,7 +364,7 @@ def _edge(curve: Array, k: int, many: int, shares: Four, i: int, levels: Four) -
     return e0, e1, e2, e3
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _blend(values: Array, n: int, row: int, levels: Four, weight: float) -> Four:
     """The four coefficients of a node's row at the enthalpy, times ``weight``."""
     a, b, c, d = 4 * row, 4 * (ROWS + row), 4 * (2 * ROWS + row), 4 * (3 * ROWS + row)
@@ -377,7 +377,7 @@ def _blend(values: Array, n: int, row: int, levels: Four, weight: float) -> Four
     )
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _corner(nodes: Array, drift: Array, n: int, jump: int, many: int, shares: Four, levels: Four, row: int) -> Four:
     """Value, slopes along mixture and pressure, and the mixed one at a node; ``jump`` nodes on is the next share."""
     f = _blend(nodes, n, row, levels, shares[0])
@@ -389,7 +389,7 @@ def _corner(nodes: Array, drift: Array, n: int, jump: int, many: int, shares: Fo
     return f[0] + g[0] + h[0] + d[0], f[1] + g[1] + h[1] + d[1], f[2] + g[2] + h[2] + d[2], f[3] + g[3] + h[3] + d[3]
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _bicubic(near0: Four, near1: Four, far0: Four, far1: Four, p: Four, x: Four) -> float:
     """Hermite sum over the four corners: near and far in pressure, 0 and 1 in mixture."""
     near = p[0] * (x[0] * near0[0] + x[1] * near0[1] + x[2] * near1[0] + x[3] * near1[1])
@@ -399,7 +399,7 @@ def _bicubic(near0: Four, near1: Four, far0: Four, far1: Four, p: Four, x: Four)
     return near + near_slope + far + far_slope
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _place(curve: Array, stride: int, ln_pressure: float, x: float, levels: Four, shares: Shares) -> Place:
     """The cell and the weights in it of a pressure and of a mixture ``x``.
 
@@ -416,7 +416,7 @@ def _place(curve: Array, stride: int, ln_pressure: float, x: float, levels: Four
     return (k * pressures + i) * stride + zone * mixtures + j, p, p_slope, m, m_slope, moving * drifting
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _row(
     nodes: Array, drift: Array, stride: int, jump: int, place: Place, levels: Four, shares: Shares, row: int
 ) -> tuple[float, float]:
@@ -431,13 +431,13 @@ def _row(
     return _bicubic(a, b, c, d, p, m), slope
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _oxidizer_to_fuel(ln_ratio: float, share: float) -> float:
     """x, of the nitrous oxide alone."""
     return ln_ratio if share <= 0.0 else ln_ratio + np.log1p(-min(share, SHARE))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _at(
     table: Grid, ln_pressure: float, ln_ratio: float, enthalpy: float, share: float, row: int
 ) -> tuple[float, float]:
@@ -449,7 +449,7 @@ def _at(
     return _row(nodes, drift, stride, stride * curve.shape[1], place, levels, shares, row)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def gas_at(table: Grid, ln_pressure: float, ln_ratio: float, enthalpy: float, share: float) -> tuple[float, float]:
     """R T [J/kg] and gamma of the chamber gas.
 
@@ -466,7 +466,7 @@ def gas_at(table: Grid, ln_pressure: float, ln_ratio: float, enthalpy: float, sh
     return np.exp(ln_rt), gamma
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def temperatures(table: Grid, ln_pressure: Array, ln_ratio: Array, enthalpy: Array, share: Array) -> Array:
     """Temperature [K] of the chamber gas along a history; the solver itself only needs R T."""
     out = np.empty(ln_pressure.size)
@@ -475,7 +475,7 @@ def temperatures(table: Grid, ln_pressure: Array, ln_ratio: Array, enthalpy: Arr
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def chamber_pressure(
     table: Grid, mass: float, volume: float, ln_ratio: float, enthalpy: float, share: float, guess: float
 ) -> tuple[float, float, float]:

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
+
+from hfanalysis.compiled import compiled
 
 Array = NDArray[np.float64]
 
@@ -137,7 +138,7 @@ class Saturation:
         return float(self.pressure(self.t_min)), float(self.pressure(self.t_max))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def evaluate(
     table: Array, theta_start: float, theta_step: float, critical: float, row: int, temperature: float
 ) -> tuple[float, float]:
@@ -146,7 +147,7 @@ def evaluate(
     return row_at(table, row, k, x, by_temperature)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def place(
     table: Array, theta_start: float, theta_step: float, critical: float, temperature: float
 ) -> tuple[int, float, float]:
@@ -156,7 +157,7 @@ def place(
     return k, theta - (theta_start + k * theta_step), -1.0 / (3.0 * critical * theta * theta)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def row_at(table: Array, row: int, k: int, x: float, by_temperature: float) -> tuple[float, float]:
     """Value and derivative by temperature of one table row at a :func:`place`; many rows share one place."""
     c = table[row, k]
@@ -164,7 +165,7 @@ def row_at(table: Array, row: int, k: int, x: float, by_temperature: float) -> t
     return value, (c[1] + x * (2.0 * c[2] + x * 3.0 * c[3])) * by_temperature
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def saturation_temperature(
     table: Array,
     theta_start: float,
@@ -188,7 +189,7 @@ def saturation_temperature(
     return t
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _evaluate_many(
     table: Array, theta_start: float, theta_step: float, critical: float, row: int, t: Array
 ) -> tuple[Array, Array]:
@@ -199,7 +200,7 @@ def _evaluate_many(
     return value, slope
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _temperatures(
     table: Array, theta_start: float, theta_step: float, critical: float, p: Array, t_min: float, t_max: float
 ) -> Array:

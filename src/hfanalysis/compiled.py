@@ -1,0 +1,195 @@
+"""Compiled code: one way to decorate it, a cache that is never stale, and code that is compiled once and called by
+address.
+
+numba keeps compiled functions beside their sources and takes them up again as long as their own file is as old as it
+was. It does not look at what they call from other files. Here a function is taken up only while its module *and every
+module of the package that it imports, directly or not*, read as they did; how old files are does not matter.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cached_property, lru_cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, TypeVar
+
+from numba import njit, types
+from numba.core import cgutils
+from numba.core.ccallback import CFunc
+from numba.core.typing.templates import Signature
+from numba.extending import intrinsic
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_PACKAGE = Path(__file__).resolve().parent
+_IMPORT = re.compile(rf"^(?:from|import) {_PACKAGE.name}((?:\.\w+)*)(?: import (\([^)]*\)|.*))?", re.MULTILINE)
+
+
+def compiled(function: Function | None = None, **options: Any) -> Any:
+    """``numba.njit`` with IEEE division and the cache of this module; ``options`` as numba's."""
+    if function is None:
+        return lambda f: compiled(f, **options)
+    made = njit(error_model="numpy", **options)(function)
+    made.enable_caching()
+    _stamp(made, function)
+    return made
+
+
+def inlined(function: Function) -> Any:
+    """As :func:`compiled`, always merged into its callers: for the small pieces of what is called most."""
+    return compiled(function, forceinline=True)
+
+
+class Callback:
+    """A function with a C signature, compiled when its ``address`` is first asked for."""
+
+    def __init__(self, function: Callable[..., Any], signature: Signature) -> None:
+        self.function, self.signature = function, signature
+        self.__doc__ = function.__doc__
+
+    @cached_property
+    def address(self) -> int:
+        """Where its machine code is."""
+        made = CFunc(self.function, (self.signature.args, self.signature.return_type), {}, {"error_model": "numpy"})
+        made.enable_caching()
+        _stamp(made, self.function)
+        made.compile()
+        return int(made.address)
+
+
+class Separate:
+    """A compiled function that returns nothing, compiled once for one signature and called through its address.
+
+    numba merges what a function calls into it and optimizes it anew in every caller; what is large and called from
+    several places is spared that. Compiled code calls it by :func:`caller`, Python the object itself.
+    """
+
+    def __init__(self, function: Callable[..., Any], signature: Signature) -> None:
+        self._made = compiled(function)
+        self.signature, self.__doc__ = signature, function.__doc__
+
+    @cached_property
+    def address(self) -> int:
+        """Where its machine code is."""
+        self._made.compile(self.signature)
+        found = self._made.overloads[tuple(self.signature.args)]
+        return int(found.library.get_pointer_to_function(found.fndesc.llvm_func_name))
+
+    def __call__(self, *args: Any) -> None:
+        self._made(*args)
+
+
+def separate(signature: Signature) -> Callable[[Callable[..., Any]], Separate]:
+    """Decorator for :class:`Separate`."""
+    return lambda function: Separate(function, signature)
+
+
+def caller(expected: Signature) -> Any:
+    """What calls functions of a signature in compiled code: ``call(address, …)``."""
+
+    @intrinsic
+    def call(_typing: Any, address: Any, *args: Any) -> Any:
+        signature = types.none(types.int64, types.StarArgTuple(expected.args))
+
+        def generate(context: Any, builder: Any, _sig: Any, values: Any) -> Any:
+            kind = context.call_conv.get_function_type(types.none, expected.args)
+            function = builder.inttoptr(values[0], kind.as_pointer())
+            unpacked = cgutils.unpack_tuple(builder, values[1])
+            context.call_conv.call_function(builder, function, types.none, expected.args, unpacked)
+            return context.get_dummy_value()
+
+        return signature, generate
+
+    return call
+
+
+def by_address(kind: Any) -> tuple[Any, Any]:
+    """``address_of(value)`` and ``at(address)`` for tuples of numbers and arrays of the numba type ``kind``.
+
+    Large tuples are passed on as one number. The address holds while the function runs that asked for it; what comes
+    back owns no array, so that nothing is counted.
+    """
+
+    @intrinsic
+    def address_of(_typing: Any, _value: Any) -> Any:
+        def generate(_context: Any, builder: Any, _signature: Any, values: Any) -> Any:
+            place = cgutils.alloca_once_value(builder, values[0])
+            return builder.ptrtoint(place, cgutils.intp_t)
+
+        return types.int64(kind), generate
+
+    @intrinsic
+    def at(_typing: Any, _address: Any) -> Any:
+        def generate(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
+            place = builder.inttoptr(values[0], context.get_value_type(kind).as_pointer())
+            return _borrowed(context, builder, kind, builder.load(place))
+
+        return kind(types.int64), generate
+
+    return address_of, at
+
+
+def _borrowed(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """A value whose arrays nobody owns."""
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        array.meminfo, array.parent = (
+            cgutils.get_null_value(array.meminfo.type),
+            cgutils.get_null_value(array.parent.type),
+        )
+        return array._getvalue()
+    if isinstance(kind, types.BaseTuple):
+        for i, part in enumerate(kind):
+            inner = _borrowed(context, builder, part, builder.extract_value(value, i))
+            value = builder.insert_value(value, inner, i)
+    return value
+
+
+def _stamp(made: Any, function: Callable[..., Any]) -> None:
+    """Let numba's cache compare sources instead of the age of one of them."""
+    index = made._cache._cache_file
+    if not hasattr(index, "_source_stamp"):
+        raise RuntimeError("this version of numba keeps its cache in another way; hfanalysis.compiled does not know it")
+    index._source_stamp = digest(Path(function.__code__.co_filename))
+
+
+@lru_cache
+def digest(source: Path) -> str:
+    """SHA-256 over a source file and all that it imports of the package."""
+    total = sha256()
+    for path in sorted(_closure(source)):
+        total.update(path.read_bytes())
+    return total.hexdigest()
+
+
+def _closure(source: Path) -> set[Path]:
+    found: set[Path] = set()
+    waiting = {source}
+    while waiting:
+        path = waiting.pop()
+        if path not in found:
+            found.add(path)
+            waiting |= _imports(path)
+    return found
+
+
+@lru_cache
+def _imports(path: Path) -> set[Path]:
+    """Sources of the package that a file imports at its top level."""
+    found: set[Path] = set()
+    for module, names in _IMPORT.findall(path.read_text(encoding="utf-8")):
+        found |= _sources(_PACKAGE.name + module)
+        for name in re.findall(r"\w+", names):
+            found |= _sources(f"{_PACKAGE.name}{module}.{name}")
+    return found
+
+
+def _sources(module: str) -> set[Path]:
+    """The file of a module, of a package its __init__; none for what is no module of ours."""
+    first, *rest = module.split(".")
+    if first != _PACKAGE.name:
+        return set()
+    base = _PACKAGE.joinpath(*rest)
+    return {p for p in (base.with_suffix(".py"), base / "__init__.py") if rest and p.is_file()}
