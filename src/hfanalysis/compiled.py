@@ -13,7 +13,7 @@ from collections.abc import Callable
 from functools import cached_property, lru_cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, overload
 
 from numba import njit, types
 from numba.core import cgutils
@@ -27,19 +27,38 @@ _PACKAGE = Path(__file__).resolve().parent
 _IMPORT = re.compile(rf"^(?:from|import) {_PACKAGE.name}((?:\.\w+)*)(?: import (\([^)]*\)|.*))?", re.MULTILINE)
 
 
-def compiled(function: Function | None = None, **options: Any) -> Any:
+@overload
+def compiled(function: Function) -> Function: ...
+
+
+@overload
+def compiled(function: None = None, **options: Any) -> Callable[[Function], Function]: ...
+
+
+def compiled(function: Callable[..., Any] | None = None, **options: Any) -> Any:
     """``numba.njit`` with IEEE division and the cache of this module; ``options`` as numba's."""
     if function is None:
-        return lambda f: compiled(f, **options)
+        return lambda f: _compiled(f, **options)
+    return _compiled(function, **options)
+
+
+def _compiled(function: Callable[..., Any], **options: Any) -> Any:
     made = njit(error_model="numpy", **options)(function)
     made.enable_caching()
     _stamp(made, function)
     return made
 
 
-def inlined(function: Function) -> Any:
-    """As :func:`compiled`, always merged into its callers: for the small pieces of what is called most."""
-    return compiled(function, forceinline=True)
+def inner(function: Function) -> Function:
+    """As :func:`compiled`, but only for compiled callers: spares the time that what Python needs takes to compile."""
+    made: Function = _compiled(function, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    return made
+
+
+def inlined(function: Function) -> Function:
+    """As :func:`inner`, always merged into its callers: for the small pieces of what is called most."""
+    made: Function = _compiled(function, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    return made
 
 
 class Callback:
@@ -56,7 +75,8 @@ class Callback:
         made.enable_caching()
         _stamp(made, self.function)
         made.compile()
-        return int(made.address)
+        address: int = made.address  # type: ignore[assignment]
+        return address
 
 
 class Separate:
@@ -67,7 +87,7 @@ class Separate:
     """
 
     def __init__(self, function: Callable[..., Any], signature: Signature) -> None:
-        self._made = compiled(function)
+        self._made = _compiled(function)
         self.signature, self.__doc__ = signature, function.__doc__
 
     @cached_property
@@ -91,12 +111,12 @@ def caller(expected: Signature) -> Any:
 
     @intrinsic
     def call(_typing: Any, address: Any, *args: Any) -> Any:
-        signature = types.none(types.int64, types.StarArgTuple(expected.args))
+        signature = types.none(types.int64, types.StarArgTuple(expected.args))  # type: ignore[no-untyped-call]
 
         def generate(context: Any, builder: Any, _sig: Any, values: Any) -> Any:
             kind = context.call_conv.get_function_type(types.none, expected.args)
             function = builder.inttoptr(values[0], kind.as_pointer())
-            unpacked = cgutils.unpack_tuple(builder, values[1])
+            unpacked = cgutils.unpack_tuple(builder, values[1])  # type: ignore[no-untyped-call]
             context.call_conv.call_function(builder, function, types.none, expected.args, unpacked)
             return context.get_dummy_value()
 
@@ -115,7 +135,7 @@ def by_address(kind: Any) -> tuple[Any, Any]:
     @intrinsic
     def address_of(_typing: Any, _value: Any) -> Any:
         def generate(_context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-            place = cgutils.alloca_once_value(builder, values[0])
+            place = cgutils.alloca_once_value(builder, values[0])  # type: ignore[no-untyped-call]
             return builder.ptrtoint(place, cgutils.intp_t)
 
         return types.int64(kind), generate
@@ -141,7 +161,8 @@ def _borrowed(context: Any, builder: Any, kind: Any, value: Any) -> Any:
         )
         return array._getvalue()
     if isinstance(kind, types.BaseTuple):
-        for i, part in enumerate(kind):
+        parts: tuple[Any, ...] = tuple(kind)  # type: ignore[arg-type]
+        for i, part in enumerate(parts):
             inner = _borrowed(context, builder, part, builder.extract_value(value, i))
             value = builder.insert_value(value, inner, i)
     return value

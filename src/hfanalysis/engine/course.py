@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.compiled import compiled, inlined, separate
+from hfanalysis.compiled import compiled, inlined, inner, separate
 from hfanalysis.engine.model import (
     ALTITUDE,
     CHAMBER_NITROGEN,
@@ -68,7 +68,7 @@ from hfanalysis.thermo.saturation import LN_PRESSURE, LN_VAPOR_CP, LN_VAPOR_CV, 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-SCALES = np.array([1e-2, 1e-1, 1e-4, 1e-6, 1e-6, 1e-1, 1e-2, 1.0, 1e-3, 1e-6, 1.0, 1e-6, 1e-1, 1e-3, 1e-3])
+SCALES = np.array([1e-2, 1e-1, 1e-4, 1e-5, 1e-5, 1e-1, 1e-2, 1.0, 1e-3, 1e-5, 10.0, 1e-5, 1.0, 1e-3, 1e-3])
 """What counts as small of each state [SI]: absolute tolerances are the relative one times this."""
 
 LIQUID_OUT, FUEL_OUT, GROUND, CHOKING = range(4)
@@ -97,7 +97,7 @@ INCREMENT = 1e-7
 """Relative to a state, or to its scale: the difference with which Jacobians are formed."""
 
 
-@compiled
+@inner
 def moves(i: int, burning: bool, c: Array, terms: int) -> bool:
     """Whether a state changes in a phase."""
     if i == RADIUS:
@@ -113,7 +113,7 @@ def moves(i: int, burning: bool, c: Array, terms: int) -> bool:
     return i not in (COMPRESSIBILITY, EXPONENT)
 
 
-@compiled
+@inner
 def active_states(size: int, burning: bool, c: Array, terms: int) -> Integers:
     """Indices of the states that change in a phase; the others stay, and the linear algebra is spared them."""
     out, n = np.empty(size, dtype=np.int64), 0
@@ -208,14 +208,14 @@ def change(event: int, m: Equations, y: Array) -> None:
         y[ALTITUDE], y[SPEED] = m.c[LAUNCH_ALTITUDE], 0.0
 
 
-@compiled
+@inner
 def at_saturation(m: Equations, row: int, temperature: float) -> float:
     """A row of the table of saturated nitrous oxide."""
     table, start, step, critical = m.saturation
     return float(evaluate(table, start, step, critical, row, temperature)[0])
 
 
-@compiled
+@inner
 def enter(t: float, y: Array, liquid: bool, burning: bool, model: int) -> Scratch:
     """Room for the steps of a phase, with rates, outputs and events at its start."""
     m, size, outs = equations_at(model), y.size, len(OUTPUTS)
@@ -232,7 +232,7 @@ def enter(t: float, y: Array, liquid: bool, burning: bool, model: int) -> Scratc
     return s
 
 
-@compiled
+@inner
 def linearize(t: float, y: Array, liquid: bool, burning: bool, scales: Array, model: int, s: Scratch) -> None:
     """Jacobian of the active states and slope in time, by forward differences; the impulse moves nothing."""
     for column in range(s.active.size):
@@ -251,7 +251,7 @@ def linearize(t: float, y: Array, liquid: bool, burning: bool, scales: Array, mo
             s.slope[i] = (s.moved[i] - s.f[i]) / TICK
 
 
-@compiled
+@inner
 def attempt(t: float, y: Array, h: float, liquid: bool, burning: bool, model: int, s: Scratch) -> bool:
     """The stages ``u`` of a step and its result, ``trial``; the last stage is the error. False: singular."""
     n = s.active.size
@@ -268,7 +268,7 @@ def attempt(t: float, y: Array, h: float, liquid: bool, burning: bool, model: in
     return True
 
 
-@compiled
+@inner
 def stage(k: int, t: float, y: Array, h: float, liquid: bool, burning: bool, model: int, s: Scratch) -> None:
     """Stage ``k``, from those before it; leaves the state it was evaluated at in ``trial``."""
     copy(y, s.trial, y.size)
@@ -288,7 +288,7 @@ def stage(k: int, t: float, y: Array, h: float, liquid: bool, burning: bool, mod
     substitute(s.lu, s.pivots, s.u[k])
 
 
-@compiled
+@inner
 def error_norm(y: Array, scales: Array, rtol: float, s: Scratch) -> float:
     """Root mean square of the error in units of its tolerance."""
     total = 0.0
@@ -299,7 +299,7 @@ def error_norm(y: Array, scales: Array, rtol: float, s: Scratch) -> float:
     return float(np.sqrt(total / s.active.size))
 
 
-@compiled
+@inner
 def arrive(t: float, liquid: bool, burning: bool, model: int, s: Scratch, dense: Array) -> None:
     """Rates, outputs and events at the end of a step, and its interpolant."""
     rates_at(t, s.trial, liquid, burning, model, s.g, s.out)
@@ -312,13 +312,13 @@ def arrive(t: float, liquid: bool, burning: bool, model: int, s: Scratch, dense:
                 dense[k, s.active[i]] += DENSE[k, j] * s.u[j, i]
 
 
-@compiled
+@inner
 def passed(event: int, before: float, after: float) -> bool:
     """Whether an event lies between two values of its function: the engine's own downwards, switches either way."""
     return before > 0.0 >= after if event < OWN_EVENTS else before * after < 0.0
 
 
-@compiled
+@inner
 def value_within(
     event: int, theta: float, t: float, y: Array, h: float, dense: Array, liquid: bool, burning: bool, model: int,
     s: Scratch,
@@ -332,7 +332,7 @@ def value_within(
     return float(s.values[event])
 
 
-@compiled
+@inner
 def locate(
     event: int, latest: float, t: float, y: Array, h: float, dense: Array, liquid: bool, burning: bool, model: int,
     s: Scratch,
@@ -356,7 +356,7 @@ def locate(
     return high
 
 
-@compiled
+@inner
 def first_event(
     t: float, y: Array, h: float, dense: Array, liquid: bool, burning: bool, model: int, s: Scratch
 ) -> tuple[int, float]:
@@ -370,7 +370,7 @@ def first_event(
     return event, theta
 
 
-@compiled
+@inner
 def empty_history(room: int, size: int) -> History:
     """Room for so many steps."""
     return History(
@@ -379,7 +379,7 @@ def empty_history(room: int, size: int) -> History:
     )  # fmt: skip
 
 
-@compiled
+@inner
 def first(steps: History, n: int, room: int) -> History:
     """The first ``n`` steps, with room for ``room``."""
     out = empty_history(room, steps.begin.shape[1])
@@ -393,7 +393,7 @@ def first(steps: History, n: int, room: int) -> History:
     return out
 
 
-@compiled
+@inner
 def record(
     steps: History, n: int, t: float, y: Array, h: float, liquid: bool, burning: bool, event: int, s: Scratch
 ) -> None:
@@ -406,20 +406,20 @@ def record(
     copy(s.out, steps.outputs[n, 1], s.out.size)
 
 
-@compiled
+@inner
 def shortened(h: float, error: float) -> float:
     """The step to try after one whose error was too large."""
-    return h * max(0.2, 0.9 * error**-0.2) if np.isfinite(error) else 0.1 * h
+    return h * float(max(0.2, 0.9 * error**-0.2)) if np.isfinite(error) else 0.1 * h
 
 
-@compiled
+@inner
 def next_step(h: float, error: float, old_error: float, rejected: bool) -> float:
     """The step after an accepted one (PI control)."""
     factor = 0.9 * max(error, 1e-10) ** -0.14 * old_error**0.08
-    return h * min(max(factor, 0.2), 1.0 if rejected else 6.0)
+    return h * float(min(max(factor, 0.2), 1.0 if rejected else 6.0))
 
 
-@compiled
+@inner
 def advance(y: Array, s: Scratch) -> None:
     """The end of a step becomes the start of the next."""
     copy(s.trial, y, y.size)

@@ -11,7 +11,7 @@ the chamber, and, after burn-out, gas that enters unburnt and cold.
 from __future__ import annotations
 
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import types
@@ -100,9 +100,10 @@ class Equations(NamedTuple):
 
 
 _VECTOR, _REAL, _FLAG = types.float64[::1], types.float64, types.boolean
-_TABLE = types.Tuple((types.float64[:, :, ::1], _REAL, _REAL, _REAL))
-_GRID = types.Tuple((types.float64[:, ::1], types.float64[:, ::1], types.float64[:, :, :, ::1]))
-EQUATIONS = types.NamedTuple(
+_TUPLE: Any = types.Tuple
+_TABLE = _TUPLE((types.float64[:, :, ::1], _REAL, _REAL, _REAL))
+_GRID = _TUPLE((types.float64[:, ::1], types.float64[:, ::1], types.float64[:, :, :, ::1]))
+EQUATIONS = types.NamedTuple(  # type: ignore[no-untyped-call]
     (types.int64, types.int64, _TABLE, _GRID, types.float64[:, ::1], _VECTOR, types.int64[:, ::1], _VECTOR, _VECTOR),
     Equations,
 )
@@ -167,7 +168,7 @@ COLDEST_VAPOR, WARMEST_VAPOR = 185.0, 305.0
 """Temperatures [K] between which the vapour's heat capacity and enthalpy are read from the saturation line."""
 
 
-@inlined
+@compiled
 def flux_power(flux: float, n: float) -> float:
     """G^n, below SMALL_FLUX the parabola that joins it smoothly and ends in 0 with a finite slope."""
     if flux >= SMALL_FLUX:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.compiled import compiled
+from hfanalysis.compiled import inner
 
 Array = NDArray[np.float64]
 
@@ -81,7 +81,7 @@ DENSE = np.array(
 DENSE_ki u_i."""
 
 
-@compiled
+@inner
 def copy(source: Array, target: Array, count: int) -> None:
     """The first ``count`` numbers of an array into another (numba takes seconds to compile assignments of slices)."""
     a, b = source.reshape(-1), target.reshape(-1)
@@ -89,7 +89,7 @@ def copy(source: Array, target: Array, count: int) -> None:
         b[i] = a[i]
 
 
-@compiled
+@inner
 def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
     """LU factors with partial pivoting in place, ``pivots`` the row swaps; False for a singular matrix."""
     n = a.shape[0]
@@ -114,7 +114,7 @@ def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
     return True
 
 
-@compiled
+@inner
 def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
     """Solve with the factors of :func:`factorize`, in place."""
     n = lu.shape[0]
@@ -133,7 +133,7 @@ def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
         b[i] = total / lu[i, i]
 
 
-@compiled
+@inner
 def interpolate(theta: float, y0: Array, y1: Array, dense: Array, y: Array) -> None:
     """The state at a fraction ``theta`` of a step, into ``y``; ``dense`` has the shape (3, states)."""
     rest = 1.0 - theta

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.compiled import compiled
+from hfanalysis.compiled import compiled, inner
 from hfanalysis.engine.course import INCREMENT, LIQUID_OUT, OWN_EVENTS, TICK, History, change, events_at
 from hfanalysis.engine.model import ALTITUDE, FLIES, IMPULSE, OUTPUTS, SPEED, Equations, address_of, rates_at
 from hfanalysis.engine.rosenbrock import copy, factorize, interpolate, substitute
@@ -66,13 +66,13 @@ class Spare(NamedTuple):
     moved_out: Array
 
 
-@compiled
+@inner
 def with_constants(m: Equations, c: Array) -> Equations:
     """The equations of an engine with other constants."""
     return Equations(m.rates, m.events, m.saturation, m.gas, m.drag, c, m.terms, m.env, m.site)
 
 
-@compiled
+@inner
 def quotient(spare: Spare, step: float, f_column: Array, out_column: Array) -> None:
     """Difference quotients of rates and outputs, into columns."""
     for i in range(f_column.size):
@@ -81,7 +81,7 @@ def quotient(spare: Spare, step: float, f_column: Array, out_column: Array) -> N
         out_column[i] = (spare.moved_out[i] - spare.out[i]) / step
 
 
-@compiled
+@inner
 def linearize(
     t: float, y: Array, liquid: bool, burning: bool, m: Equations, p: Parameters, slopes: Slopes, spare: Spare
 ) -> None:
@@ -102,14 +102,14 @@ def linearize(
         quotient(spare, p.steps[k], slopes.f_p[:, k], slopes.out_p[:, k])
 
 
-@compiled
+@inner
 def used_states(size: int, flies: bool) -> Integers:
     """All states but the impulse, on which nothing depends, and on a stand the rocket's."""
     used = [i for i in range(size) if i != IMPULSE and (flies or i not in (ALTITUDE, SPEED))]
     return np.array(used)
 
 
-@compiled
+@inner
 def radau_matrix(h: float, f_y: Array, used: Integers, matrix: Array) -> None:
     """1 - h (RADAU x f_y) of the used states."""
     m = used.size
@@ -122,7 +122,7 @@ def radau_matrix(h: float, f_y: Array, used: Integers, matrix: Array) -> None:
         matrix[i, i] += 1.0
 
 
-@compiled
+@inner
 def radau_stages(h: float, k: int, s: Array, f_p: Array, used: Integers, lu: Array, pivots: Integers, u: Array) -> None:
     """Sensitivities ``u`` of the used states at the three nodes to parameter ``k``."""
     m = used.size
@@ -135,7 +135,7 @@ def radau_stages(h: float, k: int, s: Array, f_p: Array, used: Integers, lu: Arr
     substitute(lu, pivots, u)
 
 
-@compiled
+@inner
 def spread(h: float, k: int, s: Array, slopes: Slopes, used: Integers, u: Array, states: Array) -> None:
     """The stages of parameter ``k`` into ``states`` (nodes, states, parameters); the impulse is a quadrature."""
     m = used.size
@@ -152,7 +152,7 @@ def spread(h: float, k: int, s: Array, slopes: Slopes, used: Integers, u: Array,
             states[a + 1, IMPULSE, k] += h * RADAU[a, b] * rate
 
 
-@compiled
+@inner
 def outputs_of(s: Array, used: Integers, out_y: Array, out_p: Array, result: Array) -> None:
     """Sensitivities of the outputs: out_y S + out_p."""
     copy(out_p, result, out_p.size)
@@ -162,13 +162,13 @@ def outputs_of(s: Array, used: Integers, out_y: Array, out_p: Array, result: Arr
                 result[o, p] += out_y[o, j] * s[used[j], p]
 
 
-@compiled
+@inner
 def at_node(slopes: Slopes, node: int) -> Slopes:
     """Of slopes at several points, those at one."""
     return Slopes(slopes.f_y[node], slopes.f_p[node], slopes.out_y[node], slopes.out_p[node])
 
 
-@compiled
+@inner
 def empty_slopes(size: int, used: int, number: int) -> Slopes:
     """Room for the slopes at four points: NODES, and the start of a step."""
     outs = len(OUTPUTS)
@@ -177,7 +177,7 @@ def empty_slopes(size: int, used: int, number: int) -> Slopes:
     )
 
 
-@compiled
+@inner
 def copy_slopes(slopes: Slopes, source: int, target: int) -> None:
     """What holds at a step's end holds at the start of the next."""
     copy(slopes.f_y[source], slopes.f_y[target], slopes.f_y[source].size)
@@ -186,7 +186,7 @@ def copy_slopes(slopes: Slopes, source: int, target: int) -> None:
     copy(slopes.out_p[source], slopes.out_p[target], slopes.out_p[source].size)
 
 
-@compiled
+@inner
 def linearize_step(n: int, run: History, y: Array, m: Equations, p: Parameters, slopes: Slopes, spare: Spare) -> None:
     """Slopes at the nodes of a step, and at its start where an event comes before it."""
     t, h = run.times[n, 0], run.times[n, 1] - run.times[n, 0]
@@ -237,7 +237,7 @@ def propagate(run: History, m: Equations, shifted: Array, steps: Array, scales: 
     return states, outputs, moments
 
 
-@compiled
+@inner
 def event_value(
     event: int, t: float, y: Array, liquid: bool, burning: bool, m: Equations, spare: Spare, values: Array
 ) -> float:
@@ -248,7 +248,7 @@ def event_value(
     return float(values[event])
 
 
-@compiled
+@inner
 def event_slopes(
     event: int, here: float, t: float, y: Array, liquid: bool, burning: bool, m: Equations, p: Parameters, s: Array,
     spare: Spare, values: Array, moment: Array,
@@ -271,7 +271,7 @@ def event_slopes(
         moment[k] = -moment[k] / slope if slope != 0.0 else 0.0
 
 
-@compiled
+@inner
 def through_event(n: int, run: History, m: Equations, p: Parameters, spare: Spare, s: Array, moment: Array) -> None:
     """Move ``s`` across the event at the end of step ``n``, and tell how its time moves."""
     t, y, event = run.times[n, 1], run.end[n].copy(), run.events[n]
@@ -295,7 +295,7 @@ def through_event(n: int, run: History, m: Equations, p: Parameters, spare: Spar
             s[i, k] -= after[i] * moment[k]
 
 
-@compiled
+@inner
 def follow(event: int, m: Equations, p: Parameters, k: int, y: Array, s: Array, base: Array) -> None:
     """Column ``k`` of ``s`` across the change of the state, from ``y`` to ``base``, that an event makes."""
     largest, changed = 1e-300, y.copy()

@@ -131,7 +131,7 @@ class Steps:
     def at(self, times: ArrayLike) -> tuple[Array, Array]:
         """States and outputs at increasing ``times`` [s]; the ends are held."""
         where = np.ascontiguousarray(times, dtype=np.float64)
-        return course.sample(where, self.history, self.engine.equations(self.composition))  # type: ignore[no-any-return]
+        return course.sample(where, self.history, self.engine.equations(self.composition))
 
 
 @dataclass(frozen=True)
