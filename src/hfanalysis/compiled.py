@@ -69,14 +69,24 @@ class Callback:
         self.__doc__ = function.__doc__
 
     @cached_property
-    def address(self) -> int:
-        """Where its machine code is."""
+    def made(self) -> Any:
+        """numba's own object for it."""
         made = CFunc(self.function, (self.signature.args, self.signature.return_type), {}, {"error_model": "numpy"})
         made.enable_caching()
         _stamp(made, self.function)
         made.compile()
-        address: int = made.address  # type: ignore[assignment]
+        return made
+
+    @property
+    def address(self) -> int:
+        """Where its machine code is."""
+        address: int = self.made.address
         return address
+
+    @property
+    def ctypes(self) -> Any:
+        """For calls from Python."""
+        return self.made.ctypes
 
 
 class Separate:
@@ -155,10 +165,8 @@ def _borrowed(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     """A value whose arrays nobody owns."""
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
-        array.meminfo, array.parent = (
-            cgutils.get_null_value(array.meminfo.type),
-            cgutils.get_null_value(array.parent.type),
-        )
+        null: Any = cgutils.get_null_value
+        array.meminfo, array.parent = null(array.meminfo.type), null(array.parent.type)
         return array._getvalue()
     if isinstance(kind, types.BaseTuple):
         parts: tuple[Any, ...] = tuple(kind)  # type: ignore[arg-type]

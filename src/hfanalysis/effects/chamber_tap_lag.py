@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numba import njit
 
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def lagged(times: Array, true: Array, lag: float) -> Array:
     """What a sensor of first order reads that starts at rest: exact for values taken linear between ``times`` [s]."""
     out = np.empty_like(true)

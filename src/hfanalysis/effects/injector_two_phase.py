@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import log, sqrt
 
-from numba import njit
-
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, P_CHAMBER, P_TANK, term
 
@@ -14,7 +13,7 @@ LEAST_DROP = 1e-4
 """Relative pressure drop below which flashing and single-phase flow agree."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def flashing_flow(ratio: float, omega: float) -> float:
     """G / sqrt(p_0 rho_0) of homogeneous equilibrium flow that starts as saturated liquid (Leung 1986), eta = p / p_0.
 
@@ -24,7 +23,7 @@ def flashing_flow(ratio: float, omega: float) -> float:
     return sqrt(-2.0 * (omega * log(ratio) + (omega - 1.0) * (1.0 - ratio))) / (omega * (1.0 / ratio - 1.0) + 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def critical_ratio(omega: float) -> float:
     """eta = p / p_0 at which flashing flow is largest: the root in (0, 1) of eta^2 + (w^2 - 2 w)(1 - eta)^2 +
     2 w^2 (ln eta + 1 - eta), by Newton's method.

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, liquid_mass, temperature_rate
 from hfanalysis.thermo.saturation import LIQUID_VOLUME, LN_PRESSURE, Array, Property, Saturation, evaluate
@@ -76,7 +76,7 @@ def blow_down(
     return Blowdown(t, out[0], out[1], out[2], out[3], t_v)
 
 
-@njit(cache=True)
+@compiled
 def _liquid_flow(table: Table, feed: tuple[float, float, float, float, float, bool], t_k: float, p_c: float) -> float:
     _, area, factor, loss, _, constant = feed
     pressure = np.exp(evaluate(*table, LN_PRESSURE, t_k)[0])
@@ -86,7 +86,7 @@ def _liquid_flow(table: Table, feed: tuple[float, float, float, float, float, bo
     return mass_flow_with_feed(area, factor, density, pressure - p_c)
 
 
-@njit(cache=True)
+@compiled
 def _vapor_flow(
     feed: tuple[float, float, float, float, float, bool], mass: float, pressure: float, p_c: float
 ) -> float:
@@ -96,7 +96,7 @@ def _vapor_flow(
     return mass_flow_with_feed(area, factor, mass / volume, pressure - p_c)
 
 
-@njit(cache=True)
+@compiled
 def _liquid_step(
     table: Table,
     feed: tuple[float, float, float, float, float, bool],
@@ -121,7 +121,7 @@ def _liquid_step(
     return mass, t_k + h * (r1 + 2.0 * r2 + 2.0 * r3 + r4) / 6.0
 
 
-@njit(cache=True)
+@compiled
 def _vapor_step(
     feed: tuple[float, float, float, float, float, bool],
     mass: float,
@@ -144,7 +144,7 @@ def _vapor_step(
     return mass - h * (w1 + 2.0 * w2 + 2.0 * w3 + w4) / 6.0
 
 
-@njit(cache=True)
+@compiled
 def _blow_down(
     table: Table,
     feed: tuple[float, float, float, float, float, bool],

@@ -155,6 +155,9 @@ SMALL_FLUX = 0.01
 LEAST_GAS = 1e-9
 """Mass [kg] of burnt gas below which its mixture is no longer asked for."""
 
+TYPICAL_RT = 0.9e6
+"""R T [J/kg] of burnt gas, where the search for its pressure begins."""
+
 COLD_GAMMA = 1.3
 """Heat capacity ratio of unburnt gas: nitrous oxide has 1.27, nitrogen 1.40 (ideal gases at 298 K)."""
 
@@ -285,25 +288,23 @@ def vapor(m: Equations, row: int, temperature: float) -> float:
 
 @inlined
 def chamber(y: Array, m: Equations) -> None:
-    """Pressure and gas of the chamber; the pressure that the last evaluation found is where the search begins."""
+    """Pressure and gas of the chamber."""
     env = m.env
-    guess = env[P_CHAMBER] if env[P_CHAMBER] > 0.0 else env[P_AMBIENT]
     volume = m.c[DEAD_VOLUME] + pi * y[RADIUS] * y[RADIUS] * m.c[GRAIN_LENGTH]
-    p, rt, gamma, mass, ratio, h = chamber_gas(m.gas, m.c[OXIDIZER_ENTHALPY], y, volume, guess)
+    p, rt, gamma, mass, ratio, h = chamber_gas(m.gas, m.c[OXIDIZER_ENTHALPY], y, volume)
     env[P_CHAMBER], env[RT_CHAMBER], env[GAMMA_CHAMBER], env[OF_RATIO] = p, rt, gamma, ratio
     env[M_CHAMBER], env[H_CHAMBER], env[HOT_SHARE] = mass, h, 1.0 - max(y[COLD], 0.0) / mass
 
 
 @inlined
-def chamber_gas(
-    gas: Grid, enthalpy: float, y: Array, volume: float, guess: float
-) -> tuple[float, float, float, float, float, float]:
+def chamber_gas(gas: Grid, enthalpy: float, y: Array, volume: float) -> tuple[float, float, float, float, float, float]:
     """p, R T, gamma, mass, O/F and oxidizer enthalpy of what the chamber holds: burnt gas, later cold gas too."""
     entered = y[OXIDIZER] + y[CHAMBER_NITROGEN]
     hot = max(entered + y[FUEL], LEAST_GAS)
     ratio = min(max(entered, LEAST_GAS) / max(y[FUEL], LEAST_GAS), 1e4)
     share = y[CHAMBER_NITROGEN] / max(entered, LEAST_GAS) if y[CHAMBER_NITROGEN] > 0.0 else 0.0
     h = y[ENTHALPY] / max(y[OXIDIZER], LEAST_GAS) if np.isnan(enthalpy) else enthalpy
+    guess = hot * TYPICAL_RT / volume
     p, rt, gamma = chamber_pressure(gas, hot, volume, np.log(ratio), h, min(share, 1.0), guess)
     cold = max(y[COLD], 0.0)
     mass = hot + cold

@@ -65,9 +65,9 @@ ENVIRONMENT = (
     "hot_share", "nitrogen_share", "h_leaving", "h_chamber", "m_chamber", "u_by_mass", "u_by_temperature",
 )  # fmt: skip
 """What a term may read, SI; ``p_tank`` and the rest of the tank from AT_TANK on, the chamber from AT_CHAMBER
-(``hot_share``: of burnt gas in its mass), ``rho_feed`` from AT_FLOW, flows and ``p_run`` from RATES on. ``nitrogen_share`` by mass and ``h_leaving`` (on the
-properties' own scale) are of what leaves the tank, ``h_chamber`` of the chamber's nitrous oxide on the formation scale;
-``u_by_*`` the saturated tank's."""
+(``hot_share``: of burnt gas in its mass), ``rho_feed`` from AT_FLOW, flows and ``p_run`` from RATES on.
+``nitrogen_share`` by mass and ``h_leaving`` (on the properties' own scale) are of what leaves the tank, ``h_chamber``
+of the chamber's nitrous oxide on the formation scale; ``u_by_*`` are the saturated tank's."""
 
 (IS_LIQUID, IS_BURNING, P_AMBIENT, P_TANK, T_TANK, M_TANK, M_LIQUID, M_NITROGEN, RHO_FEED, P_CHAMBER, RT_CHAMBER,
  GAMMA_CHAMBER, OF_RATIO, OXIDIZER_FLOW, FUEL_FLOW, PORT_RADIUS, P_RUN, HOT_SHARE, NITROGEN_SHARE, H_LEAVING,
