@@ -59,6 +59,7 @@ format: $(STAMP) ## format the code with ruff
 
 benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers, a 1 GB log beside pandas
 	$(BIN)/python benchmarks/startup.py
+	PYTHONPATH=. $(BIN)/python benchmarks/engine_speed.py
 	$(BIN)/python benchmarks/reference_engine.py
 	$(BIN)/python benchmarks/hrap_run.py
 	$(BIN)/python benchmarks/flights.py
@@ -68,6 +69,9 @@ rocketpy: $(STAMP) ## install RocketPy into .venv-rocketpy/, to compare flights 
 	@test -x .venv-rocketpy/bin/python || { $(BIN)/uv venv --quiet --python '$(PYTHON)' .venv-rocketpy && \
 		$(BIN)/uv pip install --quiet --only-binary :all: --python .venv-rocketpy/bin/python 'rocketpy>=1.9'; } || \
 		echo "make rocketpy: RocketPy cannot be installed here; flights are not compared with it" >&2
+
+random-engines: $(STAMP) ## 10,000 random engines run or are refused with a reason: docs/random-engines.md
+	$(BIN)/python benchmarks/random_engines.py --write
 
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 	$(BIN)/python benchmarks/recovery.py $(FLAGS)

@@ -1,14 +1,16 @@
 """Random engines, most of them absurd: each runs or is refused with a reason, in bounded time, and never pulls.
 
-python benchmarks/random_engines.py [NUMBER]
+python benchmarks/random_engines.py [NUMBER] [--write]
 """
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections import Counter
 from dataclasses import dataclass
 from math import pi
+from pathlib import Path
 from time import perf_counter
 
 import numpy as np
@@ -19,6 +21,8 @@ from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.combustion_table import CombustionTable, build
 from hfanalysis.thermo.nitrous import saturation
+
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "random-engines.md"
 
 
 @dataclass(frozen=True)
@@ -97,20 +101,46 @@ def kind(reason: str) -> str:
     return " ".join(word for word in reason.split() if not any(c.isdigit() for c in word))
 
 
-def main(number: int = 10_000) -> int:
+def summary(outcomes: list[Outcome]) -> str:
+    """The outcomes as a page."""
+    number, seconds = len(outcomes), np.array([o.seconds for o in outcomes])
+    ran = sum(o.burn is not None for o in outcomes)
+    lines = [
+        "# Random engines\n",
+        "Written by `make random-engines`. Every size over one to two orders of magnitude, most of them absurd: each runs or",
+        "is refused with a reason, in bounded time, with finite numbers, no negative flow or thrust, and no rocket below",
+        "ground.\n",
+        f"| of {number} engines | |",
+        "|---|---|",
+        f"| ran | {ran} |",
+    ]
+    reasons = Counter(kind(o.reason) for o in outcomes if o.burn is None)
+    lines += [f"| refused: {reason} | {count} |" for reason, count in reasons.most_common()]
+    lines += [f"| with a fault | {sum(bool(faults(o)) for o in outcomes)} |"]
+    lines += [
+        f"\nMedian {1e3 * np.median(seconds):.1f} ms, 99 % below {1e3 * np.quantile(seconds, 0.99):.0f} ms, longest "
+    ]
+    lines[-1] += f"{seconds.max():.2f} s."
+    return "\n".join(lines) + "\n"
+
+
+def main() -> int:
     """Attempt them all and print a summary; 1 where any has a fault."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("number", nargs="?", type=int, default=10_000)
+    parser.add_argument("--write", action="store_true", help="docs/random-engines.md")
+    options = parser.parse_args()
     rng, table = np.random.default_rng(1), build()
-    outcomes = [attempt(random_engine(rng, table)) for _ in range(number)]
+    attempt(random_engine(np.random.default_rng(2), table))  # compiles
+    outcomes = [attempt(random_engine(rng, table)) for _ in range(options.number)]
+    print(summary(outcomes))
+    if options.write:
+        PAGE.write_text(summary(outcomes), encoding="utf-8")
     wrong = [(i, f) for i, o in enumerate(outcomes) if (f := faults(o))]
-    seconds = np.array([o.seconds for o in outcomes])
-    ran = [o for o in outcomes if o.burn is not None]
-    print(f"{len(ran)} of {number} ran; median {1e3 * np.median(seconds):.1f} ms, longest {seconds.max():.2f} s")
-    for reason, count in Counter(kind(o.reason) for o in outcomes if o.burn is None).most_common():
-        print(f"{count:6} refused: {reason}")
     for i, what in wrong[:20]:
         print(f"engine {i}: {', '.join(what)}")
     return 1 if wrong else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(*(int(a) for a in sys.argv[1:])))
+    sys.exit(main())

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine import unsteady
+from hfanalysis.engine import closure, unsteady
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
 from hfanalysis.flight import summary
@@ -79,6 +79,18 @@ def _engine(engine: Engine, burnt: Burn, hot: Array) -> dict[str, Quantity]:
         "average_thrust": Quantity(impulse / burnt.burn_time, "N") if known else burn_time,
         "liquid_depletion_time": Quantity.absent(dry) if burnt.liquid_out is None else Quantity(burnt.liquid_out, "s"),
         "residual_oxidizer_mass": Quantity(float(burnt.state("tank_mass")[-1]), "kg"),
+        **_implied(burnt),
+    }
+
+
+def _implied(burnt: Burn) -> dict[str, Quantity]:
+    """Heat that the polytropic vapour and the quasi-steady chamber would need: what the model leaves open."""
+    power, stored = closure.vapor_heat(burnt), closure.chamber_energy(burnt)
+    none = "there is no vapour phase within the burn"
+    return {
+        "implied_vapor_heat": Quantity(closure.vapor_heat_total(burnt), "J") if power.any() else Quantity.absent(none),
+        "implied_vapor_power": Quantity(float(power[power != 0.0][0]), "W") if power.any() else Quantity.absent(none),
+        "implied_chamber_heat": Quantity(float(stored[0] - stored[-1]), "J"),
     }
 
 
