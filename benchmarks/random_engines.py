@@ -107,9 +107,9 @@ def summary(outcomes: list[Outcome]) -> str:
     ran = sum(o.burn is not None for o in outcomes)
     lines = [
         "# Random engines\n",
-        "Written by `make random-engines`. Every size over one to two orders of magnitude, most of them absurd: each runs or",
-        "is refused with a reason, in bounded time, with finite numbers, no negative flow or thrust, and no rocket below",
-        "ground.\n",
+        "Written by `make random-engines`. Every size over one to two orders of magnitude, most of them absurd: each",
+        "runs or is refused with a reason, in bounded time, with finite numbers, no negative flow or thrust, and no",
+        "rocket below ground.\n",
         f"| of {number} engines | |",
         "|---|---|",
         f"| ran | {ran} |",

@@ -30,6 +30,7 @@ from hfanalysis.engine.model import (
     O_AMBIENT,
     O_CHAMBER_PRESSURE,
     O_GAMMA,
+    O_TANK_PRESSURE,
     OUTER_RADIUS,
     OUTPUTS,
     OXIDIZER_ENTHALPY,
@@ -75,7 +76,7 @@ LIQUID_OUT, FUEL_OUT, GROUND, CHOKING = range(4)
 """Events of the engine; those from OWN_EVENTS on are the switches of its terms."""
 OWN_EVENTS = 4
 
-REACHED_END, BURNT_OUT, GIVEN_UP = range(3)
+REACHED_END, BURNT_OUT, GIVEN_UP, BLOWN_DOWN = range(4)
 """How a run ends."""
 
 MOST_STEPS = 8000
@@ -86,6 +87,9 @@ FIRST_STEP = 1e-5
 
 LEAST_STEP = 1e-13
 """Seconds, or relative to the time."""
+
+SPENT = 1e-4
+"""Excess of a tank's over the ambient pressure, relative, at which nothing flows any more that could burn."""
 
 ROOM = 256
 """Steps that there is room for at first."""
@@ -434,6 +438,8 @@ def integrate(
 ) -> tuple[int, History, Array]:
     """From ignition (``liquid``, ``burning``) until the fuel is gone, or to ``longest`` seconds if it is to ``run_on``.
 
+    A tank blown down to ambient pressure ends a run too that is not to run on.
+
     Returns how it ended and per step: times (n, 2) of start and end, states at start and end, outputs at start and end
     (before an event changes the equations), interpolants (n, 3, states), phases (n, 2: liquid, burning), the event at
     its end (-1: none); and the time of every event's last occurrence (NaN: none).
@@ -464,12 +470,16 @@ def integrate(
             h *= theta
             attempt(t, y, h, liquid, burning, model, s)
             arrive(t + h, liquid, burning, model, s, steps.dense[n])
+        if event == GROUND:
+            s.trial[ALTITUDE] = m.c[LAUNCH_ALTITUDE] - PAD  # by definition; the shortened step only comes near
         record(steps, n, t, y, h, liquid, burning, event, s)
         n, t, falling = n + 1, t + h, event >= 0 and s.before[event] > 0.0
         advance(y, s)
         if event < 0:
             h = next_step(h, error, old_error, rejected)
             old_error, rejected = max(error, 1e-4), False
+            if not (run_on or liquid) and s.out[O_TANK_PRESSURE] < (1.0 + SPENT) * s.out[O_AMBIENT]:
+                ending = BLOWN_DOWN
             continue
         happened[event] = t
         liquid = liquid and event != LIQUID_OUT

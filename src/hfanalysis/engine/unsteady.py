@@ -255,7 +255,7 @@ def burn(
     times: Sequence[float] | Array | None = None,
     keep_idle: bool = False,
 ) -> Burn:
-    """From ignition until the fuel is gone, or with ``run_on`` to ``longest`` seconds through vapour and cold gas.
+    """From ignition until fuel or pressure are gone, or if it is to ``run_on`` to ``longest`` seconds, cold gas too.
 
     The histories are on POINTS_PER_STEP points of each of the solver's steps, or at increasing ``times`` [s] (then the
     ends are held). Effects of strength 0 are left out unless ``keep_idle``. Raises ValueError for an engine that cannot
