@@ -1,0 +1,174 @@
+"""Fitting a hypothesis to what a test says: damped Gauss-Newton on exact tangents, with priors.
+
+The result is the most probable set of parameters, their covariance, and the evidence by Laplace's approximation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.hypothesis import Hypothesis
+from hfanalysis.diagnose.observed import CHANNELS, Observed
+from hfanalysis.diagnose.probe import Splines
+from hfanalysis.engine.course import LIQUID_OUT
+from hfanalysis.engine.sensitivity import Tangents, run_with_tangents
+from hfanalysis.engine.unsteady import Burn, burn
+
+Array = NDArray[np.float64]
+
+ITERATIONS = 25
+CONVERGED = 1e-3
+"""Change of the objective below which a fit is done: a thousandth of a unit of log probability."""
+
+AFTER = 0.05
+"""Seconds that a run goes on after the last observation."""
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """A run of a hypothesis: whitened residuals (measured less model) and, if asked for, their slopes with ``x``."""
+
+    residual: Array
+    slopes: Array | None
+    burnt: Burn
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The most probable ``x`` of a hypothesis, its covariance, the whitened residual there and the log evidence."""
+
+    hypothesis: Hypothesis
+    x: Array
+    covariance: Array
+    residual: Array
+    slopes: Array
+    burnt: Burn
+    log_evidence: float
+    converged: bool
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Parameters by name [SI]."""
+        return self.hypothesis.values(self.x)
+
+    @property
+    def objective(self) -> float:
+        """Minus the log of posterior density, up to a constant."""
+        return 0.5 * float(self.residual @ self.residual + self.x @ self.x)
+
+    def by_channel(self, observed: Observed) -> Mapping[str, Array]:
+        """The whitened residuals of each channel."""
+        out, at = {}, 0
+        for channel in observed.channels:
+            out[channel.name] = self.residual[at : at + channel.time.size]
+            at += channel.time.size
+        return out
+
+
+def predict(hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool) -> Prediction:
+    """Run a hypothesis. Raises ValueError or ArithmeticError for an engine that cannot be run."""
+    engine, longest = hypothesis.at(x), observed.end + AFTER
+    if not tangents:
+        burnt = burn(engine, longest, run_on=True, keep_idle=True)
+        return Prediction(residuals(hypothesis, observed, x, burnt), None, burnt)
+    found = run_with_tangents(engine, hypothesis.of_engine, longest, run_on=True)
+    slopes = _all_slopes(hypothesis, observed, slopes_of(observed, found)) @ hypothesis.jacobian(x)
+    return Prediction(residuals(hypothesis, observed, x, found.burn), slopes, found.burn)
+
+
+def _all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> Array:
+    """Slopes with all parameters [SI]: the engine's, and those of the sensors' sources."""
+    names, out = hypothesis.of_engine, np.zeros((of_engine.shape[0], hypothesis.size))
+    column = {name: i for i, name in enumerate(hypothesis.names)}
+    out[:, [column[name] for name in names]] = of_engine
+    for block, place in hypothesis.places():
+        if block.sensor is not None:
+            out[:, place] = sensor_slopes(observed, block.sensor, block.splines)
+    return out
+
+
+def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
+    """Slopes of the residuals with the coefficients of what is added to a sensor's reading."""
+    rows = [np.zeros((c.time.size, splines.count)) for c in observed.channels]
+    for i, channel in enumerate(observed.channels):
+        if channel.name == sensor:
+            rows[i] = -channel.whiten(splines.at(channel.time))
+    return np.concatenate([*rows, np.zeros((len(observed.events), splines.count))])
+
+
+def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn) -> Array:
+    """Whitened measured less model: the channels one after the other, then the events."""
+    parts = []
+    for channel in observed.channels:
+        _, outputs = burnt.steps.at(channel.time)
+        model = outputs[:, _column(channel.name)] + hypothesis.offset(channel.name, x, channel.time)
+        parts.append(channel.whiten(channel.value - model))
+    for name, (at, deviation) in observed.events.items():
+        assert name == "t_v"
+        gone = burnt.liquid_out if burnt.liquid_out is not None else 2.0 * observed.end
+        parts.append(np.array([(at - gone) / deviation]))
+    return np.concatenate(parts)
+
+
+def slopes_of(observed: Observed, found: Tangents) -> Array:
+    """Derivatives (residuals, parameters) of :func:`residuals` with the parameters [SI]."""
+    parts = [-c.whiten(found.output(CHANNELS[c.name], c.time)) for c in observed.channels]
+    for _, deviation in observed.events.values():
+        parts.append(-np.nan_to_num(found.event(LIQUID_OUT))[np.newaxis] / deviation)
+    return np.concatenate(parts)
+
+
+def _column(channel: str) -> int:
+    from hfanalysis.engine.model import OUTPUTS
+
+    return OUTPUTS.index(CHANNELS[channel])
+
+
+def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None) -> Fit:
+    """The most probable parameters: Gauss-Newton steps, damped where one does not lower the objective."""
+    x = np.zeros(hypothesis.size) if start is None else np.asarray(start, dtype=np.float64)
+    here = predict(hypothesis, observed, x, tangents=True)
+    damping, done = 1e-3, False
+    for _ in range(ITERATIONS):
+        assert here.slopes is not None
+        gradient = here.slopes.T @ here.residual + x
+        curvature = here.slopes.T @ here.slopes + np.eye(x.size)
+        before = _objective(here, x)
+        moved = False
+        for _ in range(8):
+            step = -np.linalg.solve(curvature + damping * np.diag(curvature.diagonal()), gradient)
+            step *= min(1.0, 3.0 / max(float(np.abs(step).max()), 1e-12))
+            trial = _try(hypothesis, observed, x + step)
+            if trial is not None and _objective(trial, x + step) < before:
+                moved = True
+                break
+            damping = max(10.0 * damping, 1e-3)
+        if not moved:
+            done = True
+            break
+        x = x + step
+        damping = max(0.1 * damping, 1e-9)
+        here = predict(hypothesis, observed, x, tangents=True)
+        if before - _objective(here, x) < CONVERGED:
+            done = True
+            break
+    assert here.slopes is not None
+    curvature = here.slopes.T @ here.slopes + np.eye(x.size)
+    evidence = -_objective(here, x) - 0.5 * float(np.linalg.slogdet(curvature)[1])
+    return Fit(hypothesis, x, np.linalg.inv(curvature), here.residual, here.slopes, here.burnt, evidence, done)
+
+
+def _objective(prediction: Prediction, x: Array) -> float:
+    return 0.5 * float(prediction.residual @ prediction.residual + x @ x)
+
+
+def _try(hypothesis: Hypothesis, observed: Observed, x: Array) -> Prediction | None:
+    try:
+        found = predict(hypothesis, observed, x, tangents=False)
+    except (ValueError, ArithmeticError):
+        return None
+    return found if np.isfinite(found.residual).all() else None

@@ -1,0 +1,254 @@
+"""Localisation: at which equation, from when to when and how much, before any effect is named.
+
+At every site of the model an unknown source over time is tried, with all calibrated parameters free: splines with a
+Gaussian prior, linear in the tangents of the base fit. The evidence of each says where the source is; the best few are
+fitted again with the full model, since a large source is not linear. Sensors are sites too: an offset over time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fit import Fit, fit, sensor_slopes, slopes_of
+from hfanalysis.diagnose.hypothesis import Block, Hypothesis
+from hfanalysis.diagnose.observed import Observed
+from hfanalysis.diagnose.probe import Splines, probe
+from hfanalysis.engine.sensitivity import run_with_tangents
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Site:
+    """Where a source can be: the model's site or a sensor's channel, its equation, unit, and physical scale."""
+
+    name: str
+    equation: str
+    unit: str
+    typical: float
+    sensor: str | None = None
+
+
+SITES = (
+    Site("tank_heat", "tank_energy", "W", 2000.0),
+    Site("nitrogen_inflow", "tank_volume", "kg/s", 0.02),
+    Site("tank_leak", "tank_volume", "kg/s", 0.05),
+    Site("tank_pressure", "tank_energy", "Pa", 1e5),
+    Site("injector_factor", "injector", "1", 0.1),
+    Site("feed_loss", "feed", "Pa", 1e5),
+    Site("regression_factor", "grain", "1", 0.2),
+    Site("temperature_factor", "chamber_energy", "1", 0.1),
+    Site("throat_factor", "nozzle", "1", 0.05),
+    Site("thrust_factor", "nozzle", "1", 0.05),
+)
+SENSORS = ("p_tank", "p_run", "p_chamber", "thrust")
+
+SCALES = np.geomspace(0.02, 4.0, 9)
+"""Sizes of a source that are tried, in units of what is typical of its site."""
+
+SPACING = 0.6
+"""Seconds between the splines of a source."""
+
+CORRELATION = 1.5
+"""Splines over which a source is coherent."""
+
+LEAST_EVIDENCE = 6.0
+"""Natural logarithm of the evidence against no source at all that a claim needs."""
+
+REFITTED = 3
+"""How many of the best sites are fitted with the full model."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """A source over time at a site: ``mean`` and ``std`` at ``time`` [s], in the site's unit, and its log evidence."""
+
+    site: Site
+    time: Array
+    mean: Array
+    std: Array
+    log_evidence: float
+    scale: float
+    coefficients: Array
+    splines: Splines
+
+
+def smooth_prior(count: int) -> Array:
+    """Covariance of the coefficients of a source of size one."""
+    lag = np.arange(count)[:, None] - np.arange(count)[None, :]
+    return np.asarray(np.exp(-0.5 * (lag / CORRELATION) ** 2) + 1e-6 * np.eye(count))
+
+
+@dataclass(frozen=True)
+class _Projected:
+    """Slopes and residual with the nuisances projected out, their priors counted."""
+
+    information: Array
+    pull: Array
+
+
+def _project(fitted: Fit, columns: Array) -> _Projected:
+    a = fitted.slopes
+    through = np.linalg.solve(a.T @ a + np.eye(a.shape[1]), a.T)
+    # the fit has already moved the nuisances: what is left of the data is the residual less what they still explain
+    r = fitted.residual - a @ fitted.x
+    clear = columns - a @ (through @ columns)
+    # (1 + A A^T)^-1 applied to columns and residual
+    return _Projected(columns.T @ clear, -(clear.T @ r))
+
+
+def _best_scale(projected: _Projected, typical: float) -> tuple[float, float, Array, Array]:
+    """Scale, log evidence against no source, coefficients and their covariance."""
+    best: tuple[float, float, Array, Array] | None = None
+    count = projected.pull.size
+    prior = smooth_prior(count)
+    root = np.linalg.cholesky(prior)
+    information, pull = root.T @ projected.information @ root, root.T @ projected.pull
+    for scale in SCALES * typical:
+        inner = np.eye(count) + scale**2 * information
+        solved = np.linalg.solve(inner, scale**2 * pull)
+        gain = 0.5 * float(pull @ solved) - 0.5 * float(np.linalg.slogdet(inner)[1])
+        if best is None or gain > best[1]:
+            covariance = scale**2 * root @ np.linalg.inv(inner) @ root.T
+            best = (float(scale), gain, root @ solved, covariance)
+    assert best is not None
+    return best
+
+
+def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
+    """The source at every site, linear about the fit, the best first."""
+    splines = Splines.over(0.0, observed.end, SPACING)
+    engine, names = fitted.hypothesis.at(fitted.x), []
+    active = []
+    taken = {a.effect.name for a in engine.effects}
+    sites = [s for s in SITES if f"probe_{s.name}" not in taken]
+    for site in sites:
+        effect = probe(site.name, splines, site.typical)
+        active.append(effect.at(on=1.0))
+        names.append([f"{effect.name}.c{i}" for i in range(splines.count)])
+    probed = replace(engine, effects=(*engine.effects, *active))
+    flat = [n for group in names for n in group]
+    tangents = run_with_tangents(probed, flat, observed.end + 0.05, run_on=True)
+    slopes = slopes_of(observed, tangents)
+    time = np.linspace(0.0, observed.end, 200)
+    found = []
+    for k, site in enumerate(sites):
+        columns = slopes[:, k * splines.count : (k + 1) * splines.count]
+        found.append(_source(site, _project(fitted, columns), splines, time))
+    found += [_source(*_sensor(observed, name, splines, fitted), splines, time) for name in observed.names if name not in _sensors(fitted)]
+    return sorted(found, key=lambda s: -s.log_evidence)
+
+
+def _sensor(observed: Observed, name: str, splines: Splines, fitted: Fit) -> tuple[Site, _Projected]:
+    unit, typical = ("N", 200.0) if name == "thrust" else ("Pa", 1e5)
+    site = Site(f"offset of {name}", "sensor", unit, typical, sensor=name)
+    return site, _project(fitted, sensor_slopes(observed, name, splines))
+
+
+def _source(site: Site, projected: _Projected, splines: Splines, time: Array) -> Source:
+    scale, gain, mean, covariance = _best_scale(projected, site.typical)
+    basis = splines.at(time)
+    std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, covariance, basis), 0.0))
+    return Source(site, time, basis @ mean, std, gain, scale, mean, splines)
+
+
+def _sensors(fitted: Fit) -> set[str]:
+    return {b.sensor for b in fitted.hypothesis.blocks if b.sensor is not None}
+
+
+def with_source(hypothesis: Hypothesis, source: Source) -> Hypothesis:
+    """The hypothesis with an unknown source at a site, of the size that the linear search found."""
+    splines, site = source.splines, source.site
+    matrix = source.scale * np.linalg.cholesky(smooth_prior(splines.count))
+    if site.sensor is not None:
+        names = tuple(f"offset_{site.sensor}.c{i}" for i in range(splines.count))
+        return hypothesis.with_block(Block(names, matrix, splines, site.sensor))
+    effect = probe(site.name, splines, site.typical)
+    names = tuple(f"{effect.name}.c{i}" for i in range(splines.count))
+    return hypothesis.with_block(Block(names, matrix, splines), effect.at(on=1.0))
+
+
+@dataclass(frozen=True)
+class Localisation:
+    """The base fit, the fit with all sources, and the sources in the order in which they were found."""
+
+    base: Fit
+    final: Fit
+    sources: tuple[Source, ...]
+    ranking: tuple[Source, ...]
+    observed: Observed
+
+
+FORMS = (3e-2, 1e-2, 3e-3, 1e-3)
+"""Model-form errors, from coarse to fine: what is large is placed first, so that it does not bend what is small."""
+
+MOST_SOURCES = 3
+
+
+def localise(hypothesis: Hypothesis, measured: Observed) -> Localisation:
+    """Find sources, one at a time, from the coarsest disagreement to the finest."""
+    start = np.zeros(hypothesis.size)
+    found: list[Source] = []
+    base: Fit | None = None
+    ranking: tuple[Source, ...] = ()
+    current, observed = hypothesis, measured
+    for form in FORMS:
+        observed = measured.at_form(form)
+        here = fit(current, observed, start)
+        base = here if not found else base
+        while len(found) < MOST_SOURCES:
+            ranked = linear_sources(here, observed)
+            ranking = ranking if found else tuple(ranked)
+            better = _refit(here, observed, ranked)
+            if better is None:
+                break
+            here, source = better
+            found.append(source)
+        current, start = here.hypothesis, here.x
+    assert base is not None
+    final = here
+    return Localisation(base, final, tuple(_of_fit(s, final) for s in found), ranking, observed)
+
+
+def _refit(here: Fit, observed: Observed, ranked: list[Source]) -> tuple[Fit, Source] | None:
+    """The best of the few best sources with the full model; None where none is worth it."""
+    top = ranked[0].log_evidence
+    best: tuple[Fit, Source] | None = None
+    for source in ranked[:REFITTED]:
+        if source.log_evidence < max(LEAST_EVIDENCE, 0.5 * top):
+            continue
+        refitted = _with_all_parameters(here, observed, source)
+        if refitted is None:
+            continue
+        if best is None or refitted.log_evidence > best[0].log_evidence:
+            best = (refitted, source)
+    if best is None or best[0].log_evidence < here.log_evidence + LEAST_EVIDENCE:
+        return None
+    return best
+
+
+def _with_all_parameters(here: Fit, observed: Observed, source: Source) -> Fit | None:
+    """The full fit with a source, from its linear estimate or, where that cannot be run, from nearer to nothing."""
+    root = np.linalg.cholesky(smooth_prior(source.splines.count)) * source.scale
+    for share in (1.0, 0.3, 0.0):
+        start = np.concatenate([here.x, share * np.linalg.solve(root, source.coefficients)])
+        try:
+            return fit(with_source(here.hypothesis, source), observed, start)
+        except (ValueError, ArithmeticError):
+            continue
+    return None
+
+
+def _of_fit(source: Source, final: Fit) -> Source:
+    """A source as the last fit has it."""
+    for block, place in final.hypothesis.places():
+        wanted = source.site.sensor
+        if block.sensor == wanted and (wanted is not None or block.names[0].startswith(f"probe_{source.site.name}.")):
+            basis = source.splines.at(source.time) @ block.matrix
+            covariance = final.covariance[place, place]
+            std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, covariance, basis), 0.0))
+            return replace(source, mean=basis @ final.x[place], std=std)
+    raise AssertionError(source.site.name)

@@ -1,0 +1,94 @@
+"""An unknown source at a site of the model: cubic B-splines over time, with coefficients to be found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.sites import HOOK_OF_SITE, RATES, SITES, term
+
+Array = NDArray[np.float64]
+
+GIVEN = ("site", "hook", "first", "spacing", "count")
+SITE, HOOK, FIRST, SPACING, COUNT = range(5)
+COEFFICIENTS = len(GIVEN) + 1
+
+
+@term
+def _source(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
+    """p: the strength (which is 1: all coefficients together are the source), GIVEN, the coefficients."""
+    if hook != int(p[1 + HOOK]):
+        return
+    u = (t - p[1 + FIRST]) / p[1 + SPACING]
+    k = int(np.floor(u))
+    f = u - k
+    g = 1.0 - f
+    total = 0.0
+    for j in range(4):
+        i = k - 1 + j
+        if 0 <= i < int(p[1 + COUNT]):
+            if j == 0:
+                weight = g * g * g / 6.0
+            elif j == 1:
+                weight = (3.0 * f * f * f - 6.0 * f * f + 4.0) / 6.0
+            elif j == 2:
+                weight = (3.0 * g * g * g - 6.0 * g * g + 4.0) / 6.0
+            else:
+                weight = f * f * f / 6.0
+            total += weight * p[COEFFICIENTS + i]
+    site[int(p[1 + SITE])] += p[0] * total
+
+
+@dataclass(frozen=True)
+class Splines:
+    """Cubic B-splines with ``count`` coefficients; the i-th peaks at ``first`` + i ``spacing`` [s]."""
+
+    first: float
+    spacing: float
+    count: int
+
+    @classmethod
+    def over(cls, start: float, end: float, spacing: float) -> Splines:
+        """Splines that reach over an interval."""
+        pieces = max(int(np.ceil((end - start) / spacing)), 1)
+        width = (end - start) / pieces
+        return cls(start - width, width, pieces + 3)
+
+    def at(self, times: Array) -> Array:
+        """Values (times, count) of the splines."""
+        u = np.abs((times[:, None] - self.first) / self.spacing - np.arange(self.count)[None, :])
+        near, far = (4.0 - 6.0 * u**2 + 3.0 * u**3) / 6.0, (2.0 - u) ** 3 / 6.0
+        return np.where(u < 1.0, near, np.where(u < 2.0, far, 0.0))
+
+
+@lru_cache(maxsize=64)
+def probe(site: str, splines: Splines, typical: float) -> Effect:
+    """An effect that adds splines to a site; its coefficients c0, c1, ... are of the ``typical`` size [the site's unit]."""
+    given = (
+        SITES.index(site),
+        HOOK_OF_SITE.get(site, RATES),
+        splines.first,
+        splines.spacing,
+        splines.count,
+    )
+    fixed = [
+        Parameter(name, "", "of the probe", 1.0, center=float(v), given=True)
+        for name, v in zip(GIVEN, given, strict=True)
+    ]
+    coefficients = [
+        Parameter(f"c{i}", "", f"source about {splines.first + i * splines.spacing:.2f} s", typical)
+        for i in range(splines.count)
+    ]
+    return Effect(
+        name=f"probe_{site}",
+        equation="tank_energy",
+        meaning=f"an unknown source at {site}",
+        reference="free form",
+        parameters=(Parameter("on", "", "1: the source acts", 1.0), *fixed, *coefficients),
+        phases=(),
+        term=_source,
+    )
