@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.hypothesis import Hypothesis
-from hfanalysis.diagnose.observed import CHANNELS, Observed
+from hfanalysis.diagnose.observed import CHANNELS, Channel, Observed
 from hfanalysis.diagnose.probe import Splines
 from hfanalysis.engine.course import LIQUID_OUT
 from hfanalysis.engine.sensitivity import Tangents, run_with_tangents
@@ -120,6 +120,12 @@ def slopes_of(observed: Observed, found: Tangents) -> Array:
     for _, deviation in observed.events.values():
         parts.append(-np.nan_to_num(found.event(LIQUID_OUT))[np.newaxis] / deviation)
     return np.concatenate(parts)
+
+
+def model_of(fitted: Fit, channel: Channel) -> Array:
+    """What the fitted model reads on a channel."""
+    _, outputs = fitted.burnt.steps.at(channel.time)
+    return outputs[:, _column(channel.name)] + fitted.hypothesis.offset(channel.name, fitted.x, channel.time)
 
 
 def _column(channel: str) -> int:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,14 @@ from numpy.typing import NDArray
 from hfanalysis.calibrate.engine_of_test import ASSUMED_EXPONENT
 from hfanalysis.diagnose.probe import Splines
 from hfanalysis.engine.effect import Active
+from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
 
 Array = NDArray[np.float64]
+
+
+USUAL_N = (0.5, 0.15)
+"""Flux exponent of hybrid fuels and its spread (Karabeyoglu et al. find 0.62 for paraffin with oxygen)."""
 
 
 @dataclass(frozen=True)
@@ -129,6 +135,14 @@ class Hypothesis:
         return Hypothesis(engine, (*self.free, *free), self.blocks)
 
 
+def _mid_flux(engine: Engine) -> float:
+    """Oxidizer flux [kg/(m^2 s)] half-way through the web at two thirds of the tank's pressure across the injector."""
+    pressure = float(engine.saturation.pressure(engine.temperature))
+    density = float(engine.saturation.liquid_density(engine.temperature))
+    flow = mass_flow_with_feed(engine.feed.area, engine.feed.loss_factor, density, pressure / 1.5)
+    return float(flow / (pi * (0.5 * (engine.port_radius + engine.outer_radius)) ** 2))
+
+
 def _moved(effects: tuple[Active, ...], values: Mapping[str, float]) -> tuple[Active, ...]:
     out = []
     for active in effects:
@@ -146,8 +160,8 @@ def base_hypothesis(engine: Engine, calibration: Mapping[str, Any]) -> Hypothesi
         Free("polytropic_exponent", exponent, spread),
         Free("oxidizer_mass", engine.oxidizer_mass, max(float(loaded.get("std") or 0.0), 0.005 * engine.oxidizer_mass)),
         Free("temperature", engine.temperature, 1.5),
-        Free("a", engine.a, 0.5, positive=True),
-        Free("n", engine.n, 0.1),
+        Free("a", engine.a * _mid_flux(engine) ** (engine.n - USUAL_N[0]), 1.0, positive=True),
+        Free("n", *USUAL_N),
     ]
     if engine.feed.constant_losses is None and engine.feed.loss_factor > 0.0:
         free.insert(1, Free("loss_factor", engine.feed.loss_factor, 0.5, positive=True))

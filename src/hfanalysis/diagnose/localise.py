@@ -17,6 +17,7 @@ from hfanalysis.diagnose.hypothesis import Block, Hypothesis
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.probe import Splines, probe
 from hfanalysis.engine.sensitivity import run_with_tangents
+from hfanalysis.stages.base import Progress, silent
 
 Array = NDArray[np.float64]
 
@@ -188,14 +189,15 @@ FORMS = (3e-2, 1e-2, 3e-3, 1e-3)
 MOST_SOURCES = 3
 
 
-def localise(hypothesis: Hypothesis, measured: Observed) -> Localisation:
+def localise(hypothesis: Hypothesis, measured: Observed, progress: Progress = silent) -> Localisation:
     """Find sources, one at a time, from the coarsest disagreement to the finest."""
     start = np.zeros(hypothesis.size)
     found: list[Source] = []
     base: Fit | None = None
     ranking: tuple[Source, ...] = ()
     current, observed = hypothesis, measured
-    for form in FORMS:
+    for step, form in enumerate(FORMS):
+        progress(f"comparing to {form:.1%} of each channel's range", step / len(FORMS))
         observed = measured.at_form(form)
         here = fit(current, observed, start)
         base = here if not found else base

@@ -114,7 +114,8 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     if not {"p_tank", "p_chamber"} & {c.name for c in found}:
         raise AbsentError("neither the tank's nor the chamber's pressure was recorded: the model cannot be compared")
     t_v = segments.time("t_v")
-    events = {} if t_v is None else {"t_v": (t_v, max(segments.std("t_v"), EVENT_STD))}
+    seen = t_v is not None and t_v < end - AROUND_CHANGE
+    events = {"t_v": (t_v, max(segments.std("t_v"), EVENT_STD))} if seen and t_v is not None else {}
     return Observed(tuple(found), events, _phases(segments, end), end)
 
 

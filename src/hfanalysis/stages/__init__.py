@@ -1,10 +1,10 @@
 """The way through, one thin file per stage::
 
-    raw_tests/TEST ──ingest──► segment ──► calibrate ──► validate ──► report
+    raw_tests/TEST ──ingest──► segment ──► calibrate ──► validate ──► diagnose ──► report
 
 Each stage module names what it needs and what it writes (`STAGE`, see :mod:`hfanalysis.stages.base`); the runner
 (:mod:`hfanalysis.stages.runner`) does what a stage needs first and redoes only what changed.
 """
 
-ORDER = ("ingest", "segment", "calibrate", "validate", "flight", "report")
+ORDER = ("ingest", "segment", "calibrate", "validate", "diagnose", "flight", "report")
 """The stages in the order of the way through; each is a module of this package."""
