@@ -7,7 +7,7 @@ FLAGS  ?=
 VENV  := .venv
 BIN   := $(VENV)/bin
 STAMP := $(VENV)/.set-up
-STAGES := ingest segment calibrate validate flight report run
+STAGES := ingest segment calibrate validate diagnose flight report run
 
 # The name goes to hfa as it was typed, whatever is in it.
 override TEST := $(value TEST)
@@ -36,6 +36,7 @@ ingest: ## TEST=… raw log to canonical channels in SI with quality flags
 segment: ## TEST=… find the phases of the test
 calibrate: ## TEST=… injector coefficient, polytropic exponent, feed losses
 validate: ## TEST=… the tank model against the measurement
+diagnose: ## TEST=… where, when and by how much the model departs from the measurement
 flight: ## TEST=… the rocket on the measured thrust: apogee, rail departure, stability, engine files
 report: ## TEST=… processed/TEST/report.html
 run: ## TEST=… every stage

@@ -29,6 +29,10 @@ processed/%/residuals.h5: processed/%/calibration.json
 	@$(HFA) validate --quiet -- $*
 	@touch -c $@
 
+processed/%/diagnosis.json: processed/%/calibration.json
+	@$(HFA) diagnose --quiet -- $*
+	@touch -c $@
+
 processed/%/flight.json: processed/%/calibration.json
 	@$(HFA) flight --quiet -- $*
 	@touch -c $@

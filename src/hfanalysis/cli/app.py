@@ -67,6 +67,7 @@ _STAGES = {
     "segment": "Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end.",
     "calibrate": "Injector coefficient, feed losses, polytropic exponent and regression, with intervals.",
     "validate": "Measure the performance and run the model against the measurement.",
+    "diagnose": "Where, when and by how much the model departs from the measurement.",
     "flight": "Fly the rocket on the measured thrust: apogee, rail departure, stability; engine files.",
     "run": "Every stage.",
 }

@@ -185,6 +185,20 @@ def _flight(context: Context, console: Console) -> None:
         console.print(line, soft_wrap=True)
 
 
+def _diagnose(context: Context, console: Console) -> None:
+    from hfanalysis.diagnose.words import gap_line, sentence
+
+    product = context.read_json("diagnosis.json")
+    for place in product["localisation"]:
+        console.print(Text(sentence(place)), soft_wrap=True)
+    if not product["localisation"]:
+        console.print(Text("The model with its calibrated constants explains what was measured: no source is claimed."))
+    for channel in product["compared"]["channels"]:
+        console.print(Text(f"  {gap_line(channel, product['gap'])}"), soft_wrap=True)
+    for warning in product["warnings"]:
+        console.print(Text(f"  {warning}", style="yellow"), soft_wrap=True)
+
+
 def _report(context: Context, console: Console) -> None:
     console.print(Text(f"report: {context.product('report.html')}"), soft_wrap=True)
 
@@ -251,6 +265,7 @@ _SHOWN = {
     "segment": _segment,
     "calibrate": _calibrate,
     "validate": _validate,
+    "diagnose": _diagnose,
     "flight": _flight,
     "report": _report,
 }

@@ -6,7 +6,8 @@ The result is the most probable set of parameters, their covariance, and the evi
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +16,9 @@ from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.observed import CHANNELS, Channel, Observed
 from hfanalysis.diagnose.probe import Splines
 from hfanalysis.engine.course import LIQUID_OUT
+from hfanalysis.engine.model import RADIUS
 from hfanalysis.engine.sensitivity import Tangents, run_with_tangents
-from hfanalysis.engine.unsteady import Burn, burn
+from hfanalysis.engine.unsteady import Burn, Engine, burn
 
 Array = NDArray[np.float64]
 
@@ -71,13 +73,24 @@ class Fit:
 
 def predict(hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool) -> Prediction:
     """Run a hypothesis. Raises ValueError or ArithmeticError for an engine that cannot be run."""
-    engine, longest = hypothesis.at(x), observed.end + AFTER
+    engine, longest = with_spare_fuel(hypothesis.at(x)), observed.longest + AFTER
     if not tangents:
         burnt = burn(engine, longest, run_on=True, keep_idle=True)
         return Prediction(residuals(hypothesis, observed, x, burnt), None, burnt)
     found = run_with_tangents(engine, hypothesis.of_engine, longest, run_on=True)
-    slopes = _all_slopes(hypothesis, observed, slopes_of(observed, found)) @ hypothesis.jacobian(x)
+    slopes = _all_slopes(hypothesis, observed, slopes_of(hypothesis, observed, found)) @ hypothesis.jacobian(x)
     return Prediction(residuals(hypothesis, observed, x, found.burn), slopes, found.burn)
+
+
+def with_spare_fuel(engine: Engine) -> Engine:
+    """The same port in a grain that does not end.
+
+    What is compared ends with the fuel at the latest. A model whose fuel is gone earlier would leap to cold gas, and no
+    slope leads out of that; when the web is burnt is an observation of its own.
+    """
+    outer = 2.0 * engine.outer_radius
+    mass = engine.fuel_density * pi * engine.grain_length * (outer**2 - engine.port_radius**2)
+    return replace(engine, outer_radius=outer, fuel_mass=mass)
 
 
 def _all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> Array:
@@ -108,17 +121,30 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
         model = outputs[:, _column(channel.name)] + hypothesis.offset(channel.name, x, channel.time)
         parts.append(channel.whiten(channel.value - model))
     for name, (at, deviation) in observed.events.items():
-        assert name == "t_v"
-        gone = burnt.liquid_out if burnt.liquid_out is not None else 2.0 * observed.end
-        parts.append(np.array([(at - gone) / deviation]))
+        if name == "t_v":
+            gone = burnt.liquid_out if burnt.liquid_out is not None else 2.0 * observed.end
+            parts.append(np.array([(at - gone) / deviation]))
+        else:
+            states, _ = burnt.steps.at(np.array([at]))
+            web = hypothesis.engine.outer_radius - states[0, RADIUS]
+            parts.append(np.array([web / (deviation * _typical_regression(hypothesis, at))]))
     return np.concatenate(parts)
 
 
-def slopes_of(observed: Observed, found: Tangents) -> Array:
+def _typical_regression(hypothesis: Hypothesis, burn_time: float) -> float:
+    """The web over the burn time [m/s]: what turns an instant's deviation into one of the port's radius."""
+    return (hypothesis.engine.outer_radius - hypothesis.engine.port_radius) / burn_time
+
+
+def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Array:
     """Derivatives (residuals, parameters) of :func:`residuals` with the parameters [SI]."""
     parts = [-c.whiten(found.output(CHANNELS[c.name], c.time)) for c in observed.channels]
-    for _, deviation in observed.events.values():
-        parts.append(-np.nan_to_num(found.event(LIQUID_OUT))[np.newaxis] / deviation)
+    for name, (at, deviation) in observed.events.items():
+        if name == "t_v":
+            parts.append(-np.nan_to_num(found.event(LIQUID_OUT))[np.newaxis] / deviation)
+        else:
+            unit = deviation * _typical_regression(hypothesis, at)
+            parts.append(-found.output("port_radius", np.array([at])) / unit)
     return np.concatenate(parts)
 
 
@@ -165,7 +191,8 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None) 
     assert here.slopes is not None
     curvature = here.slopes.T @ here.slopes + np.eye(x.size)
     evidence = -_objective(here, x) - 0.5 * float(np.linalg.slogdet(curvature)[1])
-    return Fit(hypothesis, x, np.linalg.inv(curvature), here.residual, here.slopes, here.burnt, evidence, done)
+    covariance = np.asarray(np.linalg.inv(curvature))
+    return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, done)
 
 
 def _objective(prediction: Prediction, x: Array) -> float:

@@ -99,8 +99,8 @@ class Hypothesis:
         """The engine with its parameters at ``x``."""
         engine_names = set(self.of_engine)
         values = {n: v for n, v in self.values(x).items() if n in engine_names}
-        feed = {n: values.pop(n) for n in ("volume", "area", "loss_factor") if n in values}
-        own = {n: v for n, v in values.items() if "." not in n}
+        feed: dict[str, Any] = {n: values.pop(n) for n in ("volume", "area", "loss_factor") if n in values}
+        own: dict[str, Any] = {n: v for n, v in values.items() if "." not in n}
         of_effects = {n: v for n, v in values.items() if "." in n}
         engine = replace(self.engine, feed=replace(self.engine.feed, **feed), **own)
         return replace(engine, effects=_moved(engine.effects, of_effects))

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fit import Fit, fit, sensor_slopes, slopes_of
+from hfanalysis.diagnose.fit import AFTER, Fit, fit, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.hypothesis import Block, Hypothesis
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.probe import Splines, probe
@@ -114,7 +114,7 @@ def _best_scale(projected: _Projected, typical: float) -> tuple[float, float, Ar
         gain = 0.5 * float(pull @ solved) - 0.5 * float(np.linalg.slogdet(inner)[1])
         if best is None or gain > best[1]:
             covariance = scale**2 * root @ np.linalg.inv(inner) @ root.T
-            best = (float(scale), gain, root @ solved, covariance)
+            best = (float(scale), gain, np.asarray(root @ solved), np.asarray(covariance))
     assert best is not None
     return best
 
@@ -132,14 +132,18 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
         names.append([f"{effect.name}.c{i}" for i in range(splines.count)])
     probed = replace(engine, effects=(*engine.effects, *active))
     flat = [n for group in names for n in group]
-    tangents = run_with_tangents(probed, flat, observed.end + 0.05, run_on=True)
-    slopes = slopes_of(observed, tangents)
+    tangents = run_with_tangents(with_spare_fuel(probed), flat, observed.longest + AFTER, run_on=True)
+    slopes = slopes_of(fitted.hypothesis, observed, tangents)
     time = np.linspace(0.0, observed.end, 200)
     found = []
     for k, site in enumerate(sites):
         columns = slopes[:, k * splines.count : (k + 1) * splines.count]
         found.append(_source(site, _project(fitted, columns), splines, time))
-    found += [_source(*_sensor(observed, name, splines, fitted), splines, time) for name in observed.names if name not in _sensors(fitted)]
+    found += [
+        _source(*_sensor(observed, name, splines, fitted), splines, time)
+        for name in observed.names
+        if name not in _sensors(fitted)
+    ]
     return sorted(found, key=lambda s: -s.log_evidence)
 
 
@@ -163,7 +167,7 @@ def _sensors(fitted: Fit) -> set[str]:
 def with_source(hypothesis: Hypothesis, source: Source) -> Hypothesis:
     """The hypothesis with an unknown source at a site, of the size that the linear search found."""
     splines, site = source.splines, source.site
-    matrix = source.scale * np.linalg.cholesky(smooth_prior(splines.count))
+    matrix = np.asarray(source.scale * np.linalg.cholesky(smooth_prior(splines.count)))
     if site.sensor is not None:
         names = tuple(f"offset_{site.sensor}.c{i}" for i in range(splines.count))
         return hypothesis.with_block(Block(names, matrix, splines, site.sensor))

@@ -1,8 +1,8 @@
 """What a test says, in the form that inference takes it: block means with the covariance of their noise.
 
-A constant offset of a sensor, as large as its stated accuracy allows, is part of the covariance: it is a nuisance with a
-Gaussian prior. Blocks that contain a change of phase are left out; the instants of the changes are observations of their
-own.
+A constant offset of a sensor, as large as its stated accuracy allows, is part of the covariance: it is a nuisance with
+a Gaussian prior. Blocks that contain a change of phase are left out; the instants of the changes are observations of
+their own.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ BLOCK = 0.02
 """Seconds over which samples are averaged."""
 
 AROUND_CHANGE = 0.06
-"""Seconds on either side of a phase change (beside its own deviation) in which blocks are left out: knees are rounded."""
+"""Seconds on either side of a phase change (beside its own deviation) without blocks: knees are rounded."""
 
 FIRST = 0.05
-"""Seconds after the opening before which nothing is compared: the chamber fills, and ignition is no part of the model."""
+"""Seconds after the opening before which nothing is compared: the chamber fills, the igniter is not modelled."""
 
 LONGEST = 30.0
 
@@ -49,10 +49,14 @@ EVENT_STD = 0.005
 """Least standard deviation [s] of the instant of a phase change."""
 
 
+FUEL_STD = 0.05
+"""Least standard deviation [s] of the end of the fuel, which fades rather than stops."""
+
+
 @dataclass(frozen=True)
 class Channel:
-    """Block means of one channel: ``time`` [s after the opening], ``value`` [SI], the ``covariance`` of sensor noise and
-    bias, and a factor that whitens them, model-form error included."""
+    """Block means of one channel: ``time`` [s after the opening], ``value`` [SI], the ``covariance`` of sensor noise
+    and bias, and a factor that whitens them, model-form error included."""
 
     name: str
     time: Array
@@ -88,6 +92,11 @@ class Observed:
         return replace(self, channels=tuple(c.at_form(error) for c in self.channels))
 
     @property
+    def longest(self) -> float:
+        """The last instant that is compared [s]."""
+        return max(self.end, *(at for at, _ in self.events.values())) if self.events else self.end
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Of the channels."""
         return tuple(c.name for c in self.channels)
@@ -116,11 +125,14 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     t_v = segments.time("t_v")
     seen = t_v is not None and t_v < end - AROUND_CHANGE
     events = {"t_v": (t_v, max(segments.std("t_v"), EVENT_STD))} if seen and t_v is not None else {}
+    gone = segments.time("t_fuel_out")
+    if gone is not None and gone < LONGEST:
+        events["t_fuel_out"] = (gone, max(segments.std("t_fuel_out"), FUEL_STD))
     return Observed(tuple(found), events, _phases(segments, end), end)
 
 
 def _end(segments: Segments) -> float:
-    """Where the comparison ends [s]: with the fuel, for what burns after it is another story, or where the flow ends."""
+    """Where the comparison ends [s]: with the fuel, for what follows is another story, or where the flow ends."""
     known = [(segments.time(name), segments.std(name)) for name in ("t_fuel_out", "t_end")]
     given = [t - AROUND_CHANGE - 2.0 * deviation for t, deviation in known if t is not None]
     return min([*given, LONGEST])

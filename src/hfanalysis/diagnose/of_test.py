@@ -22,6 +22,9 @@ from hfanalysis.validate.full import run_full
 
 Array = NDArray[np.float64]
 
+Z90 = 1.6449
+"""Half-width of the 90 % interval of a normal distribution."""
+
 SEEN = 2.0
 """Standard deviations from which on a source counts as there."""
 
@@ -51,10 +54,16 @@ def diagnose(
         "effects": [],
         "set90": ["unknown"] if places else ["none"],
         "localisation": places,
-        "ranking": [{"site": s.site.name, "equation": s.site.equation, "log_evidence": s.log_evidence} for s in found.ranking],
+        "ranking": [
+            {"site": s.site.name, "equation": s.site.equation, "log_evidence": s.log_evidence} for s in found.ranking
+        ],
         "gap": gap(found),
         "nuisances": {name: value for name, value in found.final.values.items() if "." not in name},
-        "compared": {"channels": list(observed.names), "start": float(observed.channels[0].time[0]), "end": observed.end},
+        "compared": {
+            "channels": list(observed.names),
+            "start": float(observed.channels[0].time[0]),
+            "end": observed.end,
+        },
         "warnings": _warnings(found),
     }
     return Diagnosis(found, product)
@@ -72,10 +81,16 @@ def place(source: Source, observed: Observed) -> dict[str, Any]:
         "equation": source.site.equation,
         "site": source.site.name,
         "phase": _phase(source, observed),
-        "t_start": float(first),
-        "t_end": float(last),
+        "t_start": Quantity(float(first), "s", source.splines.spacing / 2.0),
+        "t_end": Quantity(float(last), "s", source.splines.spacing / 2.0),
         "source": Quantity(mean, source.site.unit, float(source.std[inside].mean())),
         "significance": source.log_evidence,
+        "history": {
+            "unit": source.site.unit,
+            "time": source.time.tolist(),
+            "low90": (source.mean - Z90 * source.std).tolist(),
+            "high90": (source.mean + Z90 * source.std).tolist(),
+        },
     }
 
 

@@ -67,7 +67,7 @@ class Splines:
 
 @lru_cache(maxsize=64)
 def probe(site: str, splines: Splines, typical: float) -> Effect:
-    """An effect that adds splines to a site; its coefficients c0, c1, ... are of the ``typical`` size [the site's unit]."""
+    """An effect that adds splines to a site; its coefficients c0, c1, ... are of ``typical`` size [the site's unit]."""
     given = (
         SITES.index(site),
         HOOK_OF_SITE.get(site, RATES),
