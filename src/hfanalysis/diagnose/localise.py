@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fit import AFTER, Fit, fit, sensor_slopes, slopes_of, with_spare_fuel
+from hfanalysis.diagnose.fit import AFTER, Fit, fit, predict, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.hypothesis import Block, Hypothesis
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.probe import Splines, probe
@@ -59,6 +59,9 @@ CORRELATION = 1.5
 LEAST_EVIDENCE = 6.0
 """Natural logarithm of the evidence against no source at all that a claim needs."""
 
+RIVALS = 5
+"""Sites that are asked once more at the end, per source."""
+
 REFITTED = 3
 """How many of the best sites are fitted with the full model."""
 
@@ -75,6 +78,7 @@ class Source:
     scale: float
     coefficients: Array
     splines: Splines
+    nuisances: Array
 
 
 def smooth_prior(count: int) -> Array:
@@ -85,10 +89,12 @@ def smooth_prior(count: int) -> Array:
 
 @dataclass(frozen=True)
 class _Projected:
-    """Slopes and residual with the nuisances projected out, their priors counted."""
+    """Slopes and residual with the nuisances projected out, their priors counted; ``follow`` is how these then move."""
 
     information: Array
     pull: Array
+    start: Array
+    follow: Array
 
 
 def _project(fitted: Fit, columns: Array) -> _Projected:
@@ -98,7 +104,7 @@ def _project(fitted: Fit, columns: Array) -> _Projected:
     r = fitted.residual - a @ fitted.x
     clear = columns - a @ (through @ columns)
     # (1 + A A^T)^-1 applied to columns and residual
-    return _Projected(columns.T @ clear, -(clear.T @ r))
+    return _Projected(columns.T @ clear, -(clear.T @ r), -(through @ r), -(through @ columns))
 
 
 def _best_scale(projected: _Projected, typical: float) -> tuple[float, float, Array, Array]:
@@ -157,7 +163,8 @@ def _source(site: Site, projected: _Projected, splines: Splines, time: Array) ->
     scale, gain, mean, covariance = _best_scale(projected, site.typical)
     basis = splines.at(time)
     std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, covariance, basis), 0.0))
-    return Source(site, time, basis @ mean, std, gain, scale, mean, splines)
+    nuisances = projected.start + projected.follow @ mean
+    return Source(site, time, basis @ mean, std, gain, scale, mean, splines, nuisances)
 
 
 def _sensors(fitted: Fit) -> set[str]:
@@ -197,6 +204,7 @@ def localise(hypothesis: Hypothesis, measured: Observed, progress: Progress = si
     """Find sources, one at a time, from the coarsest disagreement to the finest."""
     start = np.zeros(hypothesis.size)
     found: list[Source] = []
+    rivals: list[list[Source]] = []
     base: Fit | None = None
     ranking: tuple[Source, ...] = ()
     current, observed = hypothesis, measured
@@ -213,10 +221,37 @@ def localise(hypothesis: Hypothesis, measured: Observed, progress: Progress = si
                 break
             here, source = better
             found.append(source)
+            rivals.append([r for r in ranked[:RIVALS] if r.site != source.site])
         current, start = here.hypothesis, here.x
     assert base is not None
-    final = here
+    progress("asking whether another site does as well", 0.9)
+    final, found = _swapped(hypothesis, here, observed, found, rivals)
     return Localisation(base, final, tuple(_of_fit(s, final) for s in found), ranking, observed)
+
+
+def _swapped(
+    hypothesis: Hypothesis, here: Fit, observed: Observed, found: list[Source], rivals: list[list[Source]]
+) -> tuple[Fit, list[Source]]:
+    """Each source against its rivals once more, at the finest comparison: at the coarse ones they look alike."""
+    for k in range(len(found)):
+        for rival in rivals[k]:
+            others = [s for i, s in enumerate(found) if i != k]
+            if any(s.site == rival.site for s in others):
+                continue
+            trial = _refit_all(hypothesis, here, observed, [*others, rival])
+            if trial is not None and trial.log_evidence > here.log_evidence:
+                here, found = trial, [*found[:k], rival, *found[k + 1 :]]
+    return here, found
+
+
+def _refit_all(hypothesis: Hypothesis, here: Fit, observed: Observed, sources: list[Source]) -> Fit | None:
+    """The fit with these sources and no others, the nuisances starting where they are."""
+    made = hypothesis
+    for source in sources:
+        made = with_source(made, source)
+    linear = np.concatenate([sources[-1].nuisances[: len(hypothesis.free)], *(_coordinates(s) for s in sources)])
+    still = np.concatenate([here.x[: len(hypothesis.free)], np.zeros(linear.size - len(hypothesis.free))])
+    return _fit_from(made, observed, [still + share * (linear - still) for share in STRIDES])
 
 
 def _refit(here: Fit, observed: Observed, ranked: list[Source]) -> tuple[Fit, Source] | None:
@@ -238,14 +273,39 @@ def _refit(here: Fit, observed: Observed, ranked: list[Source]) -> tuple[Fit, So
 
 def _with_all_parameters(here: Fit, observed: Observed, source: Source) -> Fit | None:
     """The full fit with a source, from its linear estimate or, where that cannot be run, from nearer to nothing."""
+    made = with_source(here.hypothesis, source)
+    moved = np.concatenate([source.nuisances - here.x, _coordinates(source)])
+    still = np.concatenate([here.x, np.zeros(source.splines.count)])
+    return _fit_from(made, observed, [still + share * moved for share in STRIDES])
+
+
+STRIDES = (1.0, 0.5, 0.2, 0.0)
+"""Parts of the way to the linear estimate from which a full fit may start: a large source is not linear."""
+
+
+def _coordinates(source: Source) -> Array:
+    """A source's coefficients in units of its prior."""
     root = np.linalg.cholesky(smooth_prior(source.splines.count)) * source.scale
-    for share in (1.0, 0.3, 0.0):
-        start = np.concatenate([here.x, share * np.linalg.solve(root, source.coefficients)])
+    return np.asarray(np.linalg.solve(root, source.coefficients))
+
+
+def _fit_from(hypothesis: Hypothesis, observed: Observed, starts: list[Array]) -> Fit | None:
+    """The fit from the best of several starts; None where none can be run."""
+    best: tuple[float, Array] | None = None
+    for x in starts:
         try:
-            return fit(with_source(here.hypothesis, source), observed, start)
+            found = predict(hypothesis, observed, x, tangents=False)
         except (ValueError, ArithmeticError):
             continue
-    return None
+        value = 0.5 * float(found.residual @ found.residual + x @ x)
+        if np.isfinite(value) and (best is None or value < best[0]):
+            best = (value, x)
+    if best is None:
+        return None
+    try:
+        return fit(hypothesis, observed, best[1])
+    except (ValueError, ArithmeticError):
+        return None
 
 
 def _of_fit(source: Source, final: Fit) -> Source:
