@@ -16,6 +16,7 @@ from hfanalysis.diagnose.probe import Splines, probe
 from hfanalysis.diagnose.words import sentence
 from hfanalysis.effects import effect
 from hfanalysis.engine.unsteady import burn
+from hfanalysis.quantity import Quantity
 
 
 @cache
@@ -67,7 +68,8 @@ def test_heat_into_the_tank_is_found_in_its_energy_equation() -> None:
     found = localised("heat")
     where = place(found.sources[0], found.observed)
     assert where["equation"] == "tank_energy"
-    assert "the tank" in sentence(where)
+    plain = {k: v.to_json() if isinstance(v, Quantity) else v for k, v in where.items()}
+    assert "the tank" in sentence(plain)
 
 
 def test_the_heat_has_its_size() -> None:
