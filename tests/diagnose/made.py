@@ -48,7 +48,7 @@ def of_engine(engine: Engine, seed: int, offsets: dict[str, float]) -> Observed:
         value = outputs[:, OUTPUTS.index(output)] + NOISE[name] * rng.standard_normal(time.size)
         value = value + BIAS[name] * rng.standard_normal() + offsets.get(name, 0.0) * (time > 3.0)
         covariance = NOISE[name] ** 2 * np.eye(time.size) + BIAS[name] ** 2
-        channel = Channel(name, time, value, np.full(time.size, NOISE[name]), covariance, covariance)
+        channel = Channel(name, time, value, np.full(time.size, NOISE[name]), BIAS[name], covariance, covariance)
         channels.append(channel.at_form(FORM_ERROR))
     instants = {"t_v": (done.liquid_out, EVENT_STD), "t_fuel_out": (done.burn_time, FUEL_STD)}
     events = {name: (at + std * float(rng.standard_normal()), std) for name, (at, std) in instants.items()}

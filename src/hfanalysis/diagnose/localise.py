@@ -47,6 +47,12 @@ SITES = (
 )
 SENSORS = ("p_tank", "p_run", "p_chamber", "thrust")
 
+BEYOND_ACCURACY = 5.0
+"""Error of a pressure transducer that is typical of one that errs, in units of its stated accuracy."""
+
+LOAD_CELL_DRIFT = 200.0
+"""Typical drift of a thrust cell in the heat of a firing [N]."""
+
 SCALES = np.geomspace(0.02, 4.0, 9)
 """Sizes of a source that are tried, in units of what is typical of its site."""
 
@@ -154,7 +160,8 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
 
 
 def _sensor(observed: Observed, name: str, splines: Splines, fitted: Fit) -> tuple[Site, _Projected]:
-    unit, typical = ("N", 200.0) if name == "thrust" else ("Pa", 1e5)
+    accuracy = next(c.accuracy for c in observed.channels if c.name == name)
+    unit, typical = ("N", LOAD_CELL_DRIFT) if name == "thrust" else ("Pa", BEYOND_ACCURACY * accuracy)
     site = Site(f"offset of {name}", "sensor", unit, typical, sensor=name)
     return site, _project(fitted, sensor_slopes(observed, name, splines))
 

@@ -55,13 +55,14 @@ FUEL_STD = 0.05
 
 @dataclass(frozen=True)
 class Channel:
-    """Block means of one channel: ``time`` [s after the opening], ``value`` [SI], the ``covariance`` of sensor noise
+    """Block means of one channel: ``time`` [s after the opening], ``value`` [SI], its stated ``accuracy``, the ``covariance`` of sensor noise
     and bias, and a factor that whitens them, model-form error included."""
 
     name: str
     time: Array
     value: Array
     noise_std: Array
+    accuracy: float
     covariance: Array
     factor: Array
 
@@ -170,7 +171,7 @@ def _channel(
     covariance = noise.covariance(time) + accuracy**2
     covariance[np.diag_indices_from(covariance)] += jitter**2
     std = np.sqrt(noise.covariance(time).diagonal() + jitter**2)
-    return Channel(signal.name, time, value, std, covariance, covariance).at_form(FORM_ERROR)
+    return Channel(signal.name, time, value, std, accuracy, covariance, covariance).at_form(FORM_ERROR)
 
 
 def _accuracy(definition: TestDefinition, name: str, value: Array) -> float:
