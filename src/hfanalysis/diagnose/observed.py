@@ -55,8 +55,10 @@ FUEL_STD = 0.05
 
 @dataclass(frozen=True)
 class Channel:
-    """Block means of one channel: ``time`` [s after the opening], ``value`` [SI], its stated ``accuracy``, the ``covariance`` of sensor noise
-    and bias, and a factor that whitens them, model-form error included."""
+    """Block means of one channel: ``time`` [s after the opening], ``value`` and stated ``accuracy`` [SI].
+
+    ``covariance`` is that of sensor noise and bias; ``factor`` whitens them, model-form error included.
+    """
 
     name: str
     time: Array
