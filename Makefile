@@ -39,7 +39,7 @@ validate: ## TEST=… the tank model against the measurement
 diagnose: ## TEST=… where, when and by how much the model departs from the measurement
 flight: ## TEST=… the rocket on the measured thrust: apogee, rail departure, stability, engine files
 report: ## TEST=… processed/TEST/report.html
-run: ## TEST=… every stage
+run: ## TEST=… every stage but the diagnosis
 $(STAGES): $(STAMP)
 	@if [ -z "$$TEST" ]; then \
 		echo "make $@: which test? For example: make $@ TEST=$(or $(firstword $(TESTS)),HF5)" >&2; \

@@ -69,7 +69,7 @@ _STAGES = {
     "validate": "Measure the performance and run the model against the measurement.",
     "diagnose": "Where, when and by how much the model departs from the measurement.",
     "flight": "Fly the rocket on the measured thrust: apogee, rail departure, stability; engine files.",
-    "run": "Every stage.",
+    "run": "Every stage but the diagnosis, which takes longer.",
 }
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from hfanalysis.cli.ending import put, tell
 from hfanalysis.errors import AbsentError, InputError
-from hfanalysis.stages import ORDER
+from hfanalysis.stages import ORDER, way_to
 from hfanalysis.stages.base import Context, Progress, load_stage, silent
 from hfanalysis.stages.opening import open_test
 from hfanalysis.stages.runner import run_to
@@ -115,7 +115,9 @@ def _json(name: str, context: Context) -> str:
     from hfanalysis.testdata.products import to_json
 
     if name == "run":
-        return to_json({stage: json.loads(_json(stage, context)) for stage in ORDER if stage not in context.absent})
+        return to_json(
+            {stage: json.loads(_json(stage, context)) for stage in way_to(name) if stage not in context.absent}
+        )
     for product in load_stage(name).products:
         if product.endswith(".json"):
             return context.product(product).read_text(encoding="utf-8")
@@ -125,9 +127,8 @@ def _json(name: str, context: Context) -> str:
 
 def _warnings(context: Context, name: str) -> list[str]:
     """What the products up to this stage warn of, each once."""
-    until = len(ORDER) if name == "run" else ORDER.index(name) + 1
     texts = list(context.definition.warnings)
-    for stage in ORDER[:until]:
+    for stage in way_to(name):
         if stage in context.absent:
             texts += [] if stage in _SPINE and name == "run" else [f"{stage}: {context.absent[stage]}"]
             continue

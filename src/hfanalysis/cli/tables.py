@@ -13,7 +13,7 @@ from hfanalysis.cli.ending import nobody_reads
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
 from hfanalysis.report import wording
 from hfanalysis.report.wording import Shown, in_words, is_quantity, quantities, shown
-from hfanalysis.stages import ORDER
+from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context
 
 _NARROWEST = 124
@@ -47,7 +47,7 @@ def show(name: str, context: Context) -> None:
     if not console.is_terminal:
         console.width = max(console.width, _NARROWEST)
     console.print(_headline(context))
-    for stage in ORDER if name == "run" else (name,):
+    for stage in way_to(name) if name == "run" else (name,):
         if stage not in context.absent:
             _SHOWN[stage](context, console)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from hfanalysis.report.material import Material, read_store
-from hfanalysis.stages import ORDER
 from hfanalysis.stages.base import Context, load_stage
 from hfanalysis.testdata.log import read_log
 
@@ -13,7 +12,8 @@ _LOG = "ingest.h5"
 def load(context: Context) -> Material:
     """Every product of the stages that ran, and why the others have none."""
     products, stores, absent = {}, {}, {}
-    for stage in map(load_stage, ORDER[: ORDER.index("report")]):
+    page = load_stage("report")
+    for stage in map(load_stage, page.upstream):
         for path in map(context.product, stage.products):
             if stage.name in context.absent:
                 absent[path.stem] = context.absent[stage.name]
