@@ -26,8 +26,11 @@ ITERATIONS = 25
 CONVERGED = 1e-3
 """Change of the objective below which a fit is done: a thousandth of a unit of log probability."""
 
-AFTER = 0.05
-"""Seconds that a run goes on after the last observation."""
+AFTER = 1.0
+"""Seconds that a run goes on after the last observation, for its liquid may end later than the measured."""
+
+TICK = 1e-3
+"""Seconds over which a channel's speed is a difference; blocks stay farther than that from the end of the liquid."""
 
 
 @dataclass(frozen=True)
@@ -117,8 +120,8 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
     """Whitened measured less model: the channels one after the other, then the events."""
     parts = []
     for channel in observed.channels:
-        _, outputs = burnt.steps.at(channel.time)
-        model = outputs[:, _column(channel.name)] + hypothesis.offset(channel.name, x, channel.time)
+        model = _read(burnt, channel, aligned(observed, burnt, channel.time))
+        model = model + hypothesis.offset(channel.name, x, channel.time)
         parts.append(channel.whiten(channel.value - model))
     for name, (at, deviation) in observed.events.items():
         if name == "t_v":
@@ -131,6 +134,36 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
     return np.concatenate(parts)
 
 
+def aligned(observed: Observed, burnt: Burn, times: Array) -> Array:
+    """Instants of the model that correspond to measured ones: stretched so that its liquid ends when the measured does.
+
+    Between two instants of t_v the one is liquid and the other vapour, and no slope tells how to bring them together;
+    how far apart they are is an observation of its own.
+    """
+    seen, gone = observed.events.get("t_v"), burnt.liquid_out
+    if seen is None or gone is None:
+        return times
+    return np.where(times < seen[0], times * gone / seen[0], times + gone - seen[0])
+
+
+def _read(burnt: Burn, channel: Channel, times: Array) -> Array:
+    _, outputs = burnt.steps.at(times)
+    return outputs[:, _column(channel.name)]
+
+
+def _aligned_slopes(observed: Observed, found: Tangents, channel: Channel) -> Array:
+    """Slopes of a channel's model at aligned instants, which move with the end of the liquid."""
+    times = aligned(observed, found.burn, channel.time)
+    slopes = found.output(CHANNELS[channel.name], times)
+    seen = observed.events.get("t_v")
+    if seen is None or found.burn.liquid_out is None:
+        return slopes
+    ahead, behind = (_read(found.burn, channel, times + s * TICK) for s in (1.0, -1.0))
+    share = np.minimum(channel.time / seen[0], 1.0)
+    speed = (ahead - behind) / (2.0 * TICK) * share
+    return np.asarray(slopes + speed[:, np.newaxis] * np.nan_to_num(found.event(LIQUID_OUT))[np.newaxis])
+
+
 def _typical_regression(hypothesis: Hypothesis, burn_time: float) -> float:
     """The web over the burn time [m/s]: what turns an instant's deviation into one of the port's radius."""
     return (hypothesis.engine.outer_radius - hypothesis.engine.port_radius) / burn_time
@@ -138,7 +171,7 @@ def _typical_regression(hypothesis: Hypothesis, burn_time: float) -> float:
 
 def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Array:
     """Derivatives (residuals, parameters) of :func:`residuals` with the parameters [SI]."""
-    parts = [-c.whiten(found.output(CHANNELS[c.name], c.time)) for c in observed.channels]
+    parts = [-c.whiten(_aligned_slopes(observed, found, c)) for c in observed.channels]
     for name, (at, deviation) in observed.events.items():
         if name == "t_v":
             parts.append(-np.nan_to_num(found.event(LIQUID_OUT))[np.newaxis] / deviation)
@@ -150,8 +183,7 @@ def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Ar
 
 def model_of(fitted: Fit, channel: Channel) -> Array:
     """What the fitted model reads on a channel."""
-    _, outputs = fitted.burnt.steps.at(channel.time)
-    return outputs[:, _column(channel.name)] + fitted.hypothesis.offset(channel.name, fitted.x, channel.time)
+    return _read(fitted.burnt, channel, channel.time) + fitted.hypothesis.offset(channel.name, fitted.x, channel.time)
 
 
 def _column(channel: str) -> int:
