@@ -10,7 +10,7 @@ from math import pi
 import numpy as np
 import pytest
 from benchmarks.random_engines import Outcome, attempt, faults, random_engine
-from benchmarks.reference_engine import Reference, Run, differences, in_our_states, maelstrom, solve
+from benchmarks.reference_engine import Reference, Run, differences, hf5_like, in_our_states, maelstrom, solve
 from numpy.typing import NDArray
 
 from hfanalysis.engine.blowdown import FeedSystem
@@ -291,3 +291,10 @@ def test_states_that_are_not_numbers_give_rates_that_are_not_and_no_crash() -> N
     for liquid in (True, False):
         evaluate_rates(0.0, np.full(len(STATES), np.nan), liquid, True, equations, dy, out)
         assert np.isnan(dy[:2]).all()
+
+
+def test_the_reference_solver_agrees_through_vapour_and_cold_gas() -> None:
+    run = solve(hf5_like(), longest=17.0, run_on=True)
+    ours = burn(hf5_like(), 17.0, run_on=True)
+    assert (ours.liquid_out, ours.burn_time) == pytest.approx(run.events[:2], rel=1e-4)
+    assert max(differences(ours, run).values()) < 1e-4
