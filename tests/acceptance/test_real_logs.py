@@ -53,7 +53,10 @@ def test_the_cell_that_does_not_return_to_zero_is_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("test", "faults"),
-    [("MRT-HF3.1", ["thrust does not return to zero", "thrust and p_c A_t disagree"]), ("MRT-HF3.4", [])],
+    [
+        ("MRT-HF3.1", ["thrust does not return to zero", "thrust and p_c A_t disagree"]),
+        ("MRT-HF3.4", ["thrust does not return to zero"]),
+    ],
 )
 def test_the_verdict_of_the_page_names_by_itself_what_is_wrong_with_the_sensors(
     test: str, faults: list[str], tmp_path: Path

@@ -11,7 +11,7 @@ from engine_sample import TRUTH, engine, evidence, rate
 from hfanalysis.calibrate.engine_of_test import Regression, pressure_at, starting_for
 from hfanalysis.calibrate.evidence import Evidence, Scalar, burn_time_of
 from hfanalysis.calibrate.likelihood import effective_samples, surface
-from hfanalysis.calibrate.regression import Fitted, fit, fit_together, law_at, result
+from hfanalysis.calibrate.regression import RANGE_N, Fitted, _minimum, fit, fit_together, law_at, result
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.errors import AbsentError
 
@@ -161,3 +161,8 @@ def test_evidence_lists_its_observations() -> None:
     e: Evidence = evidence()
     assert e.observed.size == e.time.size + 1
     assert e.observed[-1] == e.burn_time.value  # type: ignore[union-attr]
+
+
+def test_a_start_beyond_the_range_of_n_is_moved_to_its_border(clear: Fitted) -> None:
+    found = _minimum(clear.evidence, clear.weights, clear.flux, np.array([clear.best[0], RANGE_N[1] + 0.4]))
+    assert RANGE_N[0] <= found[1] <= RANGE_N[1]

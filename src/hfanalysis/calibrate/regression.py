@@ -146,10 +146,11 @@ def _scan(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float)
 
 
 def _minimum(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, start: Array) -> Array:
-    """The least misfit from ``start``, by BOBYQA."""
+    """The least misfit from ``start``, by BOBYQA; a start beyond the range of n is moved to its border."""
     import nlopt
 
     objective = _objective(evidence, weights, flux)
+    start = np.array([start[0], np.clip(start[1], *RANGE_N)])
     solver = nlopt.opt(nlopt.LN_BOBYQA, 2)
     solver.set_min_objective(lambda x, _gradient: objective(np.array(x)))
     solver.set_lower_bounds([start[0] - 2.0, RANGE_N[0]])
