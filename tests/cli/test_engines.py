@@ -251,3 +251,17 @@ def test_products_are_the_same_from_run_to_run(run: Run, tmp_path: Path) -> None
     files = [path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*.*")]
     assert len(files) == 12
     assert all((tmp_path / "one" / f).read_bytes() == (tmp_path / "two" / f).read_bytes() for f in files)
+
+
+def test_a_stand_runs_on_through_cold_gas_where_asked(run: Run, tmp_path: Path) -> None:
+    engine = without_rocket(tmp_path)
+    (short, on) = (json.loads(run("simulate", engine, "--json", *more)[1]) for more in ((), ("--until", "12")))
+    assert on["burn_time"] == short["burn_time"]
+    assert on["residual_oxidizer_mass"]["value"] < 0.5 * short["residual_oxidizer_mass"]["value"]
+    assert on["total_impulse"]["value"] > short["total_impulse"]["value"]
+
+
+def test_seconds_that_are_none_are_refused(run: Run) -> None:
+    status, _, err = run("simulate", MAELSTROM, "--until", "-3")
+    assert status == 2
+    assert "--until -3: expected seconds" in err

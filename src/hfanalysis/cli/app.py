@@ -161,13 +161,23 @@ Folder = Annotated[Path | None, typer.Option(help="Also write what was found to 
 EngineJson = Annotated[bool, typer.Option("--json", help="Print the JSON product on standard output, nothing else.")]
 
 
+Until = Annotated[
+    float | None,
+    typer.Option(
+        "--until", metavar="SECONDS", help="Run on after burn-out, through vapour and cold gas, to this time."
+    ),
+]
+
+
 @app.command("simulate")
-def _simulate(engine: EngineToml, as_json: EngineJson = False, out: Folder = None, quiet: Quiet = False) -> None:
+def _simulate(
+    engine: EngineToml, as_json: EngineJson = False, out: Folder = None, quiet: Quiet = False, until: Until = None
+) -> None:
     """Run the unsteady model of an engine: tank, injector, grain, chamber, nozzle and flight."""
     with ending():
         from hfanalysis.cli import engines
 
-        engines.simulate(engine, out, as_json, quiet)
+        engines.simulate(engine, out, as_json, quiet, until)
 
 
 @app.command("design")

@@ -14,13 +14,13 @@ from hfanalysis.testdata.engine_file import load_engine
 from hfanalysis.testdata.products import to_json
 
 
-def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: float | None = None) -> None:
     """The unsteady model of the engine file at ``path``; what it found to ``out`` where that is given."""
     file = load_engine(path)
     with _watch(file.engine.id, quiet):
         from hfanalysis.simulate import unsteady_run, write
 
-        found = unsteady_run.simulate(file)
+        found = unsteady_run.simulate(file, until)
         if out is not None:
             with _writing(out):
                 write.simulation(out, found)

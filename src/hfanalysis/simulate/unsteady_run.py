@@ -21,6 +21,9 @@ Array = NDArray[np.float64]
 
 COMMAND = "hfa simulate"
 
+LONGEST = 600.0
+"""Seconds after which no stand runs on."""
+
 
 @dataclass(frozen=True)
 class Simulation:
@@ -32,15 +35,15 @@ class Simulation:
     product: dict[str, Any]
 
 
-def simulate(file: EngineFile) -> Simulation:
-    """Run the unsteady model of an engine file.
+def simulate(file: EngineFile, until: float | None = None) -> Simulation:
+    """Run the unsteady model of an engine file, to burn-out or on through cold gas ``until`` so many seconds.
 
     Raises :class:`InputError` where the file lacks what the model needs, or states an engine that cannot be run.
     """
     needs = Needs(file, COMMAND)
     tank = build.tank(needs)
     engine = build.engine(needs, tank)
-    burnt = run(file, engine)
+    burnt = run(file, engine, until)
     hot = burnt.chamber_temperature()
     product = {
         **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
@@ -55,10 +58,12 @@ def simulate(file: EngineFile) -> Simulation:
     return Simulation(engine, burnt, hot, product)
 
 
-def run(file: EngineFile, engine: Engine) -> Burn:
+def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:
     """The burn; an engine that cannot be lit or integrated is refused with the reason."""
+    if until is not None and not 0.0 < until <= LONGEST:
+        raise InputError(f"--until {until:g}: expected seconds between 0 and {LONGEST:g}")
     try:
-        return unsteady.burn(engine)
+        return unsteady.burn(engine) if until is None else unsteady.burn(engine, until, run_on=True)
     except (ValueError, ArithmeticError) as error:
         raise InputError(f"{file.path}: {error}") from None
 
