@@ -26,6 +26,9 @@ ITERATIONS = 25
 CONVERGED = 1e-3
 """Change of the objective below which a fit is done: a thousandth of a unit of log probability."""
 
+STEEPEST = 1e8
+"""Standard deviations of an observation per one of a parameter beyond which a slope is none."""
+
 AFTER = 1.0
 """Seconds that a run goes on after the last observation, for its liquid may end later than the measured."""
 
@@ -196,6 +199,8 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None) 
     """The most probable parameters: Gauss-Newton steps, damped where one does not lower the objective."""
     x = np.zeros(hypothesis.size) if start is None else np.asarray(start, dtype=np.float64)
     here = predict(hypothesis, observed, x, tangents=True)
+    if not _usable(here):
+        raise ArithmeticError("the model has no slopes where its fit starts")
     damping, done = 1e-3, False
     for _ in range(ITERATIONS):
         assert here.slopes is not None
@@ -214,9 +219,12 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None) 
         if not moved:
             done = True
             break
-        x = x + step
+        there = predict(hypothesis, observed, x + step, tangents=True)
+        if not _usable(there):
+            damping = max(100.0 * damping, 1.0)  # a point without slopes leads nowhere: a shorter step
+            continue
+        x, here = x + step, there
         damping = max(0.1 * damping, 1e-9)
-        here = predict(hypothesis, observed, x, tangents=True)
         if before - _objective(here, x) < CONVERGED:
             done = True
             break
@@ -225,6 +233,11 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None) 
     evidence = -_objective(here, x) - 0.5 * float(np.linalg.slogdet(curvature)[1])
     covariance = np.asarray(np.linalg.inv(curvature))
     return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, done)
+
+
+def _usable(prediction: Prediction) -> bool:
+    """Whether slopes are numbers that a step can be made from: where a run chatters they grow beyond all bounds."""
+    return prediction.slopes is not None and bool((np.abs(prediction.slopes) < STEEPEST).all())
 
 
 def _objective(prediction: Prediction, x: Array) -> float:
