@@ -5,7 +5,6 @@ The result is the most probable set of parameters, their covariance, and the evi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import pi
 
@@ -67,14 +66,6 @@ class Fit:
     def objective(self) -> float:
         """Minus the log of posterior density, up to a constant."""
         return 0.5 * float(self.residual @ self.residual + self.x @ self.x)
-
-    def by_channel(self, observed: Observed) -> Mapping[str, Array]:
-        """The whitened residuals of each channel."""
-        out, at = {}, 0
-        for channel in observed.channels:
-            out[channel.name] = self.residual[at : at + channel.time.size]
-            at += channel.time.size
-        return out
 
 
 def predict(hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool) -> Prediction:

@@ -129,11 +129,6 @@ class Hypothesis:
             engine = replace(engine, effects=(*engine.effects, active))
         return Hypothesis(engine, self.free, (*self.blocks, block))
 
-    def with_effect(self, active: Active, free: tuple[Free, ...]) -> Hypothesis:
-        """The same with an effect more."""
-        engine = replace(self.engine, effects=(*self.engine.effects, active))
-        return Hypothesis(engine, (*self.free, *free), self.blocks)
-
 
 def _mid_flux(engine: Engine) -> float:
     """Oxidizer flux [kg/(m^2 s)] half-way through the web at two thirds of the tank's pressure across the injector."""
