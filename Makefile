@@ -15,13 +15,13 @@ export TEST
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) all test lint format benchmark rocketpy recovery blind-cases readme lock clean
+.PHONY: help setup $(STAGES) all test lint format benchmark rocketpy recovery blind blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
 	@echo
 	@sed -n 's/^\([a-z][a-z -]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | while IFS="$$(printf '\t')" read -r name text; do \
-		printf '  %-12s %s\n' "$$name" "$$text"; done
+		printf '  %-16s %s\n' "$$name" "$$text"; done
 
 include pipeline/dag.mk
 
@@ -79,6 +79,21 @@ recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 
 blind-cases: $(STAMP) ## tests with hidden effects under .cache/blind/; FLAGS='--n 20' (docs/blind.md)
 	$(BIN)/python -m tests.blind write --jobs 2 $(FLAGS)
+
+# 1 says that cases failed: the page says which, so it is written all the same.
+BLIND := $(BIN)/python -m benchmarks.blind
+
+blind: $(STAMP) ## 1,500 tests with hidden effects diagnosed and scored: docs/blind-benchmark.md; goes on where stopped
+	$(BLIND) run --split scored --n 1500 --jobs 2 $(FLAGS) || [ $$? -eq 1 ]
+	$(BLIND) table --split scored --write docs/blind-benchmark.md --json .cache/blind/cases/scored/figures.json
+
+blind-smoke: $(STAMP) ## 24 of them from the development split, the figures on the screen
+	$(BLIND) run --split development --n 24 --jobs 2 --out .cache/blind/smoke $(FLAGS) || [ $$? -eq 1 ]
+	$(BLIND) table --split development --out .cache/blind/smoke
+
+blind-calibrate: $(STAMP) ## fit the stated probabilities on 600 tests of the calibration split
+	$(BLIND) run --split calibration --n 600 --jobs 2 $(FLAGS) || [ $$? -eq 1 ]
+	$(BLIND) calibrate --split calibration
 
 readme: $(STAMP) ## write the sample output in README.md and the library in docs/effects.md anew
 	@$(BIN)/python pipeline/readme.py

@@ -8,28 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.blind.score import Case, load, reliability, score, share, table, twins
-
-STEP = {"unit": "W", "channel": None, "start": 0.025, "step": 0.05, "values": [500.0] * 200}
-
-
-def answer(name: str | None, d: float = 10.0, kind: str = "single", inside: bool = True, **more: Any) -> dict[str, Any]:
-    effects = [] if name is None else [
-        {"name": n, "inside_library": inside, "equation": "tank_energy", "equations_accepted": ["tank_energy"],
-         "phases": ["liquid"], "onset": 1.0, "onset_kind": "step", "source": STEP} for n in name.split("+")
-    ]  # fmt: skip
-    base = {"kind": "none" if name is None else kind, "effects": effects, "d_prime": d, "target_d_prime": d,
-            "against": {"tank_heat": 9.0, "n2_purge": 8.0}, "given_others": {}, "after_best_of_library": d,
-            "noise": {"family": "ar1"}}  # fmt: skip
-    return base | more
-
-
-def product(label: str, p: float = 0.95, place: dict[str, Any] | None = None, **more: Any) -> dict[str, Any]:
-    named = label not in ("none", "unknown")
-    base = {"verdict": "named" if named else label, "effects": [{"name": label}] if named else [],
-            "posterior": {label: p, "tank_wall_heat_capacity": 1.0 - p}, "set90": [label],
-            "localisation": [place] if place else []}  # fmt: skip
-    return base | more
+from tests.blind.figures import paired_share, quantile, share
+from tests.blind.judged import Case, load, twins
+from tests.blind.made_up import answer, product
+from tests.blind.score import reliability, score, table
 
 
 def figure(cases: list[Case], name: str) -> Any:
@@ -156,3 +138,48 @@ def test_missing_and_broken_products_are_counted_and_left_out(tmp_path: Path) ->
     assert (len(cases), missing) == (1, ["B", "C"])
     assert "2 without a diagnosis" in table(score(cases, missing))
     assert "0 cases" in table(score([], missing))
+
+
+def test_a_failed_diagnosis_is_wrong_wherever_something_should_have_been_found_and_claims_nothing(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / "answers"
+    folder.mkdir()
+    for name, hidden in {"A": answer("tank_heat"), "B": answer(None, d=0.0), "C": answer("tank_heat")}.items():
+        (folder / f"{name}.json").write_text(json.dumps(hidden))
+    cases, missing = load(folder, tmp_path, {"A": "no pressure", "B": "no pressure"})
+    result = score(cases, missing)
+    assert (result["cases"], result["failed"], missing) == (2, 2, ["C"])
+    for name, k in {"exact_name": 0, "twin_group": 0, "set90_coverage": 0, "no_source_on_none": 0, "false_alarm": 0,
+                    "sure_and_wrong": 0}.items():  # fmt: skip
+        assert result["figures"][name]["k"] == k, name
+        assert result["figures"][name]["n"] > 0, name
+    assert result["figures"]["set90_size"]["n"] == 0
+
+
+def test_the_limits_of_the_calibration_error_hold_the_true_one_about_as_often_as_they_say() -> None:
+    rng, hits = np.random.default_rng(3), 0
+    for _ in range(200):
+        stated = rng.uniform(0.3, 0.95, 400)
+        names = np.where(rng.uniform(size=400) < stated - 0.1, "tank_heat", "n2_purge")
+        cases = [Case(answer("tank_heat"), {"posterior": {str(n): p}}) for n, p in zip(names, stated, strict=True)]
+        found = reliability(cases)[0]
+        hits += found.low <= 0.1 <= found.high
+    assert 0.90 <= hits / 200 <= 1.0
+
+
+def test_quantiles_come_with_limits_that_hold_the_true_one() -> None:
+    rng = np.random.default_rng(5)
+    found = [quantile(rng.uniform(size=300), 0.9) for _ in range(300)]
+    assert 0.91 <= np.mean([f.low <= 0.9 <= f.high for f in found]) <= 0.99
+    assert quantile([3.0, 1.0, None], 1.0).value == 3.0
+
+
+def test_a_paired_difference_knows_more_than_two_shares_apart() -> None:
+    one = [True] * 80 + [False] * 20
+    other = [True] * 70 + [False] * 30
+    f = paired_share(one, other)
+    assert f.value == pytest.approx(0.1)
+    assert f.low > 0.0  # ten gained, none lost
+    mixed = paired_share(one, [not x for x in one])
+    assert mixed.high - mixed.low > 2 * (f.high - f.low)

@@ -1,0 +1,119 @@
+"""python -m benchmarks.blind run|table|calibrate: see docs/blind.md."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+SPLITS = ("development", "calibration", "scored")
+
+
+def _arguments(given: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.blind", description="The blind benchmark at full size.")
+    commands = parser.add_subparsers(dest="command", required=True)
+    about = {"run": "diagnose every case that is not done", "table": "write the figures",
+             "calibrate": "fit the constants of the stated probabilities"}  # fmt: skip
+    parsers = {name: commands.add_parser(name, help=text, description=text) for name, text in about.items()}
+    for p in parsers.values():
+        p.add_argument("--split", choices=SPLITS, required=True)
+        p.add_argument("--out", type=Path, help="folder of the cases (.cache/blind/cases/SPLIT)")
+    _run_arguments(parsers["run"])
+    parsers["table"].add_argument("--write", type=Path, help="the page to write; a picture goes beside it")
+    parsers["table"].add_argument("--json", type=Path, help="write all figures here as well")
+    parsers["calibrate"].add_argument(
+        "--write", type=Path, help="instead of src/hfanalysis/diagnose/probabilities.json"
+    )
+    parsers["calibrate"].add_argument("--mixed", action="store_true", help="even if several versions of the code ran")
+    return parser.parse_args(given)
+
+
+def _run_arguments(p: argparse.ArgumentParser) -> None:
+    p.add_argument("--n", type=int, default=1500, help="cases of the plan (1500 is the full benchmark)")
+    p.add_argument("--seed", type=int, default=0)
+    p.add_argument("--jobs", type=int, default=1, help="processes")
+    p.add_argument("--limit", type=int, help="only the first so many of the plan")
+    p.add_argument("--variant", help="write to processed-NAME/; the diagnosis gets its parameter variant, or --set")
+    p.add_argument("--set", action="append", default=[], metavar="diagnose.NAME=VALUE", help="parameter of a variant")
+    p.add_argument("--keep", action="store_true", help="keep what another version of the code found")
+    p.add_argument("--retry", action="store_true", help="try again what failed")
+    p.add_argument("--seconds", type=float, default=300.0, help="longest time for one case")
+    p.add_argument("--every", type=int, default=10, help="cases between two lines of progress")
+
+
+def _value(text: str) -> Any:
+    """A number or a truth value where it reads as one."""
+    import json
+
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def _run(a: argparse.Namespace, folder: Any) -> int:
+    from .run import REFUSED, Refused, Request, run
+
+    settings = {key: _value(text) for key, _, text in (s.partition("=") for s in a.set)}
+    request = Request(a.split, a.n, folder, a.jobs, a.seed, a.limit, settings, a.keep, a.retry, a.seconds, a.every)
+    try:
+        return run(request)
+    except Refused as error:
+        print(error, file=sys.stderr)
+        return REFUSED
+
+
+def _table(a: argparse.Namespace, folder: Any) -> int:
+    from .document import document, write
+    from .folder import write_json
+    from .results import WrongSplit, results
+
+    try:
+        found = results(folder, a.split)
+    except WrongSplit as error:
+        print(error, file=sys.stderr)
+        return 2
+    if a.write:
+        result = write(found, a.split, a.write)
+        print(f"{a.write}: {len(found.cases)} cases")
+    else:
+        text, result = document(found, a.split, None)
+        print(text)
+    if a.json:
+        write_json(a.json, result)
+    return 0
+
+
+def _calibrate(a: argparse.Namespace, folder: Any) -> int:
+    from .calibrate import Unfit, calibrate, save
+    from .results import WrongSplit, results
+
+    if a.split == "scored":
+        print("nothing is fitted to the scored split", file=sys.stderr)
+        return 2
+    try:
+        lines, data = calibrate(results(folder, a.split), a.split, a.mixed)
+        print("\n".join(lines))
+        save(data, a.write) if a.write else save(data)
+    except (Unfit, WrongSplit) as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+def main(given: list[str] | None = None) -> int:
+    """0; 1 where cases failed; 2 where what was asked is refused; 130 where a run was interrupted."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
+        os.environ[name] = "1"  # one case per core: threads of its own would only be in each other's way
+    from .folder import Folder
+
+    a = _arguments(given)
+    root = a.out or Path(".cache") / "blind" / "cases" / a.split
+    folder = Folder(root.resolve(), getattr(a, "variant", None))
+    return {"run": _run, "table": _table, "calibrate": _calibrate}[a.command](a, folder)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,123 @@
+"""Fit the constants of the stated probabilities on the calibration split, and on no other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from tests.blind.judged import Case, of_kind
+from tests.blind.outcomes import LEAST
+from tests.blind.score import reliability
+
+from .fit import Constants, Fitted, Sample, fit, out_of_fold, sample
+from .folder import PROBABILITIES, write_json
+from .results import Results
+
+FEWEST = 50
+"""Cases below which the constants would be arbitrary."""
+
+
+class Unfit(Exception):
+    """The results cannot be calibrated on; the message says why."""
+
+
+def log_scores(samples: Sequence[Sample], constants: Sequence[Constants]) -> np.ndarray:
+    """Logarithm of the probability of the right label."""
+    right = (c.probabilities(s.evidences, s.leftover)[s.truth] for s, c in zip(samples, constants, strict=True))
+    return np.log(np.maximum(list(right), LEAST))
+
+
+def stated(cases: Sequence[Case], samples: Sequence[Sample], constants: Sequence[Constants]) -> list[Case]:
+    """The cases with the probabilities that the constants make of their evidences."""
+    return [
+        Case(c.answer, {"posterior": k.probabilities(s.evidences, s.leftover)})
+        for c, s, k in zip(cases, samples, constants, strict=True)
+    ]
+
+
+def usable(found: Results) -> tuple[list[Case], list[Sample], int]:
+    """Cases with one right label and its evidence, and the number of those that have no evidence for it."""
+    asked = of_kind(list(found.cases.values()), "single", "none", "outside")
+    both = [(c, sample(c.product, c.truth, str(c.answer["stand"] or c.answer["id"]))) for c in asked]
+    kept = [(c, s) for c, s in both if s is not None]
+    return [c for c, _ in kept], [s for _, s in kept], len(both) - len(kept)
+
+
+def calibrate(
+    found: Results, split: str, mixed: bool = False, fewest: int = FEWEST
+) -> tuple[list[str], dict[str, Any]]:
+    """Fit; what there is to say, and what is to be written.
+
+    Raises Unfit where cases are of several versions of the code (unless ``mixed``), or too few.
+    """
+    codes = sorted({note.code for i, note in found.notes.items() if i in found.cases})
+    if len(codes) > 1 and not mixed:
+        raise Unfit(f"the cases were diagnosed by {len(codes)} versions of the code; run them anew, or pass --mixed")
+    cases, samples, without = usable(found)
+    if len(samples) < fewest:
+        raise Unfit(f"only {len(samples)} cases state evidences for their right label; {fewest} are needed")
+    fits = {with_leftover: fit(samples, with_leftover) for with_leftover in (False, True)}
+    held_out = {key: out_of_fold(samples, key) for key in fits}
+    scores = {key: log_scores(samples, constants) for key, constants in held_out.items()}
+    # t1 is kept where it pays beyond its own noise on cases that it was not fitted to
+    gain = scores[True] - scores[False]
+    grows = bool(gain.mean() > gain.std(ddof=1) / sqrt(len(gain)))
+    lines = _report(cases, samples, fits, held_out, grows, without)
+    return lines, to_json(fits[grows], len(samples), split, codes)
+
+
+def _report(
+    cases: Sequence[Case], samples: Sequence[Sample], fits: dict[bool, Fitted],
+    held_out: dict[bool, list[Constants]], grows: bool, without: int,
+) -> list[str]:  # fmt: skip
+    raw = [Constants()] * len(samples)
+    lines = [f"{len(samples)} cases; {without} more state no evidence for the right label and are left out",
+             f"T {'grows with the misfit left' if grows else 'does not depend on the misfit left'}", ""]  # fmt: skip
+    lines += [f"{'*' if key == grows else ' '} {_constants(one)}" for key, one in fits.items()]
+    lines += ["", "                        log score            calibration error (debiased)"]
+    rows = {"evidences as they are": raw, "fitted, same cases": [fits[grows].constants] * len(samples),
+            "fitted, 5-fold": held_out[grows], "5-fold, other form": held_out[not grows]}  # fmt: skip
+    for name, constants in rows.items():
+        s, error = log_scores(samples, constants), reliability(stated(cases, samples, constants))[0]
+        spread = s.std(ddof=1) / sqrt(len(s))
+        lines.append(f"{name:22s}  {s.mean():+.4f} +- {spread:.4f}   {error.value:.4f} "
+                     f"({error.low:.3f} to {error.high:.3f})")  # fmt: skip
+    return lines
+
+
+def _constants(one: Fitted) -> str:
+    k = one.constants
+    return (
+        f"T0 = {k.temperature:.4g} (ln T0 +- {_pm(one, 'ln_temperature')}), "
+        f"t1 = {k.per_leftover:.4g} +- {_pm(one, 'per_leftover')}, "
+        f"named = {k.named:.4g} +- {_pm(one, 'named')}, unknown = {k.unknown:.4g} +- {_pm(one, 'unknown')}"
+    )
+
+
+def _pm(one: Fitted, name: str) -> str:
+    error = one.errors[name]
+    return "-" if error is None else f"{error:.2g}"
+
+
+def to_json(one: Fitted, number: int, split: str, codes: Sequence[str]) -> dict[str, Any]:
+    """The data file that the diagnosis reads."""
+    k = one.constants
+    return {
+        "temperature": k.temperature,
+        "temperature_per_leftover": k.per_leftover,
+        "offsets": {"none": 0.0, "named": k.named, "unknown": k.unknown},
+        "standard_errors": one.errors,
+        "cases": number,
+        "split": split,
+        "code": list(codes),
+    }
+
+
+def save(data: dict[str, Any], path: Path = PROBABILITIES) -> None:
+    """Write the constants, whole; only those of the calibration split may go where the diagnosis reads them."""
+    if path.resolve() == PROBABILITIES.resolve() and data["split"] != "calibration":
+        raise Unfit("only constants of the calibration split may be written for the diagnosis; pass --write PATH")
+    write_json(path, data)

@@ -1,0 +1,40 @@
+"""A variant beside the full method on the same cases: both values, and the paired difference with its limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tests.blind.figures import Figure, mean, middle, paired_share, share
+from tests.blind.judged import Case, Groups
+from tests.blind.outcomes import NUMBERS, SHARES
+
+from .words import FIGURES
+
+
+def comparison(full: Mapping[str, Case], other: Mapping[str, Case], groups: Groups) -> list[str]:
+    """A row per figure over the cases in which both methods contribute to it."""
+    both = sorted(full.keys() & other.keys())
+    lines = ["| figure | full | variant | full less variant | 95 % limits | cases |", "|---|---|---|---|---|---|"]
+    for name, judge in {**SHARES, **NUMBERS}.items():
+        pairs = [(judge(full[i], groups), judge(other[i], groups)) for i in both]
+        asked = [(a, b) for a, b in pairs if a is not None and b is not None]
+        if asked:
+            lines.append(_row(name, asked, counts=name in SHARES))
+    return lines
+
+
+def _row(name: str, pairs: list[tuple[float, float]], counts: bool) -> str:
+    one, other = ([p[i] for p in pairs] for i in (0, 1))
+    values: tuple[Figure, Figure]
+    if counts:
+        values = share(map(bool, one)), share(map(bool, other))
+        difference = paired_share([bool(x) for x in one], [bool(x) for x in other])
+    else:
+        values = middle(one), middle(other)
+        difference = mean(a - b for a, b in pairs)
+    limits = "-" if difference.low != difference.low else f"{difference.low:+.3f} to {difference.high:+.3f}"
+    kind = "" if counts else " (mean of differences)"
+    return (
+        f"| {FIGURES.get(name, name)}{kind} | {values[0].value:.3f} | {values[1].value:.3f} "
+        f"| {difference.value:+.3f} | {limits} | {len(pairs)} |"
+    )

@@ -1,0 +1,292 @@
+"""The benchmark's runner loses no case, whatever dies; its table and its calibration say what is there."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from benchmarks.blind import folder as fo
+from benchmarks.blind.calibrate import Unfit, calibrate, save
+from benchmarks.blind.document import document, write
+from benchmarks.blind.fit import Constants, Sample, fit, folds
+from benchmarks.blind.folder import Folder, Note, write_json
+from benchmarks.blind.pool import Outcome, Pool
+from benchmarks.blind.results import results
+from benchmarks.blind.run import Refused, Request, check_plan, is_done, variant_settings
+from benchmarks.blind.work import Job, settings_of
+from tests.blind.made_up import answer, broken, nothing, product, work
+from tests.blind.plan import SPLITS, plan
+
+ROOT = Path(__file__).parents[2]
+NOW = ("code", "constants")
+
+
+def outcomes(names: list[str], folder: Path, count: int = 2) -> dict[str, Outcome]:
+    """What a pool makes of jobs of those names; one after a dash is the second test of the stand before it."""
+    jobs = [Job(folder, folder, n, n.removesuffix("B") + "A" if n.endswith("B") else None) for n in names]
+    found = list(Pool(count, 1.5, folder / "log", work, nothing).run(jobs))
+    assert sorted(o.job.id for o in found) == sorted(names), "each case comes back once"
+    return {o.job.id: o for o in found}
+
+
+def test_workers_that_die_or_take_for_ever_are_replaced_and_no_case_is_lost(tmp_path: Path) -> None:
+    found = outcomes(["die-always", "die-once", "for-ever", "fail", *"abcd"], tmp_path)
+    status = {name: o.status for name, o in found.items()}
+    assert status == {"die-always": fo.DIED, "die-once": fo.DONE, "for-ever": fo.LATE, "fail": fo.FAILED,
+                      **dict.fromkeys("abcd", fo.DONE)}  # fmt: skip
+    assert found["fail"].message == "ValueError: no pressure in this log"
+    assert "1.5 s" in found["for-ever"].message
+
+
+def test_workers_stay_and_say_which_case_was_their_first(tmp_path: Path) -> None:
+    found = outcomes(list("abcdefgh"), tmp_path)
+    assert len({o.result.settings["worker"] for o in found.values()}) <= 2
+    assert 1 <= sum(o.first for o in found.values()) <= 2
+
+
+def test_the_second_test_of_a_stand_waits_for_the_first(tmp_path: Path) -> None:
+    found = outcomes(["xA", "xB", "y"], tmp_path)
+    assert found["xB"].result.seconds >= found["xA"].result.diagnosis_seconds
+
+
+def test_what_no_worker_can_load_ends_the_run(tmp_path: Path) -> None:
+    with pytest.raises(RuntimeError, match="no such library"):
+        list(Pool(1, 5.0, tmp_path / "log", work, broken).run([Job(tmp_path, tmp_path, "a")]))
+
+
+def test_the_second_test_of_a_stand_gets_the_first_as_proof_where_the_diagnosis_takes_one(tmp_path: Path) -> None:
+    job = Job(tmp_path, tmp_path, "D1B", "D1A", {"diagnose.variant": "plain"})
+    assert settings_of(job, {"proof_test": None}) == {"diagnose.variant": "plain", "diagnose.proof_test": "D1A"}
+    assert settings_of(job, {}) == {"diagnose.variant": "plain"}
+
+
+def test_a_worker_loads_nothing_that_knows_the_answers() -> None:
+    code = (
+        "import sys, benchmarks.blind.__main__, benchmarks.blind.pool; from benchmarks.blind.work import prepare\n"
+        "prepare(); sys.exit(any(name.startswith('tests') for name in sys.modules))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 0
+
+
+def test_what_is_done_stays_until_the_code_changes(tmp_path: Path) -> None:
+    request = Request("scored", 10, Folder(tmp_path))
+    note, there = Note("a", fo.DONE, code="code", probabilities="constants"), tmp_path
+    refused = replace(note, status=fo.FAILED)
+    assert is_done(note, there, request, NOW)
+    assert not is_done(None, there, request, NOW)
+    assert not is_done(note, tmp_path / "gone", request, NOW)
+    assert not is_done(replace(note, code="older"), there, request, NOW)
+    assert is_done(replace(note, code="older"), there, replace(request, keep=True), NOW)
+    assert not is_done(replace(note, probabilities="older"), there, request, NOW)
+    assert is_done(replace(note, probabilities="older"), there, replace(request, split="calibration"), NOW)
+    assert is_done(refused, tmp_path / "gone", request, NOW)
+    assert not is_done(refused, tmp_path / "gone", replace(request, retry=True), NOW)
+    assert not is_done(replace(note, status=fo.DIED), there, request, NOW)
+    assert not is_done(note, there, replace(request, settings={"diagnose.variant": "x"}), NOW)
+
+
+def test_the_digest_sees_the_code_but_not_the_fitted_constants(tmp_path: Path) -> None:
+    (tmp_path / "a.py").write_text("1")
+    constants = tmp_path / "probabilities.json"
+    first = fo.digest(tmp_path, constants)
+    constants.write_text("{}")
+    assert fo.digest(tmp_path, constants) == first
+    (tmp_path / "a.py").write_text("2")
+    assert fo.digest(tmp_path, constants) != first
+
+
+def test_a_variant_that_the_diagnosis_does_not_know_is_refused() -> None:
+    assert variant_settings(None, {}, ()) == {}
+    assert variant_settings("plain", {}, ("variant",)) == {"diagnose.variant": "plain"}
+    assert variant_settings("few", {"diagnose.starts": 1}, ("starts",)) == {"diagnose.starts": 1}
+    for variant, given, known in (("plain", {}, ()), ("few", {"diagnose.start": 1}, ("starts",)),
+                                  (None, {"diagnose.starts": 1}, ("starts",))):  # fmt: skip
+        with pytest.raises(Refused):
+            variant_settings(variant, given, known)
+
+
+def test_cases_of_another_plan_are_refused(tmp_path: Path) -> None:
+    case = plan(24)[0]
+    path = tmp_path / "answers" / f"{case.id}.json"
+    there = {"seed": case.seed, "kind": case.kind, "target_d_prime": case.target,
+             "effects": [{"name": e} for e in case.effects]}  # fmt: skip
+    write_json(path, there)
+    check_plan([case], tmp_path)
+    write_json(path, {**there, "target_d_prime": 99.0})
+    with pytest.raises(Refused, match="another plan"):
+        check_plan([case], tmp_path)
+
+
+def hidden(i: int, name: str | None, split: str = "calibration", **more: object) -> dict[str, object]:
+    return answer(name, 0.0 if name is None else 10.0) | {"id": f"X{i:03d}", "seed": SPLITS[split] + i,
+                                                          "stand": None} | more  # fmt: skip
+
+
+@pytest.fixture
+def made(tmp_path: Path) -> Callable[..., Folder]:
+    """A folder with cases, what was found, and notes; names in ``failed`` failed."""
+
+    def make(found: list[tuple[str | None, dict[str, object]]], variant: str | None = None, failed: int = 0) -> Folder:
+        folder = Folder(tmp_path, variant)
+        for i, (name, what) in enumerate(found):
+            a = hidden(i, name)
+            write_json(folder.answers / f"{a['id']}.json", a)
+            bad = i < failed
+            folder.write_note(
+                Note(str(a["id"]), fo.FAILED, "no flow")
+                if bad
+                else Note(str(a["id"]), fo.DONE, "", 9.0, 4.0, i == failed, "c")
+            )
+            if not bad:
+                write_json(folder.product(str(a["id"])), what)
+        write_json(folder.plan_file, {"n": len(found) + 5, "jobs": 2, "settings": {}})
+        return folder
+
+    return make
+
+
+def test_the_page_counts_failures_and_what_was_not_run(made: Callable[..., Folder], tmp_path: Path) -> None:
+    found = [("tank_heat", product("tank_heat"))] * 6 + [(None, product("none"))] * 4
+    folder = made(found, failed=2)
+    (folder.runs / "X009.json").unlink()  # a product that nothing vouches for
+    page = tmp_path / "page" / "blind-benchmark.md"
+    figures = write(results(folder, "calibration"), "calibration", page)["figures"]
+    assert (figures["exact_name"]["k"], figures["exact_name"]["n"]) == (4, 6)
+    assert figures["false_alarm"]["n"] == 3
+    assert figures["runtime"]["n"] == 6, "neither failures nor the first of a process"
+    text = page.read_text(encoding="utf-8")
+    for line in ("| failed | no flow | 2 | X000, X001 |", "| cases planned | 15 |", "| of these failed | 2 |",
+                 "| **not the whole plan** | 6 cases were not run |"):  # fmt: skip
+        assert line in text
+    assert "failed 2" in next(line for line in text.splitlines() if line.startswith("| tank_heat | 6 |"))
+    picture = re.search(r"!\[.*\]\((.*)\)", text)
+    assert picture is not None
+    svg = (page.parent / picture[1]).read_bytes()
+    write(results(folder, "calibration"), "calibration", page)
+    assert (page.parent / picture[1]).read_bytes() == svg
+
+
+def test_a_variant_stands_beside_the_full_method_on_the_same_cases(made: Callable[..., Folder]) -> None:
+    full = made([("tank_heat", product("tank_heat"))] * 8 + [("n2_purge", product("n2_purge"))])
+    made([("tank_heat", product("n2_purge"))] * 6 + [("tank_heat", product("tank_heat"))] * 2, variant="blind")
+    text, _ = document(results(full, "calibration"), "calibration", None)
+    assert "## Variant blind" in text
+    row = next(x for x in text.split("## Variant")[1].splitlines() if x.startswith("| exact name"))
+    cells = [cell.strip() for cell in row.split("|")]
+    assert (cells[2], cells[3], cells[4], cells[6]) == ("1.000", "0.250", "+0.750", "8")
+
+
+LABELS = ("none", "unknown", "tank_heat", "n2_purge", "fuel_sliver", "nozzle_divergence")
+
+
+def drawn(true: Constants, number: int) -> list[Sample]:
+    """Samples whose right labels come as often as the constants say."""
+    rng, out = np.random.default_rng(2), []
+    for i in range(number):
+        evidences = dict(zip(LABELS, rng.normal(0.0, 15.0, len(LABELS)).tolist(), strict=True))
+        leftover = float(rng.uniform(0.8, 4.0))
+        p = true.probabilities(evidences, leftover)
+        out.append(Sample(evidences, leftover, str(rng.choice(LABELS, p=list(p.values()))), f"g{i // 2}"))
+    return out
+
+
+def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
+    true = Constants(temperature=4.0, per_leftover=0.8, named=-1.0, unknown=0.7)
+    found = fit(drawn(true, 3000), with_leftover=True)
+    k, e = found.constants, found.errors
+    z = [(np.log(k.temperature / 4.0), e["ln_temperature"]), (k.per_leftover - 0.8, e["per_leftover"]),
+         (k.named + 1.0, e["named"]), (k.unknown - 0.7, e["unknown"])]  # fmt: skip
+    for off, std in z:
+        assert std is not None
+        assert std < 0.25
+        assert abs(off) < 3.0 * std
+    assert abs(np.log(Constants().temperature / 4.0)) > 10.0 * e["ln_temperature"]  # the start was not the answer
+
+
+def test_tests_of_one_stand_stay_in_one_fold() -> None:
+    fold = folds(drawn(Constants(), 100))
+    assert (fold[::2] == fold[1::2]).all()
+    assert len(set(fold.tolist())) == 5
+
+
+def test_calibration_betters_the_stated_probabilities_and_keeps_to_its_split(
+    made: Callable[..., Folder], tmp_path: Path
+) -> None:
+    samples = drawn(Constants(temperature=4.0, named=-1.0), 300)
+    cases = [
+        (None if s.truth == "none" else s.truth, {"evidences": s.evidences, "leftover": 1.0})
+        for s in samples
+        if s.truth != "unknown"
+    ]
+    folder = made(cases)
+    lines, data = calibrate(results(folder, "calibration"), "calibration")
+    score = {line[:22].strip(): float(line[24:31]) for line in lines if "+-" in line and line[0] not in "* "}
+    assert score["fitted, 5-fold"] > score["evidences as they are"] + 0.2
+    assert data["temperature"] == pytest.approx(4.0, rel=0.3)
+    assert data["cases"] == len(cases)
+    save(data, tmp_path / "p.json")
+    assert json.loads((tmp_path / "p.json").read_text())["offsets"]["none"] == 0.0
+    with pytest.raises(Unfit, match="calibration split"):
+        save({**data, "split": "development"})
+    folder.write_note(replace(folder.notes()["X000"], code="older"))
+    mixed = results(folder, "calibration")
+    with pytest.raises(Unfit, match="versions of the code"):
+        calibrate(mixed, "calibration")
+
+
+def command(*arguments: str) -> list[str]:
+    return [sys.executable, "-m", "benchmarks.blind", *arguments]
+
+
+def test_the_scored_split_is_not_fitted_to_under_any_name(made: Callable[..., Folder], tmp_path: Path) -> None:
+    made([(None, product("none"))])
+    a = hidden(1, None, split="scored")
+    write_json(tmp_path / "answers" / "X001.json", a)
+    for split, why in (("scored", "nothing is fitted"), ("calibration", "cases of the split scored")):
+        ran = subprocess.run(command("calibrate", "--split", split, "--out", str(tmp_path)), cwd=ROOT,
+                             capture_output=True, text=True, check=False)  # fmt: skip
+        assert ran.returncode == 2
+        assert why in ran.stderr
+
+
+def until(what: Callable[[], bool], seconds: float = 240.0) -> None:
+    """Wait, but not for ever."""
+    end = time.monotonic() + seconds
+    while not what():
+        assert time.monotonic() < end, "it did not come to this"
+        time.sleep(0.05)
+
+
+def test_cases_are_diagnosed_to_the_last_though_a_worker_is_killed_and_the_run_interrupted(tmp_path: Path) -> None:
+    run = command("run", "--n", "24", "--limit", "3", "--jobs", "2", "--split", "development", "--out", str(tmp_path))
+    folder, names = Folder(tmp_path.resolve()), [c.id for c in plan(24)[:3]]
+    log = folder.runs / "log" / "workers.log"
+    with subprocess.Popen(run, cwd=ROOT, stderr=subprocess.PIPE, text=True) as first:
+        until(lambda: len(folder.notes()) == 1)
+        os.kill(int(re.findall(r"worker (\d+) starts", log.read_text())[0]), signal.SIGKILL)
+        until(lambda: len(re.findall(r"worker \d+ starts", log.read_text())) == 3)
+        first.send_signal(signal.SIGINT)
+        assert "goes on from here" in first.communicate(timeout=60)[1]
+    assert first.returncode == 130
+    kept = {name: (folder.runs / f"{name}.json").read_bytes() for name in folder.notes()}
+    assert 1 <= len(kept) < 3
+    again = subprocess.run(run, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert again.returncode == 0, again.stderr
+    assert f"{len(kept)} done, {3 - len(kept)} to diagnose" in again.stderr
+    assert all((folder.runs / f"{name}.json").read_bytes() == note for name, note in kept.items())
+    assert {n.id: n.status for n in folder.notes().values()} == dict.fromkeys(names, fo.DONE)
+    assert all(folder.product(name).exists() for name in names)
+    page = tmp_path / "page.md"
+    table = command("table", "--split", "development", "--out", str(tmp_path), "--write", str(page))
+    assert subprocess.run(table, cwd=ROOT, check=False).returncode == 0
+    assert "| diagnosed or failed | 3 |" in page.read_text()
