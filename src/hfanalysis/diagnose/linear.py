@@ -1,0 +1,93 @@
+"""Histories with their uncertainty, carried through any chain of formulas to first order.
+
+A history is a value per instant and its slopes with independent N(0, 1) numbers, so that the covariance of whatever is
+made of it is slopes times their transpose. Where a formula acts at each instant by itself its derivatives are central
+differences of the formula, all instants at once; integrals over the past are sums of slopes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+STEP = 1e-5
+"""Relative to the largest value of a history: by how much it is moved to find a derivative."""
+
+
+@dataclass(frozen=True)
+class History:
+    """``value`` (n,) [any unit] and its ``slopes`` (n, k) with k independent N(0, 1) numbers."""
+
+    value: Array
+    slopes: Array
+
+    def __add__(self, other: History) -> History:
+        return History(self.value + other.value, self.slopes + other.slopes)
+
+    def __sub__(self, other: History) -> History:
+        return History(self.value - other.value, self.slopes - other.slopes)
+
+    def __mul__(self, other: History) -> History:
+        slopes = self.slopes * other.value[:, None] + other.slopes * self.value[:, None]
+        return History(self.value * other.value, slopes)
+
+    def times(self, factor: float) -> History:
+        """The same in another unit."""
+        return History(factor * self.value, factor * self.slopes)
+
+    def __getitem__(self, part: slice) -> History:
+        return History(self.value[part], self.slopes[part])
+
+    def spread(self, count: int) -> History:
+        """A single value, held over ``count`` instants."""
+        return History(np.repeat(self.value, count), np.repeat(self.slopes, count, axis=0))
+
+    def weighted(self, weights: Array) -> History:
+        """Weighted sums over the instants; ``weights`` (sums, n)."""
+        return History(weights @ self.value, weights @ self.slopes)
+
+    @property
+    def covariance(self) -> Array:
+        """Of the values, (n, n)."""
+        return np.asarray(self.slopes @ self.slopes.T)
+
+
+def joined(parts: Sequence[History]) -> History:
+    """One history after the other."""
+    return History(np.concatenate([p.value for p in parts]), np.concatenate([p.slopes for p in parts]))
+
+
+def integral(rate: History, width: Array) -> History:
+    """Integral up to the middle of each cell of a history of cell means; ``width`` [s] of the cells."""
+    value, slopes = rate.value * width, rate.slopes * width[:, None]
+    return History(np.cumsum(value) - 0.5 * value, np.cumsum(slopes, axis=0) - 0.5 * slopes)
+
+
+def total(rate: History, width: Array) -> History:
+    """Integral over all cells, as a single value."""
+    return rate.weighted(width[None, :])
+
+
+def through_all(formula: Callable[..., tuple[Array, ...]], *inputs: History) -> tuple[History, ...]:
+    """What a formula that acts at each instant by itself makes of histories; it gives several."""
+    values = [h.value for h in inputs]
+    results = formula(*values)
+    slopes = [np.zeros((results[0].size, inputs[0].slopes.shape[1])) for _ in results]
+    for i, given in enumerate(inputs):
+        if not given.slopes.any():
+            continue
+        step = STEP * max(float(np.abs(given.value).max()), 1e-300)
+        up, down = (formula(*values[:i], values[i] + s, *values[i + 1 :]) for s in (step, -step))
+        for slope, high, low in zip(slopes, up, down, strict=True):
+            slope += ((high - low) / (2.0 * step))[:, None] * given.slopes
+    return tuple(History(value, slope) for value, slope in zip(results, slopes, strict=True))
+
+
+def through(formula: Callable[..., Array], *inputs: History) -> History:
+    """What a formula that acts at each instant by itself makes of histories."""
+    return through_all(lambda *values: (formula(*values),), *inputs)[0]
