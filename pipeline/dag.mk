@@ -17,11 +17,11 @@ processed/%/ingest.h5: $$(wildcard raw_tests/$$*/*) $(SOURCE) $(STAMP)
 	@$(HFA) ingest --quiet -- $*
 	@touch -c $@
 
-processed/%/segments.json: processed/%/ingest.h5 $(EFFECTS)
+processed/%/segments.json: processed/%/ingest.h5
 	@$(HFA) segment --quiet -- $*
 	@touch -c $@
 
-processed/%/calibration.json: processed/%/segments.json
+processed/%/calibration.json: processed/%/segments.json $(EFFECTS)
 	@$(HFA) calibrate --quiet -- $*
 	@touch -c $@
 
@@ -29,7 +29,7 @@ processed/%/residuals.h5: processed/%/calibration.json
 	@$(HFA) validate --quiet -- $*
 	@touch -c $@
 
-processed/%/diagnosis.json: processed/%/calibration.json
+processed/%/diagnosis.json: processed/%/segments.json
 	@$(HFA) diagnose --quiet -- $*
 	@touch -c $@
 

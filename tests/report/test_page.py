@@ -397,3 +397,12 @@ def test_names_of_events_never_overlap() -> None:
     events(plot, [Event(0.0, 0.0, "t_open"), Event(0.2, 0.0, "t_feed"), Event(0.4, 0.0, "t_v")])
     heights = re.findall(r'class="event-name" x="[\d.]+" y="([\d.]+)"', "".join(plot.parts))
     assert len(set(heights)) == 3
+
+
+def test_adopted_effects_show_in_the_verdict_and_in_what_the_page_is_made_from(tmp_path: Path) -> None:
+    made = material(tmp_path)
+    effect = {"name": "tank_heat", "file": "T.effects.toml", "parameters": {"power": quantity(900.0, "W", 0.0)}}
+    products = {**made.products, "calibration": {**made.product("calibration"), "effects": [effect]}}
+    said = "With tank_heat 0.9 kW adopted (engines/T.effects.toml)."
+    assert page(replace(made, products=products)).count(said) == 2
+    assert "adopted" not in page(made)

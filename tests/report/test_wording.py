@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from sample import quantity
 
 from hfanalysis.report.scales import pretty_unit, scale
-from hfanalysis.report.wording import fixed, people_unit, quantities, shown
+from hfanalysis.report.wording import adopted_in_words, fixed, people_unit, quantities, shown
 
 
 @pytest.mark.parametrize(
@@ -87,3 +87,16 @@ def test_a_difference_of_temperatures_knows_no_zero_point() -> None:
 def test_a_burning_surface_is_told_in_millimetres_per_second() -> None:
     assert shown(quantity(1.05e-3, "m/s", 2e-5), name="regression_rate_reference").with_unit == "1.050 mm/s"
     assert scale("m/s").unit == "m/s"
+
+
+def test_adopted_effects_are_said_with_their_values_and_their_file() -> None:
+    heat = {"name": "tank_heat", "parameters": {"power": quantity(912.34, "W", 152.1)}, "file": "HF5.effects.toml"}
+    layer = {
+        "name": "tank_stratification",
+        "parameters": {"excess": {"value": 2.0, "unit": "K", "std": None}, "mixing": quantity(0.031, "-", 0.004)},
+        "file": "HF5.effects.toml",
+    }
+    assert adopted_in_words([]) == ""
+    assert adopted_in_words([heat]) == "With tank_heat 0.91 ± 0.15 kW adopted (engines/HF5.effects.toml)."
+    said = adopted_in_words([heat, layer])
+    assert said.endswith("and tank_stratification 2 K (mixing 0.0310 ± 0.0040) adopted (engines/HF5.effects.toml).")

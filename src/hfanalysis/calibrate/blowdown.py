@@ -12,6 +12,7 @@ t_purge.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numba import njit
@@ -96,8 +97,17 @@ class Reduction:
     temperature_v: float
 
 
-def reduce(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift = Shift()) -> Reduction:
-    """One reduction with the given inputs and shifted pressures."""
+class Vapor(Protocol):
+    """Another model of the vapour phase than the report's."""
+
+    def shoot(self, inputs: Inputs, shift: Shift, area: float) -> tuple[float, float]:
+        """m and the mass at the end [kg], NaN where there is none; ``area``: effective, of the injector [m^2]."""
+
+
+def reduce(
+    tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift = Shift(), vapor_phase: Vapor | None = None
+) -> Reduction:
+    """One reduction with the given inputs and shifted pressures; m of the report's vapour, or of ``vapor_phase``."""
     p_v = inputs.p_v + shift.tank
     t_v = float(saturation.temperature(p_v))
     vapor = inputs.volume * float(saturation.vapor_density(t_v))
@@ -129,6 +139,8 @@ def reduce(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift 
         area,
         EXPONENTS,
     )
+    if vapor_phase is not None:
+        m, end_mass = vapor_phase.shoot(inputs, shift, area)
     return Reduction(C_i, m, z, factor, loss_mean, loss_vapor, vapor, end_mass, t_v)
 
 

@@ -6,7 +6,7 @@ report's constant losses by phase stop the flow before the fuel is gone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
@@ -15,6 +15,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.effect import Active
+from hfanalysis.engine.tank_alone import TankAlone
 from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.simulate.build import combustion_of
@@ -25,6 +27,10 @@ from hfanalysis.thermo.saturation import Property, Saturation
 
 ASSUMED_EXPONENT = (1.15, 0.1)
 """Polytropic exponent of the vapour and its standard deviation where a test does not tell: the middle of 1.0 to 1.3."""
+
+
+COLDER = 15.0
+"""[K] by which an effect may let a bulk be colder than its tank's pressure says."""
 
 
 @dataclass(frozen=True)
@@ -44,9 +50,13 @@ class Regression:
 
 
 def engine_of_test(
-    definition: TestDefinition, calibration: Mapping[str, Any], temperature: float, law: Regression
+    definition: TestDefinition,
+    calibration: Mapping[str, Any],
+    temperature: float,
+    law: Regression,
+    effects: Sequence[Active] = (),
 ) -> Engine:
-    """The engine with its tank at ``temperature`` [K].
+    """The engine with its tank at ``temperature`` [K] and the adopted ``effects``.
 
     ``calibration`` is the content of calibration.json. Raises AbsentError naming all that test.toml does not state, or
     what the calibration lacks.
@@ -71,6 +81,38 @@ def engine_of_test(
         exit_area=pi * stated["exit_radius"] ** 2,
         ambient_pressure=definition.ambient_pressure.value,
         oxidizer_enthalpy=oxidizer_enthalpy(definition, source, temperature),
+        effects=tuple(effects),
+    )
+
+
+def tank_of_test(
+    definition: TestDefinition, feed: FeedSystem, mass: float, temperature: float, m: float, effects: Sequence[Active]
+) -> TankAlone:
+    """The tank alone with ``effects``, from a load [kg] at a temperature [K]; ``m``: the vapour's exponent.
+
+    The chamber and grain behind it only stand there: the chamber's pressure is to be given.
+    """
+    return TankAlone.of(
+        Engine(
+            saturation=saturation(definition.model.properties),
+            combustion=combustion_of(),
+            feed=feed,
+            oxidizer_mass=mass,
+            temperature=temperature,
+            polytropic_exponent=m,
+            fuel_mass=1.0,
+            grain_length=0.5,
+            outer_radius=0.04,
+            fuel_density=900.0,
+            a=1e-4,
+            n=0.5,
+            dead_volume=1e-3,
+            throat_area=1e-3,
+            exit_area=3e-3,
+            ambient_pressure=definition.ambient_pressure.value,
+            oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY,
+            effects=tuple(effects),
+        )
     )
 
 
@@ -140,7 +182,8 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
     The report's extrapolation of phase 2 to the opening (section 4.3.4). Raises AbsentError where no saturated tank
     with this load does.
     """
-    low, high = _possible(engine, float(engine.saturation.temperature(pressure)))
+    coldest = float(engine.saturation.temperature(pressure))
+    low, high = _possible(engine, coldest - (COLDER if engine.effects else 0.0))
 
     def miss(temperature: float) -> float:
         return pressure_at(replace(engine, temperature=temperature), instant) - pressure
@@ -155,9 +198,9 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
 
 def pressure_at(engine: Engine, instant: float) -> float:
     """Modelled tank pressure [Pa] at an instant [s after ignition]."""
-    if instant <= 0.0:
+    if instant <= 0.0 and not engine.effects:
         return float(engine.saturation.pressure(engine.temperature))
-    burnt = burn(engine, longest=instant)
+    burnt = burn(engine, longest=max(instant, 1e-3))
     return float(np.interp(instant, burnt.time, burnt.output("tank_pressure")))
 
 

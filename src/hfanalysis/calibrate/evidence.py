@@ -7,7 +7,7 @@ carried along as a covariance.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from hfanalysis.calibrate.engine_of_test import Regression, engine_of_test, exponent, starting_for
 from hfanalysis.calibrate.histories import quiet_noises
 from hfanalysis.calibrate.uncertainty import Draws
+from hfanalysis.engine.effect import Active
 from hfanalysis.engine.model import RADIUS
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
@@ -195,9 +196,10 @@ def burn_time_of(engine: Engine, burnt: Burn) -> float:
 
 
 def evidence_of(
-    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Mapping[str, Any], draws: Draws
-) -> Evidence:
-    """What a test says about a and n.
+    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Mapping[str, Any], draws: Draws,
+    effects: Sequence[Active] = (),
+) -> Evidence:  # fmt: skip
+    """What a test says about a and n, ``effects`` acting.
 
     Raises AbsentError where the test does not state its engine, where C_i cannot be had, or where the chamber pressure
     is missing or too short.
@@ -209,11 +211,11 @@ def evidence_of(
     tank, chamber = (Signal.of(log[name]).shifted(origin) for name in ("p_tank", "p_chamber"))
     start = segments.time("t_feed") or min(0.1, 0.1 * t_v)
     pressure = line_at(tank, start)
-    engine = engine_of_test(definition, calibration, _saturated(definition, pressure), Regression(1e-3, 0.0))
+    engine = engine_of_test(definition, calibration, _saturated(definition, pressure), Regression(1e-3, 0.0), effects)
     burn_time, fuel_left, end = _seen(segments, definition, t_v)
     web = engine.outer_radius - engine.port_radius
     first = starting_for(replace(engine, a=web / end), start, pressure)
-    stop, why = _window_end(segments, calibration, t_v, end)
+    stop, why = _window_end(segments, calibration, t_v, end, _has_nitrogen(engine.effects))
     burnt = burn(first, longest=end)
     width = max((stop - start) / BLOCKS, FINEST)
     part = _compared(chamber, start, stop, (t_v, burnt.liquid_out or t_v), width)
@@ -222,7 +224,10 @@ def evidence_of(
     late = abs(t_v - burnt.liquid_out) if burnt.liquid_out is not None else 0.0
     if burn_time is not None:
         burn_time = replace(burn_time, std=float(np.hypot(burn_time.std, late)))
-    remarks = (f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})", *_remarks(definition, calibration))
+    remarks = (
+        f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})",
+        *_remarks(definition, calibration, engine.effects),
+    )
     covariance = _covariance(draws, definition, calibration)
     return Evidence(
         definition.test.id, first, part.time, part.value, burn_time, fuel_left, end, (start, pressure), covariance,
@@ -286,12 +291,15 @@ def _std(stated: Value, default: float) -> float:
     return stated.std if stated.std is not None else default
 
 
-def _window_end(segments: Segments, calibration: Mapping[str, Any], t_v: float, end: float) -> tuple[float, str]:
+def _window_end(
+    segments: Segments, calibration: Mapping[str, Any], t_v: float, end: float, nitrogen: bool
+) -> tuple[float, str]:
     """Until when the chamber pressure is one that the model can have, and why."""
     t_purge, t_fuel_out = segments.time("t_purge"), segments.time("t_fuel_out")
     ends = [(end - SETTLE, "the end of the burn")]
     if t_purge is not None:
-        ends.append((t_purge, "then nitrogen enters, which the model does not have"))
+        # with an adopted purge too: what is known of the gas in the chamber rests on its nitrogen from there on
+        ends.append((t_purge, "then nitrogen enters" + ("" if nitrogen else ", which the model does not have")))
     if t_fuel_out is not None:
         ends.append((t_fuel_out - SETTLE, "then the fuel is gone"))
     if calibration["m"]["value"] is None:
@@ -299,14 +307,24 @@ def _window_end(segments: Segments, calibration: Mapping[str, Any], t_v: float, 
     return min(ends)
 
 
-def _remarks(definition: TestDefinition, calibration: Mapping[str, Any]) -> list[str]:
+def _has_nitrogen(effects: Sequence[Active]) -> bool:
+    return any("nitrogen_inflow" in active.effect.sites for active in effects)
+
+
+def _remarks(definition: TestDefinition, calibration: Mapping[str, Any], effects: Sequence[Active]) -> list[str]:
     m, std = exponent(calibration)
     known = "as calibrated" if calibration["m"]["value"] is not None else f"assumed, +/- {std:.2f}"
-    return [
-        "oxidizer flow of the calibrated tank alone, without nitrogen, from the pressure that its liquid phase "
-        f"extrapolates to; feed loss K_loss mdot^2 / rho; vapour exponent {m:.3f} ({known})",
+    beyond = (
         f"no effect beyond the model's: adiabatic equilibrium combustion ({definition.model.conventions} conventions), "
-        "constant throat, even regression",
+    )
+    if effects:
+        names = ", ".join(active.effect.name for active in effects)
+        beyond = f"adopted effects: {names}; else equilibrium combustion ({definition.model.conventions} conventions), "
+    nitrogen = "" if _has_nitrogen(effects) else ", without nitrogen"
+    return [
+        f"oxidizer flow of the calibrated tank alone{nitrogen}, from the pressure that its liquid phase "
+        f"extrapolates to; feed loss K_loss mdot^2 / rho; vapour exponent {m:.3f} ({known})",
+        beyond + "constant throat, even regression",
     ]
 
 

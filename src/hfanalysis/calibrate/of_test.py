@@ -7,13 +7,20 @@ from collections.abc import Sequence
 from hfanalysis.calibrate.evidence import Evidence, evidence_of
 from hfanalysis.calibrate.regression import Joint, RegressionResult, fit, fit_together, result
 from hfanalysis.calibrate.tank import Calibration
+from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.segment.phases import Segments
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
 
 
-def evidence_for(log: TestLog, segments: Segments, definition: TestDefinition, calibration: Calibration) -> Evidence:
+def evidence_for(
+    log: TestLog,
+    segments: Segments,
+    definition: TestDefinition,
+    calibration: Calibration,
+    effects: Sequence[Active] = (),
+) -> Evidence:
     """What a test says about a and n. Raises AbsentError where it says nothing, with the reason."""
     if segments.kind.name != "hot_fire" or segments.kind.misfire:
         raise AbsentError("nothing burns in this test")
@@ -21,13 +28,19 @@ def evidence_for(log: TestLog, segments: Segments, definition: TestDefinition, c
         reason = calibration.quantities["C_i"].reason
         raise AbsentError(f"no oxidizer flow to regress with: C_i is missing ({reason})")
     quantities = {name: quantity.to_json() for name, quantity in calibration.quantities.items()}
-    return evidence_of(log, segments, definition, quantities, calibration.draws)
+    return evidence_of(log, segments, definition, quantities, calibration.draws, effects)
 
 
-def regress(log: TestLog, segments: Segments, definition: TestDefinition, calibration: Calibration) -> RegressionResult:
-    """a, n and the rate at the reference flux of one test, with their verdicts."""
+def regress(
+    log: TestLog,
+    segments: Segments,
+    definition: TestDefinition,
+    calibration: Calibration,
+    effects: Sequence[Active] = (),
+) -> RegressionResult:
+    """a, n and the rate at the reference flux of one test, with their verdicts, ``effects`` acting."""
     try:
-        return result(fit([evidence_for(log, segments, definition, calibration)]))
+        return result(fit([evidence_for(log, segments, definition, calibration, effects)]))
     except AbsentError as error:
         return RegressionResult.absent(str(error))
 

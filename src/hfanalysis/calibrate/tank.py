@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.calibrate.acting import VaporPhase, acting
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, reduce
 from hfanalysis.calibrate.diagnostics import CoefficientHistory, TankHistory, coefficient_history, rest_of, tank_history
 from hfanalysis.calibrate.histories import Histories, Reading, read_at_break
@@ -15,6 +17,7 @@ from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
 from hfanalysis.calibrate.rest import Rest
 from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
+from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.segment.phases import Segments
@@ -66,8 +69,10 @@ NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_f
          "vapor_mass_at_t_v", "mass_at_t_feed", "oxidizer_mass")  # fmt: skip
 
 
-def calibrate(log: TestLog, segments: Segments, definition: TestDefinition, samples: int) -> Calibration:
-    """Calibrate the tank of one test; ``samples`` repetitions give the intervals.
+def calibrate(
+    log: TestLog, segments: Segments, definition: TestDefinition, samples: int, effects: Sequence[Active] = ()
+) -> Calibration:
+    """Calibrate the tank of one test, ``effects`` acting; ``samples`` repetitions give the intervals.
 
     Raises AbsentError where neither C_i nor anything else can be had because p_tank, p_run or t_v is missing.
     """
@@ -76,13 +81,16 @@ def calibrate(log: TestLog, segments: Segments, definition: TestDefinition, samp
         raise AbsentError(
             f"test {definition.test.id}: no end of the liquid to calibrate with: {segments.events['t_v'].reason}"
         )
-    return _Work(log, segments, definition, t_v).result(samples)
+    return _Work(log, segments, definition, t_v, effects).result(samples)
 
 
 class _Work:
     """One calibration under way: the inputs with where they come from, and what has been noticed."""
 
-    def __init__(self, log: TestLog, segments: Segments, definition: TestDefinition, t_v: float) -> None:
+    def __init__(
+        self, log: TestLog, segments: Segments, definition: TestDefinition, t_v: float, effects: Sequence[Active]
+    ) -> None:
+        self.effects = [active for active in effects if active.effect.term is not None and not active.idle]
         self.log, self.segments, self.definition, self.t_v = log, segments, definition, t_v
         self.saturation: Saturation = saturation_of(definition.model.properties)
         self.notes: list[str] = []
@@ -115,8 +123,9 @@ class _Work:
         inputs = Inputs(mass.value, self.volume.value, self.area.value, *times, self.at_v.value, p_end)
         self._check_fit(inputs)
         tables = Tables.of(self.histories, self.saturation)
-        nominal = reduce(tables, self.saturation, inputs)
-        draws = draw(tables, self.saturation, inputs, self._spread(mass), samples)
+        inputs, vapor = self._acting(tables, inputs)
+        nominal = reduce(tables, self.saturation, inputs, vapor_phase=vapor)
+        draws = draw(tables, self.saturation, inputs, self._spread(mass), samples, vapor)
         self.notes.append(f"loaded mass: {mass.source}")
         left = self._mass_left(nominal, inputs)
         rest, remarks = rest_of(self.log, self.segments, self.saturation, self.histories, inputs, nominal, left, mass)
@@ -127,6 +136,18 @@ class _Work:
         loaded = Quantity(mass.value, "kg", mass.std, verdict="identified", why=mass.source)
         quantities["oxidizer_mass"] = loaded
         return Calibration(quantities, rest, history, content, tuple(self.warnings), tuple(self.notes), draws)
+
+    def _acting(self, tables: Tables, inputs: Inputs) -> tuple[Inputs, VaporPhase | None]:
+        """The inputs and the vapour phase with the effects in; what they cannot be in is said."""
+        if not self.effects:
+            return inputs, None
+        try:
+            found = acting(self.histories, tables, self.saturation, self.definition, inputs, self.effects)
+        except (ArithmeticError, ValueError) as error:
+            self.warnings.append(f"C_i and m were found without the adopted effects: {error}")
+            return inputs, None
+        self.notes.append("C_i and m: found with the adopted effects acting on the tank, feed line and injector")
+        return found
 
     def _check_fit(self, inputs: Inputs) -> None:
         """Raise InputError where the loaded mass cannot be in the tank, even as liquid as cold as its blowdown."""

@@ -9,6 +9,7 @@ import typer
 
 import hfanalysis
 from hfanalysis.cli.ending import ending
+from hfanalysis.errors import InputError
 
 app = typer.Typer(
     name="hfa",
@@ -108,9 +109,44 @@ def _add_flight(text: str) -> None:
         _do("flight", test, root, out, as_json, force, quiet, [*(settings or []), *asked])
 
 
+Apply = Annotated[bool, typer.Option("--apply", help="Adopt what is named: engines/TEST.effects.toml.")]
+Retract = Annotated[bool, typer.Option("--retract", help="Remove that file again; nothing is diagnosed.")]
+Stand = Annotated[bool, typer.Option("--stand", help="Adopt or retract for all tests of the test's stand.")]
+
+
+def _add_diagnose(text: str) -> None:
+    """The stage with words of its own for adopting what it finds."""
+
+    @app.command("diagnose", help=text)
+    def command(
+        test: Test,
+        root: Root = Path(),
+        out: Out = None,
+        as_json: Json = False,
+        force: Force = False,
+        quiet: Quiet = False,
+        settings: Set = None,
+        apply: Apply = False,
+        retract: Retract = False,
+        stand: Stand = False,
+    ) -> None:
+        if not (apply or retract or stand):
+            _do("diagnose", test, root, out, as_json, force, quiet, settings)
+            return
+        with ending():
+            from hfanalysis.cli import adopt, perform
+
+            if apply == retract:
+                raise InputError("found --apply and --retract together, or --stand alone; expected one of the two")
+            request = perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+            (adopt.apply if apply else adopt.retract)(request, stand)
+
+
+_OF_THEIR_OWN = {"diagnose": _add_diagnose, "flight": _add_flight}
+
 for _name, _text in _STAGES.items():
-    if _name == "flight":
-        _add_flight(_text)
+    if _name in _OF_THEIR_OWN:
+        _OF_THEIR_OWN[_name](_text)
     else:
         _add(_name, _text)
 

@@ -13,7 +13,7 @@ from typing import Any
 from hfanalysis.cli.ending import put, tell
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages import ORDER, way_to
-from hfanalysis.stages.base import Context, Progress, load_stage, silent
+from hfanalysis.stages.base import BASE, Context, Progress, load_stage, silent
 from hfanalysis.stages.opening import open_test
 from hfanalysis.stages.runner import run_to
 from hfanalysis.units import near
@@ -140,6 +140,6 @@ def _product_warnings(context: Context, name: str) -> list[str]:
     found: list[str] = []
     for product in load_stage(name).products:
         path = context.product(product)
-        if path.exists() and product.endswith(".json"):
+        if path.exists() and product.endswith(".json") and not product.startswith(BASE):
             found += [str(text) for text in context.read_json(product).get("warnings", [])]
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from hfanalysis.adopt.sensors import corrected
 from hfanalysis.calibrate.of_test import evidence_for
 from hfanalysis.calibrate.regression import Joint, fit, fit_together, result
 from hfanalysis.calibrate.tank import calibrate
@@ -37,11 +38,11 @@ def product_of(tests: list[str], root: Path, out: Path | None, progress: Progres
     evidence = []
     for name in dict.fromkeys(tests):
         context = run_to("segment", open_test(root, name, out, progress=progress))
-        log = read_log(context.product("ingest.h5"))
-        segments = Segments.from_json(context.read_json("segments.json"))
+        segments, effects = Segments.from_json(context.read_json("segments.json")), context.adopted().acting
+        log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)
         try:
-            tank = calibrate(log, segments, context.definition, 400)
-            evidence.append(evidence_for(log, segments, context.definition, tank))
+            tank = calibrate(log, segments, context.definition, 400, effects)
+            evidence.append(evidence_for(log, segments, context.definition, tank, effects))
         except AbsentError as error:
             raise AbsentError(f"{name}: {error}") from None
     alone = [fit([e]) for e in evidence]

@@ -50,6 +50,23 @@ def show(name: str, context: Context) -> None:
     for stage in way_to(name) if name == "run" else (name,):
         if stage not in context.absent:
             _SHOWN[stage](context, console)
+    if adopted := _adopted(name, context):
+        console.print(Text(adopted), soft_wrap=True)
+
+
+def _adopted(name: str, context: Context) -> str:
+    """The effects with which a stage's product was made, in words."""
+    product = _MADE_WITH_EFFECTS.get(name)
+    there = product is not None and context.product(product).is_file()
+    return wording.adopted_in_words(context.read_json(product)["effects"]) if product and there else ""
+
+
+_MADE_WITH_EFFECTS = {
+    "calibrate": "calibration.json",
+    "validate": "validation.json",
+    "flight": "flight.json",
+    "run": "validation.json",
+}
 
 
 def _headline(context: Context) -> Text:

@@ -56,6 +56,15 @@ def distorted(channels: Mapping[str, Array], times: Array, effects: Sequence[Act
     return out
 
 
+def read_as(
+    models: Mapping[str, Array], times: Array, effects: Sequence[Active], beside: Mapping[str, Array] | None = None
+) -> dict[str, Array]:
+    """Modelled channels, not all of them, as distorting effects let sensors read them; ``beside``: known others."""
+    full = {**{name: np.zeros(times.size) for name in CHANNELS}, **(beside or {}), **models}
+    found = distorted(full, times, effects)
+    return {name: found[name] for name in models}
+
+
 def observe_tangents(tangents: Tangents, times: ArrayLike, effects: Sequence[Active] | None = None) -> dict[str, Array]:
     """Sensitivities (times, parameters) of every channel of :func:`observe` to ``tangents.parameters``.
 

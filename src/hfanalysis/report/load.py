@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hfanalysis.report.material import Material, read_store
-from hfanalysis.stages.base import Context, load_stage
+from hfanalysis.stages.base import BASE, Context, load_stage
 from hfanalysis.testdata.log import read_log
 
 _LOG = "ingest.h5"
@@ -17,7 +17,7 @@ def load(context: Context) -> Material:
         for path in map(context.product, stage.products):
             if stage.name in context.absent:
                 absent[path.stem] = context.absent[stage.name]
-            elif path.suffix == ".json":
+            elif path.suffix == ".json" and not path.name.startswith(BASE):
                 products[path.stem] = context.read_json(path.name)
             elif path.suffix == ".h5" and path.name != _LOG:
                 stores[path.stem] = read_store(path)

@@ -13,6 +13,7 @@ import numpy as np
 from hfanalysis.errors import AbsentError
 from hfanalysis.report.envelope import Floats
 from hfanalysis.report.svg import Event, Phase
+from hfanalysis.report.wording import adopted_in_words
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
 
@@ -64,6 +65,12 @@ class Material:
     def why_not(self, name: str) -> str:
         """Why a product is not there."""
         return self.absent.get(name) or f"{name.replace('_', ' ')}: not made for this test"
+
+    @property
+    def adopted(self) -> str:
+        """The adopted effects of the model in a sentence; empty where there are none."""
+        products = (self.product(name) for name in ("validation", "calibration", "flight"))
+        return adopted_in_words(next((effects for p in products if (effects := p.get("effects"))), []))
 
     @property
     def fired(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -68,6 +68,9 @@ KINDS: dict[str, str] = {"hot_fire": "hot fire", "cold_flow": "cold flow"}
 
 _FINEST: dict[str, int] = {"s": 4}
 """Decimals beyond which nobody reads."""
+_KILOWATTS = 500.0
+"""[W] from which on a power reads better in kW."""
+
 _NOTHING = 1e-200
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 MINUS = "\N{MINUS SIGN}"
@@ -159,6 +162,33 @@ def tidy(value: float, digits: int = 4) -> str:
     '−0.001235'
     """
     return f"{value:.{digits}g}".replace("-", MINUS)
+
+
+def adopted_in_words(effects: Sequence[Mapping[str, Any]]) -> str:
+    """A sentence about the adopted effects that a product states; empty where it states none."""
+    if not effects:
+        return ""
+    named = [f"{e['name']} {_values_in_words(e['parameters'])}" for e in effects]
+    return f"With {listed(named)} adopted (engines/{effects[0]['file']})."
+
+
+def _values_in_words(parameters: Mapping[str, Mapping[str, Any]]) -> str:
+    """The strength of an effect, then what else is stated of it."""
+    texts = [(name, _plainly(quantity)) for name, quantity in parameters.items()]
+    others = ", ".join(f"{name} {text}" for name, text in texts[1:])
+    return texts[0][1] + (f" ({others})" if others else "")
+
+
+def _plainly(quantity: Mapping[str, Any]) -> str:
+    """A value with its deviation and unit, to few digits; differences of temperature stay differences."""
+    unit, value, std = str(quantity["unit"]), float(quantity["value"]), float(quantity.get("std") or 0.0)
+    factor, unit = (1.0, unit) if unit == "K" else people_unit("" if unit == "-" else unit)
+    if unit == "W" and abs(value) >= _KILOWATTS:
+        factor, unit = 1e-3, "kW"
+    if not std:
+        return f"{tidy(factor * value)} {unit}".strip()
+    decimals = decimals_for(factor * value, factor * std)
+    return f"{fixed(factor * value, decimals)} ± {fixed(factor * std, decimals)} {unit}".strip()
 
 
 def is_quantity(data: Any) -> bool:

@@ -12,8 +12,9 @@ A stage is a module of this package that says what it needs, what it writes and 
 
 Products that are not JSON are written to ``context.scratch("residuals.h5")``, a temporary name in the product folder.
 Nothing appears under its final name before ``run`` has returned. Optional fields: ``wants`` (stages to run first whose
-absence, AbsentError, does not stop this one: ask ``context.absent``) and ``parameters`` (settings with their defaults,
-read with ``context.parameter("name")``; they are part of what decides whether a product is up to date).
+absence, AbsentError, does not stop this one: ask ``context.absent``), ``parameters`` (settings with their defaults,
+read with ``context.parameter("name")``; they are part of what decides whether a product is up to date) and ``adopts``
+(False for a stage that adopted effects do not change: neither their file nor products made with them are its input).
 """
 
 from __future__ import annotations
@@ -22,13 +23,19 @@ import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hfanalysis.errors import InputError
 from hfanalysis.stages import ORDER
 from hfanalysis.testdata import products
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.units import near
+
+if TYPE_CHECKING:
+    from hfanalysis.adopt.effects import Adopted
+
+BASE = "base_"
+"""How a product's name begins that is made without adopted effects, by a stage that also makes one with them."""
 
 Progress = Callable[[str, float | None], None]
 """Told what is being done, and the fraction done where it is known."""
@@ -48,6 +55,13 @@ class Stage:
     run: Callable[[Context], None]
     wants: tuple[str, ...] = ()
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    adopts: bool = True
+
+    def reads(self, other: Stage) -> tuple[str, ...]:
+        """The products of an upstream stage that this one's products follow from."""
+        if self.adopts or not other.adopts:
+            return other.products
+        return tuple(name for name in other.products if name.startswith(BASE))
 
     @property
     def upstream(self) -> tuple[str, ...]:
@@ -112,10 +126,18 @@ class Context:
             raise ValueError(f"{name} is not declared as a product of this stage")
         return products.temporary_path(self.product(name))
 
+    def adopted(self) -> Adopted:
+        """The effects that have been adopted for this test. Raises InputError for a file that is at fault."""
+        from hfanalysis.adopt.effects import read_adopted
+
+        return read_adopted(self.root, self.definition)
+
     def write_json(self, name: str, data: Mapping[str, Any]) -> None:
         """Write a JSON product of the running stage, with the test's name first and its provenance last."""
         body = {"test": self.id, "source": self.definition.test.source, **data}
         body["provenance"] = {**self.provenance(), **data.get("provenance", {})}
+        if name.startswith(BASE):
+            body["provenance"]["effects"] = {}
         self.scratch(name).write_text(products.to_json(body), encoding="utf-8")
 
     def provenance(self) -> dict[str, Any]:

@@ -1,35 +1,51 @@
 """calibrate: the injector coefficient, the feed loss, the vapour's polytropic exponent and the fuel's regression.
 
-Reads ``ingest.h5`` and ``segments.json``; writes ``calibration.json``.
+Reads ``ingest.h5`` and ``segments.json``; writes ``calibration.json``, the calibration with the adopted effects acting,
+and ``base_calibration.json``, that of the base model, which a diagnosis starts from. Without adopted effects they are
+the same.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
 from hfanalysis.stages.base import Context, Stage
+
+if TYPE_CHECKING:
+    from hfanalysis.engine.effect import Active
 
 
 def run(context: Context) -> None:
-    """Calibrate the tank of the test, then the regression with that tank's flow."""
+    """Calibrate the test's tank, then the regression with that tank's flow; with adopted effects both once more."""
+    adopted = context.adopted()
+    base = _calibration(context, ())
+    found = _calibration(context, adopted.acting) if adopted.acting else base
+    context.write_json("base_calibration.json", {**base, "effects": []})
+    context.write_json("calibration.json", {**found, "effects": adopted.to_json()})
+
+
+def _calibration(context: Context, effects: Sequence[Active]) -> dict[str, Any]:
+    """The content of calibration.json with these effects acting."""
+    from hfanalysis.adopt.sensors import corrected
     from hfanalysis.calibrate.of_test import regress
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.segment.phases import Segments
     from hfanalysis.testdata.log import read_log
 
-    log = read_log(context.product("ingest.h5"))
     segments = Segments.from_json(context.read_json("segments.json"))
+    log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)
     context.progress("repeating the calibration with drawn inputs", None)
-    result = calibrate(log, segments, context.definition, int(context.parameter("samples")))
+    result = calibrate(log, segments, context.definition, int(context.parameter("samples")), effects)
     context.progress("fitting the regression", None)
-    regression = regress(log, segments, context.definition, result)
-    context.write_json(
-        "calibration.json", {**regression.quantities, **result.to_json(), "regression": regression.about}
-    )
+    regression = regress(log, segments, context.definition, result, effects)
+    return {**regression.quantities, **result.to_json(), "regression": regression.about}
 
 
 STAGE = Stage(
     name="calibrate",
     needs=("ingest", "segment"),
-    products=("calibration.json",),
+    products=("calibration.json", "base_calibration.json"),
     run=run,
     parameters={"samples": 400},
 )

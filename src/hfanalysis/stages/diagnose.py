@@ -1,6 +1,7 @@
 """diagnose: where, when and by how much the report's model departs from the measurement, before any name.
 
-Reads ``ingest.h5``, ``segments.json`` and ``calibration.json``; writes ``diagnosis.json`` and ``diagnosis.h5``.
+Reads ``ingest.h5``, ``segments.json`` and ``base_calibration.json`` (the base model
+is what is diagnosed, whatever has been adopted); writes ``diagnosis.json`` and ``diagnosis.h5``.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ def run(context: Context) -> None:
 
     log = read_log(context.product("ingest.h5"))
     segments = Segments.from_json(context.read_json("segments.json"))
-    found = diagnose(log, segments, context.read_json("calibration.json"), context.definition, context.progress)
+    found = diagnose(log, segments, context.read_json("base_calibration.json"), context.definition, context.progress)
     write_histories(context.scratch("diagnosis.h5"), found.localisation, context.provenance())
     context.write_json("diagnosis.json", found.product)
 
@@ -27,4 +28,5 @@ STAGE = Stage(
     needs=("ingest", "segment", "calibrate"),
     products=("diagnosis.json", "diagnosis.h5"),
     run=run,
+    adopts=False,
 )

@@ -12,6 +12,7 @@ from hfanalysis.stages.base import Context, Stage
 
 def run(context: Context) -> None:
     """Fly the test's rocket."""
+    from hfanalysis.adopt.sensors import corrected
     from hfanalysis.launch.files import export, rocketpy
     from hfanalysis.launch.firing import firing
     from hfanalysis.launch.product import launch, product, write_histories
@@ -22,8 +23,9 @@ def run(context: Context) -> None:
     definition = context.definition
     if definition.rocket is None:
         raise AbsentError(f"test {context.id}: test.toml has no [rocket] to fly")
-    log = read_log(context.product("ingest.h5"))
-    segments = Segments.from_json(context.read_json("segments.json"))
+    adopted, segments = context.adopted(), Segments.from_json(context.read_json("segments.json"))
+    # physics that was adopted is in the measured thrust; what sensors add to it is taken off
+    log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, adopted.acting)
     calibration = None if "calibrate" in context.absent else context.read_json("calibration.json")
     flown = firing(log, segments, calibration, definition, bool(context.parameter("raw_thrust")))
     found = launch(
@@ -36,7 +38,8 @@ def run(context: Context) -> None:
     context.scratch("{test}.rse").write_text(files.rse, encoding="utf-8")
     context.scratch("{test}_rocketpy.py").write_text(rocketpy(found, definition, stable, files), encoding="utf-8")
     write_histories(context.scratch("flight.h5"), found, stable, context.provenance())
-    context.write_json("flight.json", {**product(found, definition.rocket, stable), "warnings": []})
+    body = {**product(found, definition.rocket, stable), "effects": adopted.to_json(), "warnings": []}
+    context.write_json("flight.json", body)
 
 
 STAGE = Stage(

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import hfanalysis
+from hfanalysis.adopt import adopted_file
 from hfanalysis.errors import InputError
 from hfanalysis.stages import base
 from hfanalysis.stages.base import Context, Stage
@@ -40,16 +41,15 @@ def raw_files(definition: TestDefinition) -> list[Path]:
     return [definition.folder / name for name in [*(spec.file for spec in definition.log.files), *tables]]
 
 
-def effect_files(context: Context) -> list[Path]:
-    """The adopted effects that apply to this test, where there are any."""
-    names = (context.id, context.definition.test.stand)
-    paths = [context.root / "engines" / f"{name}.effects.toml" for name in names if name]
-    return [path for path in dict.fromkeys(paths) if path.is_file()]
+def effect_files(context: Context, stage: Stage) -> list[Path]:
+    """The file of adopted effects that applies to this test, and a team's own effects, which may be in it."""
+    found = adopted_file(context.root, context.definition) if stage.adopts else None
+    return [] if found is None else [found, *sorted((context.root / "effects").glob("[!_]*.py"))]
 
 
-def input_files(context: Context) -> list[Path]:
+def input_files(context: Context, stage: Stage) -> list[Path]:
     """Every file outside the product folder that the products are made from, but for the package's source."""
-    return [context.definition.path, *raw_files(context.definition), *effect_files(context)]
+    return [context.definition.path, *raw_files(context.definition), *effect_files(context, stage)]
 
 
 def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, Any]:
@@ -61,7 +61,7 @@ def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, A
         "raw": {
             path.relative_to(context.raw).as_posix(): _raw_hash(path, hashes) for path in raw_files(context.definition)
         },
-        "effects": {path.name: hashes(path) for path in effect_files(context)},
+        "effects": {path.name: hashes(path) for path in effect_files(context, stage)},
         "libraries": library_versions(),
         "parameters": context.at(stage).parameters(),
         "inputs": _upstream(context, stage, hashes),
@@ -82,7 +82,7 @@ def _upstream(context: Context, stage: Stage, hashes: HashCache) -> dict[str, st
         if name in context.absent:
             found[name] = f"absent: {context.absent[name]}"
         else:
-            found |= {product: hashes(context.product(product)) for product in base.load_stage(name).products}
+            found |= {product: hashes(context.product(product)) for product in stage.reads(base.load_stage(name))}
     return found
 
 

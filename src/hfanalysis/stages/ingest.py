@@ -18,4 +18,4 @@ def run(context: Context) -> None:
     context.write_json("ingest.json", summary(read_log(context.scratch("ingest.h5"))))
 
 
-STAGE = Stage(name="ingest", needs=(), products=("ingest.h5", "ingest.json"), run=run)
+STAGE = Stage(name="ingest", needs=(), products=("ingest.h5", "ingest.json"), run=run, adopts=False)

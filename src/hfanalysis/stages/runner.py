@@ -180,13 +180,13 @@ class _Run:
             file.write(json.dumps(line, ensure_ascii=False) + "\n")
 
     def _agree_with_make(self, stage: Stage) -> None:
-        inputs = [*freshness.input_files(self.context), *source_files(), *self._upstream_products(stage)]
+        inputs = [*freshness.input_files(self.context, stage), *source_files(), *self._upstream_products(stage)]
         for name in stage.products:
             products.touch_after(self.context.product(name), inputs)
 
     def _upstream_products(self, stage: Stage) -> list[Path]:
         names = (name for name in stage.upstream if name not in self.context.absent)
-        return [self.context.product(product) for name in names for product in base.load_stage(name).products]
+        return [self.context.product(product) for name in names for product in stage.reads(base.load_stage(name))]
 
 
 def source_files() -> list[Path]:

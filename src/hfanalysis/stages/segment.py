@@ -18,4 +18,4 @@ def run(context: Context) -> None:
     context.write_json("segments.json", segments.to_json())
 
 
-STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run)
+STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run, adopts=False)

@@ -21,10 +21,11 @@ def run(context: Context) -> None:
     segments = Segments.from_json(context.read_json("segments.json"))
     absent = context.absent.get("calibrate")
     calibration = None if absent else context.read_json("calibration.json")
-    found = validate(log, segments, context.definition, calibration, absent)
+    adopted = context.adopted()
+    found = validate(log, segments, context.definition, calibration, absent, adopted.acting)
     write_residuals(context.scratch("residuals.h5"), found.residuals, context.provenance())
     write_histories(context.scratch("performance.h5"), found.histories, context.provenance())
-    context.write_json("validation.json", found.to_json())
+    context.write_json("validation.json", {**found.to_json(), "effects": adopted.to_json()})
 
 
 STAGE = Stage(

@@ -8,29 +8,35 @@ from __future__ import annotations
 
 import numpy as np
 
-from hfanalysis.engine.unsteady import Engine
+from hfanalysis.adopt.sensors import corrected
+from hfanalysis.engine.observe import read_as
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
 from hfanalysis.testdata.log import TestLog
 from hfanalysis.validate.flows import Flows, nozzle_along
+from hfanalysis.validate.full import FullRun
 from hfanalysis.validate.residuals import Residual, compared
 
 
 def run_chamber_forced(
-    log: TestLog, segments: Segments, engine: Engine, flows: Flows, ambient: float, end: float
+    log: TestLog, segments: Segments, full: FullRun, flows: Flows, ambient: float, end: float
 ) -> list[Residual]:
-    """Measured and modelled thrust from the opening to ``end`` [s]; ``ambient`` [Pa].
+    """Measured and modelled thrust from the opening to ``end`` [s], as the cell reads it; ``ambient`` [Pa].
 
-    Raises AbsentError where the log has no thrust or no chamber pressure.
+    What effects make of throat and thrust is that of the ``full`` run. Raises AbsentError where the log has no thrust
+    or no chamber pressure.
     """
-    origin = segments.t_open.value or 0.0
-    thrust, chamber = (Signal.of(log[name]).shifted(origin) for name in ("thrust", "p_chamber"))
+    origin, engine = segments.t_open.value or 0.0, full.engine
+    true = corrected(log, origin, engine.effects)
+    thrust, chamber = (Signal.of(true[name]).shifted(origin) for name in ("thrust", "p_chamber"))
     time = thrust.between(0.0, end).time
     pressure = np.maximum(chamber.at(time), 0.1 * ambient)
     mixed = np.isfinite(flows.of_ratio)
     ratio = np.interp(time, flows.time[mixed], flows.of_ratio[mixed]) if mixed.any() else np.full(time.size, np.nan)
-    model = nozzle_along(engine, pressure, ratio, ambient).thrust
-    return [compared(log, segments, "thrust", time, model, _notes(segments, end))]
+    nozzle = nozzle_along(engine, pressure, ratio, ambient, full.factor("throat_factor", time))
+    model = nozzle.thrust * full.factor("thrust_factor", time)
+    read = read_as({"thrust": model}, time, engine.effects, {"p_chamber": pressure})["thrust"]
+    return [compared(log, segments, "thrust", time, read, _notes(segments, end))]
 
 
 def _notes(segments: Segments, end: float) -> tuple[str, ...]:

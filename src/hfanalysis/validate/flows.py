@@ -74,22 +74,23 @@ def oxidizer_flow(
     source = saturation_of(definition.model.properties)
     density = source.liquid_density(source.temperature(np.clip(tank, *source.pressure_range)))
     flow = effective_area(definition, calibration) * np.sqrt(2.0 * density * np.maximum(run - chamber, 0.0))
-    later = np.interp(time, alone.run.time, alone.run.flow, right=0.0)
+    flow = flow * np.interp(time, alone.measured.time, alone.factor)
+    later = np.interp(time, alone.measured.time, alone.flow, right=0.0)
     t_v = segments.time("t_v")
     found = flow if t_v is None else np.where(time < t_v, flow, later)
     return np.asarray(np.where(time < 0.0, 0.0, found))
 
 
-def burn_fuel(engine: Engine, law: Regression, time: Array, oxidizer: Array) -> Flows:
-    """The fuel that this oxidizer flow [kg/s] burns."""
+def burn_fuel(engine: Engine, law: Regression, time: Array, oxidizer: Array, factor: Array | float = 1.0) -> Flows:
+    """The fuel that this oxidizer flow [kg/s] burns, at ``factor`` times the rate of the law."""
     power = 2.0 * law.n + 1.0
     steps = np.diff(time, prepend=time[0])
-    summed = np.cumsum(steps * np.maximum(oxidizer, 0.0) ** law.n * (oxidizer > 0.0))
+    summed = np.cumsum(factor * steps * np.maximum(oxidizer, 0.0) ** law.n * (oxidizer > 0.0))
     opened = engine.port_radius**power + power * law.a * pi**-law.n * summed
     port = np.minimum(opened ** (1.0 / power), engine.outer_radius)
     burning = (port < engine.outer_radius) & (oxidizer > 0.0)
     flux = np.maximum(oxidizer, 0.0) / (pi * port**2)
-    rate = np.where(burning, law.a * np.where(burning, flux, 1.0) ** law.n, 0.0)
+    rate = np.where(burning, factor * law.a * np.where(burning, flux, 1.0) ** law.n, 0.0)
     fuel = engine.fuel_density * 2.0 * pi * port * engine.grain_length * rate
     return Flows(time, oxidizer, fuel, rate, port)
 
@@ -104,27 +105,33 @@ class Nozzle:
     gamma: Array
 
 
-def nozzle_along(engine: Engine, pressure: Array, of_ratio: Array, ambient: float) -> Nozzle:
-    """What the nozzle does with gas of this mixture at this pressure [Pa]; NaN where there is no mixture."""
+def nozzle_along(
+    engine: Engine, pressure: Array, of_ratio: Array, ambient: float, throat_factor: Array | float = 1.0
+) -> Nozzle:
+    """What the nozzle does with gas of this mixture at this pressure [Pa]; NaN where there is no mixture.
+
+    ``throat_factor``: of the throat's area.
+    """
     enthalpy = engine.oxidizer_enthalpy
     assert enthalpy is not None
+    throat = engine.throat_area * np.broadcast_to(throat_factor, pressure.shape)
     found = _nozzle_along(
         engine.combustion.kernel, np.ascontiguousarray(pressure), np.ascontiguousarray(of_ratio), ambient,
-        engine.throat_area, engine.exit_area, enthalpy,
+        throat, engine.exit_area, enthalpy,
     )  # fmt: skip
     return Nozzle(*found)
 
 
 @njit(cache=True)
 def _nozzle_along(
-    gas: Grid, pressure: Array, ratio: Array, ambient: float, throat: float, exit_area: float, enthalpy: float
+    gas: Grid, pressure: Array, ratio: Array, ambient: float, throat: Array, exit_area: float, enthalpy: float
 ) -> Array:
     out = np.full((4, pressure.size), np.nan)
     for i in range(pressure.size):
         if not (ratio[i] > 0.0 and pressure[i] > 0.0):
             continue
         heat, gamma = gas_at(gas, np.log(pressure[i]), np.log(ratio[i]), enthalpy, 0.0)
-        flow, thrust, _, _, _ = expand(gamma, heat, pressure[i], ambient, throat, exit_area)
+        flow, thrust, _, _, _ = expand(gamma, heat, pressure[i], ambient, throat[i], exit_area)
         out[0, i], out[1, i], out[2, i], out[3, i] = flow, thrust, heat, gamma
     return out
 

@@ -6,8 +6,9 @@ t_feed; the filling of the line is not in the model.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,10 @@ from numpy.typing import NDArray
 
 from hfanalysis.calibrate.engine_of_test import Regression, engine_of_test, starting_for
 from hfanalysis.calibrate.evidence import line_at
+from hfanalysis.engine.effect import Active
+from hfanalysis.engine.model import OUTPUTS, evaluate_rates
+from hfanalysis.engine.observe import read_as
+from hfanalysis.engine.sites import SITES
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
@@ -38,9 +43,30 @@ class FullRun:
     engine: Engine
     burnt: Burn
 
+    def factor(self, site: str, times: Array) -> Array:
+        """What effects make of one of the model's factors along the run, at ``times`` [s]; 1 without effects."""
+        if not self.engine.effects:
+            return np.ones(times.size)
+        return np.asarray(np.interp(times, self.burnt.time, self._sites[:, SITES.index(site)]))
+
+    @cached_property
+    def _sites(self) -> Array:
+        """Every site at every point of the run."""
+        steps, gone = self.burnt.steps, self.burnt.liquid_out
+        equations = steps.engine.equations(steps.composition)
+        rates, out = np.empty(self.burnt.states.shape[1]), np.empty(len(OUTPUTS))
+        values = np.empty((self.burnt.time.size, len(SITES)))
+        for i, (time, state) in enumerate(zip(self.burnt.time, self.burnt.states, strict=True)):
+            wet = gone is None or bool(time <= gone)
+            evaluate_rates(time, np.ascontiguousarray(state), wet, True, equations, rates, out)
+            values[i] = equations.site
+        return values
+
     @property
     def run_pressure(self) -> Array:
         """Modelled pressure before the injector: p_c + mdot^2 / (2 rho (C_i N_i A_i)^2) [Pa]."""
+        if self.engine.effects:  # which may act on the feed line and the injector
+            return self.burnt.output("run_pressure")
         flow, area = self.burnt.output("oxidizer_flow"), self.engine.feed.area
         return self.burnt.output("chamber_pressure") + 0.5 * flow**2 / (self._density * area**2)
 
@@ -54,13 +80,22 @@ class FullRun:
         return np.where(wet, self.engine.saturation.liquid_density(temperature), vapor)
 
 
-def run_full(log: TestLog, segments: Segments, calibration: Mapping[str, Any], definition: TestDefinition) -> FullRun:
-    """Run the calibrated engine. Raises AbsentError where the test does not state it or it is not calibrated."""
+def run_full(
+    log: TestLog,
+    segments: Segments,
+    calibration: Mapping[str, Any],
+    definition: TestDefinition,
+    effects: Sequence[Active] = (),
+) -> FullRun:
+    """Run the calibrated engine with ``effects``.
+
+    Raises AbsentError where the test does not state it or it is not calibrated.
+    """
     law = Regression.of(calibration)
     tank = Signal.of(log["p_tank"]).shifted(segments.t_open.value or 0.0)
     instant = segments.time("t_feed") or min(0.1, 0.1 * (segments.time("t_v") or 1.0))
     pressure = line_at(tank, instant)
-    engine = engine_of_test(definition, calibration, _temperature(definition, pressure), law)
+    engine = engine_of_test(definition, calibration, _temperature(definition, pressure), law, effects)
     started = starting_for(engine, instant, pressure)
     return FullRun(started, burn(started, longest=LONGEST))
 
@@ -84,7 +119,7 @@ def moved(full: FullRun, change: Mapping[str, float]) -> Burn:
 
 
 def compare_full(log: TestLog, segments: Segments, full: FullRun) -> list[Residual]:
-    """Every channel that the model has, over the burn."""
+    """Every channel that the model has, over the burn, as its sensors read it."""
     burnt = full.burnt
     models = {
         "p_tank": burnt.output("tank_pressure"),
@@ -93,6 +128,7 @@ def compare_full(log: TestLog, segments: Segments, full: FullRun) -> list[Residu
         "thrust": burnt.output("thrust"),
         "m_tank": burnt.state("tank_mass"),
     }
+    models = read_as(models, burnt.time, full.engine.effects)
     usable = {name: model for name, model in models.items() if name in log and log[name].good.sum() > 8}
     if "m_tank" in usable and not _cell_reads(log, segments, full.engine.oxidizer_mass):
         del usable["m_tank"]

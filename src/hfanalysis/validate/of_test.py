@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from hfanalysis.adopt.sensors import corrected
 from hfanalysis.calibrate.engine_of_test import Regression
+from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.quantity import Quantity
 from hfanalysis.segment.phases import Segments
@@ -64,12 +66,13 @@ def validate(
     definition: TestDefinition,
     calibration: Mapping[str, Any] | None,
     uncalibrated: str | None,
+    effects: Sequence[Active] = (),
 ) -> Validation:
-    """Validate a test; ``uncalibrated`` says why ``calibration`` is None.
+    """Validate a test, ``effects`` acting; ``uncalibrated`` says why ``calibration`` is None.
 
     Raises AbsentError where there is nothing to compare and nothing to measure.
     """
-    work = _Work(log, segments, definition, calibration, uncalibrated)
+    work = _Work(log, segments, definition, calibration, uncalibrated, effects)
     found = work.result()
     if not found.residuals and all(q.value is None for q in found.measured.values()):
         raise AbsentError(next(iter(found.absent.values())))
@@ -86,8 +89,11 @@ class _Work:
         definition: TestDefinition,
         calibration: Mapping[str, Any] | None,
         uncalibrated: str | None,
+        effects: Sequence[Active],
     ) -> None:
         self.log, self.segments, self.definition = log, segments, definition
+        self.effects = effects
+        self.true = corrected(log, segments.t_open.value or 0.0, effects)
         self.calibration = calibration or {}
         self.uncalibrated = uncalibrated
         self.ambient = definition.ambient_pressure.value
@@ -103,12 +109,12 @@ class _Work:
             "chamber_forced": self._try("chamber_forced", lambda: self._chamber_forced(full, flows)),
             "full": compare_full(self.log, self.segments, full) if full else None,
         }
-        measured = performance.measured(self.log, self.segments, self.definition, self.calibration)
+        measured = performance.measured(self.true, self.segments, self.definition, self.calibration)
         if full is not None:
             model = performance.modelled(full, self.calibration)
         else:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
-        sensors = findings(self.log, self.segments, self.definition, self.fire)
+        sensors = findings(self.true, self.segments, self.definition, self.fire)
         kept = {mode: found for mode, found in residuals.items() if found}
         told = (ZERO,) if any(ZERO in warning for warning in self.log.warnings) else ()
         return Validation(kept, measured, model, self._histories(full, flows), sensors, self.absent, told)
@@ -123,30 +129,33 @@ class _Work:
             return None
 
     def _tank_free(self) -> list[Residual]:
-        return run_tank_free(self.log, self.segments, self.calibration, self.definition)
+        return run_tank_free(self.log, self.segments, self.calibration, self.definition, self.effects)
 
     def _full(self) -> FullRun:
         if isinstance(self.fire, str):
             raise AbsentError(self.fire)
-        return run_full(self.log, self.segments, self.calibration, self.definition)
+        return run_full(self.true, self.segments, self.calibration, self.definition, self.effects)
 
     def _flows(self, full: FullRun | None) -> Flows:
         if full is None or isinstance(self.fire, str):
             raise AbsentError(self.absent["full"])
-        alone = run_tank_alone(self.log, self.segments, self.calibration, self.definition, constant=False)
+        alone = run_tank_alone(
+            self.true, self.segments, self.calibration, self.definition, constant=False, effects=self.effects
+        )
         time = histories_of.clock(self.log, self.segments, self.fire.end)
-        oxidizer = oxidizer_flow(self.log, self.segments, self.calibration, self.definition, alone, time)
-        return burn_fuel(full.engine, Regression.of(self.calibration), time, oxidizer)
+        oxidizer = oxidizer_flow(self.true, self.segments, self.calibration, self.definition, alone, time)
+        factor = full.factor("regression_factor", time)
+        return burn_fuel(full.engine, Regression.of(self.calibration), time, oxidizer, factor)
 
     def _chamber_forced(self, full: FullRun | None, flows: Flows | None) -> list[Residual]:
         if full is None or flows is None or isinstance(self.fire, str):
             raise AbsentError(self.absent.get("full") or self.absent["histories"])
-        return run_chamber_forced(self.log, self.segments, full.engine, flows, self.ambient, self.fire.end)
+        return run_chamber_forced(self.log, self.segments, full, flows, self.ambient, self.fire.end)
 
     def _histories(self, full: FullRun | None, flows: Flows | None) -> Histories:
         end = self.fire.end if isinstance(self.fire, Fire) else 10.0
         time = histories_of.clock(self.log, self.segments, end)
-        values = histories_of.measured_histories(self.log, self.segments, self.definition, time)
+        values = histories_of.measured_histories(self.true, self.segments, self.definition, time)
         if full is None or flows is None or isinstance(self.fire, str):
             reason = self.absent.get("histories", "")
             return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason))

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.engine_of_test import effective_area, exponent, loss_factor
+from hfanalysis.adopt.sensors import corrected
+from hfanalysis.calibrate.engine_of_test import effective_area, exponent, loaded_mass, loss_factor, tank_of_test
 from hfanalysis.calibrate.evidence import line_at
-from hfanalysis.engine.blowdown import Blowdown, FeedSystem, blow_down
+from hfanalysis.engine.blowdown import FeedSystem, blow_down
+from hfanalysis.engine.effect import Active
+from hfanalysis.engine.model import NITROGEN, STATES
+from hfanalysis.engine.observe import read_as
 from hfanalysis.engine.tank import split
+from hfanalysis.engine.tank_alone import TankAlone as WithEffects
 from hfanalysis.errors import AbsentError
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
@@ -28,30 +33,38 @@ LONGEST = 60.0
 """Seconds after the opening up to which the model is compared."""
 
 
+FILLING_STEPS = 200
+"""Steps of the tank from the opening to t_feed, where effects bring states of their own."""
+
+
 @dataclass(frozen=True)
 class TankAlone:
-    """A run of the tank alone: ``measured`` p_tank, the ``run`` at the same times, its ``chamber`` pressure [Pa].
+    """A run of the tank alone at the times of ``measured`` p_tank; ``chamber`` and ``run_pressure`` [Pa], ``flow``
+    through the injector [kg/s], ``mass`` [kg], liquid gone at ``t_v`` [s] (NaN: not).
 
     ``start`` is where it starts [s after the opening], ``exponent`` the calibrated one of the vapour (None: there is
-    none); ``density`` [kg/m^3] of what leaves the tank.
+    none); ``factor``: what effects make of the injector's flow.
     """
 
     measured: Signal
-    run: Blowdown
+    pressure: Array
+    flow: Array
+    mass: Array
+    t_v: float
     chamber: Array
-    feed: FeedSystem
     start: float
     exponent: float | None
-    density: Array
-
-    @property
-    def run_pressure(self) -> Array:
-        """Modelled pressure before the injector: p_c + mdot^2 / (2 rho (C_i N_i A_i)^2) [Pa]."""
-        return self.chamber + 0.5 * self.run.flow**2 / (self.density * self.feed.area**2)
+    run_pressure: Array
+    factor: Array
 
 
 def run_tank_alone(
-    log: TestLog, segments: Segments, calibration: Mapping[str, Any], definition: TestDefinition, constant: bool
+    log: TestLog,
+    segments: Segments,
+    calibration: Mapping[str, Any],
+    definition: TestDefinition,
+    constant: bool,
+    effects: Sequence[Active] = (),
 ) -> TankAlone:
     """The tank from t_feed on with the measured chamber pressure; ``constant``: losses by phase instead of K_loss.
 
@@ -71,29 +84,71 @@ def run_tank_alone(
     chamber = _chamber(log, segments, definition, part.time)
     mass, temperature = _start(saturation, tank, feed, calibration, segments, start)
     m = calibration["m"]["value"]
+    acting = [active for active in effects if active.effect.term is not None]
+    if acting:
+        alone = tank_of_test(definition, feed, mass, temperature, exponent(calibration)[0], acting)
+        loaded = loaded_mass(definition, calibration)
+        return _with_effects(alone, loaded, log, segments, definition, part, chamber, m)
     run = blow_down(saturation, feed, mass, temperature, part.time, chamber, exponent(calibration)[0])
     wet = ~(part.time >= run.t_v)
     density = np.where(
         wet, saturation.liquid_density(np.where(wet, run.temperature, temperature)), run.mass / feed.volume
     )
-    return TankAlone(part, run, chamber, feed, start, m, density)
+    run_pressure = chamber + 0.5 * run.flow**2 / (density * feed.area**2)  # report, eq. 3.2
+    factor = np.ones(part.time.size)
+    return TankAlone(part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run_pressure, factor)
+
+
+def _with_effects(
+    tank: WithEffects,
+    loaded: float,
+    log: TestLog,
+    segments: Segments,
+    definition: TestDefinition,
+    part: Signal,
+    chamber: Array,
+    m: float | None,
+) -> TankAlone:
+    """The same with effects; their own states at t_feed are those of a run from the opening."""
+    start, saturation, feed = float(part.time[0]), tank.engine.saturation, tank.engine.feed
+    temperature, pressure = tank.engine.temperature, line_at(part, float(part.time[0]))
+    ready = tank
+    before = np.linspace(0.0, start, FILLING_STEPS + 1)
+    for _ in range(2 if start > 0.0 else 0):
+        first = tank.at(tank_mass=loaded, tank_temperature=temperature)
+        filled = first.run(before, _chamber(log, segments, definition, before))
+        beside = float(filled.pressure[-1]) - float(saturation.pressure(filled.temperature[-1]))
+        temperature = float(saturation.temperature(min(pressure - beside, 0.9999 * saturation.pressure_range[1])))
+        last = filled.states[-1]
+        ready = tank.at(tank_temperature=temperature, tank_nitrogen=last[NITROGEN], own=last[len(STATES) :])
+    run = ready.run(part.time, chamber)
+    wet = ~(part.time >= run.t_v)
+    liquid = saturation.liquid_density(np.where(wet, run.temperature, temperature))
+    factor = run.injector_factor(feed.area, np.where(wet, liquid, run.mass / feed.volume))
+    return TankAlone(part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run.run_pressure, factor)
 
 
 def run_tank_free(
-    log: TestLog, segments: Segments, calibration: Mapping[str, Any], definition: TestDefinition
+    log: TestLog,
+    segments: Segments,
+    calibration: Mapping[str, Any],
+    definition: TestDefinition,
+    effects: Sequence[Active] = (),
 ) -> list[Residual]:
-    """Measured and modelled tank and run-line pressure from t_feed on.
+    """Measured and modelled tank and run-line pressure from t_feed on, as their sensors read them.
 
     Raises AbsentError where C_i cannot be had. Where m is not identified the run ends with the liquid.
     """
-    alone = run_tank_alone(log, segments, calibration, definition, definition.model.conventions == "report")
-    time, run = alone.measured.time, alone.run
+    true = corrected(log, segments.t_open.value or 0.0, effects)
+    alone = run_tank_alone(true, segments, calibration, definition, definition.model.conventions == "report", effects)
+    time = alone.measured.time
     keep = np.ones(time.size, dtype=bool)
     notes: tuple[str, ...] = ()
     if alone.exponent is None:
-        keep = ~(time > run.t_v)
+        keep = ~(time > alone.t_v)
         notes = ("m is not identified: the tank-alone run ends with the liquid",)
-    models = {"p_tank": run.pressure, "p_run": alone.run_pressure}
+    models = {"p_tank": alone.pressure, "p_run": alone.run_pressure}
+    models = read_as(models, time, effects, {"p_chamber": alone.chamber, "m_tank": alone.mass})
     return [
         compared(log, segments, name, time[keep], model[keep], notes) for name, model in models.items() if name in log
     ]

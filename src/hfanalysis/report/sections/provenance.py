@@ -21,6 +21,8 @@ def render(material: Material) -> Iterator[Block]:
         (f"{name}: {key}" if key in ("code", "parameters") or key.startswith("parameters") else key, code)
         for name, key, code in _entries(material)
     ]
+    if material.adopted:
+        rows.insert(0, ("adopted effects", Markup("{}").format(material.adopted)))
     caption = "SHA-256 of the files, versions and parameters behind every number on this page."
     yield html.table("Provenance", caption, ("what", "is"), rows)
 

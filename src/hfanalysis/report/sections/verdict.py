@@ -20,6 +20,8 @@ KEY_NUMBERS = ("burn_time", "total_impulse", "specific_impulse", "peak_thrust", 
 def render(material: Material) -> Iterator[Block]:
     """A sentence, the key numbers, and four lists."""
     yield html.paragraph(sentence(material), "lead")
+    if material.adopted:
+        yield html.paragraph(material.adopted)
     for stage, reason in spoken_absences(material).items():
         absent = Markup('<p class="absent"><strong>{}:</strong> {}</p>')
         yield absent.format(stage, html.switchable(reason))

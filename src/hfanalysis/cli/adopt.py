@@ -1,0 +1,79 @@
+"""hfa diagnose --apply and --retract: making what a diagnosis names part of the model, and undoing that."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import hfanalysis
+from hfanalysis.adopt import file_for
+from hfanalysis.adopt.effects import of_diagnosis, write_adopted
+from hfanalysis.cli.ending import tell
+from hfanalysis.cli.perform import Request, stage
+from hfanalysis.effects import FOLDER, library
+from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.stages.base import Context
+from hfanalysis.stages.opening import open_test
+
+MARK = "Adopted by hfa diagnose"
+"""How a file begins that a diagnosis wrote, and another may write over."""
+
+
+def apply(request: Request, stand: bool) -> None:
+    """Diagnose, and adopt what is named. Raises AbsentError where nothing is."""
+    context = stage("diagnose", request)
+    path = adopt(context, context.read_json("diagnosis.json"), stand)
+    tell(f"{path}: written; every stage of {_whose(context, stand)} now has it in its model")
+
+
+def retract(request: Request, stand: bool) -> None:
+    """Remove the file of adopted effects. Raises AbsentError where there is none."""
+    context = open_test(request.root, request.test, request.out)
+    path = _path(context, stand)
+    if not path.is_file():
+        raise AbsentError(f"{path}: there is no such file; nothing has been adopted for {_whose(context, stand)}")
+    path.unlink()
+    tell(f"{path}: removed; the model of {_whose(context, stand)} is the base model again")
+
+
+def adopt(context: Context, diagnosis: Mapping[str, Any], stand: bool = False) -> Path:
+    """Write the effects that a diagnosis.json names; returns the file.
+
+    Raises AbsentError where it names none, InputError for a file that somebody has written by hand.
+    """
+    if diagnosis["verdict"] != "named" or not diagnosis["effects"]:
+        raise AbsentError(
+            f"test {context.id}: there is nothing to adopt: the diagnosis names no effect (verdict "
+            f"{diagnosis['verdict']!r}; what holds 90 %: {', '.join(diagnosis['set90'])})"
+        )
+    path = _path(context, stand)
+    if path.is_file() and not path.read_text(encoding="utf-8", errors="replace").startswith(f"# {MARK}"):
+        raise InputError(f"{path}: found a file that no diagnosis wrote; expected none: move it away first")
+    found = of_diagnosis(diagnosis["effects"], library(context.root / FOLDER))
+    write_adopted(path, found, _header(context, diagnosis, stand))
+    return path
+
+
+def _header(context: Context, diagnosis: Mapping[str, Any], stand: bool) -> list[str]:
+    named = ", ".join(f"{e['name']} with probability {e['probability']:.2f}" for e in diagnosis["effects"])
+    option = " --stand" if stand else ""
+    return [
+        f"{MARK} {context.id} --apply{option} (hfanalysis {hfanalysis.__version__}).",
+        f"Verdict {diagnosis['verdict']}: {named}.",
+        f"Every stage of {_whose(context, stand)} has it in its model as long as this file is here. To remove it:",
+        f"delete the file, or hfa diagnose {context.id} --retract{option}",
+    ]
+
+
+def _whose(context: Context, stand: bool) -> str:
+    return f"all tests of stand {context.definition.test.stand}" if stand else context.id
+
+
+def _path(context: Context, stand: bool) -> Path:
+    name = context.definition.test.stand if stand else context.id
+    if not name:
+        raise InputError(
+            f"{context.definition.path}, test.stand: is missing; expected the stand whose effects are meant"
+        )
+    return file_for(context.root, name)

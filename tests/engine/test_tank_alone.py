@@ -1,0 +1,56 @@
+"""The tank alone on the engine's equations: the base model's blowdown, and the engine's own course with effects."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.effects.runs import typical
+from tests.engine.stand import engine_on_stand
+
+from hfanalysis.effects import effect
+from hfanalysis.engine.blowdown import blow_down
+from hfanalysis.engine.model import STATES
+from hfanalysis.engine.tank_alone import TankAlone
+from hfanalysis.engine.unsteady import burn
+
+TIME = np.linspace(0.0, 9.0, 1801)
+
+
+def test_with_next_to_no_heat_it_is_the_blowdown() -> None:
+    engine = engine_on_stand(effects=(effect("tank_heat").at(power=1e-9),))
+    chamber = 14e5 - 5e4 * TIME
+    run = TankAlone.of(engine).run(TIME, chamber)
+    plain = blow_down(engine.saturation, engine.feed, engine.oxidizer_mass, engine.temperature, TIME, chamber, 1.1)
+    assert run.t_v == pytest.approx(plain.t_v, abs=1e-9)
+    assert run.pressure == pytest.approx(plain.pressure, rel=1e-9)
+    assert run.flow == pytest.approx(plain.flow, rel=1e-8)
+    assert run.mass == pytest.approx(plain.mass, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "name", ["tank_heat", "tank_wall_heat_capacity", "n2_purge", "tank_stratification", "injector_choked_vapor",
+             "injector_two_phase", "tank_nonequilibrium"],
+)  # fmt: skip
+def test_on_the_engines_own_chamber_pressure_it_takes_the_engines_course(name: str) -> None:
+    engine = engine_on_stand(effects=(typical(name),))
+    done = burn(engine, TIME[-1], rtol=1e-7, run_on=True, times=TIME)
+    run = TankAlone.of(engine).run(TIME, done.output("chamber_pressure"))
+    assert done.liquid_out is not None
+    later = TIME > 0.05  # the chamber lights within a few samples, between which its pressure is taken linear
+    assert run.t_v == pytest.approx(done.liquid_out, abs=2e-3)
+    assert run.pressure[later] == pytest.approx(done.output("tank_pressure")[later], rel=2e-3)
+    assert run.run_pressure[later] == pytest.approx(done.output("run_pressure")[later], rel=5e-3)
+
+
+def test_a_given_loss_takes_the_place_of_the_modelled_one() -> None:
+    engine = engine_on_stand(effects=(effect("tank_heat").at(power=1.0),))
+    found = TankAlone.of(engine).run(TIME[:100], np.full(100, 14e5), loss=np.full(100, 3e5))
+    assert found.pressure - found.run_pressure == pytest.approx(3e5)
+
+
+def test_it_starts_where_it_is_told() -> None:
+    tank = TankAlone.of(engine_on_stand(effects=(typical("tank_stratification"),)))
+    moved = tank.at(tank_temperature=285.0, own=np.array([2e4]))
+    first = moved.run(TIME[:2], np.full(2, 14e5))
+    assert first.states[0, len(STATES)] == 2e4
+    assert first.pressure[0] == pytest.approx(float(tank.engine.saturation.pressure(285.0)) + 2e4)
