@@ -85,7 +85,8 @@ def burn_fuel(engine: Engine, law: Regression, time: Array, oxidizer: Array, fac
     """The fuel that this oxidizer flow [kg/s] burns, at ``factor`` times the rate of the law."""
     power = 2.0 * law.n + 1.0
     steps = np.diff(time, prepend=time[0])
-    summed = np.cumsum(factor * steps * np.maximum(oxidizer, 0.0) ** law.n * (oxidizer > 0.0))
+    flowing = oxidizer > 0.0
+    summed = np.cumsum(factor * steps * np.where(flowing, oxidizer, 1.0) ** law.n * flowing)
     opened = engine.port_radius**power + power * law.a * pi**-law.n * summed
     port = np.minimum(opened ** (1.0 / power), engine.outer_radius)
     burning = (port < engine.outer_radius) & (oxidizer > 0.0)

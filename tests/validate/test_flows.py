@@ -1,0 +1,29 @@
+"""The fuel that a given oxidizer flow burns."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.engine.stand import engine_on_stand
+
+from hfanalysis.calibrate.engine_of_test import Regression
+from hfanalysis.validate.flows import burn_fuel
+
+TIME = np.arange(-1.0, 3.0, 0.02)
+FLOW = np.where(TIME > 0.0, 1.2, 0.0)
+
+
+@pytest.mark.parametrize("n", [0.5, 0.0, -0.1])
+def test_the_port_opens_at_the_rate_whatever_the_exponents_sign(n: float) -> None:
+    engine = engine_on_stand()
+    found = burn_fuel(engine, Regression(1e-4 * 300.0 ** (0.5 - n), n), TIME, FLOW)
+    opened = np.concatenate(([0.0], np.cumsum(found.rate[1:] * np.diff(TIME))))
+    assert found.port[TIME <= 0.0] == pytest.approx(engine.port_radius)
+    assert found.port - engine.port_radius == pytest.approx(opened, rel=0.02, abs=1e-6)
+    assert found.port[-1] > engine.port_radius + 1e-3
+
+
+def test_an_effects_factor_is_a_factor_of_the_rate() -> None:
+    engine, law = engine_on_stand(), Regression(1e-4, 0.0)
+    plain, half = (burn_fuel(engine, law, TIME, FLOW, factor) for factor in (1.0, np.full(TIME.size, 0.5)))
+    assert half.port - engine.port_radius == pytest.approx(0.5 * (plain.port - engine.port_radius), rel=1e-9)
