@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from benchmarks.virtual_stand import noise
@@ -9,8 +11,9 @@ from stand import AMBIENT, Stand, Trial, fire, signal
 
 from hfanalysis.engine.tank import mass_along_blowdown
 from hfanalysis.segment.ending import CRITICAL_RATIO, find_unchoking
+from hfanalysis.segment.falls import abrupt_falls
 from hfanalysis.segment.feed import find_line_full
-from hfanalysis.segment.fuel import find_fuel_end
+from hfanalysis.segment.fuel import _dated, find_fuel_end
 from hfanalysis.segment.kind import recognise
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.purge import find_nitrogen
@@ -192,6 +195,73 @@ def test_the_end_of_the_liquid_is_not_taken_for_that_of_the_fuel() -> None:
     found = find_fuel_end(signals_of(test), AMBIENT, 0.1, test.t_v, 9.0)
     assert isinstance(found, str)
     assert "do not fall against the feed" in found
+
+
+def ending_beside_the_liquid(apart: float, rate: float = RATE) -> Trial:
+    """A test whose fuel is gone ``apart`` seconds after the liquid, whose end moves with that of the fuel."""
+    test = fire(Stand(t_fuel_out=5.7 + apart), rate=rate)
+    for _ in range(3):
+        test = fire(Stand(t_fuel_out=test.t_v + apart), rate=rate)
+    return test
+
+
+def rippled(test: Trial, share: float = 0.03) -> dict[str, Signal]:
+    """Its signals with a combustion oscillation of 43 Hz."""
+    ripple = 1.0 + share * np.sin(2.0 * np.pi * 43.0 * test.time + 1.0)
+    chamber = AMBIENT + (test.values["p_chamber"] - AMBIENT) * ripple
+    values = {**test.values, "p_chamber": chamber, "thrust": test.values["thrust"] * ripple}
+    return signals_of(replace(test, values=values))
+
+
+@pytest.mark.parametrize("rate", [250.0, 1000.0])
+@pytest.mark.parametrize("apart", [-0.3, -0.2, -0.16, -0.1, 0.09, 0.12, 0.2, 0.3, 0.5])
+def test_fuel_and_liquid_that_end_close_to_each_other_are_told_apart(apart: float, rate: float) -> None:
+    test = ending_beside_the_liquid(apart, rate)
+    signals = rippled(test)
+    liquid = find_liquid_end(signals, 8.0, test.p_v)
+    assert liquid is not None
+    assert liquid.time == pytest.approx(test.t_v, abs=0.006)
+    fuel = find_fuel_end(signals, AMBIENT, 0.1, liquid.time, 9.0)
+    assert not isinstance(fuel, str)
+    assert fuel.time == pytest.approx(test.t_v + apart, abs=0.006)
+
+
+def test_near_the_end_of_the_liquid_too_the_thrust_has_to_fall_with_the_chamber() -> None:
+    test = ending_beside_the_liquid(0.09)
+    signals = signals_of(test)
+    signals["thrust"] = signals_of(fire(rate=RATE))["thrust"]
+    assert isinstance(find_fuel_end(signals, AMBIENT, 0.1, test.t_v, 9.0), str)
+
+
+@pytest.mark.parametrize("relaxation", [0.005, 0.02, 0.05, 0.15])
+def test_a_chamber_that_empties_slowly_after_the_liquid_is_no_end_of_the_fuel(relaxation: float) -> None:
+    test = fire(rate=1000.0)
+    gone = np.maximum(test.time - test.t_v, 0.0)
+    fed = test.values["thrust"] / np.where(gone > 0.0, 0.35 + 0.65 * np.exp(-gone / 0.004), 1.0)
+    thrust = fed * (0.35 + 0.65 * np.exp(-gone / relaxation))
+    chamber = AMBIENT + thrust * np.ptp(test.values["p_chamber"]) / np.ptp(test.values["thrust"])
+    slow = replace(test, values={**test.values, "p_chamber": chamber, "thrust": thrust})
+    assert isinstance(find_fuel_end(signals_of(slow), AMBIENT, 0.1, test.t_v, 9.0), str)
+
+
+def test_a_bend_in_the_noise_near_ambient_cannot_be_dated_and_is_no_sudden_fall() -> None:
+    ramp = np.interp(TIME, [5.0, 6.0, 6.4, 7.0], [0.45e5, 0.35e5, 0.1e5, 0.08e5])
+    assert _dated({"p_chamber": noisy("p_chamber", AMBIENT + ramp, 8e3)}, 6.2, 3.0) is None
+    step = np.where(TIME < 6.2, 1.5e5, 0.7e5)
+    sudden = _dated({"p_chamber": noisy("p_chamber", AMBIENT + step, 8e3)}, 6.2, 3.0)
+    assert sudden is not None
+    assert sudden.time == pytest.approx(6.2, abs=0.01)
+
+
+def test_abrupt_falls_are_told_apart_and_a_tail_or_a_swing_is_none() -> None:
+    def level(*falls: float, relaxation: float = 0.004) -> Array:
+        return np.prod([0.6 + 0.4 * np.exp(-since(t) / relaxation) for t in falls], axis=0) * 10e5
+
+    assert abrupt_falls(noisy("p_chamber", level(3.0, 3.08)), 0.0, 2.0, 4.0) == pytest.approx([3.0, 3.08], abs=0.015)
+    assert abrupt_falls(noisy("p_chamber", level(3.0, relaxation=0.3)), 0.0, 2.0, 4.0) == []
+    swing = 10e5 * (1.0 - 0.4 * np.exp(-0.5 * ((TIME - 3.0) / 0.02) ** 2))
+    assert abrupt_falls(noisy("p_chamber", swing), 0.0, 2.0, 4.0) == []
+    assert abrupt_falls(noisy("p_chamber", level(3.0)), 0.0, 20.0, 21.0) == []
 
 
 def test_fuel_that_thins_out_before_the_liquid_is_gone_is_dated_by_the_middle_of_its_fade() -> None:

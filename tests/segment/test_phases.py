@@ -69,6 +69,17 @@ def test_fuel_that_goes_before_the_liquid_is_seen() -> None:
     assert segments.to_json()["order"][0] == "t_fuel_out"
 
 
+@pytest.mark.parametrize(("t_fuel_out", "order"), [(5.523, ["t_fuel_out", "t_v"]), (5.798, ["t_v", "t_fuel_out"])])
+def test_fuel_that_goes_within_tenths_of_a_second_of_the_liquid_is_not_mixed_up_with_it(
+    t_fuel_out: float, order: list[str]
+) -> None:
+    test = fire(Stand(t_fuel_out=t_fuel_out), rate=500.0)
+    segments = found_in(test)
+    assert segments.time("t_fuel_out") == pytest.approx(t_fuel_out, abs=0.01)
+    assert segments.time("t_v") == pytest.approx(test.t_v, abs=0.01)
+    assert [name for name in segments.to_json()["order"] if name in order] == order
+
+
 @pytest.mark.parametrize(
     ("channel", "event", "reason"),
     [

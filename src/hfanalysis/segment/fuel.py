@@ -11,6 +11,11 @@ from hfanalysis.segment.refine import refine_step
 from hfanalysis.segment.signals import Array, Signal, sample_noise
 
 GRID = 0.01
+"""Seconds from one value of the chamber's response to the next."""
+
+SMOOTH = 0.03
+"""Seconds over which the pressures are smoothed for it."""
+
 WINDOW = 0.3
 """Seconds looked at on either side of a sudden fall."""
 
@@ -28,6 +33,18 @@ SUDDEN = 0.2
 
 RESIDENCE = 0.006
 """Standard deviation [s] of how far the pressure lags the end of the fuel: the chamber has to flush first."""
+
+SHARPLY_DATED = 0.01
+"""Standard deviation [s] within which a sudden fall has to be dated: a chamber that nears ambient bends, no more."""
+
+CLOSE = 0.012
+"""Seconds left out before a fall, and before t_v, where the two are close and the pressure is hardly smoothed."""
+
+CLOSE_FALL = 0.2
+"""Least part of the response, and of the thrust, that has to go at once close to t_v."""
+
+SHORT = 0.03
+"""Least length [s] of what is seen between t_v and a fall close to it."""
 
 CLEAR_FALL = 8.0
 """Least size of a sudden fall in standard deviations of its own scatter."""
@@ -67,20 +84,18 @@ def find_fuel_end(
 
     The chamber's response to the feed is (p_c - p_a) / sqrt(p_run - p_c): steady while the fire burns, two to five
     times smaller without it. At the end of the liquid (``t_v``) the feed itself changes, and windows do not reach
-    across.
+    across; from 0.08 s on either side of it a sudden fall is told from that of the liquid.
     """
     if "p_run" not in signals:
         return "without p_run a fall of the chamber pressure cannot be told from one of the feed"
-    response = _response(signals, ambient, end)
+    response = _response(signals, ambient, end, SMOOTH, GRID)
     if response is None:
         return "the chamber pressure is not above ambient for long enough"
-    sudden = _sudden(response, t_feed, t_v)
-    if sudden is not None and _thrust_falls(
-        signals, (sudden - WINDOW, sudden - GAP), (sudden + GAP, sudden + WINDOW), 0.03
-    ):
-        dated = _dated(signals, sudden, t_v)
-        if dated.duration <= SUDDEN:
-            return dated
+    sudden = _sudden(signals, response, t_feed, t_v)
+    if sudden is None and t_v is not None:
+        sudden = _close(signals, ambient, end, t_feed, t_v)
+    if sudden is not None:
+        return sudden
     fade = _fade(response, t_feed, t_v) if t_v is not None else None
     if fade is not None and t_v is not None:
         start = t_v - 0.1 - fade.duration
@@ -92,28 +107,92 @@ def find_fuel_end(
     )
 
 
-def _response(signals: Mapping[str, Signal], ambient: float, end: float) -> _Response | None:
+def _response(signals: Mapping[str, Signal], ambient: float, end: float, width: float, step: float) -> _Response | None:
     chamber, run = signals["p_chamber"], signals["p_run"]
-    width = max(0.03, 2.0 * chamber.step)
-    grid = np.arange(0.1, min(end, chamber.time[-1], run.time[-1]), max(GRID, chamber.step))
+    width, step = max(width, 2.0 * chamber.step), max(step, chamber.step)
+    grid = np.arange(0.1, min(end, chamber.time[-1], run.time[-1]), step)
     excess = np.interp(grid, chamber.time, chamber.smooth(width)) - ambient
     drop = np.interp(grid, run.time, run.smooth(width)) - ambient - excess
     fire = (excess > CLEAR) & (drop > 0.2e5)
     if fire.sum() < 20:
         return None
-    stop = min(int(np.flatnonzero(fire)[-1]) + int(WINDOW / GRID), grid.size)
+    stop = min(int(np.flatnonzero(fire)[-1]) + int(WINDOW / step), grid.size)
     drop = np.maximum(drop[:stop], 0.2e5)
     value = excess[:stop] * np.sqrt(np.median(drop) / drop)
     return _Response(grid[:stop], value, sample_noise(value))
 
 
-def _sudden(response: _Response, t_feed: float, t_v: float | None) -> float | None:
+def _close(signals: Mapping[str, Signal], ambient: float, end: float, t_feed: float, t_v: float) -> FuelEnd | None:
+    """A sudden fall so close to t_v that only the hardly smoothed pressure tells the two apart."""
+    response = _response(signals, ambient, end, 0.25 * SMOOTH, 0.4 * GRID)
+    if response is None:
+        return None
+    near = np.abs(response.time - t_v) < WINDOW + GAP
+    seen = [_close_fall(response, float(t), t_v) for t in response.time[near & (response.time > t_feed + 0.2)]]
+    best = max(seen, default=None, key=lambda fall: fall.size)
+    if best is None or best.size == 0.0:
+        return None
+    if not _thrust_steps(signals, best):
+        return None
+    return _dated(signals, 0.5 * (best.before[1] + CLOSE + best.after[0] - GAP), t_v)
+
+
+@dataclass(frozen=True)
+class _Fall:
+    """A fall's size in standard deviations (0 where it is none), and the intervals [s] before and after it."""
+
+    size: float
+    before: tuple[float, float]
+    after: tuple[float, float]
+
+
+def _close_fall(response: _Response, t: float, t_v: float) -> _Fall:
+    """A fall at t, close to t_v. One slope for both sides, of the longer: a short one cannot tell slope from ripple."""
+    before = (max(t - WINDOW, t_v + GAP) if t > t_v else t - WINDOW, t - CLOSE)
+    after = (t + GAP, min(t + WINDOW, t_v - CLOSE) if t < t_v else t + WINDOW)
+    nothing = _Fall(0.0, before, after)
+    a, b, c, d = np.searchsorted(response.time, (*before, *after))
+    if min(before[1] - before[0], after[1] - after[0]) < SHORT or min(b - a, d - c) < 4:
+        return nothing
+    level, fall, error = _step(response.time, response.value, before, after, response.noise)
+    clear = fall > max(CLOSE_FALL * level, SMALLEST_FALL, CLEAR_FALL * error)
+    return _Fall(fall / error, before, after) if clear else nothing
+
+
+def _step(
+    time: Array, value: Array, before: tuple[float, float], after: tuple[float, float], noise: float
+) -> tuple[float, float, float]:
+    """Level before a step, how far it falls beyond the slope common to both sides, and the fall's deviation."""
+    a, b, c, d = np.searchsorted(time, (*before, *after))
+    instant = 0.5 * (before[1] + after[0])
+    longer = slice(a, b) if before[1] - before[0] > after[1] - after[0] else slice(c, d)
+    slope = min(float(np.polyfit(time[longer] - instant, value[longer], 1)[0]), 0.0)
+    left, right = (value[side] - slope * (time[side] - instant) for side in (slice(a, b), slice(c, d)))
+    scatter = max(float(np.hypot(left.std(), right.std())), noise)
+    error = scatter * np.sqrt(GRID / (before[1] - before[0]) + GRID / (after[1] - after[0]))
+    return float(left.mean()), float(left.mean() - right.mean()), float(error)
+
+
+def _thrust_steps(signals: Mapping[str, Signal], fall: _Fall) -> bool:
+    """Whether the thrust, where it is measured, falls with the chamber beyond its own decline."""
+    if "thrust" not in signals:
+        return True
+    thrust = signals["thrust"]
+    if min(thrust.between(*fall.before).time.size, thrust.between(*fall.after).time.size) < 4:
+        return True
+    level, size, error = _step(thrust.time, thrust.value, fall.before, fall.after, thrust.noise)
+    return size > max(CLOSE_FALL * abs(level), 2.0 * error)
+
+
+def _sudden(signals: Mapping[str, Signal], response: _Response, t_feed: float, t_v: float | None) -> FuelEnd | None:
     best, at = 0.0, None
     for t in response.time[(response.time > t_feed + 0.2) & (response.time < response.time[-1] - 0.1)]:
         size = _fall_at(response, float(t), t_v)
         if size > best:
             best, at = size, float(t)
-    return at
+    if at is None or not _thrust_falls(signals, (at - WINDOW, at - GAP), (at + GAP, at + WINDOW), 0.03):
+        return None
+    return _dated(signals, at, t_v)
 
 
 def _fall_at(response: _Response, t: float, t_v: float | None) -> float:
@@ -151,13 +230,22 @@ def _thrust_falls(
     return bool(before.mean() - after.mean() > max(share * abs(before.mean()), error))
 
 
-def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> FuelEnd:
+def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> FuelEnd | None:
+    """The instant of a fall near ``rough`` [s], from samples on its side of t_v; None where it is not sudden."""
     chamber = signals["p_chamber"]
-    reach = max(0.1, 4.0 * chamber.step)
-    before = min(WINDOW, rough - t_v - GAP) if t_v is not None and rough > t_v else WINDOW
-    found = refine_step([chamber], rough, max(before, 3.0 * chamber.step), WINDOW, reach)
+    before, after, reach = WINDOW, WINDOW, max(0.1, 4.0 * chamber.step)
+    if t_v is not None and rough > t_v:
+        before = min(before, rough - t_v - 0.5 * GAP)
+        reach = min(reach, before)
+    elif t_v is not None:
+        after = min(after, t_v - rough - 0.5 * CLOSE)
+        reach = min(reach, after)
+    least = 3.0 * chamber.step
+    found = refine_step([chamber], rough, max(before, least), max(after, least), max(reach, least))
     if found is None:
         return FuelEnd(rough, GRID, 0.0)
+    if 3.0 * found.relaxation > SUDDEN or found.std > max(SHARPLY_DATED, chamber.step):
+        return None
     return FuelEnd(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)
 
 

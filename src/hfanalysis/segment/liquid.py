@@ -15,6 +15,7 @@ import numpy as np
 
 from hfanalysis.engine.tank import mass_along_blowdown, split
 from hfanalysis.segment.breaks import Break
+from hfanalysis.segment.falls import abrupt_falls
 from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.refine import refine_knee, refine_step
 from hfanalysis.segment.signals import Signal
@@ -37,6 +38,13 @@ LINE_REACH = 0.15
 
 SHARP = 0.04
 """Chamber and thrust count as sharp, and then date the event, where they relax faster than this [s]."""
+
+
+STEP_AFTER = 0.15
+"""Seconds after a fall of chamber pressure or thrust that are looked at, and how far from the knee it may be."""
+
+BESIDE = 0.04
+"""Seconds that a fall of chamber pressure or thrust takes, and within which it is found."""
 
 
 @dataclass(frozen=True)
@@ -173,10 +181,28 @@ def _weighted(steps: list[Break]) -> tuple[float, float]:
 
 
 def _sudden_fall(signal: Signal, knee: Break, half: float) -> Break | None:
+    if (single := _own_fall(signal, knee, half)) is not None:
+        return single
     before = signal.mean(knee.time - half, knee.time - 0.1)
     after = signal.mean(knee.time + 0.1, knee.time + half)
     scatter = signal.between(knee.time - half, knee.time - 0.1).value.std() if np.isfinite(before) else np.inf
     if not before - after > max(4.0 * scatter, 0.05 * abs(before)):
         return None
-    reach = max(0.15, 4 * knee.std, 3 * signal.step)
-    return refine_step([signal], knee.time, min(half, 0.3) + reach, 0.15 + reach, reach)
+    reach = max(STEP_AFTER, 4 * knee.std, 3 * signal.step)
+    return refine_step([signal], knee.time, min(half, 0.3) + reach, STEP_AFTER + reach, reach)
+
+
+def _own_fall(signal: Signal, knee: Break, half: float) -> Break | None:
+    """The nearest of several abrupt falls near a knee: the others are of the fuel. None where there are not several."""
+    quiet = signal.between(-3.0, -0.05).value
+    floor = float(np.median(quiet)) if quiet.size else 0.0
+    falls = abrupt_falls(signal, floor, knee.time - half - STEP_AFTER, knee.time + half + STEP_AFTER)
+    if len(falls) < 2:
+        return None
+    own = min(falls, key=lambda t: abs(t - knee.time))
+    earlier = [own - t for t in falls if t < own]
+    later = [t - own for t in falls if t > own]
+    least = 4.0 * signal.step
+    before = max(min([half, *(gap - 0.5 * BESIDE for gap in earlier)]), least)
+    after = max(min([STEP_AFTER, *(gap - 0.25 * BESIDE for gap in later)]), least)
+    return refine_step([signal], own, before, after, min(0.5 * before, 0.5 * after, BESIDE))
