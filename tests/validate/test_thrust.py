@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from stand import AMBIENT, Trial, definition, fire, log_of, segments_of
+from heated_cell import heated, quenched
+from stand import Trial, definition, segments_of
 
-from hfanalysis.testdata.log import TestLog
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.sensors import findings
 from hfanalysis.validate.thrust import thrust_of
@@ -17,20 +17,7 @@ from hfanalysis.validate.thrust import thrust_of
 @pytest.fixture(scope="module")
 def burn() -> Trial:
     """A firing whose chamber is back at ambient pressure 9 s after the opening, logged for 10 s more."""
-    test = fire(rate=200.0, after=14.0)
-    out = test.time > 9.0
-    values = {n: np.where(out, AMBIENT if n == "p_chamber" else 0.0, v) for n, v in test.values.items()
-              if n in ("p_chamber", "thrust")}  # fmt: skip
-    return replace(test, values={**test.values, **values})
-
-
-def heated(test: Trial, size: float) -> TestLog:
-    """The cell drifts by ``size`` [N] until the fire is out and then recovers half of that."""
-    log = log_of(test, white=0.0)
-    drift = np.interp(test.time, [0.0, 9.0, 21.0], [0.0, size, 0.5 * size])
-    thrust = replace(log["thrust"], values=log["thrust"].values + drift, zero_std=1.0)
-    chamber = replace(log["p_chamber"], zero_std=100.0)
-    return replace(log, channels={**log.channels, "thrust": thrust, "p_chamber": chamber})
+    return quenched()
 
 
 @pytest.mark.parametrize("size", [200.0, -150.0])

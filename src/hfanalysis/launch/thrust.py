@@ -12,6 +12,7 @@ from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import Channel, TestLog
+from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
 
 Array = NDArray[np.float64]
 
@@ -22,7 +23,7 @@ UNSEEN_DRIFT = 0.01
 """Of the peak thrust: standard deviation of a drift that no settled level after the burn shows."""
 
 SHAPE_OF_DRIFT = 12.0**-0.5
-"""Of the removed drift: standard deviation of how far along it a moment is, where all courses are as likely."""
+"""Of the drift: standard deviation of how far along it a moment is, where all courses are as likely."""
 
 UNSTATED_GAIN = 0.01
 """Standard deviation of a load cell's gain where nothing is said of its calibration."""
@@ -49,25 +50,33 @@ class MeasuredThrust:
 
 
 def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDefinition) -> MeasuredThrust:
-    """The thrust from the valve's opening to the burn's end.
+    """The thrust from the valve's opening to the burn's end, the same that the performance table has.
 
     Raises AbsentError where the log has no thrust or no firing.
     """
     channel = log["thrust"]
-    signal = Signal.of(channel)
-    if signal.dead:
+    if Signal.of(channel).dead:
         raise AbsentError(f"test {definition.test.id}: the thrust channel is dead; there is nothing to fly")
-    start = segments.t_open.value if segments is not None else None
-    if segments is None or start is None:
+    if segments is None or segments.t_open.value is None:
         raise AbsentError(f"test {definition.test.id}: no valve opening is known to count the thrust from")
-    end, of = burn_end(segments, definition, float(signal.time[-1]) - start)
-    burn = signal.shifted(start).between(0.0, end)
+    found = thrust_of(log, segments, definition)
+    end, of = burn_end(segments, definition, float(found.signal.time[-1]))
+    burn = found.signal.between(0.0, end)
     if burn.time.size < 8:
         raise AbsentError(f"test {definition.test.id}: the log has {burn.time.size} samples of thrust over the burn")
-    whole = signal.shifted(start)
     time = np.unique(np.concatenate(([0.0], burn.time, [end])))
-    notes = (f"burn from the opening to {end:.2f} s: {of}",)
-    return MeasuredThrust(time, whole.at(time), *_spreads(channel, burn), notes)
+    notes = (f"burn from the opening to {end:.2f} s: {of}", *_drift_taken(found))
+    return MeasuredThrust(time, found.signal.at(time), *_spreads(channel, found, burn), notes)
+
+
+def _left(found: Thrust) -> float:
+    """What the corrected cell still reads [N] with the chamber at ambient pressure; 0 where the log does not show it."""
+    return 0.0 if np.isnan(found.since) else found.signal.mean(found.since, found.since + FIRST)
+
+
+def _drift_taken(found: Thrust) -> tuple[str, ...]:
+    taken = found.error - _left(found)
+    return (f"{taken:.0f} N of the load cell's drift taken off over the burn",) if abs(taken) >= 0.5 else ()
 
 
 def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tuple[float, str]:
@@ -84,9 +93,11 @@ def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tup
     return last, "the log's end"
 
 
-def _spreads(channel: Channel, burn: Signal) -> tuple[float, float, float]:
+def _spreads(channel: Channel, found: Thrust, burn: Signal) -> tuple[float, float, float]:
+    """Standard deviations of zero, drift [N] and gain; a drift that is seen but not taken off counts in full."""
     peak = float(np.max(np.abs(burn.value)))
     zero = channel.accuracy if channel.zero_std is None else channel.zero_std
-    drift = UNSEEN_DRIFT * peak if channel.drift == 0.0 else SHAPE_OF_DRIFT * abs(channel.drift)
+    seen = float(np.hypot(SHAPE_OF_DRIFT * found.error, _left(found)))
+    drift = UNSEEN_DRIFT * peak if seen == 0.0 else seen
     gain = SPAN_SHARE * channel.accuracy / peak if channel.accuracy_stated else UNSTATED_GAIN
-    return float(zero), float(drift), max(float(gain), 1e-4)
+    return float(zero), drift, max(float(gain), 1e-4)
