@@ -183,7 +183,14 @@ FLIGHT: dict[str, Any] = {
             "why": "20 m/s",
         }
     },
-    "stability": {"margin_at_rail_departure": quantity(1.9, "calibers", 0.1)},
+    "rail_departure_velocity": quantity(20.0, "m/s", 0.05),
+    "burn_time": quantity(12.4, "s", 0.1),
+    "stability": {
+        "margin_at_rail_departure": quantity(1.9, "", 0.1),
+        "limits": [1.5, 6.0],
+        "gust_intensity": 0.1,
+        "winds": [{"wind": 2.235, "result": "passed"}, {"wind": 6.706, "result": "failed"}],
+    },
     "notes": ["burn from the opening to 17.00 s"],
     "warnings": [],
 }
@@ -192,10 +199,18 @@ FLIGHT: dict[str, Any] = {
 def _flight() -> Store:
     time = np.linspace(0.0, 27.0, 300)
     height = 2815.0 * (1.0 - (time / 27.0 - 1.0) ** 2)
-    speed = 208.0 * (1.0 - time / 27.0)
+    speed = np.minimum(40.0 * time, 208.0 * (1.0 - time / 27.0))
     ascent = {"time": Column(time, "s"), "height": Column(height, "m"), "speed": Column(speed, "m/s")}
     bands = {"time": Column(time, "s"), "height_low": Column(0.95 * height), "height_high": Column(1.05 * height)}
-    return {"ascent": ascent, "bands": bands}
+    return {"ascent": ascent, "bands": bands, "stability/0": _margin(1.9), "stability/1": _margin(1.2)}
+
+
+def _margin(start: float) -> dict[str, Column]:
+    """A margin that grows from the rail's end on, the better known the faster the rocket."""
+    time = np.linspace(0.6, 25.0, 300)
+    fade = np.exp(-(time - 0.6) / 2.0)
+    mean, std = 4.0 + (start - 4.0) * fade, 0.05 + 0.2 * fade
+    return {"time": Column(time, "s"), "margin_mean": Column(mean, "1"), "margin_std": Column(std, "1")}
 
 
 def stores() -> dict[str, Store]:

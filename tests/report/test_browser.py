@@ -165,7 +165,14 @@ def test_the_keyboard_does_what_the_mouse_does(opened: Page) -> None:
     assert ticks(opened) == before
 
 
+def unfold(tab: Page) -> None:
+    """Open every section."""
+    tab.ask("document.querySelectorAll('details.fold').forEach((fold) => { fold.open = true })")
+    tab.settle()
+
+
 def test_tab_reaches_every_chart_and_the_focus_is_seen(opened: Page) -> None:
+    unfold(opened)
     reached, outlined = set(), True
     for _ in range(400):
         opened.press("Tab")
@@ -268,7 +275,7 @@ def test_paper_has_all_charts_and_no_controls(opened: Page, tmp_path: Path) -> N
     opened.settle()
     visible = "[...document.querySelectorAll('{}')].filter((e) => e.checkVisibility()).length"
     assert opened.ask(visible.format("figure svg.chart")) == charts > 10
-    assert opened.ask(visible.format("details, nav, .bar, .save-csv")) == 0
+    assert opened.ask(visible.format("figure details, nav, .bar, .save-csv")) == 0
     assert opened.ask("getComputedStyle(document.body).color") == "rgb(27, 31, 36)"
     printed = opened.printed(tmp_path / "page.pdf").read_bytes()
     assert printed.startswith(b"%PDF")
@@ -280,6 +287,65 @@ def test_a_dark_screen_prints_on_white_paper(opened: Page, path: Path) -> None:
     opened.media("print", prefers_color_scheme="dark")
     assert opened.ask("getComputedStyle(document.documentElement).getPropertyValue('--paper')") == "#ffffff"
     assert opened.ask("getComputedStyle(document.body).color") == "rgb(27, 31, 36)"
+
+
+def test_the_page_opens_on_the_verdict_with_its_contents_in_sight(opened: Page) -> None:
+    bottoms = "[...document.querySelectorAll('{}')].map((e) => e.getBoundingClientRect().bottom)"
+    assert max(opened.ask(bottoms.format("#contents a, #verdict .lead, #verdict .key-numbers"))) < 900.0
+
+
+def test_what_is_looked_up_is_folded_and_its_link_opens_it(opened: Page) -> None:
+    shown = "[...document.querySelectorAll('{} svg.chart')].some((e) => e.checkVisibility())"
+    assert opened.ask(shown.format("#pressures"))
+    assert not opened.ask(shown.format("#residuals"))
+    link = "document.querySelector('#contents a[href=\"#residuals\"]').click()"
+    for _ in range(2):
+        opened.ask(link)
+        opened.ask("new Promise((done) => setTimeout(done, 100))")
+        opened.settle()
+        assert opened.ask(shown.format("#residuals"))
+        opened.ask("document.querySelector('#residuals summary').click()")
+        opened.settle()
+        assert not opened.ask(shown.format("#residuals"))
+
+
+def test_all_sections_but_the_verdict_fold_at_once(opened: Page) -> None:
+    height = "document.documentElement.scrollHeight"
+    whole = opened.ask(height)
+    opened.ask("document.querySelector('#fold-all').click()")
+    opened.settle()
+    assert opened.ask(height) < 0.4 * whole
+    assert opened.ask("document.querySelector('#verdict .lead').checkVisibility()")
+    opened.ask("document.querySelector('#fold-all').click()")
+    opened.settle()
+    assert opened.ask(height) > whole
+
+
+def test_a_chart_that_was_folded_fits_when_it_opens(opened: Page, path: Path) -> None:
+    opened.open(path, width=700)
+    unfold(opened)
+    frame = '[data-chart="full-thrust"]'
+    wide, drawn = opened.ask(
+        f"(() => {{ const plot = document.querySelector('{frame} .plot'); return [plot.clientWidth,"
+        " plot.querySelector('svg').viewBox.baseVal.width] })()"
+    )
+    assert drawn == pytest.approx(wide, abs=1.0)
+
+
+def test_the_margin_is_drawn_with_bands_for_every_wind_between_its_limits(opened: Page) -> None:
+    chart = '[data-chart="flight-margin"]'
+    opened.show(f"{chart} .plot")
+    for kind, count in (("line", 2), ("band", 2), ("level", 2)):
+        drawn = f"document.querySelectorAll('{chart} .chart > .{kind}:not([d$=\"h12\"])').length"
+        assert opened.ask(drawn) == count, kind
+    values = ticks(opened, chart, "y")
+    assert values[0] <= 1.5
+    assert values[-1] >= 6.0
+    opened.ask(f"document.querySelector('{chart} .plot').focus()")
+    opened.press("Home")
+    for _ in range(5):
+        opened.press("ArrowRight")
+    assert "wind 2.2 m/s" in opened.ask("document.getElementById('spoken').textContent")
 
 
 def test_without_script_the_charts_are_there_and_the_controls_are_not(tab: Page, path: Path) -> None:

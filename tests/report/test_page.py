@@ -131,7 +131,8 @@ def test_every_chart_has_a_text_alternative(text: str) -> None:
     reader = Reader(text)
     charts = [attrs for attrs in reader.all("svg") if attrs["class"] == "chart"]
     ids = [attrs["id"] for _, attrs in reader.tags if "id" in attrs]
-    assert len(charts) == len(reader.all("figure")) == len(reader.all("details")) == 21
+    tables = [attrs for attrs in reader.all("details") if attrs.get("class") != "fold"]
+    assert len(charts) == len(reader.all("figure")) == len(tables) == 22
     assert len(ids) == len(set(ids))
     for chart in charts:
         assert chart["role"] == "img"
@@ -347,8 +348,30 @@ def test_a_drift_that_could_not_be_removed_is_told(tmp_path: Path) -> None:
 def test_the_flight_tells_its_checks_and_its_margin(text: str) -> None:
     flight = text[text.index('<section id="flight"') :]
     assert re.search(r"failed</span> velocity leaving the rail: at least <span[^>]*>30\.48 m/s</span>", flight)
-    assert "margin at rail departure" in flight
-    assert "calibers" in flight
+    assert "static margin at rail departure (calibers)" in flight
+
+
+def test_without_a_geometry_the_page_says_what_to_add(tmp_path: Path) -> None:
+    made = material(tmp_path)
+    bare = {"margin_at_rail_departure": {"value": None, "reason": "no [rocket.geometry] is given"}}
+    products = {**made.products, "flight": {**made.products["flight"], "stability": bare}}
+    text = page(replace(made, products=products))
+    assert 'id="chart-flight-margin"' not in text
+    (sentence,) = re.findall(r"No static margin is drawn: [^<]*", text)
+    for name in ("[rocket.geometry]", "test.toml", "nose", "fins", "structure", "tank_position", "chamber_position"):
+        assert name in sentence
+
+
+def test_the_flight_s_charts_mark_the_rail_s_end_and_the_end_of_the_burn(text: str) -> None:
+    found = re.findall(r"Events: off the rail at 0\.5\d s, burn out at 12\.40 s\.", text)
+    assert len(found) >= 3
+
+
+def test_c_star_says_where_it_ends_and_why(tmp_path: Path, text: str) -> None:
+    assert "c* ends at t_purge" in text
+    made = material(tmp_path)
+    segments = {name: value for name, value in made.products["segments"].items() if name != "t_purge"}
+    assert "c* ends" not in page(replace(made, products={**made.products, "segments": segments}))
 
 
 def test_the_index_lists_every_test() -> None:

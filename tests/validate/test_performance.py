@@ -9,13 +9,22 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from benchmarks.reference_engine import hf5_like
 from stand import AMBIENT, THROAT, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.quantity import Quantity
 from hfanalysis.testdata.log import Channel, TestLog
 from hfanalysis.testdata.sections import Grain, Observed
 from hfanalysis.units import Value
-from hfanalysis.validate.histories import ABOUT, Histories, clock, measured_histories, write_histories
+from hfanalysis.validate.flows import Flows
+from hfanalysis.validate.histories import (
+    ABOUT,
+    Histories,
+    clock,
+    efficiencies,
+    measured_histories,
+    write_histories,
+)
 from hfanalysis.validate.performance import Fire, fire_of, measured
 from hfanalysis.validate.sensors import findings
 
@@ -140,3 +149,19 @@ def test_histories_are_read_with_their_units(burn: Trial, tmp_path: Path) -> Non
     true = float(np.interp(2.0, burn.time, burn.values["p_chamber"]))
     assert at == pytest.approx(true, rel=1e-3)
     assert true > 5.0 * AMBIENT
+
+
+def test_c_star_ends_where_nitrogen_enters_and_the_thrust_coefficient_does_not() -> None:
+    """The chamber pressure is kept up by a gas that is in none of the flows."""
+    engine, time = hf5_like(), np.arange(0.0, 10.0, 0.02)
+    fed = np.where(time < 6.0, 1.0, np.exp(-(time - 6.0)))
+    flows = Flows(time, fed, 0.12 * fed, np.full(time.size, 1e-3), np.full(time.size, 0.03))
+    held = {"p_chamber": np.full(time.size, 10e5), "thrust_corrected": np.full(time.size, 2300.0)}
+    fire = Fire(9.5, 0.1, "video")
+    blind, told = (efficiencies(held, flows, engine, AMBIENT, fire, purge) for purge in (None, 6.0))
+    before, after = (time > 0.5) & (time < 5.8), (time > 6.5) & (time < 9.0)
+    np.testing.assert_array_equal(told["c_star"][before], blind["c_star"][before])
+    assert np.nanmax(blind["c_star"][after]) > 5.0 * blind["c_star"][before].mean()
+    assert np.isnan(told["c_star"][after]).all()
+    assert np.isnan(told["c_star_efficiency"][after]).all()
+    assert np.isfinite(told["thrust_coefficient_efficiency"][after]).all()

@@ -70,7 +70,7 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
 
 
 def _left(found: Thrust) -> float:
-    """What the corrected cell still reads [N] with the chamber at ambient pressure; 0 where the log does not show it."""
+    """What the corrected cell reads [N] with the chamber at ambient pressure; 0 where the log does not show it."""
     return 0.0 if np.isnan(found.since) else found.signal.mean(found.since, found.since + FIRST)
 
 

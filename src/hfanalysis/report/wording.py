@@ -50,6 +50,8 @@ NAMES: dict[str, str] = {
     "terminal_velocity_drogue": "terminal velocity, drogue",
     "terminal_velocity_main": "terminal velocity, main",
     "impact_velocity_ballistic": "impact velocity, ballistic",
+    "margin_at_rail_departure": "static margin at rail departure (calibers)",
+    "static_margin_on_pad": "static margin on the pad (calibers)",
 }
 """The quantities of the products, in the order in which they are shown."""
 

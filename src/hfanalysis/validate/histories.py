@@ -38,8 +38,8 @@ ABOUT = {
     "port_radius": ("m", "radius of the port"),
     "oxidizer_flow": ("kg/s", "oxidizer mass flow"),
     "fuel_flow": ("kg/s", "fuel mass flow"),
-    "c_star": ("m/s", "characteristic velocity: p_c A_t over mass flow"),
-    "c_star_efficiency": ("1", "characteristic velocity over that of the equilibrium gas"),
+    "c_star": ("m/s", "characteristic velocity: p_c A_t over mass flow, until nitrogen enters"),
+    "c_star_efficiency": ("1", "characteristic velocity over that of the equilibrium gas, until nitrogen enters"),
     "thrust_coefficient": ("1", "thrust coefficient: thrust over p_c A_t"),
     "thrust_coefficient_efficiency": ("1", "thrust coefficient over that of the ideal nozzle"),
     "thrust_raw": ("N", "thrust as logged"),
@@ -108,9 +108,13 @@ def flow_histories(flows: Flows) -> dict[str, Array]:
 
 
 def efficiencies(
-    measured: Mapping[str, Array], flows: Flows, engine: Engine, ambient: float, fire: Fire
+    measured: Mapping[str, Array], flows: Flows, engine: Engine, ambient: float, fire: Fire, purge: float | None
 ) -> dict[str, Array]:
-    """c* and thrust coefficient with their efficiencies, where the nozzle is choked and both propellants flow."""
+    """c* and thrust coefficient with their efficiencies, where the nozzle is choked and both propellants flow.
+
+    c* ends when nitrogen enters, at ``purge`` [s]: it passes the throat and is in none of the flows, so that p_c A_t
+    over them would rise without bound.
+    """
     if "p_chamber" not in measured:
         return {}
     width = round(WIDTH / STEP)
@@ -118,7 +122,8 @@ def efficiencies(
     burning = (flows.time > 0.0) & (flows.time < fire.end) & (pressure > CRITICAL_RATIO * ambient) & (fuel > 1e-4)
     ratio = np.where(burning & (oxidizer > 1e-4), oxidizer / np.where(fuel > 1e-4, fuel, 1.0), np.nan)
     ideal = nozzle_along(engine, pressure, ratio, ambient)
-    c_star = np.where(burning, pressure * engine.throat_area / np.where(burning, oxidizer + fuel, 1.0), np.nan)
+    counted = burning if purge is None else burning & (flows.time < purge)
+    c_star = np.where(counted, pressure * engine.throat_area / np.where(counted, oxidizer + fuel, 1.0), np.nan)
     out = {"c_star": c_star, "c_star_efficiency": c_star / ideal_characteristic_velocity(ideal.heat, ideal.gamma)}
     if "thrust_corrected" in measured:
         thrust = _smooth(measured["thrust_corrected"], width)
@@ -135,12 +140,12 @@ def _smooth(value: Array, width: int) -> Array:
 
 
 def closure(
-    flows: Flows, measured: Mapping[str, Array], engine: Engine, ambient: float, fire: Fire
+    flows: Flows, measured: Mapping[str, Array], engine: Engine, ambient: float, fire: Fire, purge: float | None
 ) -> dict[str, Quantity]:
     """How the masses close over the burn, and the heat that the calibrated tank takes.
 
     ``oxidizer_through_injector`` and ``fuel_burned`` [kg] are the flows' integrals; ``propellant_through_nozzle`` [kg]
-    what the measured chamber pressure passes at the equilibrium gas's c*.
+    what the measured chamber pressure passes at the equilibrium gas's c*, nitrogen from ``purge`` [s] on included.
     """
     part = (flows.time >= 0.0) & (flows.time <= fire.end)
     out = {
@@ -150,6 +155,7 @@ def closure(
     if "p_chamber" in measured:
         nozzle = nozzle_along(engine, measured["p_chamber"], flows.of_ratio, ambient).flow
         why = "p_chamber over the equilibrium gas's c*; what lacks is combustion that is not complete, or cold gas"
+        why += "" if purge is None else "; from t_purge on nitrogen counts as propellant"
         out["propellant_through_nozzle"] = _integral(flows.time, np.nan_to_num(nozzle), part, why)
     out["oxidizer_loaded"] = Quantity(engine.oxidizer_mass, "kg")
     out["fuel_loaded"] = Quantity(engine.fuel_mass, "kg")

@@ -159,8 +159,9 @@ class _Work:
         if full is None or flows is None or isinstance(self.fire, str):
             reason = self.absent.get("histories", "")
             return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason))
-        ratios = histories_of.efficiencies(values, flows, full.engine, self.ambient, self.fire)
-        closed = histories_of.closure(flows, values, full.engine, self.ambient, self.fire)
+        purge = self.segments.time("t_purge")
+        ratios = histories_of.efficiencies(values, flows, full.engine, self.ambient, self.fire, purge)
+        closed = histories_of.closure(flows, values, full.engine, self.ambient, self.fire, purge)
         return Histories(time, values | histories_of.flow_histories(flows) | ratios, {}, closed | self._heat())
 
     def _heat(self) -> dict[str, Quantity]:

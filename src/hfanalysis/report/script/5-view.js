@@ -54,18 +54,24 @@ function schedule() {
 function drawAll() {
   for (const chart of charts) chart.stale = true;
   root.dataset.busy = "";
-  for (const [chart, width] of charts.filter(onScreen).map((chart) => [chart, widthOf(chart)])) refresh(chart, width);
+  const seen = charts.filter((chart) => !isFolded(chart) && onScreen(chart));
+  for (const [chart, width] of seen.map((chart) => [chart, widthOf(chart)])) refresh(chart, width);
   setTimeout(drawNext, 50);
   const reset = document.getElementById("reset-zoom");
   if (reset) reset.disabled = Object.values(views).every((view) => view.span === null);
 }
 
 function drawNext() {
-  const chart = charts.find((other) => other.stale);
+  const chart = charts.find((other) => other.stale && !isFolded(other));
   if (!chart) { delete root.dataset.busy; return; }
   if (pending) return;
   refresh(chart, widthOf(chart));
   setTimeout(drawNext, 0);
+}
+
+// What is folded away is drawn when it is opened.
+function isFolded(chart) {
+  return chart.fold !== null && !chart.fold.open;
 }
 
 function drawForPaper() {

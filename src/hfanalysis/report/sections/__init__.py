@@ -38,12 +38,14 @@ class Section:
         place: where it stands; sections are sorted by it.
         needs: the products without which it has nothing to show (``"calibration"``, ``"residuals"``).
         render: what it shows; may raise :class:`AbsentError` with the reason why it has nothing to show.
+        folded: whether the page opens with it closed: what is looked up, not read.
     """
 
     title: str
     place: float
     needs: tuple[str, ...]
     render: Callable[[Material], Iterable[Block]]
+    folded: bool = False
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,7 @@ class Laid:
     title: str
     blocks: tuple[Chart | Markup, ...]
     absent: str = ""
+    folded: bool = False
 
     @property
     def charts(self) -> list[Chart]:
@@ -78,7 +81,7 @@ def lay_out(material: Material) -> list[Laid]:
 
 
 def _laid(key: str, section: Section, material: Material) -> Laid:
-    out = Laid(key, section.title, ())
+    out = Laid(key, section.title, (), folded=section.folded)
     missing = [name for name in section.needs if not material.has(name)]
     if missing:
         return replace(out, absent=material.why_not(missing[0]))

@@ -1,24 +1,33 @@
-"""The rocket's flight on the measured thrust."""
+"""The rocket's flight on the measured thrust, and its static margin in winds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.report import html
 from hfanalysis.report.chart import Chart, Series, around
-from hfanalysis.report.material import Material
+from hfanalysis.report.colours import STYLES
+from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.svg import Event
 from hfanalysis.report.wording import in_words, quantities
 
 _CURVES = {"height": ("Height above ground", "m"), "speed": ("Speed", "m/s"), "acceleration": ("Acceleration", "m/s^2")}
 _SIGNS = {"passed": "good", "failed": "bad"}
+_TIME = "time of flight [s]"
+
+_GEOMETRY = (
+    "add [rocket.geometry] to test.toml with nose, body, fins, structure, tank_position and chamber_position, and see "
+    "that [tank] has its inner_diameter and [grain] its length and outer_radius"
+)
 
 
 def render(material: Material) -> Iterator[Block]:
-    """The numbers with their bands, the checks, and the way up."""
+    """The numbers with their bands, the checks, the way up, and the margin."""
     product = material.product("flight")
     caption = "One standard deviation and 95 % interval from flights that differ in what is uncertain."
     columns = ("quantity", ">value", ">95 % interval", "remark")
@@ -27,6 +36,7 @@ def render(material: Material) -> Iterator[Block]:
     yield html.bullets((_check(*item) for item in (product.get("checks") or {}).items()), "plain")
     for name, (title, unit) in _CURVES.items():
         yield _curve(material, name, title, unit)
+    yield _margin(material) or _without_margin(product.get("stability") or {})
     for note in product.get("notes", []):
         yield html.paragraph(html.switchable(str(note)))
 
@@ -55,17 +65,104 @@ def _curve(material: Material, name: str, title: str, unit: str) -> Chart | None
     if f"{name}_low" in bands:
         low, high = (bands[f"{name}_{side}"].values for side in ("low", "high"))
         series.insert(0, Series("95 % of the flights", "p_tank", bands["time"].values, low, "band", high))
+    caption: str | Markup = ""
+    limit = _rail_limit(material)
+    if name == "speed" and limit is not None:
+        series.append(Series("least at the rail's end", "zero", time[[0, -1]], np.full(2, limit), "level"))
+        caption = Markup("Dashed: the {} that a rocket should have when it leaves the rail.")
+        caption = caption.format(html.amount(limit, "m/s"))
+    return _over_flight(material, f"flight-{name}", (title, name, unit), series, around([time]), caption)
+
+
+def _rail_limit(material: Material) -> float | None:
+    check = (material.product("flight").get("checks") or {}).get("rail_departure_velocity") or {}
+    return check.get("limit")
+
+
+def _over_flight(
+    material: Material,
+    key: str,
+    about: tuple[str, str, str],
+    series: list[Series],
+    span: tuple[float, float],
+    caption: str | Markup,
+    value_span: tuple[float, float] | None = None,
+    height: float = 240.0,
+) -> Chart:
+    """A chart on the flight's clock; ``about`` it: title, quantity, unit."""
+    title, quantity, unit = about
     return Chart(
-        f"flight-{name}",
+        key,
         title,
-        name,
+        quantity,
         unit,
         tuple(series),
-        around([time]),
-        x_label="time of flight [s]",
-        height=240.0,
+        span,
+        Markup.escape(caption),
+        events=tuple(_events(material)),
+        x_label=_TIME,
+        height=height,
+        value_span=value_span,
         clock="flight",
     )
+
+
+def _events(material: Material) -> Iterator[Event]:
+    """The end of the rail, where the flight is as fast as it leaves it, and of the burn."""
+    product, ascent = material.product("flight"), material.table("flight", "ascent")
+    departure, burn = ((product.get(name) or {}).get("value") for name in ("rail_departure_velocity", "burn_time"))
+    if departure is not None and "speed" in ascent:
+        fast = np.flatnonzero(ascent["speed"].values >= departure)
+        if fast.size:
+            yield Event(float(ascent["time"].values[fast[0]]), 0.0, "off the rail")
+    if burn is not None:
+        yield Event(float(burn), 0.0, "burn out")
+
+
+def _margin(material: Material) -> Chart | None:
+    """The static margin in every wind: mean and two standard deviations over gusts, beside its limits."""
+    said = material.product("flight").get("stability") or {}
+    winds = [(float(wind["wind"]), material.table("flight", f"stability/{i}"))
+             for i, wind in enumerate(said.get("winds") or [])]  # fmt: skip
+    if not winds or not all("margin_mean" in table for _, table in winds):
+        return None
+    low, high = said["limits"]
+    bands, lines = zip(*(_in_wind(wind, table, STYLES[i % len(STYLES)]) for i, (wind, table) in enumerate(winds)),
+                       strict=True)  # fmt: skip
+    times = [line.time for line in lines]
+    ends = np.array([min(float(time[0]) for time in times), max(float(time[-1]) for time in times)])
+    limits = [Series(f"limit {limit:g}", "zero", ends, np.full(2, limit), "level") for limit in (low, high)]
+    seen = [value for band in bands for value in (np.nanmin(band.values), np.nanmax(band.upper))]
+    span = (min(0.0, *seen), 1.05 * max(high, *seen))
+    speeds = Markup(", ").join(html.amount(wind, "m/s", 2) for wind, _ in winds)
+    caption = Markup(
+        "From the end of the rail until the rocket is as slow again. Lines: mean over flights in gusts of {:.0f} % in "
+        "head winds of {}; bands: two standard deviations. Dashed: the limits of {:g} and {:g} calibers; below, a gust "
+        "may turn the rocket over, above, it turns far into the wind."
+    ).format(100.0 * said.get("gust_intensity", 0.0), speeds, low, high)
+    about = ("Static margin in wind", "margin", "calibers")
+    return _over_flight(
+        material, "flight-margin", about, [*bands, *lines, *limits], around(times), caption, span, 320.0
+    )
+
+
+def _in_wind(wind: float, table: Table, style: str) -> tuple[Series, Series]:
+    """Band and line of one wind [m/s]."""
+    time, mean, std = (table[name].values for name in ("time", "margin_mean", "margin_std"))
+    name = f"wind {wind:.1f} m/s"
+    return (
+        Series(f"{name}: two std", style, time, mean - 2.0 * std, "band", mean + 2.0 * std),
+        Series(name, style, time, mean),
+    )
+
+
+def _without_margin(stability: Mapping[str, Any]) -> Markup | None:
+    """Why no margin is drawn, and what to add."""
+    reason = str((stability.get("margin_at_rail_departure") or {}).get("reason") or "")
+    if not reason:
+        return None
+    add = _GEOMETRY if "[rocket.geometry]" in reason else "state it in test.toml" if "not given" in reason else ""
+    return html.paragraph(f"No static margin is drawn: {reason}{f'; {add}' if add else ''}.")
 
 
 SECTION = Section("Flight", 78, ("flight",), render)

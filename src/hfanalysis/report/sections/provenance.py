@@ -47,4 +47,4 @@ def flat(data: Mapping[str, Any], before: str = "") -> list[tuple[str, str]]:
     return rows
 
 
-SECTION = Section("Made from", 95, ("ingest",), render)
+SECTION = Section("Made from", 95, ("ingest",), render, folded=True)

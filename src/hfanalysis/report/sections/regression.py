@@ -36,11 +36,18 @@ def _line(table: Table, name: str, label: str, style: str) -> list[Series]:
 
 
 def _drawn(
-    material: Material, key: str, title: str, axis: tuple[str, str], lines: list[Series], caption: str
+    material: Material,
+    key: str,
+    title: str,
+    axis: tuple[str, str],
+    lines: list[Series],
+    caption: str,
+    with_zero: bool = True,
 ) -> Chart | None:
     if not lines:
         return None
-    return over_time(material, key, title, axis, lines, caption, span=around([lines[0].time]), height=260.0)
+    span = around([lines[0].time])
+    return over_time(material, key, title, axis, lines, caption, span=span, height=260.0, with_zero=with_zero)
 
 
 def _rate(material: Material) -> Chart | None:
@@ -80,14 +87,30 @@ def _efficiencies(material: Material) -> Chart | None:
         *_line(table, "c_star_efficiency", "c* efficiency", "p_chamber"),
         *_line(table, "thrust_coefficient_efficiency", "C_F efficiency", "thrust"),
     ]
-    caption = "Measured over ideal: c* judges the combustion, the thrust coefficient the nozzle."
-    return _drawn(material, "efficiencies", "Efficiencies", ("efficiency", ""), lines, caption)
+    caption = (
+        "C_F = F/(p_c A_t) over that of the ideal nozzle judges the nozzle; it needs no flow. c* over that of the "
+        "equilibrium gas judges the combustion by its course. Its level is close to 1 while liquid flows, because a "
+        f"and n were fitted to this chamber pressure with ideal combustion.{_until_nitrogen(material)}"
+    )
+    return _drawn(material, "efficiencies", "Efficiencies", ("efficiency", ""), lines, caption, with_zero=False)
 
 
 def _velocity(material: Material) -> Chart | None:
     lines = _line(material.table("performance"), "c_star", "c*", "p_chamber")
-    return _drawn(
-        material, "c-star", "Characteristic velocity", ("c*", "m/s"), lines, "From chamber pressure and flow."
+    caption = (
+        "c* = p_c A_t over the flow of oxidizer and fuel. Oxidizer: the injector's flow on the measured pressures "
+        f"until t_v, then that of the calibrated tank. Fuel: by a and n.{_until_nitrogen(material)}"
+    )
+    return _drawn(material, "c-star", "Characteristic velocity", ("c*", "m/s"), lines, caption)
+
+
+def _until_nitrogen(material: Material) -> str:
+    """Why c* ends where it does."""
+    if material.event("t_purge") is None:
+        return ""
+    return (
+        " c* ends at t_purge: from there on nitrogen passes the throat, which neither flow counts, and the ratio would "
+        "rise above 1 whatever burns."
     )
 
 

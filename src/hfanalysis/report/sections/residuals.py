@@ -109,4 +109,4 @@ def _gaps(gap: Mapping[str, Any]) -> Any:
     return html.table("Gaps", caption, columns, rows) if rows else None
 
 
-SECTION = Section("Model against measurement", 60, ("residuals",), render)
+SECTION = Section("Model against measurement", 60, ("residuals",), render, folded=True)

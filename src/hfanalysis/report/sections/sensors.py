@@ -53,4 +53,4 @@ def _range(least: float | None, largest: float | None, unit: str) -> Markup:
     return html.both(si, team)
 
 
-SECTION = Section("Sensors", 80, ("ingest",), render)
+SECTION = Section("Sensors", 80, ("ingest",), render, folded=True)

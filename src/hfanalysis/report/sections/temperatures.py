@@ -45,4 +45,4 @@ def _chart(material: Material, unit: str, channels: list[Channel]) -> Chart | No
     return over_time(material, key, title, (quantity, unit), lines, height=260.0, with_zero=not warm)
 
 
-SECTION = Section("Temperatures and other channels", 62, (), render)
+SECTION = Section("Temperatures and other channels", 62, (), render, folded=True)

@@ -18,6 +18,7 @@ function legendButton(chart, one, item) {
 function startChart(figure, about) {
   const chart = readChart(figure.dataset.chart, about);
   chart.frame = figure.querySelector(".plot");
+  chart.fold = figure.closest("details.fold");
   chart.svg = chart.frame.querySelector("svg");
   chart.instant = figure.querySelector(".instant");
   const items = figure.querySelectorAll(".legend li");
@@ -57,6 +58,7 @@ function start() {
   for (const figure of document.querySelectorAll("figure[data-chart]")) {
     if (known[figure.dataset.chart]) startChart(figure, known[figure.dataset.chart]);
   }
+  startFolds();
   if (!charts.length) return;
   drawAll();
   document.getElementById("reset-zoom")?.addEventListener("click", lookAtAll);
