@@ -2,6 +2,7 @@
 
 PYTHON ?= python3
 TEST   ?=
+OTHER  ?=
 FLAGS  ?=
 
 VENV  := .venv
@@ -9,13 +10,14 @@ BIN   := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 STAGES := ingest segment calibrate validate diagnose flight report run
 
-# The name goes to hfa as it was typed, whatever is in it.
+# The names go to hfa as they were typed, whatever is in them.
 override TEST := $(value TEST)
-export TEST
+override OTHER := $(value OTHER)
+export TEST OTHER
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) all test lint format benchmark rocketpy recovery blind blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare all test lint format benchmark rocketpy recovery blind blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -45,6 +47,12 @@ $(STAGES): $(STAMP)
 		echo "make $@: which test? For example: make $@ TEST=$(or $(firstword $(TESTS)),HF5)" >&2; \
 		echo "There are: $(or $(TESTS),none in raw_tests/)" >&2; exit 2; fi
 	@$(BIN)/hfa $@ $(FLAGS) -- "$$TEST"
+
+compare: $(STAMP) ## TEST=… OTHER=… two tests over each other: processed/TEST/compare_OTHER.html
+	@if [ -z "$$TEST" ] || [ -z "$$OTHER" ]; then \
+		echo "make compare: which two tests? For example: make compare TEST=HF4 OTHER=HF5" >&2; \
+		echo "There are: $(or $(TESTS),none in raw_tests/)" >&2; exit 2; fi
+	@$(BIN)/hfa compare $(FLAGS) -- "$$TEST" "$$OTHER"
 
 all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_tests/
 

@@ -42,7 +42,7 @@ def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 def test_make_alone_prints_what_there_is_to_do(checkout: Path) -> None:
     ended = make(checkout)
     assert ended.returncode == 0
-    for target in ("calibrate", "report", "all", "test", "setup", "benchmark", "recovery", "lock", "clean"):
+    for target in ("calibrate", "report", "compare", "all", "test", "setup", "benchmark", "recovery", "lock", "clean"):
         assert f"  {target} " in ended.stdout
 
 
@@ -51,6 +51,20 @@ def test_a_missing_test_is_asked_for(checkout: Path) -> None:
     assert ended.returncode == 2
     assert "make calibrate: which test? For example: make calibrate TEST=HF5" in ended.stderr
     assert "There are: HF5" in ended.stderr
+
+
+@pytest.mark.parametrize("given", [[], ["TEST=HF5"], ["OTHER=HF5"]])
+def test_a_comparison_asks_for_both_tests(checkout: Path, given: list[str]) -> None:
+    ended = make(checkout, "compare", *given)
+    assert ended.returncode == 2
+    assert "make compare: which two tests? For example: make compare TEST=HF4 OTHER=HF5" in ended.stderr
+
+
+def test_a_comparison_with_what_is_no_test_ends_with_one_clear_message(checkout: Path) -> None:
+    ended = make(checkout, "compare", "TEST=HF5", "OTHER=$(shell touch stray)")
+    assert ended.returncode == 2
+    assert len([line for line in ended.stderr.splitlines() if line.startswith("hfa: ")]) == 1
+    assert not (checkout / "stray").exists()
 
 
 @pytest.mark.parametrize("name", ["../x", "HF6", "a b", "$(shell touch stray)", "';touch stray;'", "-x"])

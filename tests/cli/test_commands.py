@@ -293,6 +293,14 @@ def test_two_tests_are_compared_on_one_page(run: Run, root: Path) -> None:
     assert ">HF4</th>" in text
 
 
+def test_a_comparison_knows_both_tests_before_it_computes(run: Run, tmp_path: Path) -> None:
+    shutil.copytree(REPOSITORY / "raw_tests" / "HF5", tmp_path / "raw_tests" / "HF5")
+    ended = run("compare", "HF5", "HF55", "--root", tmp_path)
+    assert ended.status == 2
+    assert "HF55" in ended.err
+    assert not list(tmp_path.glob("processed/HF5/*.json"))
+
+
 def test_a_test_is_not_compared_with_itself(run: Run, root: Path) -> None:
     ended = run("compare", "HF5", "HF5", "--root", root)
     assert ended.status == 2

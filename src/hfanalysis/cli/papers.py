@@ -11,6 +11,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.report import pdf
 from hfanalysis.report.load import load
 from hfanalysis.stages.base import Context
+from hfanalysis.stages.opening import open_test
 from hfanalysis.testdata.products import atomic, to_json
 
 
@@ -46,6 +47,8 @@ def compare(request: perform.Request, other: str, as_pdf: bool) -> None:
         raise InputError(f"compare {request.test} {other}: one test twice; expected two different ones")
     if as_pdf:
         pdf.find_browser()
+    for test in (request.test, other):
+        open_test(request.root, test, request.out)  # a name that is no test is said before anything is computed
     contexts = [perform.bring("report", replace(request, test=test)) for test in (request.test, other)]
     path = contexts[0].product(f"compare_{other}.html")
     with atomic(path) as scratch:
