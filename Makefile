@@ -69,8 +69,8 @@ format: $(STAMP) ## format the code with ruff
 benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers, a 1 GB log beside pandas
 	$(BIN)/python benchmarks/startup.py
 	PYTHONPATH=. $(BIN)/python benchmarks/engine_speed.py
-	$(BIN)/python benchmarks/reference_engine.py
-	$(BIN)/python benchmarks/hrap_run.py
+	PYTHONPATH=. $(BIN)/python benchmarks/reference_engine.py
+	PYTHONPATH=. $(BIN)/python benchmarks/hrap_run.py
 	$(BIN)/python benchmarks/flights.py
 	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python benchmarks/ingest_1gb.py --gigabytes 1; fi
 

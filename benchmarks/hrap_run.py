@@ -13,19 +13,19 @@ import json
 import subprocess
 import sys
 import venv
+from dataclasses import replace
 from math import pi, sqrt
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy as np
+from benchmarks.engines import HOLE_AREA, HOLES, hf5_like
 
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.flight.constant_thrust import Vehicle
 from hfanalysis.thermo.combustion import equilibrium
-from hfanalysis.thermo.combustion_table import build
-from hfanalysis.thermo.nitrous import saturation
 
 ENVIRONMENT = Path(__file__).resolve().parent.parent / ".cache" / "hrap"
 PACKAGES = ("hrap", "matplotlib")
@@ -36,28 +36,21 @@ STEP = 1e-3
 STAND = 1e12
 """Dry mass [kg] of what stays where it is."""
 
-HOLES, HOLE_AREA, DISCHARGE = 22, 3.142e-6, 0.294
+DISCHARGE = 0.294
 
 
 def hf5() -> Engine:
     """Hot Fire 5 of the report (its tables of C_i and of the grain), bolted down, at a tank of 25 degC."""
-    return Engine(
-        saturation=saturation("coolprop"),
-        combustion=build(),
+    return replace(
+        hf5_like(),
         feed=FeedSystem(16.5e-3, HOLES * HOLE_AREA * DISCHARGE),
-        oxidizer_mass=8.35,
         temperature=298.15,
         polytropic_exponent=None,
-        fuel_mass=1.594,
-        grain_length=0.610,
-        outer_radius=0.039497,
-        fuel_density=788.9,
         a=5e-4,
         n=0.156,
-        dead_volume=1.103e-3,
-        throat_area=pi * 0.0233**2,
-        exit_area=pi * 0.0381**2,
         vehicle=Vehicle(STAND, 1.0, 1.0, 0.0, 0.0),
+        ambient_pressure=None,
+        oxidizer_enthalpy=None,
     )
 
 

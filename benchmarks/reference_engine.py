@@ -12,25 +12,22 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
-from math import cos, pi, radians, sqrt
+from math import cos, pi, sqrt
 from statistics import median
 from time import perf_counter
 from typing import Any
 
 import numpy as np
+from benchmarks.engines import hf5_like, maelstrom
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from hfanalysis.engine.blowdown import FeedSystem
-from hfanalysis.engine.sizing import DipTube, size_for_ullage
 from hfanalysis.engine.unsteady import Burn, Engine, burn
-from hfanalysis.flight.vehicle import Vehicle, gravity
+from hfanalysis.flight.vehicle import gravity
 from hfanalysis.thermo import atmosphere
-from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, Gas, equilibrium
-from hfanalysis.thermo.combustion_table import CombustionTable, build
+from hfanalysis.thermo.combustion import Gas, equilibrium
 from hfanalysis.thermo.constants import GAS_CONSTANT, OXIDIZER_MOLAR_MASS
-from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property
 
 Array = NDArray[np.float64]
@@ -53,31 +50,6 @@ COMPARED = (
     "speed",
     "impulse",
 )
-
-
-def maelstrom(combustion: CombustionTable | None = None) -> Engine:
-    """The report's design point (tables 3.1 and 3.2), under the report's conventions."""
-    source = saturation("report")
-    tank = size_for_ullage(source, 7.035, 298.15, 0.128194, DipTube(6.35e-3, 4.572e-3), 0.2)
-    return Engine(
-        saturation=source,
-        combustion=combustion or build(),
-        feed=FeedSystem(tank.volume, 3.79e-5, constant_losses=(0.345e5, 0.345e5)),
-        oxidizer_mass=7.035,
-        temperature=298.15,
-        polytropic_exponent=None,
-        fuel_mass=1.639,
-        grain_length=0.610,
-        outer_radius=0.039497,
-        fuel_density=900.0,
-        a=1.32e-4,
-        n=0.555,
-        dead_volume=1.103e-3,
-        throat_area=pi * 0.0233**2,
-        exit_area=pi * 0.0381**2,
-        vehicle=Vehicle(52.5, 0.529, 19478e-6, radians(6.0), 1402.0),
-        oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY,
-    )
 
 
 def area_ratio(mach: float, g: float) -> float:
@@ -372,29 +344,6 @@ def differences(ours: Burn, run: Run) -> dict[str, float]:
     worst = np.abs(mine - reference).max(axis=1)
     names = (*COMPARED, "chamber_pressure")
     return {name: float(w / s) for name, w, s in zip(names, worst, span, strict=True) if s > 1e-9}
-
-
-def hf5_like() -> Engine:
-    """An engine on a stand like that of the report's Hot Fire 5, under the report's conventions for the chemistry."""
-    return Engine(
-        saturation=saturation("coolprop"),
-        combustion=build(),
-        feed=FeedSystem(16.5e-3, 22 * 3.142e-6 * 0.2926, loss_factor=6.4e8),
-        oxidizer_mass=8.35,
-        temperature=293.0,
-        polytropic_exponent=1.1,
-        fuel_mass=1.594,
-        grain_length=0.610,
-        outer_radius=0.039497,
-        fuel_density=788.9,
-        a=1.0e-4,
-        n=0.555,
-        dead_volume=1.103e-3,
-        throat_area=pi * 0.0233**2,
-        exit_area=pi * 0.0381**2,
-        ambient_pressure=100_900.0,
-        oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY,
-    )
 
 
 def compare(title: str, engine: Engine, repeats: int, longest: float = 120.0, run_on: bool = False) -> None:

@@ -9,8 +9,9 @@ from math import pi
 
 import numpy as np
 import pytest
+from benchmarks.engines import hf5_like, maelstrom
 from benchmarks.random_engines import Outcome, attempt, faults, random_engine
-from benchmarks.reference_engine import Reference, Run, differences, hf5_like, in_our_states, maelstrom, solve
+from benchmarks.reference_engine import Reference, Run, differences, in_our_states, solve
 from numpy.typing import NDArray
 
 from hfanalysis.engine.blowdown import FeedSystem

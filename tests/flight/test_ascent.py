@@ -8,7 +8,7 @@ from math import cos, radians, sqrt
 
 import numpy as np
 import pytest
-from benchmarks.reference_engine import maelstrom
+from benchmarks.engines import maelstrom
 
 from hfanalysis.engine.unsteady import Burn, burn
 from hfanalysis.flight.ascent import ACCELERATION, MACH, NOMINAL, RAIL, SPEED, TIME, Ascent, ascend

@@ -9,7 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from benchmarks.reference_engine import hf5_like
+from benchmarks.engines import hf5_like
 from stand import AMBIENT, THROAT, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.quantity import Quantity
