@@ -9,41 +9,83 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import pi
-from typing import Any
+from math import asinh, cosh, exp, log, pi, sinh
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.calibrate.engine_of_test import ASSUMED_EXPONENT
 from hfanalysis.diagnose.probe import Splines
-from hfanalysis.engine.effect import Active
+from hfanalysis.engine.effect import Active, Effect
 from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
 
 Array = NDArray[np.float64]
 
 
-USUAL_N = (0.5, 0.15)
-"""Flux exponent of hybrid fuels and its spread (Karabeyoglu et al. find 0.62 for paraffin with oxygen)."""
+USUAL_N = (0.45, 0.2)
+"""Flux exponent of hybrid fuels and its spread (Karabeyoglu et al. find 0.62 for paraffin with oxygen; small engines
+show as little as 0.2)."""
 
 
 @dataclass(frozen=True)
 class Free:
-    """A parameter that may move: Gaussian prior about ``center`` with ``std``, of its logarithm if ``positive``."""
+    """A parameter that may move, as a function of x, whose prior is N(0, 1) between ``least`` and ``most``.
+
+    ``shape``: "normal", center + std x; "positive", center exp(std x); "wide", center + std sinh(x), whose tails are
+    long enough for an effect thirty times as large as a typical one.
+    """
 
     name: str
     center: float
     std: float
-    positive: bool = False
+    shape: Literal["normal", "positive", "wide"] = "normal"
+    least: float = -np.inf
+    most: float = np.inf
 
     def value(self, x: float) -> float:
-        """The parameter [SI] at ``x`` standard deviations of its prior."""
-        return self.center * float(np.exp(self.std * x)) if self.positive else self.center + self.std * x
+        """The parameter [SI] at ``x``."""
+        if self.shape == "positive":
+            return self.center * exp(self.std * x)
+        return self.center + self.std * (sinh(x) if self.shape == "wide" else x)
 
     def slope(self, x: float) -> float:
         """Derivative of :meth:`value`."""
-        return self.value(x) * self.std if self.positive else self.std
+        if self.shape == "positive":
+            return self.value(x) * self.std
+        return self.std * (cosh(x) if self.shape == "wide" else 1.0)
+
+    def place(self, value: float) -> float:
+        """The x at which the parameter has a value [SI]."""
+        if self.shape == "positive":
+            return log(value / self.center) / self.std
+        scaled = (value - self.center) / self.std
+        return asinh(scaled) if self.shape == "wide" else scaled
+
+
+def free_parameters(effect: Effect) -> tuple[Free, ...]:
+    """What may move in an effect: strengths with long tails, the rest about what is typical.
+
+    What a test states (``given``) may move by its own uncertainty, which is ``typical`` of it.
+    """
+    out = []
+    for i, p in enumerate(effect.parameters):
+        name = f"{effect.name}.{p.name}"
+        if i < effect.strengths:
+            free = Free(name, 0.0, p.typical, "wide")
+        elif p.low > 0.0 and p.typical > 0.4 * p.center:
+            free = Free(name, p.center, log(1.0 + p.typical / p.center), "positive")
+        else:
+            free = Free(name, p.center, p.typical)
+        least = free.place(p.low) if np.isfinite(p.low) and (free.shape != "positive" or p.low > 0) else -np.inf
+        most = free.place(p.high) if np.isfinite(p.high) else np.inf
+        out.append(replace(free, least=max(least, -FARTHEST), most=min(most, FARTHEST)))
+    return tuple(out)
+
+
+FARTHEST = 5.0
+"""Standard deviations of its prior that a parameter may be off."""
 
 
 @dataclass(frozen=True)
@@ -122,6 +164,38 @@ class Hypothesis:
                 total += block.splines.at(times) @ (block.matrix @ x[place])
         return total
 
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Least and most of x."""
+        loose = np.full(self.size - len(self.free), np.inf)
+        least, most = ([getattr(f, side) for f in self.free] for side in ("least", "most"))
+        return np.concatenate([least, -loose]), np.concatenate([most, loose])
+
+    @property
+    def nuisances(self) -> int:
+        """How many of the parameters belong to the base model."""
+        return sum("." not in f.name for f in self.free)
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The effects whose parameters may move."""
+        return tuple(dict.fromkeys(f.name.partition(".")[0] for f in self.free if "." in f.name))
+
+    def with_effect(self, effect: Effect, **stated: float) -> Hypothesis:
+        """The same with an effect more, its parameters about their prior or what a test has ``stated`` [SI]."""
+        free = tuple(
+            replace(f, center=stated[own]) if (own := f.name.partition(".")[2]) in stated and f.shape != "wide" else f
+            for f in free_parameters(effect)
+        )
+        engine = replace(self.engine, effects=(*self.engine.effects, effect.at(**stated)))
+        return Hypothesis(engine, (*self.free, *free), self.blocks)
+
+    def without(self, name: str) -> Hypothesis:
+        """The same without an effect."""
+        effects = tuple(a for a in self.engine.effects if a.effect.name != name)
+        free = tuple(f for f in self.free if f.name.partition(".")[0] != name)
+        return Hypothesis(replace(self.engine, effects=effects), free, self.blocks)
+
     def with_block(self, block: Block, active: Active | None = None) -> Hypothesis:
         """The same with an unknown source more."""
         engine = self.engine
@@ -146,18 +220,23 @@ def _moved(effects: tuple[Active, ...], values: Mapping[str, float]) -> tuple[Ac
     return tuple(out)
 
 
-def base_hypothesis(engine: Engine, calibration: Mapping[str, Any]) -> Hypothesis:
-    """The report's model with its calibrated constants free."""
+def base_hypothesis(engine: Engine, calibration: Mapping[str, Any], follow: bool = True) -> Hypothesis:
+    """The report's model with its calibrated constants free.
+
+    ``follow``: the oxidizer enters the chamber with the enthalpy that the tank's content has at that moment.
+    """
     exponent, spread = ASSUMED_EXPONENT
     loaded = calibration.get("oxidizer_mass") or {}
+    mass = engine.oxidizer_mass
     free = [
-        Free("area", engine.feed.area, 0.2, positive=True),
+        Free("area", engine.feed.area, 0.5, "positive"),
         Free("polytropic_exponent", exponent, spread),
-        Free("oxidizer_mass", engine.oxidizer_mass, max(float(loaded.get("std") or 0.0), 0.005 * engine.oxidizer_mass)),
-        Free("temperature", engine.temperature, 1.5),
-        Free("a", engine.a * _mid_flux(engine) ** (engine.n - USUAL_N[0]), 1.0, positive=True),
+        Free("oxidizer_mass", mass, max(float(loaded.get("std") or 0.0), 0.01 * mass)),
+        Free("temperature", engine.temperature, 5.0),
+        Free("a", engine.a * _mid_flux(engine) ** (engine.n - USUAL_N[0]), 1.0, "positive"),
         Free("n", *USUAL_N),
     ]
     if engine.feed.constant_losses is None and engine.feed.loss_factor > 0.0:
-        free.insert(1, Free("loss_factor", engine.feed.loss_factor, 0.5, positive=True))
-    return Hypothesis(replace(engine, polytropic_exponent=exponent), tuple(free))
+        free.insert(1, Free("loss_factor", engine.feed.loss_factor, 1.0, "positive"))
+    enthalpy = None if follow else engine.oxidizer_enthalpy
+    return Hypothesis(replace(engine, polytropic_exponent=exponent, oxidizer_enthalpy=enthalpy), tuple(free))

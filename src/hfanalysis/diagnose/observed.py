@@ -1,19 +1,22 @@
 """What a test says, in the form that inference takes it: block means with the covariance of their noise.
 
-A constant offset of a sensor, as large as its stated accuracy allows, is part of the covariance: it is a nuisance with
-a Gaussian prior. Blocks that contain a change of phase are left out; the instants of the changes are observations of
-their own.
+A constant offset of a sensor and an error of its gain, as large as its stated accuracy allows, are part of the
+covariance: they are nuisances with a Gaussian prior. Blocks that contain a change of phase are left out; the instants
+of the changes are observations of their own. After the flow has ended the chamber's pressure is the ambient one and
+the thrust is none: what the sensors read then is compared as well, for it tells a drift.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, solve_triangular
+from scipy.linalg import cholesky, solve_triangular
 
+from hfanalysis.diagnose.oscillation import oscillation
 from hfanalysis.errors import AbsentError
 from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.phases import Segments
@@ -22,17 +25,16 @@ from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
-CHANNELS = {
-    "p_tank": "tank_pressure",
-    "p_run": "run_pressure",
-    "p_chamber": "chamber_pressure",
-    "thrust": "thrust",
-}
-"""Canonical channels that are compared, and the model's outputs that they measure."""
+CHANNELS = ("p_tank", "p_run", "p_chamber", "thrust", "m_tank")
+"""Canonical channels that are compared."""
 
 BLOCK = 0.02
-"""Seconds over which samples are averaged."""
+"""Seconds over which samples are averaged near the opening and the changes of phase."""
+
+MERGED, NEAR = 5, 0.4
+"""Blocks that are merged into one farther than NEAR [s] from any change: the noise there is coherent anyway."""
 
 AROUND_CHANGE = 0.06
 """Seconds on either side of a phase change (beside its own deviation) without blocks: knees are rounded."""
@@ -40,64 +42,135 @@ AROUND_CHANGE = 0.06
 FIRST = 0.05
 """Seconds after the opening before which nothing is compared: the chamber fills, the igniter is not modelled."""
 
+AROUND_END = 0.3
+"""Seconds before the end of the flow that was noted at the stand from which on nothing is compared."""
+
+TANK_SIDE = ("p_tank", "p_run", "m_tank")
+"""Channels that go on telling when the nozzle has unchoked."""
+
+CELL_ERROR = 0.02
+"""Part of the thrust that a tank's cell may feel [kg of it weighs g]."""
+
 LONGEST = 30.0
 
-FORM_ERROR, FORM_TIME = 1e-3, 1.0
+FORM_ERROR, FORM_TIME = 2e-4, 1.0
 """Model-form error: part of a channel's range, and the time [s] over which it is coherent."""
 
 EVENT_STD = 0.005
 """Least standard deviation [s] of the instant of a phase change."""
 
-
 FUEL_STD = 0.05
 """Least standard deviation [s] of the end of the fuel, which fades rather than stops."""
+
+AT_REST = ("p_chamber", "thrust")
+"""Channels whose true value is known once the flow has ended."""
+
+SETTLING, SHORTEST_REST, LONGEST_REST = 0.5, 0.4, 10.0
+"""Seconds after the end of the flow before the chamber is at rest, and how long a rest that is looked at may be."""
+
+REST_BLOCKS = 4
+
+
+TOGETHER = ("p_chamber", "thrust")
+"""Channels that share the oscillation of the burn."""
 
 
 @dataclass(frozen=True)
 class Channel:
     """Block means of one channel: ``time`` [s after the opening], ``value`` and stated ``accuracy`` [SI].
 
-    ``covariance`` is that of sensor noise and bias; ``factor`` whitens them, model-form error included.
+    ``first`` and ``count`` say which points of the common grid are averaged into each block. ``covariance`` is that of
+    sensor noise, oscillation, bias and gain. ``resting`` blocks lie after the end of the flow.
     """
 
     name: str
     time: Array
     value: Array
+    first: Integers
+    count: Integers
+    resting: NDArray[np.bool_]
     noise_std: Array
     accuracy: float
     covariance: Array
-    factor: Array
 
-    def at_form(self, error: float) -> Channel:
-        """The same with another model-form error, given as part of the channel's range."""
+    def form_covariance(self, error: float) -> Array:
+        """Covariance of a model-form error that is given as part of the channel's range; smooth (Matern, 3/2)."""
         lag = self.time[:, None] - self.time[None, :]
-        form = error * float(np.ptp(self.value))
-        covariance = self.covariance + form**2 * np.exp(-np.abs(lag) / FORM_TIME)
-        factor = np.tril(cho_factor(covariance, lower=True, check_finite=False)[0])
-        return replace(self, factor=factor)
+        burning = np.where(self.resting, 0.0, error * float(np.ptp(self.value)))
+        smooth = np.sqrt(3.0) * np.abs(lag) / FORM_TIME
+        return np.asarray((1.0 + smooth) * np.exp(-smooth) * np.outer(burning, burning))
 
-    def whiten(self, rows: Array) -> Array:
-        """Rows (samples, ...) in units in which the noise is white and of size one."""
-        return np.asarray(solve_triangular(self.factor, rows, lower=True, check_finite=False))
+    def averaged(self, rows: Array) -> Array:
+        """Block means of rows (grid, ...) on the common grid."""
+        return averaged(rows, self.first, self.count)
+
+
+def averaged(rows: Array, first: Integers, count: Integers) -> Array:
+    """Means over ``count`` rows (grid, ...) from ``first`` on."""
+    total = np.concatenate([np.zeros((1, *rows.shape[1:])), np.cumsum(rows, axis=0)])
+    shape = (-1, *([1] * (rows.ndim - 1)))
+    return np.asarray((total[first + count] - total[first]) / count.reshape(shape))
 
 
 @dataclass(frozen=True)
 class Observed:
-    """The channels of a test, the instants of its phase changes with their deviations [s], and when it ends [s]."""
+    """The channels of a test, the instants of its phase changes with their deviations [s], and when it ends [s].
+
+    ``grid`` [s]: points at which a model is asked, from the opening on; ``resting`` ones come after the end of the
+    flow. ``stated``: what was measured outside the log (SI), with standard deviations, by name. ``common``: covariance
+    of the first and second of TOGETHER, if both are there. ``form``: model-form error, as part of a channel's range.
+    """
 
     channels: tuple[Channel, ...]
+    grid: Array
+    resting: NDArray[np.bool_]
     events: Mapping[str, tuple[float, float]]
+    stated: Mapping[str, tuple[float, float]]
     phases: Mapping[str, float]
     end: float
+    flow_end: float
+    ambient: float
+    common: Array | None = None
+    form: float = FORM_ERROR
 
     def at_form(self, error: float) -> Observed:
-        """The same with another model-form error, given as part of each channel's range."""
-        return replace(self, channels=tuple(c.at_form(error) for c in self.channels))
+        """The same with another model-form error."""
+        return replace(self, form=error)
+
+    def only(self, names: tuple[str, ...]) -> Observed:
+        """The same with these channels alone."""
+        kept = tuple(c for c in self.channels if c.name in names)
+        both = set(TOGETHER) <= {c.name for c in kept}
+        return replace(self, channels=kept, common=self.common if both else None)
+
+    @cached_property
+    def _factors(self) -> tuple[tuple[slice, Array], ...]:
+        """Inverse Cholesky factors of groups of channels whose noise goes together, and their rows."""
+        out, at, i = [], 0, 0
+        while i < len(self.channels):
+            c = self.channels[i]
+            covariance = c.covariance + c.form_covariance(self.form)
+            i += 1
+            if c.name == TOGETHER[0] and self.common is not None:
+                other = self.channels[i]
+                second = other.covariance + other.form_covariance(self.form)
+                covariance = np.block([[covariance, self.common], [self.common.T, second]])
+                i += 1
+            factor = _whitening(covariance)
+            out.append((slice(at, at + factor.shape[0]), factor))
+            at += factor.shape[0]
+        return tuple(out)
+
+    def whiten(self, rows: Array) -> Array:
+        """Rows (blocks of all channels one after the other, ...) in units in which the noise is white and of size one."""
+        return np.concatenate([factor @ rows[place] for place, factor in self._factors])
 
     @property
     def longest(self) -> float:
-        """The last instant that is compared [s]."""
-        return max(self.end, *(at for at, _ in self.events.values())) if self.events else self.end
+        """The last instant that anything is known of [s]."""
+        weighed = self.flow_end if "fuel_mass_after" in self.stated else self.end
+        burning = self.grid[~self.resting]
+        return max([weighed, float(burning[-1]), *(at for at, _ in self.events.values())])
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -106,32 +179,143 @@ class Observed:
 
 
 def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -> Observed:
-    """Reduce a test to what is compared. Raises AbsentError where no pressure of tank or chamber is left."""
+    """Reduce a test to what is compared. Raises AbsentError where neither tank, chamber nor thrust is left."""
     origin = segments.t_open.value
     if origin is None:
         raise AbsentError("no opening was found: there is nothing to compare")
     end = _end(segments)
-    changes = [
+    frame = _frame(log, segments, definition, origin)
+    live = {name: Signal.of(log[name]).shifted(origin) for name in CHANNELS if name in log}
+    if "m_tank" in live and not _cell_reads(live["m_tank"], definition):
+        del live["m_tank"]
+    reduced = {name: r for name, signal in live.items() if not signal.dead and (r := _reduce(signal, frame)) is not None}
+    if not {"p_tank", "p_chamber", "thrust"} & set(reduced):
+        raise AbsentError("neither tank, chamber nor thrust was recorded: the model cannot be compared")
+    shaken = _oscillation(reduced, frame)
+    channels = tuple(_channel(r, definition, frame, shaken.get((name, name))) for name, r in reduced.items())
+    common = shaken.get(TOGETHER)
+    if common is not None:
+        one, two = (reduced[name] for name in TOGETHER)
+        half = averaged(common, one.first, one.count)
+        common = averaged(half.T, two.first, two.count).T
+    return Observed(
+        channels,
+        frame.grid,
+        frame.resting,
+        _events(segments, end),
+        _stated(definition, segments),
+        _phases(segments, end),
+        end,
+        max(frame.ends["tank"], _flow_end(definition, end)),
+        definition.ambient_pressure.value,
+        common,
+    )
+
+
+def _whitening(covariance: Array) -> Array:
+    """W with W C W^T = 1. An estimated covariance need not be positive: what is smaller than LEAST_VARIANCE is raised."""
+    try:
+        return np.tril(np.linalg.inv(cholesky(covariance, lower=True, check_finite=False)))
+    except np.linalg.LinAlgError:
+        size = np.sqrt(covariance.diagonal())
+        values, vectors = np.linalg.eigh(covariance / np.outer(size, size))
+        return np.asarray((vectors / np.sqrt(np.maximum(values, LEAST_VARIANCE))).T / size)
+
+
+LEAST_VARIANCE = 1e-3
+"""Of any combination of blocks, relative to a single block's."""
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """The common grid, the changes of phase (instant, deviation), and from when to when is compared [s]."""
+
+    grid: Array
+    resting: NDArray[np.bool_]
+    changes: tuple[tuple[float, float], ...]
+    start: float
+    ends: Mapping[str, float]
+
+    def end(self, channel: str) -> float:
+        """Where the comparison of a channel ends [s]."""
+        return self.ends["tank" if channel in TANK_SIDE else "chamber"]
+
+
+def _frame(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> _Frame:
+    end = _end(segments)
+    ends = {"chamber": end, "tank": _tank_end(segments, definition, end)}
+    changes = tuple(
         (value, segments.std(name)) for name in ("t_v", "t_fuel_out") if (value := segments.time(name)) is not None
-    ]
-    filled = segments.time("t_feed") or 0.0
-    channels = []
-    for name in CHANNELS:
-        if name not in log:
-            continue
-        signal = Signal.of(log[name]).shifted(origin)
-        if not signal.dead:
-            channels.append(_channel(signal, definition, changes, max(FIRST, filled), end))
-    found = [c for c in channels if c is not None]
-    if not {"p_tank", "p_chamber"} & {c.name for c in found}:
-        raise AbsentError("neither the tank's nor the chamber's pressure was recorded: the model cannot be compared")
+    )
+    rest = _rest(log, origin, _flow_end(definition, segments.time("t_end") or end))
+    burning = np.arange(0.5 * BLOCK, ends["tank"], BLOCK)
+    after = np.zeros(0)
+    if rest is not None:
+        width = (rest[1] - rest[0]) / REST_BLOCKS
+        after = rest[0] + width * (np.arange(REST_BLOCKS) + 0.5)
+    grid = np.concatenate([burning, after])
+    start = max(FIRST, segments.time("t_feed") or 0.0)
+    return _Frame(grid, np.arange(grid.size) >= burning.size, changes, start, ends)
+
+
+def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | None:
+    """A stretch after the flow [s] in which the chamber is at rest; None where the log does not show one.
+
+    The nozzle unchokes long before the last gas has left, so that the chamber's pressure has to stand still as well.
+    """
+    if "p_chamber" not in log:
+        return None
+    signal = Signal.of(log["p_chamber"]).shifted(origin)
+    if signal.dead:
+        return None
+    last = float(signal.time[-1])
+    first = max(over + SETTLING, last - LONGEST_REST)
+    if last - first < SHORTEST_REST:
+        return None
+    half = 0.5 * (first + last)
+    noise = Noise.of(signal, signal.between(-LONGEST, -0.1))
+    fall = signal.mean(first, half) - signal.mean(half, last)
+    if not abs(fall) < 3.0 * noise.difference_std((first, half), (half, last)):
+        return None
+    return first, last
+
+
+def _events(segments: Segments, end: float) -> dict[str, tuple[float, float]]:
     t_v = segments.time("t_v")
     seen = t_v is not None and t_v < end - AROUND_CHANGE
     events = {"t_v": (t_v, max(segments.std("t_v"), EVENT_STD))} if seen and t_v is not None else {}
     gone = segments.time("t_fuel_out")
     if gone is not None and gone < LONGEST:
         events["t_fuel_out"] = (gone, max(segments.std("t_fuel_out"), FUEL_STD))
-    return Observed(tuple(found), events, _phases(segments, end), end)
+    return events
+
+
+def _stated(definition: TestDefinition, segments: Segments) -> dict[str, tuple[float, float]]:
+    """What was seen or weighed after the test."""
+    seen = definition.observed
+    if seen is None:
+        return {}
+    out = {}
+    for name, least in (("throat_radius_after", 2e-5), ("fuel_mass_after", 5e-3)):
+        value = getattr(seen, name)
+        if name == "fuel_mass_after" and (segments.time("t_fuel_out") is not None or seen.burn_time is None):
+            continue  # there is none left, or nobody knows until when it burnt
+        if value is not None:
+            out[name] = (float(value.value), max(float(value.std or 0.0), least))
+    return out
+
+
+def _tank_end(segments: Segments, definition: TestDefinition, end: float) -> float:
+    """The tank goes on emptying after the nozzle has unchoked, until the end of the flow that was seen at the stand."""
+    if segments.time("t_fuel_out") is not None:
+        return end
+    return min(max(_flow_end(definition, end) - AROUND_END, end), LONGEST)
+
+
+def _flow_end(definition: TestDefinition, end: float) -> float:
+    """Until when something flowed, as seen at the stand [s]."""
+    seen = definition.observed.burn_time if definition.observed is not None else None
+    return max(float(seen.value), end) if seen is not None else end
 
 
 def _end(segments: Segments) -> float:
@@ -152,28 +336,151 @@ def _phases(segments: Segments, end: float) -> dict[str, float]:
     return {**found, "end": end}
 
 
-def _channel(
-    signal: Signal, definition: TestDefinition, changes: list[tuple[float, float]], start: float, end: float
-) -> Channel | None:
+def _cell_reads(cell: Signal, definition: TestDefinition) -> bool:
+    """Whether the tank's cell at rest reads what is loaded."""
+    loaded = definition.tank.oxidizer_mass if definition.tank is not None else None
+    still = cell.between(-LONGEST, -0.1).value
+    if loaded is None or still.size < 8:
+        return False
+    return abs(float(np.median(still)) - loaded.value) < TANK_CELL * loaded.value
+
+
+TANK_CELL = 0.03
+"""Part of the loaded mass by which the tank's cell may be off at rest and still be compared."""
+
+
+@dataclass(frozen=True)
+class _Reduced:
+    """Block means of a signal: blocks of the grid (first, count) that are averaged, and all ``fine`` means."""
+
+    signal: Signal
+    time: Array
+    value: Array
+    first: Integers
+    count: Integers
+    fine: Array
+    good: NDArray[np.bool_]
+
+
+def _reduce(signal: Signal, frame: _Frame) -> _Reduced | None:
+    """Blocks without enough samples are left out; None where too few are left."""
+    blocks = int((~frame.resting).sum())
+    edges = np.arange(blocks + 1) * BLOCK
+    at = np.searchsorted(signal.time, edges)
+    sums = np.concatenate([[0.0], np.cumsum(signal.value)])
+    samples, centers = np.diff(at), frame.grid[:blocks]
+    means = np.where(samples > 0, np.diff(sums[at]) / np.maximum(samples, 1), 0.0)
+    filled = (samples > 0) & (samples >= 0.5 * BLOCK / max(signal.step, 1e-9))
+    good = filled & (centers > frame.start) & (centers < frame.end(signal.name))
+    for instant, deviation in frame.changes:
+        good &= np.abs(centers - instant) > AROUND_CHANGE + 2.0 * deviation
+    if good.sum() < 10:
+        return None
+    first, count = _merged(good, centers, frame)
+    time, value = averaged(centers, first, count), averaged(means, first, count)
+    rest = np.flatnonzero(frame.resting) if signal.name in AT_REST else np.zeros(0, dtype=np.int64)
+    still = _still(signal, frame.grid[rest])
+    if np.isfinite(still).all():
+        time, value = np.r_[time, frame.grid[rest]], np.r_[value, still]
+        first, count = np.r_[first, rest], np.r_[count, np.ones(rest.size, dtype=np.int64)]
+    return _Reduced(signal, time, value, first, count, means, good)
+
+
+def _still(signal: Signal, times: Array) -> Array:
+    """Means about instants after the end of the flow."""
+    half = 0.5 * float(times[1] - times[0]) if times.size > 1 else 0.0
+    return np.array([signal.mean(t - half, t + half) for t in times])
+
+
+def _oscillation(reduced: Mapping[str, _Reduced], frame: _Frame) -> dict[tuple[str, str], Array]:
+    """Covariance of the burn's oscillation, and of the shaking of the tank's cell, in blocks of the grid."""
+    found: dict[tuple[str, str], Array] = {}
+    for group in (TOGETHER, ("m_tank",)):
+        shaken = {name: r for name, r in reduced.items() if name in group}
+        if shaken:
+            found |= _shaken(shaken, frame)
+    return found
+
+
+def _shaken(shaken: Mapping[str, _Reduced], frame: _Frame) -> dict[tuple[str, str], Array]:
+    usable = np.logical_and.reduce([r.good for r in shaken.values()])
+    guide = next(iter(shaken.values()))
+    if guide.signal.name in TOGETHER:
+        level = np.interp(frame.grid[~frame.resting], guide.time[: guide.first.size], guide.value)
+        level = np.maximum(level - float(guide.value.min()), 0.0) / max(float(np.ptp(guide.value)), 1e-300)
+    else:
+        level = np.ones(usable.size)
+    own = {name: quiet_noise(r.signal) for name, r in shaken.items()}
+    stds = {name: float(n.white * np.sqrt(min(n.step / BLOCK, 1.0))) for name, n in own.items()}
+    found = oscillation({name: r.fine for name, r in shaken.items()}, level, usable, stds)
+    still = int(frame.resting.sum())
+    return {pair: np.pad(matrix, (0, still)) for pair, matrix in found.items()}
+
+
+def _channel(reduced: _Reduced, definition: TestDefinition, frame: _Frame, shaken: Array | None) -> Channel:
+    signal, first, count = reduced.signal, reduced.first, reduced.count
+    noise = quiet_noise(signal)
+    resting = frame.resting[first]
+    accuracy = _accuracy(definition, signal.name, reduced.value)
+    own = replace(noise, white=0.0).covariance(frame.grid)
+    white = noise.white * np.sqrt(min(noise.step / BLOCK, 1.0))
+    if shaken is not None:
+        own = own + shaken
+    else:
+        fine = signal.between(frame.start, frame.end(signal.name)).reduced(BLOCK)
+        rough = float(sample_noise(fine.value)) ** 2 - WANDER_ROUGHNESS * noise.flicker
+        white = max(white, max(rough, 0.0) ** 0.5)
+    own[np.diag_indices_from(own)] += max(white, 1e-9 * float(np.abs(reduced.value).max())) ** 2
+    own = averaged(averaged(own, first, count).T, first, count)
+    burning = np.where(resting, 0.0, 1.0)
+    gain = reduced.value * burning / float(np.abs(reduced.value).max())
+    covariance = own + accuracy**2 * (np.outer(burning, burning) + np.outer(gain, gain))
+    std = np.sqrt(own.diagonal())
+    return Channel(signal.name, reduced.time, reduced.value, first, count, resting, std, accuracy, covariance)
+
+
+def _merged(good: NDArray[np.bool_], centers: Array, frame: _Frame) -> tuple[Integers, Integers]:
+    """Runs of good blocks: single near the opening and changes, MERGED of them elsewhere."""
+    lively = centers < frame.start + NEAR
+    for instant, _ in frame.changes:
+        lively |= np.abs(centers - instant) < NEAR
+    first, size = [], []
+    i = 0
+    while i < good.size:
+        if not good[i]:
+            i += 1
+            continue
+        span = 1
+        while not lively[i] and span < MERGED and i + span < good.size and good[i + span] and not lively[i + span]:
+            span += 1
+        first.append(i)
+        size.append(span)
+        i += span
+    return np.array(first, dtype=np.int64), np.array(size, dtype=np.int64)
+
+
+def quiet_noise(signal: Signal) -> Noise:
+    """A sensor's noise before the opening, scaled so that what was measured there has the size that it foretells."""
     quiet = signal.between(-LONGEST, -0.1)
     noise = Noise.of(signal, quiet)
-    run = signal.between(start, end)
-    if run.time.size < 20:
-        return None
-    blocks = run.reduced(BLOCK)
-    keep = np.ones(blocks.time.size, dtype=bool)
-    for at, deviation in changes:
-        keep &= np.abs(blocks.time - at) > AROUND_CHANGE + 2.0 * deviation
-    time, value = blocks.time[keep], blocks.value[keep]
-    if time.size < 10:
-        return None
-    # in the burn the chamber's oscillation comes on top of the sensor's own noise
-    jitter = max(sample_noise(blocks.value), 1e-12 * float(np.abs(value).max()))
-    accuracy = _accuracy(definition, signal.name, value)
-    covariance = noise.covariance(time) + accuracy**2
-    covariance[np.diag_indices_from(covariance)] += jitter**2
-    std = np.sqrt(noise.covariance(time).diagonal() + jitter**2)
-    return Channel(signal.name, time, value, std, accuracy, covariance, covariance).at_form(FORM_ERROR)
+    blocks = quiet.reduced(BLOCK)
+    if blocks.time.size < LEAST_QUIET:
+        return noise
+    blocks = blocks.between(float(blocks.time[0]), float(blocks.time[0]) + MOST_QUIET)
+    covariance = noise.covariance(blocks.time)
+    white = solve_triangular(cholesky(covariance, lower=True), blocks.value - blocks.value.mean(), lower=True)
+    scale = float(np.clip(white @ white / white.size, *QUIET_SCALE))
+    return replace(noise, white=noise.white * scale**0.5, flicker=noise.flicker * scale)
+
+
+LEAST_QUIET, MOST_QUIET = 40, 10.0
+"""Blocks before the opening from which on they tell the size of the noise, and the most seconds that are looked at."""
+
+WANDER_ROUGHNESS = 1.27
+"""Of the wander's A, the part that shows in second differences of neighbouring blocks: (8 * 1.5 - 2 * 2.19) / 6."""
+
+QUIET_SCALE = (0.3, 3.0)
+"""Between which the noise's variance may be scaled."""
 
 
 def _accuracy(definition: TestDefinition, name: str, value: Array) -> float:

@@ -17,7 +17,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
         return
     left = (c[OUTER_RADIUS] - env[PORT_RADIUS]) / p[WIDTH]
     if left < 1.0:
-        near = 1.0 - left
+        near = min(1.0 - left, 1.0)  # beyond the wall there may be spare fuel
         site[REGRESSION_FACTOR] *= 1.0 - min(p[DEPTH], MOST) * near * near
 
 

@@ -37,6 +37,7 @@ from hfanalysis.engine.model import (
     PAD,
     POLYTROPIC_EXPONENT,
     RADIUS,
+    SPARE_WEB,
     SPEED,
     TANK,
     TEMPERATURE,
@@ -174,7 +175,7 @@ def event_values(t: float, y: Array, liquid: bool, burning: bool, model: int, ou
     if liquid:
         dry = liquid_mass(m.saturation, c[VOLUME], y[TANK], y[TEMPERATURE])
     values[LIQUID_OUT] = dry
-    values[FUEL_OUT] = c[OUTER_RADIUS] - y[RADIUS] if burning else 1.0
+    values[FUEL_OUT] = c[OUTER_RADIUS] + c[SPARE_WEB] - y[RADIUS] if burning else 1.0
     values[GROUND] = y[ALTITUDE] - c[LAUNCH_ALTITUDE] + PAD if c[FLIES] > 0.0 else 1.0
     subsonic = mach_at_area(c[EXIT_AREA] / (c[THROAT_AREA] * m.site[THROAT_FACTOR]), out[O_GAMMA], False)
     values[CHOKING] = out[O_CHAMBER_PRESSURE] * pressure_ratio(subsonic, out[O_GAMMA]) - out[O_AMBIENT]
@@ -484,7 +485,7 @@ def integrate(
         happened[event] = t
         liquid = liquid and event != LIQUID_OUT
         change(event, m, y)
-        if burning and (event == FUEL_OUT or y[RADIUS] >= m.c[OUTER_RADIUS]):
+        if burning and (event == FUEL_OUT or y[RADIUS] >= m.c[OUTER_RADIUS] + m.c[SPARE_WEB]):
             burning, happened[FUEL_OUT] = False, t
             ending = REACHED_END if run_on else BURNT_OUT
         s = enter(t, y, liquid, burning, model)

@@ -72,13 +72,28 @@ def observe_tangents(tangents: Tangents, times: ArrayLike, effects: Sequence[Act
     passes on the model's sensitivities and adds those of its own parameters, of strength 0 too.
     """
     where = np.ascontiguousarray(times, dtype=np.float64)
-    channels = true_channels(tangents.burn, where)
-    slopes = {
-        channel: np.sum([tangents.output(name, where) for name in names], axis=0) for channel, names in CHANNELS.items()
+    channels, slopes = true_channels(tangents.burn, where), true_tangents(tangents, where)
+    return distorted_tangents(channels, slopes, where, _chosen(tangents.burn, effects), tangents.parameters)
+
+
+def true_tangents(tangents: Tangents, times: Array) -> dict[str, Array]:
+    """Sensitivities (times, parameters) of :func:`true_channels`."""
+    return {
+        channel: np.sum([tangents.output(name, times) for name in names], axis=0) for channel, names in CHANNELS.items()
     }
-    for active in _distorting(_chosen(tangents.burn, effects)):
-        slopes = _passed_on(active, where, channels, slopes, tangents.parameters)
-        channels = distorted(channels, where, [active])
+
+
+def distorted_tangents(
+    channels: Mapping[str, Array],
+    slopes: dict[str, Array],
+    times: Array,
+    effects: Sequence[Active],
+    names: tuple[str, ...],
+) -> dict[str, Array]:
+    """Sensitivities to the parameters ``names`` behind the distortions, given channels and sensitivities before them."""
+    for active in _distorting(effects):
+        slopes = _passed_on(active, times, channels, slopes, names)
+        channels = distorted(channels, times, [active])
     return slopes
 
 

@@ -54,7 +54,8 @@ class Engine:
     """An engine in SI units: what an engine file states.
 
     ``oxidizer_enthalpy`` on the formation scale [J/kg]: one number for the whole run (the report), or None for that of
-    the liquid or vapour leaving the tank. An engine without a ``vehicle`` stands at ``ambient_pressure`` [Pa].
+    the liquid or vapour leaving the tank. ``spare_web`` [m] of fuel behind the grain's wall burns on (for fits in which
+    the end of the fuel is an observation of its own). An engine without a ``vehicle`` stands at ``ambient_pressure`` [Pa].
     """
 
     saturation: Saturation
@@ -75,6 +76,7 @@ class Engine:
     vehicle: Vehicle | None = None
     ambient_pressure: float | None = None
     oxidizer_enthalpy: float | None = None
+    spare_web: float = 0.0
     effects: tuple[Active, ...] = field(default=())
 
     @property
@@ -180,7 +182,7 @@ def constants(e: Engine) -> Array:
     values = (
         e.feed.volume, e.feed.area, e.feed.loss_factor, exponent, liquid_loss, vapor_loss, e.grain_length, e.a, e.n,
         e.dead_volume, e.fuel_density, e.throat_area, e.exit_area, e.outer_radius, enthalpy, *rocket,
-        e.ambient, float(v is not None), e.fuel_mass, e.oxidizer_mass, e.temperature,
+        e.ambient, float(v is not None), e.fuel_mass, e.oxidizer_mass, e.temperature, e.spare_web,
     )  # fmt: skip
     out = np.array(values)
     assert out.size == len(CONSTANTS)

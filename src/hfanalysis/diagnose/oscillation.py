@@ -1,0 +1,82 @@
+"""The oscillation of the burn, as block means show it: its covariance over time and between channels.
+
+The chamber's pressure oscillates in a narrow band at tens of hertz, and the thrust with it. What of it is left in block
+means is aliased: it is correlated over several blocks, with changing sign, and common to both channels. It is measured
+from the blocks themselves, less their smooth course, and grows with the chamber's pressure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import toeplitz
+from scipy.signal import savgol_filter
+from scipy.signal.windows import parzen
+
+Array = NDArray[np.float64]
+
+SMOOTHED = 25
+"""Blocks over which the smooth course is a cubic."""
+
+LAGS = 12
+"""Blocks over which the oscillation is coherent at most."""
+
+WILD = 5.0
+"""Standard deviations beyond which a block is no oscillation."""
+
+
+def oscillation(
+    blocks: Mapping[str, Array], level: Array, usable: NDArray[np.bool_], own: Mapping[str, float]
+) -> dict[tuple[str, str], Array]:
+    """Covariance (blocks, blocks) of the oscillation, for every pair of channels.
+
+    ``blocks``: means of each channel on a uniform grid; ``level`` (blocks,): what it is proportional to, 0 to 1;
+    ``usable``: blocks without gaps and changes of phase nearby; ``own``: standard deviation of a block's mean that each
+    sensor has by itself.
+    """
+    stretches = [s for s in _stretches(usable) if s.stop - s.start > SMOOTHED]
+    rough = {name: _rough(values, stretches) for name, values in blocks.items()}
+    out = {}
+    names = list(blocks)
+    for i, a in enumerate(names):
+        for b in names[i:]:
+            noise = own[a] ** 2 if a == b else 0.0
+            autocovariance = _autocovariance(rough[a], rough[b], level, stretches, noise)
+            out[a, b] = toeplitz(autocovariance) * np.outer(level, level)
+            out[b, a] = out[a, b].T
+    return out
+
+
+def _stretches(usable: NDArray[np.bool_]) -> list[slice]:
+    edges = np.flatnonzero(np.diff(np.r_[False, usable, False].astype(np.int8)))
+    return [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _rough(values: Array, stretches: list[slice]) -> Array:
+    """What is left of the blocks after their smooth course; wild ones are cut."""
+    out = np.zeros(values.size)
+    for s in stretches:
+        left = values[s] - savgol_filter(values[s], SMOOTHED, 3)
+        spread = 1.4826 * float(np.median(np.abs(left)))
+        out[s] = np.clip(left, -WILD * spread, WILD * spread)
+    return out
+
+
+def _autocovariance(a: Array, b: Array, level: Array, stretches: list[slice], noise: float) -> Array:
+    """At lags of 0, 1, ... blocks, for a level of 1; the same forwards and backwards."""
+    found = np.zeros(a.size)
+    taper = parzen(2 * LAGS + 1)[LAGS:]
+    for lag in range(min(LAGS + 1, a.size)):
+        product = scale = count = 0.0
+        for s in stretches:
+            n = s.stop - s.start - lag
+            x, y = slice(s.start, s.start + n), slice(s.start + lag, s.stop)
+            product += 0.5 * float(a[x] @ b[y] + b[x] @ a[y])
+            scale += float(level[x] @ level[y])
+            count += n
+        if scale > 0.0:
+            found[lag] = taper[lag] * (product - (noise * count if lag == 0 else 0.0)) / scale
+    found[0] = max(found[0], 0.0) if noise > 0.0 else found[0]
+    return found
