@@ -6,9 +6,12 @@ from math import log, sqrt
 
 from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Effect, Parameter
-from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, P_CHAMBER, P_TANK, term
+from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, INJECTOR_FACTOR, IS_LIQUID, P_CHAMBER, P_TANK, T_TANK, term
 
-WEIGHT, OMEGA = range(2)
+WEIGHT, OMEGA, LINE = range(3)
+OMEGA_AT, OMEGA_SLOPE, LEAST_OMEGA = 285.0, -0.032, 1.0
+"""Temperature [K] at which omega is stated, its slope [1/K] for saturated nitrous oxide, and the least that is taken."""
+
 LEAST_DROP = 1e-4
 """Relative pressure drop below which flashing and single-phase flow agree."""
 
@@ -48,9 +51,12 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if hook != AT_FLOW or env[IS_LIQUID] == 0.0:
         return
     ratio = min(max(env[P_CHAMBER] / env[P_TANK], 0.0), 1.0 - LEAST_DROP)
+    omega = max(p[OMEGA] + OMEGA_SLOPE * (env[T_TANK] - OMEGA_AT), LEAST_OMEGA)
     # at the critical ratio the flow is stationary: holding it there leaves no corner
-    flashing = flashing_flow(max(ratio, critical_ratio(p[OMEGA])), p[OMEGA])
-    site[INJECTOR_FACTOR] *= 1.0 + p[WEIGHT] * (flashing / sqrt(2.0 * (1.0 - ratio)) - 1.0)
+    flashing = flashing_flow(max(ratio, critical_ratio(omega)), omega)
+    share = 1.0 + p[WEIGHT] * (flashing / sqrt(2.0 * (1.0 - ratio)) - 1.0)
+    site[INJECTOR_FACTOR] *= share
+    site[FEED_FACTOR] *= 1.0 + p[LINE] * (1.0 / (share * share) - 1.0)
 
 
 EFFECT = Effect(
@@ -60,13 +66,15 @@ EFFECT = Effect(
     reference="single-phase and homogeneous equilibrium flow blended as by Dyer et al., AIAA 2007-5702: weight "
     "1/(1 + kappa), one half for saturated liquid; equilibrium flow by Leung, AIChE Journal 32 (1986) 1743, with omega "
     "= c_p T p / v_l ((v_v - v_l) / (h_v - h_l))^2, which is 3.7 to 2.9 for nitrous oxide from 270 to 295 K",
-    formula="mdot = mdot_base (1 - w + w G_eq(max(eta, eta_c)) / sqrt(2 (1 - eta))),  eta = p_c / p_T",
-    sites=("injector_factor",),
+    formula="f = 1 - w + w G_eq(max(eta, eta_c)) / sqrt(2 (1 - eta)),  eta = p_c / p_T;  mdot = f mdot_injector;  "
+    "K_loss (1 + l (1 / f^2 - 1)): the line's loss grows as it flashes there too",
+    sites=("injector_factor", "feed_factor"),
     parameters=(
         Parameter("weight", "-", "0 single-phase, 1 homogeneous equilibrium", typical=0.5, low=0.0, high=1.0),
         Parameter(
-            "omega", "-", "compressibility of the flashing liquid", 0.3, center=3.1, low=1.0, high=8.0, given=True
+            "omega", "-", "compressibility of the flashing liquid at 285 K", 0.3, center=3.1, low=1.0, high=8.0, given=True
         ),
+        Parameter("line", "-", "how far the line takes part", typical=0.5, center=0.5, low=0.0, high=1.0),
     ),
     phases=("liquid",),
     term=_term,
