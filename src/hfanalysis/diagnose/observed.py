@@ -56,7 +56,7 @@ LONGEST = 30.0
 FORM_ERROR, FORM_TIME = 2e-4, 1.0
 """Model-form error: part of a channel's range, and the time [s] over which it is coherent."""
 
-EVENT_STD = 0.005
+EVENT_STD = 0.008
 """Least standard deviation [s] of the instant of a phase change."""
 
 FUEL_STD = 0.05
@@ -69,6 +69,9 @@ SETTLING, SHORTEST_REST, LONGEST_REST = 0.5, 0.4, 10.0
 """Seconds after the end of the flow before the chamber is at rest, and how long a rest that is looked at may be."""
 
 REST_BLOCKS = 4
+
+BEFORE_OPENING, BEFORE = ("p_tank", "m_tank"), 1.0
+"""Channels that show the tank at rest before the opening, and the seconds of it that are looked at."""
 
 
 TOGETHER = ("p_chamber", "thrust")
@@ -116,8 +119,8 @@ def averaged(rows: Array, first: Integers, count: Integers) -> Array:
 class Observed:
     """The channels of a test, the instants of its phase changes with their deviations [s], and when it ends [s].
 
-    ``grid`` [s]: points at which a model is asked, from the opening on; ``resting`` ones come after the end of the
-    flow. ``stated``: what was measured outside the log (SI), with standard deviations, by name. ``common``: covariance
+    ``grid`` [s]: points at which a model is asked: at the opening, through the flow, and ``resting`` ones after it
+    (the first, too, stands for the time before). ``stated``: what was measured outside the log (SI), with standard deviations, by name. ``common``: covariance
     of the first and second of TOGETHER, if both are there. ``form``: model-form error, as part of a channel's range.
     """
 
@@ -253,9 +256,11 @@ def _frame(log: TestLog, segments: Segments, definition: TestDefinition, origin:
     if rest is not None:
         width = (rest[1] - rest[0]) / REST_BLOCKS
         after = rest[0] + width * (np.arange(REST_BLOCKS) + 0.5)
-    grid = np.concatenate([burning, after])
+    grid = np.concatenate([[0.0], burning, after])
+    resting = np.ones(grid.size, dtype=bool)
+    resting[1 : 1 + burning.size] = False
     start = max(FIRST, segments.time("t_feed") or 0.0)
-    return _Frame(grid, np.arange(grid.size) >= burning.size, changes, start, ends)
+    return _Frame(grid, resting, changes, start, ends)
 
 
 def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | None:
@@ -368,7 +373,7 @@ def _reduce(signal: Signal, frame: _Frame) -> _Reduced | None:
     edges = np.arange(blocks + 1) * BLOCK
     at = np.searchsorted(signal.time, edges)
     sums = np.concatenate([[0.0], np.cumsum(signal.value)])
-    samples, centers = np.diff(at), frame.grid[:blocks]
+    samples, centers = np.diff(at), frame.grid[1 : 1 + blocks]
     means = np.where(samples > 0, np.diff(sums[at]) / np.maximum(samples, 1), 0.0)
     filled = (samples > 0) & (samples >= 0.5 * BLOCK / max(signal.step, 1e-9))
     good = filled & (centers > frame.start) & (centers < frame.end(signal.name))
@@ -377,12 +382,17 @@ def _reduce(signal: Signal, frame: _Frame) -> _Reduced | None:
     if good.sum() < 10:
         return None
     first, count = _merged(good, centers, frame)
-    time, value = averaged(centers, first, count), averaged(means, first, count)
-    rest = np.flatnonzero(frame.resting) if signal.name in AT_REST else np.zeros(0, dtype=np.int64)
-    still = _still(signal, frame.grid[rest])
+    time, value, first = averaged(centers, first, count), averaged(means, first, count), first + 1
+    one = np.ones(1, dtype=np.int64)
+    before = signal.between(-BEFORE, -0.05).value
+    if signal.name in BEFORE_OPENING and before.size > 4:
+        time, value = np.r_[0.0, time], np.r_[before.mean(), value]
+        first, count = np.r_[0 * one, first], np.r_[one, count]
+    after = np.flatnonzero(frame.resting)[1:] if signal.name in AT_REST else np.zeros(0, dtype=np.int64)
+    still = _still(signal, frame.grid[after])
     if np.isfinite(still).all():
-        time, value = np.r_[time, frame.grid[rest]], np.r_[value, still]
-        first, count = np.r_[first, rest], np.r_[count, np.ones(rest.size, dtype=np.int64)]
+        time, value = np.r_[time, frame.grid[after]], np.r_[value, still]
+        first, count = np.r_[first, after], np.r_[count, np.ones(after.size, dtype=np.int64)]
     return _Reduced(signal, time, value, first, count, means, good)
 
 
@@ -406,7 +416,7 @@ def _shaken(shaken: Mapping[str, _Reduced], frame: _Frame) -> dict[tuple[str, st
     usable = np.logical_and.reduce([r.good for r in shaken.values()])
     guide = next(iter(shaken.values()))
     if guide.signal.name in TOGETHER:
-        level = np.interp(frame.grid[~frame.resting], guide.time[: guide.first.size], guide.value)
+        level = np.interp(frame.grid[~frame.resting], guide.time, guide.value)
         level = np.maximum(level - float(guide.value.min()), 0.0) / max(float(np.ptp(guide.value)), 1e-300)
     else:
         level = np.ones(usable.size)
@@ -414,7 +424,7 @@ def _shaken(shaken: Mapping[str, _Reduced], frame: _Frame) -> dict[tuple[str, st
     stds = {name: float(n.white * np.sqrt(min(n.step / BLOCK, 1.0))) for name, n in own.items()}
     found = oscillation({name: r.fine for name, r in shaken.items()}, level, usable, stds)
     still = int(frame.resting.sum())
-    return {pair: np.pad(matrix, (0, still)) for pair, matrix in found.items()}
+    return {pair: np.pad(matrix, (1, still - 1)) for pair, matrix in found.items()}
 
 
 def _channel(reduced: _Reduced, definition: TestDefinition, frame: _Frame, shaken: Array | None) -> Channel:
@@ -432,7 +442,7 @@ def _channel(reduced: _Reduced, definition: TestDefinition, frame: _Frame, shake
         white = max(white, max(rough, 0.0) ** 0.5)
     own[np.diag_indices_from(own)] += max(white, 1e-9 * float(np.abs(reduced.value).max())) ** 2
     own = averaged(averaged(own, first, count).T, first, count)
-    burning = np.where(resting, 0.0, 1.0)
+    burning = np.where(resting & (signal.name in AT_REST), 0.0, 1.0)
     gain = reduced.value * burning / float(np.abs(reduced.value).max())
     covariance = own + accuracy**2 * (np.outer(burning, burning) + np.outer(gain, gain))
     std = np.sqrt(own.diagonal())

@@ -23,6 +23,9 @@ SMOOTHED = 25
 LAGS = 12
 """Blocks over which the oscillation is coherent at most."""
 
+UNEVEN = 0.2
+"""Part of the oscillation that its neighbours and the other channel do not foretell: it grows and fades."""
+
 WILD = 5.0
 """Standard deviations beyond which a block is no oscillation."""
 
@@ -44,6 +47,10 @@ def oscillation(
         for b in names[i:]:
             noise = own[a] ** 2 if a == b else 0.0
             autocovariance = _autocovariance(rough[a], rough[b], level, stretches, noise)
+            if a == b:
+                autocovariance[0] *= 1.0 + UNEVEN
+            else:
+                autocovariance *= 1.0 - UNEVEN
             out[a, b] = toeplitz(autocovariance) * np.outer(level, level)
             out[b, a] = out[a, b].T
     return out

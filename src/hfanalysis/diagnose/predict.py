@@ -111,9 +111,9 @@ def readings(observed: Observed, burnt: Burn) -> dict[str, Array]:
 
 
 def _resting(observed: Observed, channels: Mapping[str, Array]) -> dict[str, Array]:
-    """The channels, with what is known of them after the end of the flow."""
-    known = {"p_chamber": observed.ambient}
-    return {name: np.where(observed.resting, known.get(name, 0.0), values) for name, values in channels.items()}
+    """The channels, with what is known of them before the opening and after the end of the flow."""
+    known = {"p_chamber": observed.ambient, "p_run": observed.ambient, "thrust": 0.0}
+    return {n: np.where(observed.resting, known[n], v) if n in known else v for n, v in channels.items()}
 
 
 def aligned(observed: Observed, burnt: Burn, times: Array) -> Array:
@@ -158,7 +158,7 @@ def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]
         for name in slopes:
             speed = (ahead[name] - behind[name]) / (2.0 * TICK) * share
             slopes[name] = slopes[name] + speed[:, np.newaxis] * moment[np.newaxis]
-    for name in slopes:
+    for name in ("p_chamber", "p_run", "thrust"):
         slopes[name] = np.where(observed.resting[:, np.newaxis], 0.0, slopes[name])
     channels = _resting(observed, true_channels(found.burn, times))
     effects = found.burn.steps.engine.effects

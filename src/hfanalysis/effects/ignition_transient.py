@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from math import pi, sin
+
 from hfanalysis.engine.effect import Effect, OwnState, Parameter
 from hfanalysis.engine.sites import FUEL_SOURCE, OXIDIZER_SOURCE, RATES, term
 
 MASS, DURATION, RATIO = range(3)
-NORM = 1.875
-"""Over the integral of (1 - s^2)^2 from 0 to 1."""
 
 
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if hook != RATES or t >= p[DURATION]:
         return
-    left = 1.0 - (t / p[DURATION]) ** 2
-    flow = p[MASS] * NORM / p[DURATION] * left * left
+    wave = sin(pi * t / p[DURATION])
+    flow = 2.0 * p[MASS] / p[DURATION] * wave * wave
     fuel = flow / (1.0 + p[RATIO])
     site[FUEL_SOURCE] += fuel
     site[OXIDIZER_SOURCE] += flow - fuel
@@ -28,7 +28,7 @@ EFFECT = Effect(
     meaning="the igniter, and fuel that it melted or broke off, add gas to the chamber for a while",
     reference="report, section 4.4: HF4's peak in chamber pressure with its abrupt fall, which the model lacks; "
     "Sutton and Biblarz, Rocket Propulsion Elements, chapters 14 and 16 (igniters, start transients)",
-    formula="mdot = 15/8 m/tau (1 - (t/tau)^2)^2 for t < tau, of which 1/(1 + O/F) as fuel",
+    formula="mdot = 2 m/tau sin^2(pi t/tau) for t < tau, of which 1/(1 + O/F) as fuel",
     sites=("fuel_source", "oxidizer_source"),
     parameters=(
         Parameter("mass", "kg", "gas that is added in all", typical=0.05, low=0.0, high=1.0),
