@@ -32,7 +32,7 @@ LONGEST_STRIDE = 2.0
 class Fit:
     """The most probable ``x`` of a hypothesis, its covariance, the whitened residual there and the log evidence.
 
-    ``evidence``: log of the probability of the data, less that of data exactly as the model says.
+    The evidence is a density, in units that do not depend on the hypothesis or on the model-form error.
     """
 
     hypothesis: Hypothesis
@@ -99,7 +99,7 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, 
             break
     assert here.slopes is not None
     curvature = here.slopes.T @ here.slopes + np.eye(x.size)
-    evidence = -_objective(here, x) - 0.5 * float(np.linalg.slogdet(curvature)[1])
+    evidence = -_objective(here, x) - 0.5 * float(np.linalg.slogdet(curvature)[1]) - observed.log_size
     covariance = np.asarray(np.linalg.inv(curvature))
     return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, done)
 

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fit import AFTER, Fit, fit, predict, sensor_slopes, slopes_of, with_spare_fuel
+from hfanalysis.diagnose.fit import Fit
+from hfanalysis.diagnose.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.hypothesis import Block, Hypothesis
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.probe import Splines, probe
 from hfanalysis.engine.sensitivity import run_with_tangents
-from hfanalysis.stages.base import Progress, silent
 
 Array = NDArray[np.float64]
 
@@ -190,132 +190,13 @@ def with_source(hypothesis: Hypothesis, source: Source) -> Hypothesis:
     return hypothesis.with_block(Block(names, matrix, splines), effect.at(on=1.0))
 
 
-@dataclass(frozen=True)
-class Localisation:
-    """The base fit, the fit with all sources, and the sources in the order in which they were found."""
-
-    base: Fit
-    final: Fit
-    sources: tuple[Source, ...]
-    ranking: tuple[Source, ...]
-    observed: Observed
-
-
-FORMS = (3e-2, 1e-2, 3e-3, 1e-3)
-"""Model-form errors, from coarse to fine: what is large is placed first, so that it does not bend what is small."""
-
-MOST_SOURCES = 3
-
-
-def localise(hypothesis: Hypothesis, measured: Observed, progress: Progress = silent) -> Localisation:
-    """Find sources, one at a time, from the coarsest disagreement to the finest."""
-    start = np.zeros(hypothesis.size)
-    found: list[Source] = []
-    rivals: list[list[Source]] = []
-    base: Fit | None = None
-    ranking: tuple[Source, ...] = ()
-    current, observed = hypothesis, measured
-    for step, form in enumerate(FORMS):
-        progress(f"comparing to {form:.1%} of each channel's range", step / len(FORMS))
-        observed = measured.at_form(form)
-        here = fit(current, observed, start)
-        base = here if not found else base
-        while len(found) < MOST_SOURCES:
-            ranked = linear_sources(here, observed)
-            ranking = ranking if found else tuple(ranked)
-            better = _refit(here, observed, ranked)
-            if better is None:
-                break
-            here, source = better
-            found.append(source)
-            rivals.append([r for r in ranked[:RIVALS] if r.site != source.site])
-        current, start = here.hypothesis, here.x
-    assert base is not None
-    progress("asking whether another site does as well", 0.9)
-    final, found = _swapped(hypothesis, here, observed, found, rivals)
-    return Localisation(base, final, tuple(_of_fit(s, final) for s in found), ranking, observed)
-
-
-def _swapped(
-    hypothesis: Hypothesis, here: Fit, observed: Observed, found: list[Source], rivals: list[list[Source]]
-) -> tuple[Fit, list[Source]]:
-    """Each source against its rivals once more, at the finest comparison: at the coarse ones they look alike."""
-    for k in range(len(found)):
-        for rival in rivals[k]:
-            others = [s for i, s in enumerate(found) if i != k]
-            if any(s.site == rival.site for s in others):
-                continue
-            trial = _refit_all(hypothesis, here, observed, [*others, rival])
-            if trial is not None and trial.log_evidence > here.log_evidence:
-                here, found = trial, [*found[:k], rival, *found[k + 1 :]]
-    return here, found
-
-
-def _refit_all(hypothesis: Hypothesis, here: Fit, observed: Observed, sources: list[Source]) -> Fit | None:
-    """The fit with these sources and no others, the nuisances starting where they are."""
-    made = hypothesis
-    for source in sources:
-        made = with_source(made, source)
-    linear = np.concatenate([sources[-1].nuisances[: len(hypothesis.free)], *(_coordinates(s) for s in sources)])
-    still = np.concatenate([here.x[: len(hypothesis.free)], np.zeros(linear.size - len(hypothesis.free))])
-    return _fit_from(made, observed, [still + share * (linear - still) for share in STRIDES])
-
-
-def _refit(here: Fit, observed: Observed, ranked: list[Source]) -> tuple[Fit, Source] | None:
-    """The best of the few best sources with the full model; None where none is worth it."""
-    top = ranked[0].log_evidence
-    best: tuple[Fit, Source] | None = None
-    for source in ranked[:REFITTED]:
-        if source.log_evidence < max(LEAST_EVIDENCE, 0.5 * top):
-            continue
-        refitted = _with_all_parameters(here, observed, source)
-        if refitted is None:
-            continue
-        if best is None or refitted.log_evidence > best[0].log_evidence:
-            best = (refitted, source)
-    if best is None or best[0].log_evidence < here.log_evidence + LEAST_EVIDENCE:
-        return None
-    return best
-
-
-def _with_all_parameters(here: Fit, observed: Observed, source: Source) -> Fit | None:
-    """The full fit with a source, from its linear estimate or, where that cannot be run, from nearer to nothing."""
-    made = with_source(here.hypothesis, source)
-    moved = np.concatenate([source.nuisances - here.x, _coordinates(source)])
-    still = np.concatenate([here.x, np.zeros(source.splines.count)])
-    return _fit_from(made, observed, [still + share * moved for share in STRIDES])
-
-
-STRIDES = (1.0, 0.5, 0.2, 0.0)
-"""Parts of the way to the linear estimate from which a full fit may start: a large source is not linear."""
-
-
-def _coordinates(source: Source) -> Array:
+def coordinates(source: Source) -> Array:
     """A source's coefficients in units of its prior."""
     root = np.linalg.cholesky(smooth_prior(source.splines.count)) * source.scale
     return np.asarray(np.linalg.solve(root, source.coefficients))
 
 
-def _fit_from(hypothesis: Hypothesis, observed: Observed, starts: list[Array]) -> Fit | None:
-    """The fit from the best of several starts; None where none can be run."""
-    best: tuple[float, Array] | None = None
-    for x in starts:
-        try:
-            found = predict(hypothesis, observed, x, tangents=False)
-        except (ValueError, ArithmeticError):
-            continue
-        value = 0.5 * float(found.residual @ found.residual + x @ x)
-        if np.isfinite(value) and (best is None or value < best[0]):
-            best = (value, x)
-    if best is None:
-        return None
-    try:
-        return fit(hypothesis, observed, best[1])
-    except (ValueError, ArithmeticError):
-        return None
-
-
-def _of_fit(source: Source, final: Fit) -> Source:
+def of_fit(source: Source, final: Fit) -> Source:
     """A source as the last fit has it."""
     for block, place in final.hypothesis.places():
         wanted = source.site.sensor

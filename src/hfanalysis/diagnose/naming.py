@@ -1,19 +1,22 @@
 """Naming: which effects of the library, alone or together, explain what the base model leaves open.
 
 Every effect is fitted with all calibrated constants free, from the start at which a score test with the constants
-projected out sees most of it. A parent is fitted again from every child, for an unconverged base poses as evidence.
+projected out sees most of it, first coarse, then fine. A parent is fitted again from its children's constants, for an
+unconverged base poses as evidence for a wrong effect.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fit import Fit, fit
+from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted
+from hfanalysis.diagnose.fit import Fit
+from hfanalysis.diagnose.freeform import unknown_sources
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import predict
@@ -22,173 +25,308 @@ from hfanalysis.stages.base import Progress, silent
 
 Array = NDArray[np.float64]
 
-COARSE = 1e-2
-"""Model-form error at which a fit begins, so that it does not stick in what is small."""
-
 STARTS = (-1.2, 0.0, 1.2)
 """Standard deviations from its prior's center at which a parameter of an effect's shape may start."""
 
 FIRST_STEP = 0.05
 """Strength, in units of the typical one (as x), at which slopes of an effect are taken."""
 
-FAR = 3.0
-"""Units of log evidence that a parent gains from a child's constants before all are fitted again."""
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A set of effects, its fit and log evidence."""
-
-    names: tuple[str, ...]
-    fit: Fit
-
-    @property
-    def log_evidence(self) -> float:
-        """Of the data under this set of effects."""
-        return self.fit.log_evidence
-
-    @property
-    def chi2(self) -> float:
-        """What is left, in squared standard deviations."""
-        return float(self.fit.residual @ self.fit.residual)
-
-
-def fitted(hypothesis: Hypothesis, observed: Observed, starts: Iterable[Array]) -> Fit | None:
-    """The best fit from several starts, first coarse, then fine; None where none can be run."""
-    coarse, best = observed.at_form(max(COARSE, observed.form)), None
-    for start in starts:
-        try:
-            rough = fit(hypothesis, coarse, start)
-            found = fit(hypothesis, observed, rough.x)
-        except (ValueError, ArithmeticError):
-            continue
-        if best is None or found.log_evidence > best.log_evidence:
-            best = found
-    return best
-
-
-@dataclass(frozen=True)
-class Score:
-    """What a score test says of an effect: gain in log probability, and the start at which it is largest."""
-
-    gain: float
-    start: Array
-
-
-def score(parent: Fit, effect: Effect, observed: Observed, stated: Mapping[str, float]) -> tuple[Hypothesis, list[Score]]:
-    """The parent with an effect more, and its score tests from several shapes, the best first.
-
-    The slopes of the strengths have the parent's parameters projected out.
-    """
-    made = parent.hypothesis.with_effect(effect, **stated)
-    least, most = made.bounds
-    size = parent.x.size
-    shapes = [
-        i
-        for i in range(size + effect.strengths, made.size)
-        if made.free[i - 0].shape == "positive"
-    ]
-    found = []
-    for choice in product(STARTS, repeat=len(shapes)):
-        start = np.concatenate([parent.x, np.zeros(made.size - size)])
-        start[shapes] = choice
-        strengths = np.arange(size, size + effect.strengths)
-        start[strengths] = np.clip(FIRST_STEP, least[strengths], most[strengths])
-        start = np.clip(start, least, most)
-        try:
-            there = predict(made, observed, start, tangents=True)
-        except (ValueError, ArithmeticError):
-            continue
-        if there.slopes is None or not np.isfinite(there.slopes).all() or not np.isfinite(there.residual).all():
-            continue
-        found.append(_score(there.slopes, there.residual, start, size, effect.strengths, least, most))
-    return made, sorted(found, key=lambda s: -s.gain)
-
-
-def _score(slopes: Array, residual: Array, start: Array, size: int, strengths: int, least: Array, most: Array) -> Score:
-    """One linear step in the parent's parameters and the strengths."""
-    columns = slopes[:, : size + strengths]
-    x = start[: size + strengths]
-    curvature = columns.T @ columns + np.eye(x.size)
-    step = -np.linalg.solve(curvature, columns.T @ residual + x)
-    own = slice(size, size + strengths)
-    wanted = np.clip(x[own] + step[own], least[own], most[own])
-    # the strengths held where their bounds leave them, the rest follows
-    a, b = columns[:, :size], columns[:, own]
-    moved = residual + b @ (wanted - x[own])
-    inner = np.linalg.solve(curvature[:size, :size], a.T @ moved + x[:size])
-    left = moved - a @ inner
-    after = 0.5 * float(left @ left + np.sum((x[:size] - inner) ** 2) + wanted @ wanted)
-    still = residual - b @ x[own]
-    rest = np.linalg.solve(curvature[:size, :size], a.T @ still + x[:size])
-    none = still - a @ rest
-    before = 0.5 * float(none @ none + np.sum((x[:size] - rest) ** 2))
-    out = start.copy()
-    out[own] = np.clip(wanted, -MOST_FIRST, MOST_FIRST)
-    return Score(before - after, out)
-
-
 MOST_FIRST = 1.5
 """The largest strength (as x) at which a fit starts."""
 
+HOPELESS = 30.0
+"""Log evidence behind the best, at the coarsest form, from which on an effect is not fitted any finer."""
 
-def added(parent: Fit, effect: Effect, observed: Observed, stated: Mapping[str, float], starts: int = 1) -> Fit | None:
-    """The parent with an effect more, fitted from the best of its scores."""
-    made, scores = score(parent, effect, observed, stated)
-    return fitted(made, observed, [s.start for s in scores[:starts]])
+WORTH = 5.0
+"""Log evidence that a further effect must bring."""
+
+PARTNERS = 4
+"""Effects that are tried as a further one, by their score."""
+
+MOST_EFFECTS = 4
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the method does; all on but in studies of what each is good for."""
+
+    tempering: bool = True
+    polishing: bool = True
+    projection: bool = True
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """The effects that may be named, and what a test states of them [SI]."""
+
+    effects: Mapping[str, Effect]
+    stated: Mapping[str, Mapping[str, float]]
+
+    def add(self, hypothesis: Hypothesis, name: str) -> Hypothesis:
+        """The hypothesis with an effect more."""
+        return hypothesis.with_effect(self.effects[name], **self.stated.get(name, {}))
 
 
 @dataclass(frozen=True)
 class Naming:
-    """The base model's fit, every single effect's, and sets of effects that were tried, the best first."""
+    """The base model, every single effect, sets of effects, and unknown sources; each the best first."""
 
     base: Candidate
     singles: tuple[Candidate, ...]
     sets: tuple[Candidate, ...]
+    unknown: tuple[Candidate, ...]
+    bench: Bench
 
     @property
-    def best(self) -> Candidate:
-        """The most probable set that was tried."""
+    def named(self) -> Candidate:
+        """The most probable of what has names, none among them."""
         return max((self.base, *self.singles, *self.sets), key=lambda c: c.log_evidence)
+
+    @property
+    def all(self) -> tuple[Candidate, ...]:
+        """Everything that was tried."""
+        return (self.base, *self.singles, *self.sets, *self.unknown)
 
 
 def name_effects(
     hypothesis: Hypothesis,
     observed: Observed,
-    library: Mapping[str, Effect],
-    stated: Mapping[str, Mapping[str, float]],
+    catalogue: Catalogue,
     progress: Progress = silent,
+    settings: Settings | None = None,
 ) -> Naming:
-    """Fit the base model and every effect of the library."""
-    base = fitted(hypothesis, observed, [np.zeros(hypothesis.size)])
-    if base is None:
+    """Try the base model, every effect of the catalogue, sets of them, and unknown sources."""
+    settings = settings or Settings()
+    bench = Bench(observed, settings.tempering)
+    base, singles = _singles(hypothesis, bench, catalogue, progress, settings)
+    sets = _sets(singles, bench, catalogue, progress, settings)
+    named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
+    progress("trying unknown sources", 0.85)
+    unknown = unknown_sources(base, named, bench)
+    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench)
+
+
+def _singles(
+    hypothesis: Hypothesis, bench: Bench, catalogue: Catalogue, progress: Progress, settings: Settings
+) -> tuple[Candidate, list[Candidate]]:
+    coarse, base = _descended(hypothesis, bench, [np.zeros(hypothesis.size)])
+    if coarse is None or base is None:
         raise ArithmeticError("the base model cannot be fitted to this test")
-    for _ in range(3):
-        singles = []
-        for i, (name, effect) in enumerate(library.items()):
-            progress(f"trying {name}", i / len(library))
-            found = added(base, effect, observed, stated.get(name, {}))
+    for _ in range(2 if settings.polishing else 1):
+        rough = {}
+        for i, name in enumerate(catalogue.effects):
+            progress(f"trying {name}", 0.6 * i / len(catalogue.effects))
+            found = _coarse_child(coarse, catalogue, name, bench, settings)
             if found is not None:
-                singles.append(Candidate((name,), found))
-        again = _polished(base, singles, observed)
-        if again.log_evidence < base.log_evidence + FAR:
+                rough[name] = found
+        top = max((f.log_evidence for f in rough.values()), default=-np.inf)
+        hopeful = {n: f for n, f in rough.items() if f.log_evidence > top - HOPELESS}
+        singles = []
+        for i, (name, found) in enumerate(hopeful.items()):
+            progress(f"fitting {name}", 0.3 + 0.3 * i / len(hopeful))
+            fine = _fine_child(base, found, catalogue, name, bench, settings)
+            if fine is not None:
+                singles.append(Candidate((name,), fine, fine.log_evidence))
+        polished = _polished(base, singles, bench) if settings.polishing else base
+        if polished.log_evidence < base.log_evidence + FAR:
             break
-        base = again
+        base = polished
+        coarse = attempted(hypothesis, bench.at(bench.coarsest), base.x, SHORT) or coarse
     singles.sort(key=lambda c: -c.log_evidence)
-    return Naming(Candidate((), base), tuple(singles), ())
+    judged = [bench.judged(c.names, c.fit) if i < JUDGED else c for i, c in enumerate(singles)]
+    judged.sort(key=lambda c: -c.log_evidence)
+    return bench.judged((), base), judged
 
 
-def _polished(parent: Fit, children: list[Candidate], observed: Observed) -> Fit:
+FAR = 3.0
+"""Units of log evidence that a base gains from a child's constants before all are fitted again."""
+
+JUDGED = 4
+"""Single effects that are fitted at the model-form error they ask for."""
+
+
+def _descended(hypothesis: Hypothesis, bench: Bench, starts: list[Array]) -> tuple[Fit | None, Fit | None]:
+    """The best coarse fit from several starts, and the fine one from there."""
+    rough = [f for x in starts if (f := attempted(hypothesis, bench.at(bench.coarsest), x, SHORT)) is not None]
+    if not rough:
+        return None, None
+    best = max(rough, key=lambda f: f.log_evidence)
+    return best, attempted(hypothesis, bench.at(0), best.x)
+
+
+def _coarse_child(coarse: Fit, catalogue: Catalogue, name: str, bench: Bench, settings: Settings) -> Fit | None:
+    """An effect more, at the coarsest form: from the best of its scores, and from where nothing is known yet."""
+    observed = bench.at(bench.coarsest)
+    made, starts = scored(coarse, catalogue, name, observed, settings)
+    if coarse.residual @ coarse.residual > ROUGH * coarse.residual.size:
+        plain = np.zeros(made.size)
+        size = coarse.x.size
+        plain[size : size + catalogue.effects[name].strengths] = 0.3
+        starts = [*starts[:1], plain]
+    found = [f for x in starts[:2] if (f := attempted(made, observed, x, SHORT)) is not None]
+    return max(found, key=lambda f: f.log_evidence) if found else None
+
+
+ROUGH = 1.5
+"""Chi-square per observation, at the coarsest form, from which on a fit also starts from where nothing is known."""
+
+
+def _fine_child(base: Fit, rough: Fit, catalogue: Catalogue, name: str, bench: Bench, settings: Settings) -> Fit | None:
+    """The fine fit from the coarse one and from the fine score, whichever is nearer."""
+    made, starts = scored(base, catalogue, name, bench.at(0), settings)
+    best: tuple[float, Array] | None = None
+    for x in [rough.x, *starts[:2]]:
+        try:
+            there = predict(made, bench.at(0), x, tangents=False)
+        except (ValueError, ArithmeticError):
+            continue
+        value = float(there.residual @ there.residual + x @ x)
+        if np.isfinite(value) and (best is None or value < best[0]):
+            best = (value, x)
+    return None if best is None else attempted(made, bench.at(0), best[1])
+
+
+def scored(
+    parent: Fit, catalogue: Catalogue, name: str, observed: Observed, settings: Settings
+) -> tuple[Hypothesis, list[Array]]:
+    """The parent with an effect more, and starts for its fit: those of the best score tests first."""
+    made = catalogue.add(parent.hypothesis, name)
+    ranked = sorted(_scores(parent, made, catalogue.effects[name].strengths, observed, settings), key=lambda s: -s[0])
+    return made, [start for _, start in ranked]
+
+
+def _scores(
+    parent: Fit, made: Hypothesis, strengths: int, observed: Observed, settings: Settings
+) -> list[tuple[float, Array]]:
+    least, most = made.bounds
+    size = parent.x.size
+    own = slice(size, size + strengths)
+    shapes = [i for i in range(size + strengths, size + len(made.free) - len(parent.hypothesis.free))
+              if made.free[i - _blocks(parent)].shape == "positive"]  # fmt: skip
+    found = []
+    for choice in product(STARTS, repeat=len(shapes)):
+        start = np.concatenate([parent.x, np.zeros(made.size - size)])
+        start[shapes] = choice
+        start[own] = FIRST_STEP
+        start = np.clip(start, least, most)
+        try:
+            there = predict(made, observed, start, tangents=True)
+        except (ValueError, ArithmeticError):
+            continue
+        if there.slopes is not None and np.isfinite(there.slopes).all() and np.isfinite(there.residual).all():
+            gain, strength = score(there.slopes, there.residual, start, own, (least, most), settings.projection)
+            start[own] = np.clip(strength, -MOST_FIRST, MOST_FIRST)
+            found.append((gain, start))
+    return found
+
+
+def _blocks(parent: Fit) -> int:
+    """Parameters of unknown sources in the parent; effects are added before them."""
+    return parent.x.size - len(parent.hypothesis.free)
+
+
+def score(
+    slopes: Array, residual: Array, x: Array, own: slice, bounds: tuple[Array, Array], projection: bool = True
+) -> tuple[float, Array]:
+    """Gain in log probability by strengths ``own``, with the parameters before them projected out, and the strengths.
+
+    ``slopes`` (observations, parameters) of the residual at ``x``, whose prior is N(0, 1).
+    """
+    a, b = slopes[:, : own.start], slopes[:, own]
+    still = residual - b @ x[own]
+    still_x = x[: own.start]
+    if projection:
+        curvature = a.T @ a + np.eye(a.shape[1])
+        through = np.linalg.solve(curvature, a.T)
+        start = still - a @ still_x  # the parameters at their prior's center
+        clear = b - a @ (through @ b)
+        information, pull = b.T @ clear, -(clear.T @ start)
+    else:
+        information, pull = b.T @ b, -(b.T @ still)
+    strength = np.linalg.solve(information + np.eye(pull.size), pull)
+    strength = np.clip(strength, bounds[0][own], bounds[1][own])
+    gain = float(pull @ strength - 0.5 * strength @ (information + np.eye(pull.size)) @ strength)
+    return gain, strength
+
+
+def _polished(parent: Fit, children: list[Candidate], bench: Bench) -> Fit:
     """The parent, fitted again from the constants of its best children."""
     best = parent
     for child in sorted(children, key=lambda c: -c.log_evidence)[:3]:
-        try:
-            found = fit(parent.hypothesis, observed, child.fit.x[: parent.x.size])
-        except (ValueError, ArithmeticError):
-            continue
-        if found.log_evidence > best.log_evidence:
+        found = attempted(parent.hypothesis, bench.at(0), child.fit.x[: parent.x.size])
+        if found is not None and found.log_evidence > best.log_evidence:
             best = found
     return best
 
 
-_ = replace
+def _sets(
+    singles: list[Candidate], bench: Bench, catalogue: Catalogue, progress: Progress, settings: Settings
+) -> list[Candidate]:
+    """Sets of several effects: forward from the best few, dropping what is no longer needed."""
+    found: dict[frozenset[str], Candidate] = {}
+    tried: set[frozenset[str]] = set()
+    front = singles[:2]
+    for size in range(2, MOST_EFFECTS + 1):
+        progress(f"trying {size} effects together", 0.6 + 0.06 * size)
+        grown = []
+        for parent in front:
+            grown += [c for c in _partners(parent, bench, catalogue, tried, settings)]
+        better = [c for c in grown if c.log_evidence > _parent_evidence(c, singles, found) + WORTH]
+        if not better:
+            break
+        better = [_dropped(c, bench, catalogue) for c in sorted(better, key=lambda c: -c.log_evidence)[:2]]
+        found |= {frozenset(c.names): c for c in better if len(c.names) > 1}
+        front = better[:1]
+    return sorted(found.values(), key=lambda c: -c.log_evidence)
+
+
+def _parent_evidence(child: Candidate, singles: list[Candidate], found: Mapping[frozenset[str], Candidate]) -> float:
+    """The best evidence among subsets of a set."""
+    names = set(child.names)
+    known = [c.log_evidence for c in (*singles, *found.values()) if set(c.names) < names]
+    return max(known, default=-np.inf)
+
+
+def _partners(
+    parent: Candidate, bench: Bench, catalogue: Catalogue, tried: set[frozenset[str]], settings: Settings
+) -> list[Candidate]:
+    """The parent with each of the few effects that a score test asks for."""
+    scores = []
+    observed = bench.at(parent.steps)
+    for name, effect in catalogue.effects.items():
+        if name in parent.names or frozenset((*parent.names, name)) in tried:
+            continue
+        made = catalogue.add(parent.fit.hypothesis, name)
+        ranked = _scores(parent.fit, made, effect.strengths, observed, settings)
+        if ranked:
+            gain, start = max(ranked, key=lambda s: s[0])
+            scores.append((gain, name, made, start))
+    out = []
+    for gain, name, made, start in sorted(scores, key=lambda s: -s[0])[:PARTNERS]:
+        if gain < 0.5 * WORTH:
+            continue
+        names = (*parent.names, name)
+        tried.add(frozenset(names))
+        found = attempted(made, observed, start)
+        if found is not None and parent.steps:
+            found = attempted(made, bench.at(0), found.x) or found
+        if found is not None:
+            out.append(bench.judged(names, found))
+    return out
+
+
+def _dropped(candidate: Candidate, bench: Bench, catalogue: Catalogue) -> Candidate:
+    """The set without the effects whose loss makes the data no less probable."""
+    for name in candidate.names[:-1]:
+        if len(candidate.names) < 2:
+            break
+        hypothesis = candidate.fit.hypothesis.without(name)
+        kept = [i for i, f in enumerate(candidate.fit.hypothesis.free) if f.name.partition(".")[0] != name]
+        found = attempted(hypothesis, bench.at(0), candidate.fit.x[kept])
+        if found is None:
+            continue
+        names = tuple(n for n in candidate.names if n != name)
+        less = bench.judged(names, found)
+        if less.log_evidence > candidate.log_evidence - WORTH:
+            candidate = replace(less)
+    return candidate

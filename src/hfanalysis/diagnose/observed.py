@@ -147,6 +147,11 @@ class Observed:
         return replace(self, channels=kept, common=self.common if both else None)
 
     @cached_property
+    def log_size(self) -> float:
+        """Log of the determinant of the covariance's root."""
+        return -float(sum(np.linalg.slogdet(factor)[1] for _, factor in self._factors))
+
+    @cached_property
     def _factors(self) -> tuple[tuple[slice, Array], ...]:
         """Inverse Cholesky factors of groups of channels whose noise goes together, and their rows."""
         out, at, i = [], 0, 0

@@ -1,0 +1,71 @@
+"""Unknown: a free-form source at a site of the model, or in a sensor, that competes with the names."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted
+from hfanalysis.diagnose.localise import Source, coordinates, linear_sources, with_source
+from hfanalysis.diagnose.observed import Observed
+from hfanalysis.diagnose.predict import predict
+
+Array = NDArray[np.float64]
+
+REFITTED = 3
+"""Sites whose source is fitted with the full model, by their linear evidence."""
+
+LEAST = 4.0
+"""Log evidence, linear, from which on a source is fitted."""
+
+STRIDES = (1.0, 0.5, 0.2)
+"""Parts of the way to the linear estimate from which a full fit may start: a large source is not linear."""
+
+
+def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
+    """Sources instead of any name, and beside the best name, where either is worth it; the best first."""
+    out = _with_sources(base, bench)
+    if named.names:
+        out += _with_sources(named, bench)
+    return sorted(out, key=lambda c: -c.log_evidence)
+
+
+def _with_sources(parent: Candidate, bench: Bench) -> list[Candidate]:
+    observed = bench.at(parent.steps)
+    out = []
+    for source in linear_sources(parent.fit, observed)[:REFITTED]:
+        if source.log_evidence < LEAST:
+            continue
+        found = with_fitted(parent, source, bench)
+        if found is not None:
+            out.append(found)
+    return out
+
+
+def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | None:
+    """The parent with a source more, fitted with the full model."""
+    made = with_source(parent.fit.hypothesis, source)
+    moved = np.concatenate([source.nuisances - parent.fit.x, coordinates(source)])
+    still = np.concatenate([parent.fit.x, np.zeros(source.splines.count)])
+    start = _nearest(made, bench.at(parent.steps), [still + share * moved for share in STRIDES])
+    if start is None:
+        return None
+    found = attempted(made, bench.at(parent.steps), start, SHORT)
+    if found is not None and parent.steps:
+        found = attempted(made, bench.at(0), found.x, SHORT) or found
+    if found is None:
+        return None
+    return bench.judged((*parent.names, source.site.name), found, unknown=True)
+
+
+def _nearest(hypothesis, observed: Observed, starts: list[Array]) -> Array | None:  # type: ignore[no-untyped-def]
+    best: tuple[float, Array] | None = None
+    for x in starts:
+        try:
+            there = predict(hypothesis, observed, x, tangents=False)
+        except (ValueError, ArithmeticError):
+            continue
+        value = float(there.residual @ there.residual + x @ x)
+        if np.isfinite(value) and (best is None or value < best[0]):
+            best = (value, x)
+    return None if best is None else best[1]
