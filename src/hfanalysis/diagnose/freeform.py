@@ -33,7 +33,11 @@ def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Can
 def _with_sources(parent: Candidate, bench: Bench) -> list[Candidate]:
     observed = bench.at(parent.steps)
     out = []
-    for source in linear_sources(parent.fit, observed)[:REFITTED]:
+    try:
+        sources = linear_sources(parent.fit, observed)
+    except (ValueError, ArithmeticError):
+        return []  # the engine cannot be run with all sites open
+    for source in sources[:REFITTED]:
         if source.log_evidence < LEAST:
             continue
         found = with_fitted(parent, source, bench)

@@ -34,7 +34,7 @@ class Free:
     """A parameter that may move, as a function of x, whose prior is N(0, 1) between ``least`` and ``most``.
 
     ``shape``: "normal", center + std x; "positive", center exp(std x); "wide", center + std sinh(x), whose tails are
-    long enough for an effect thirty times as large as a typical one.
+    long enough for an effect thirty times as large as a typical one. It is not ``unsure`` where a test states it.
     """
 
     name: str
@@ -43,6 +43,7 @@ class Free:
     shape: Literal["normal", "positive", "wide"] = "normal"
     least: float = -np.inf
     most: float = np.inf
+    unsure: bool = True
 
     def value(self, x: float) -> float:
         """The parameter [SI] at ``x``."""
@@ -80,7 +81,7 @@ def free_parameters(effect: Effect) -> tuple[Free, ...]:
             free = Free(name, p.center, p.typical)
         least = free.place(p.low) if np.isfinite(p.low) and (free.shape != "positive" or p.low > 0) else -np.inf
         most = free.place(p.high) if np.isfinite(p.high) else np.inf
-        out.append(replace(free, least=max(least, -FARTHEST), most=min(most, FARTHEST)))
+        out.append(replace(free, least=max(least, -FARTHEST), most=min(most, FARTHEST), unsure=not p.given))
     return tuple(out)
 
 
@@ -101,21 +102,32 @@ class Block:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """An engine and what may move in it; ``x`` below counts prior standard deviations, so that its prior is N(0, 1)."""
+    """An engine and what may move in it; ``x`` below counts prior standard deviations, so that its prior is N(0, 1).
+
+    ``slack`` (blocks of all channels, columns) is added to what the sensors read, each column times an N(0, 1) number:
+    what the form of an effect may get wrong.
+    """
 
     engine: Engine
     free: tuple[Free, ...]
     blocks: tuple[Block, ...] = ()
+    slack: Array | None = None
 
     @property
     def size(self) -> int:
         """Number of parameters."""
-        return len(self.free) + sum(len(b.names) for b in self.blocks)
+        return len(self.free) + sum(len(b.names) for b in self.blocks) + self.slack_size
+
+    @property
+    def slack_size(self) -> int:
+        """Number of columns of slack."""
+        return 0 if self.slack is None else int(self.slack.shape[1])
 
     @property
     def names(self) -> tuple[str, ...]:
         """Of all parameters."""
-        return (*(f.name for f in self.free), *(n for b in self.blocks for n in b.names))
+        slack = (f"slack.{i}" for i in range(self.slack_size))
+        return (*(f.name for f in self.free), *(n for b in self.blocks for n in b.names), *slack)
 
     @property
     def of_engine(self) -> tuple[str, ...]:
@@ -154,6 +166,8 @@ class Hypothesis:
         out[:k, :k] = np.diag([f.slope(float(v)) for f, v in zip(self.free, x, strict=False)])
         for block, place in self.places():
             out[place, place] = block.matrix
+        last = self.size - self.slack_size
+        out[last:, last:] = np.eye(self.slack_size)
         return out
 
     def offset(self, channel: str, x: Array, times: Array) -> Array:
@@ -188,7 +202,7 @@ class Hypothesis:
             for f in free_parameters(effect)
         )
         engine = replace(self.engine, effects=(*self.engine.effects, effect.at(**stated)))
-        return Hypothesis(engine, (*self.free, *free), self.blocks)
+        return Hypothesis(engine, (*self.free, *free), self.blocks)  # slack belongs to a fit and is made anew
 
     def without(self, name: str) -> Hypothesis:
         """The same without an effect."""

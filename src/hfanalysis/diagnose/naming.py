@@ -14,12 +14,13 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted
+from hfanalysis.diagnose.candidate import CALM, SHORT, Bench, Candidate, attempted
 from hfanalysis.diagnose.fit import Fit
 from hfanalysis.diagnose.freeform import unknown_sources
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import predict
+from hfanalysis.diagnose.slack import slacked
 from hfanalysis.engine.effect import Effect
 from hfanalysis.stages.base import Progress, silent
 
@@ -99,7 +100,8 @@ def name_effects(
     settings = settings or Settings()
     bench = Bench(observed, settings.tempering)
     base, singles = _singles(hypothesis, bench, catalogue, progress, settings)
-    sets = _sets(singles, bench, catalogue, progress, settings)
+    singles = _loosened(singles, bench)
+    sets = _loosened(_sets(base, singles, bench, catalogue, progress, settings), bench)
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
     unknown = unknown_sources(base, named, bench)
@@ -112,19 +114,15 @@ def _singles(
     coarse, base = _descended(hypothesis, bench, [np.zeros(hypothesis.size)])
     if coarse is None or base is None:
         raise ArithmeticError("the base model cannot be fitted to this test")
+    singles: list[Candidate] = []
     for _ in range(2 if settings.polishing else 1):
-        rough = {}
-        for i, name in enumerate(catalogue.effects):
-            progress(f"trying {name}", 0.6 * i / len(catalogue.effects))
-            found = _coarse_child(coarse, catalogue, name, bench, settings)
-            if found is not None:
-                rough[name] = found
-        top = max((f.log_evidence for f in rough.values()), default=-np.inf)
-        hopeful = {n: f for n, f in rough.items() if f.log_evidence > top - HOPELESS}
+        calm = base.residual @ base.residual < CALM * base.residual.size
+        rough = {} if calm else _rough(coarse, catalogue, bench, progress, settings)
         singles = []
-        for i, (name, found) in enumerate(hopeful.items()):
-            progress(f"fitting {name}", 0.3 + 0.3 * i / len(hopeful))
-            fine = _fine_child(base, found, catalogue, name, bench, settings)
+        names = list(catalogue.effects) if calm else list(rough)
+        for i, name in enumerate(names):
+            progress(f"fitting {name}", 0.3 + 0.3 * i / len(names))
+            fine = _fine_child(base, rough.get(name), catalogue, name, bench, settings)
             if fine is not None:
                 singles.append(Candidate((name,), fine, fine.log_evidence))
         polished = _polished(base, singles, bench) if settings.polishing else base
@@ -136,6 +134,31 @@ def _singles(
     judged = [bench.judged(c.names, c.fit) if i < JUDGED else c for i, c in enumerate(singles)]
     judged.sort(key=lambda c: -c.log_evidence)
     return bench.judged((), base), judged
+
+
+def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
+    """Candidates of one kind, all as much more probable as slack makes the best of them.
+
+    Among themselves they are compared without slack, which would make neighbours alike.
+    """
+    if not candidates:
+        return candidates
+    gain = slacked(candidates[0], bench).log_evidence - candidates[0].log_evidence
+    return [replace(c, log_evidence=c.log_evidence + gain) for c in candidates]
+
+
+def _rough(
+    coarse: Fit, catalogue: Catalogue, bench: Bench, progress: Progress, settings: Settings
+) -> dict[str, Fit]:
+    """Every effect at the coarsest form; hopeless ones are left out."""
+    rough = {}
+    for i, name in enumerate(catalogue.effects):
+        progress(f"trying {name}", 0.3 * i / len(catalogue.effects))
+        found = _coarse_child(coarse, catalogue, name, bench, settings)
+        if found is not None:
+            rough[name] = found
+    top = max((f.log_evidence for f in rough.values()), default=-np.inf)
+    return {n: f for n, f in rough.items() if f.log_evidence > top - HOPELESS}
 
 
 FAR = 3.0
@@ -171,11 +194,17 @@ ROUGH = 1.5
 """Chi-square per observation, at the coarsest form, from which on a fit also starts from where nothing is known."""
 
 
-def _fine_child(base: Fit, rough: Fit, catalogue: Catalogue, name: str, bench: Bench, settings: Settings) -> Fit | None:
-    """The fine fit from the coarse one and from the fine score, whichever is nearer."""
-    made, starts = scored(base, catalogue, name, bench.at(0), settings)
+def _fine_child(base: Fit, rough: Fit | None, catalogue: Catalogue, name: str, bench: Bench, settings: Settings) -> Fit | None:
+    """The fine fit from the coarse one and from the fine score, whichever is nearer.
+
+    Where nothing was fitted coarsely and the score sees nothing, there is no need for a fit.
+    """
+    made = catalogue.add(base.hypothesis, name)
+    scores = sorted(_scores(base, made, catalogue.effects[name].strengths, bench.at(0), settings), key=lambda s: -s[0])
+    if rough is None and (not scores or scores[0][0] < SEEN):
+        return None
     best: tuple[float, Array] | None = None
-    for x in [rough.x, *starts[:2]]:
+    for x in [*([rough.x] if rough is not None else []), *(start for _, start in scores[:2])]:
         try:
             there = predict(made, bench.at(0), x, tangents=False)
         except (ValueError, ArithmeticError):
@@ -184,6 +213,10 @@ def _fine_child(base: Fit, rough: Fit, catalogue: Catalogue, name: str, bench: B
         if np.isfinite(value) and (best is None or value < best[0]):
             best = (value, x)
     return None if best is None else attempted(made, bench.at(0), best[1])
+
+
+SEEN = 0.7
+"""Gain in log probability below which a score test has seen nothing."""
 
 
 def scored(
@@ -201,8 +234,9 @@ def _scores(
     least, most = made.bounds
     size = parent.x.size
     own = slice(size, size + strengths)
-    shapes = [i for i in range(size + strengths, size + len(made.free) - len(parent.hypothesis.free))
-              if made.free[i - _blocks(parent)].shape == "positive"]  # fmt: skip
+    shapes = [
+        i for i in range(size + strengths, made.size) if made.free[i].shape == "positive" and made.free[i].unsure
+    ]
     found = []
     for choice in product(STARTS, repeat=len(shapes)):
         start = np.concatenate([parent.x, np.zeros(made.size - size)])
@@ -218,11 +252,6 @@ def _scores(
             start[own] = np.clip(strength, -MOST_FIRST, MOST_FIRST)
             found.append((gain, start))
     return found
-
-
-def _blocks(parent: Fit) -> int:
-    """Parameters of unknown sources in the parent; effects are added before them."""
-    return parent.x.size - len(parent.hypothesis.free)
 
 
 def score(
@@ -260,12 +289,12 @@ def _polished(parent: Fit, children: list[Candidate], bench: Bench) -> Fit:
 
 
 def _sets(
-    singles: list[Candidate], bench: Bench, catalogue: Catalogue, progress: Progress, settings: Settings
+    base: Candidate, singles: list[Candidate], bench: Bench, catalogue: Catalogue, progress: Progress, settings: Settings
 ) -> list[Candidate]:
     """Sets of several effects: forward from the best few, dropping what is no longer needed."""
     found: dict[frozenset[str], Candidate] = {}
     tried: set[frozenset[str]] = set()
-    front = singles[:2]
+    front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + WORTH]
     for size in range(2, MOST_EFFECTS + 1):
         progress(f"trying {size} effects together", 0.6 + 0.06 * size)
         grown = []

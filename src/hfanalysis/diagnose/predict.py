@@ -71,6 +71,9 @@ def _all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) ->
     for block, place in hypothesis.places():
         if block.sensor is not None:
             out[:, place] = sensor_slopes(observed, block.sensor, block.splines)
+    if hypothesis.slack is not None:
+        white = -observed.whiten(hypothesis.slack)
+        out[: white.shape[0], -hypothesis.slack_size :] = white
     return out
 
 
@@ -90,6 +93,9 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
     for channel in observed.channels:
         model = channel.averaged(read[channel.name]) + hypothesis.offset(channel.name, x, channel.time)
         parts.append(channel.value - model)
+    raw = np.concatenate(parts)
+    if hypothesis.slack is not None:
+        raw = raw - hypothesis.slack @ x[-hypothesis.slack_size :]
     scalars = []
     for name, (at, deviation) in observed.events.items():
         if name == "t_v":
@@ -100,7 +106,7 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
             scalars.append(web / (deviation * _typical_regression(hypothesis, at)))
     for name, (value, deviation) in observed.stated.items():
         scalars.append((value - _after(name, burnt, observed)) / deviation)
-    return np.concatenate([observed.whiten(np.concatenate(parts)), np.array(scalars)])
+    return np.concatenate([observed.whiten(raw), np.array(scalars)])
 
 
 def readings(observed: Observed, burnt: Burn) -> dict[str, Array]:
@@ -143,6 +149,20 @@ def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Ar
     for name, (_, deviation) in observed.stated.items():
         rows.append(-_after_slopes(name, found, observed) / deviation)
     return np.concatenate([white, *(row[np.newaxis] for row in rows)])
+
+
+def signatures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Array:
+    """What each effect's strengths add to the blocks of all channels, linear: (blocks, strengths)."""
+    engine = with_spare_fuel(hypothesis.at(x))
+    names = [
+        f"{a.effect.name}.{p.name}" for a in engine.effects for p in a.effect.parameters[: a.effect.strengths]
+        if f"{a.effect.name}.{p.name}" in hypothesis.of_engine
+    ]  # fmt: skip
+    found = run_with_tangents(engine, names, observed.longest + AFTER, ACCURACY, run_on=True)
+    read = _slopes_of_readings(observed, found)
+    values = hypothesis.values(x)
+    size = np.array([values[n] for n in names])
+    return np.concatenate([c.averaged(read[c.name]) for c in observed.channels]) * size
 
 
 def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]:
