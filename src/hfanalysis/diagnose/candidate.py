@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 FORMS = tuple(FORM_ERROR * 3.0**i for i in range(5))
 """Model-form errors that a candidate may ask for, as parts of a channel's range."""
 
-PRICE = 3.0
+PRICE = 5.0
 """Log of the odds against each of them: models of this kind are usually right to the first."""
 
 SHORT, LONG = 12, 25

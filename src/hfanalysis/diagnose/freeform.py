@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +19,9 @@ REFITTED = 3
 
 LEAST = 4.0
 """Log evidence, linear, from which on a source is fitted."""
+
+BESIDE = 6.0
+"""Log of the odds against an unknown source beside a named effect: what a closure gets wrong looks like one."""
 
 STRIDES = (1.0, 0.5, 0.2)
 """Parts of the way to the linear estimate from which a full fit may start: a large source is not linear."""
@@ -59,7 +64,8 @@ def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | 
         found = attempted(made, bench.at(0), found.x, SHORT) or found
     if found is None:
         return None
-    return bench.judged((*parent.names, source.site.name), found, unknown=True)
+    judged = bench.judged((*parent.names, source.site.name), found, unknown=True)
+    return replace(judged, log_evidence=judged.log_evidence - (BESIDE if parent.names else 0.0))
 
 
 def _nearest(hypothesis, observed: Observed, starts: list[Array]) -> Array | None:  # type: ignore[no-untyped-def]

@@ -14,14 +14,16 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg import cholesky
 
 from hfanalysis.diagnose.oscillation import oscillation
+from hfanalysis.diagnose.wander import roughness, wander_of
 from hfanalysis.errors import AbsentError
 from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal, sample_noise
 from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import Channel as LogChannel
 from hfanalysis.testdata.log import TestLog
 
 Array = NDArray[np.float64]
@@ -70,6 +72,9 @@ SETTLING, SHORTEST_REST, LONGEST_REST = 0.5, 0.4, 10.0
 
 REST_BLOCKS = 4
 
+FILLING_ERROR, FILLING_TIME = 0.05, 0.1
+"""Model-form error while the line fills, as part of a channel's range, and the seconds over which it is coherent."""
+
 BEFORE_OPENING, BEFORE = ("p_tank", "m_tank"), 1.0
 """Channels that show the tank at rest before the opening, and the seconds of it that are looked at."""
 
@@ -95,6 +100,11 @@ class Channel:
     noise_std: Array
     accuracy: float
     covariance: Array
+
+    def only(self, rows: Integers) -> Channel:
+        """The same with some of its blocks."""
+        picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
+        return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)])
 
     def form_covariance(self, error: float) -> Array:
         """Covariance of a model-form error that is given as part of the channel's range; smooth (Matern, 3/2)."""
@@ -146,6 +156,14 @@ class Observed:
         both = set(TOGETHER) <= {c.name for c in kept}
         return replace(self, channels=kept, common=self.common if both else None)
 
+    def without(self, left_out: Mapping[str, NDArray[np.bool_]]) -> Observed:
+        """The same without some blocks of each channel."""
+        keep = {c.name: np.flatnonzero(~left_out[c.name]) for c in self.channels}
+        common = self.common
+        if common is not None:
+            common = common[np.ix_(*(keep[name] for name in TOGETHER))]
+        return replace(self, channels=tuple(c.only(keep[c.name]) for c in self.channels), common=common)
+
     @cached_property
     def log_size(self) -> float:
         """Log of the determinant of the covariance's root."""
@@ -193,7 +211,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         raise AbsentError("no opening was found: there is nothing to compare")
     end = _end(segments)
     frame = _frame(log, segments, definition, origin)
-    live = {name: Signal.of(log[name]).shifted(origin) for name in CHANNELS if name in log}
+    live = {name: Signal.of(as_read(log[name])).shifted(origin) for name in CHANNELS if name in log}
     if "m_tank" in live and not _cell_reads(live["m_tank"], definition):
         del live["m_tank"]
     reduced = {name: r for name, signal in live.items() if not signal.dead and (r := _reduce(signal, frame)) is not None}
@@ -210,7 +228,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         channels,
         frame.grid,
         frame.resting,
-        _events(segments, end),
+        _events(segments, frame.ends["tank"]),
         _stated(definition, segments),
         _phases(segments, end),
         end,
@@ -234,6 +252,13 @@ LEAST_VARIANCE = 1e-3
 """Of any combination of blocks, relative to a single block's."""
 
 
+def as_read(channel: LogChannel) -> LogChannel:
+    """A channel with its zero taken off but not the drift that ingest removes: a drift is an effect to be found."""
+    if channel.drift == 0.0 or channel.raw is None:
+        return channel
+    return replace(channel, values=channel.raw - channel.zero)
+
+
 @dataclass(frozen=True)
 class _Frame:
     """The common grid, the changes of phase (instant, deviation), and from when to when is compared [s]."""
@@ -242,6 +267,7 @@ class _Frame:
     resting: NDArray[np.bool_]
     changes: tuple[tuple[float, float], ...]
     start: float
+    filled: float
     ends: Mapping[str, float]
 
     def end(self, channel: str) -> float:
@@ -255,7 +281,7 @@ def _frame(log: TestLog, segments: Segments, definition: TestDefinition, origin:
     changes = tuple(
         (value, segments.std(name)) for name in ("t_v", "t_fuel_out") if (value := segments.time(name)) is not None
     )
-    rest = _rest(log, origin, _flow_end(definition, segments.time("t_end") or end))
+    rest = _rest(log, origin, _flow_end(definition, max(segments.time("t_end") or end, end)))
     burning = np.arange(0.5 * BLOCK, ends["tank"], BLOCK)
     after = np.zeros(0)
     if rest is not None:
@@ -264,8 +290,8 @@ def _frame(log: TestLog, segments: Segments, definition: TestDefinition, origin:
     grid = np.concatenate([[0.0], burning, after])
     resting = np.ones(grid.size, dtype=bool)
     resting[1 : 1 + burning.size] = False
-    start = max(FIRST, segments.time("t_feed") or 0.0)
-    return _Frame(grid, resting, changes, start, ends)
+    filled = segments.time("t_feed") or 0.0
+    return _Frame(grid, resting, changes, FIRST, filled, ends)
 
 
 def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | None:
@@ -425,8 +451,7 @@ def _shaken(shaken: Mapping[str, _Reduced], frame: _Frame) -> dict[tuple[str, st
         level = np.maximum(level - float(guide.value.min()), 0.0) / max(float(np.ptp(guide.value)), 1e-300)
     else:
         level = np.ones(usable.size)
-    own = {name: quiet_noise(r.signal) for name, r in shaken.items()}
-    stds = {name: float(n.white * np.sqrt(min(n.step / BLOCK, 1.0))) for name, n in own.items()}
+    stds = {name: wander_of(r.signal, BLOCK).white for name, r in shaken.items()}
     found = oscillation({name: r.fine for name, r in shaken.items()}, level, usable, stds)
     still = int(frame.resting.sum())
     return {pair: np.pad(matrix, (1, still - 1)) for pair, matrix in found.items()}
@@ -434,22 +459,24 @@ def _shaken(shaken: Mapping[str, _Reduced], frame: _Frame) -> dict[tuple[str, st
 
 def _channel(reduced: _Reduced, definition: TestDefinition, frame: _Frame, shaken: Array | None) -> Channel:
     signal, first, count = reduced.signal, reduced.first, reduced.count
-    noise = quiet_noise(signal)
+    noise = wander_of(signal, BLOCK)
     resting = frame.resting[first]
     accuracy = _accuracy(definition, signal.name, reduced.value)
-    own = replace(noise, white=0.0).covariance(frame.grid)
-    white = noise.white * np.sqrt(min(noise.step / BLOCK, 1.0))
+    own, white = noise.covariance(frame.grid), noise.white
     if shaken is not None:
         own = own + shaken
     else:
         fine = signal.between(frame.start, frame.end(signal.name)).reduced(BLOCK)
-        rough = float(sample_noise(fine.value)) ** 2 - WANDER_ROUGHNESS * noise.flicker
+        rough = float(sample_noise(fine.value)) ** 2 - roughness(noise, BLOCK)
         white = max(white, max(rough, 0.0) ** 0.5)
     own[np.diag_indices_from(own)] += max(white, 1e-9 * float(np.abs(reduced.value).max())) ** 2
     own = averaged(averaged(own, first, count).T, first, count)
     burning = np.where(resting & (signal.name in AT_REST), 0.0, 1.0)
     gain = reduced.value * burning / float(np.abs(reduced.value).max())
     covariance = own + accuracy**2 * (np.outer(burning, burning) + np.outer(gain, gain))
+    filling = np.where((reduced.time < frame.filled) & ~resting, FILLING_ERROR * float(np.ptp(reduced.value)), 0.0)
+    lag = np.abs(reduced.time[:, None] - reduced.time[None, :])
+    covariance = covariance + np.exp(-lag / FILLING_TIME) * np.outer(filling, filling)
     std = np.sqrt(own.diagonal())
     return Channel(signal.name, reduced.time, reduced.value, first, count, resting, std, accuracy, covariance)
 
@@ -472,30 +499,6 @@ def _merged(good: NDArray[np.bool_], centers: Array, frame: _Frame) -> tuple[Int
         size.append(span)
         i += span
     return np.array(first, dtype=np.int64), np.array(size, dtype=np.int64)
-
-
-def quiet_noise(signal: Signal) -> Noise:
-    """A sensor's noise before the opening, scaled so that what was measured there has the size that it foretells."""
-    quiet = signal.between(-LONGEST, -0.1)
-    noise = Noise.of(signal, quiet)
-    blocks = quiet.reduced(BLOCK)
-    if blocks.time.size < LEAST_QUIET:
-        return noise
-    blocks = blocks.between(float(blocks.time[0]), float(blocks.time[0]) + MOST_QUIET)
-    covariance = noise.covariance(blocks.time)
-    white = solve_triangular(cholesky(covariance, lower=True), blocks.value - blocks.value.mean(), lower=True)
-    scale = float(np.clip(white @ white / white.size, *QUIET_SCALE))
-    return replace(noise, white=noise.white * scale**0.5, flicker=noise.flicker * scale)
-
-
-LEAST_QUIET, MOST_QUIET = 40, 10.0
-"""Blocks before the opening from which on they tell the size of the noise, and the most seconds that are looked at."""
-
-WANDER_ROUGHNESS = 1.27
-"""Of the wander's A, the part that shows in second differences of neighbouring blocks: (8 * 1.5 - 2 * 2.19) / 6."""
-
-QUIET_SCALE = (0.3, 3.0)
-"""Between which the noise's variance may be scaled."""
 
 
 def _accuracy(definition: TestDefinition, name: str, value: Array) -> float:

@@ -45,7 +45,8 @@ class Prediction:
 
 def predict(hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool) -> Prediction:
     """Run a hypothesis. Raises ValueError or ArithmeticError for an engine that cannot be run."""
-    engine, longest = with_spare_fuel(hypothesis.at(x)), observed.longest + AFTER
+    longest = observed.longest + AFTER
+    engine = with_spare_fuel(hypothesis.at(x))
     if not tangents:
         burnt = burn(engine, longest, ACCURACY, run_on=True, keep_idle=True)
         return Prediction(residuals(hypothesis, observed, x, burnt), None, burnt)

@@ -25,9 +25,6 @@ from hfanalysis.thermo.nitrous import saturation
 FUEL_LEFT = 0.05
 """Part of the grain that may be left over as slivers when its fuel is gone."""
 
-PAST_END = 0.5
-"""Seconds after the nozzle unchoked beyond which a fall of the chamber's pressure does not tell the end of the fuel."""
-
 EVENTS = ("t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
 LONGEST_RUN = 120.0
 """Seconds after the opening in which events are looked for."""
@@ -266,13 +263,11 @@ class _Search:
 
     def _fuel_left(self, time: float) -> str:
         """Why a fall of the chamber's pressure is not the end of the fuel; empty where nothing speaks against it."""
-        seen, grain, end = self.definition.observed, self.definition.grain, self._time("t_end")
+        seen, grain = self.definition.observed, self.definition.grain
         left = seen.fuel_mass_after if seen is not None else None
         loaded = grain.mass if grain is not None else None
         if left is not None and loaded is not None and left.value > FUEL_LEFT * loaded.value:
             return f"{left.value:.3g} kg of fuel were left after the test: the fall at {time:.2f} s is not its end"
-        if end is not None and time > end + PAST_END:
-            return f"the fall at {time:.2f} s comes after the nozzle unchoked at {end:.2f} s, where any flow fades"
         return ""
 
     def _kind(self) -> Kind:

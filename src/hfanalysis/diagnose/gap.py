@@ -1,0 +1,114 @@
+"""The gap between model and measurement, by channel and phase, and which part of it an explanation closes.
+
+Where a sensor's offset and gain are uncertain, what they explain is no gap of the model: it is taken off first. The gap
+is what is left beyond the noise: sqrt(max(0, rms^2 - noise^2)).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.candidate import SHORT, attempted
+from hfanalysis.diagnose.fit import Fit
+from hfanalysis.diagnose.hypothesis import Hypothesis
+from hfanalysis.diagnose.observed import Channel, Observed
+from hfanalysis.diagnose.predict import readings
+
+Array = NDArray[np.float64]
+
+FOLDS, FOLD_TIME = 2, 0.5
+"""Interleaved parts of the data that are held out in turn, and the seconds that each stretch of them lasts."""
+
+LEAST_GAP = 0.5
+"""Gap, in units of the noise, below which there is no fraction of it to close."""
+
+
+def residuals_of(found: Fit, observed: Observed) -> dict[str, Array]:
+    """Measured less model of every channel over its blocks [SI], less what offset and gain of the sensor explain."""
+    read = readings(observed, found.burnt)
+    out = {}
+    for c in observed.channels:
+        raw = c.value - c.averaged(read[c.name]) - found.hypothesis.offset(c.name, found.x, c.time)
+        out[c.name] = raw - _bias(c, raw, observed.form)
+    return out
+
+
+def _bias(channel: Channel, residual: Array, form: float) -> Array:
+    """The most probable offset and gain error of a sensor, as its stated accuracy allows."""
+    burning = ~channel.resting
+    shapes = np.column_stack([burning, burning * channel.value / float(np.abs(channel.value).max())])
+    noise = np.diag(channel.noise_std**2) + channel.form_covariance(form)
+    weighted = np.linalg.solve(noise, shapes)
+    prior = np.eye(2) / channel.accuracy**2
+    return np.asarray(shapes @ np.linalg.solve(shapes.T @ weighted + prior, weighted.T @ residual))
+
+
+def root_mean_square(found: Fit, observed: Observed) -> dict[str, float]:
+    """Of :func:`residuals_of` in the burn, by channel [SI]."""
+    left = residuals_of(found, observed)
+    return {c.name: float(np.sqrt(np.mean(left[c.name][~c.resting] ** 2))) for c in observed.channels}
+
+
+def noise_of(observed: Observed) -> dict[str, float]:
+    """Root mean square of the noise of blocks, by channel [SI]."""
+    return {c.name: float(np.sqrt(np.mean(c.noise_std[~c.resting] ** 2))) for c in observed.channels}
+
+
+def by_phase(found: Fit, observed: Observed) -> dict[str, dict[str, float]]:
+    """The gap by channel and phase [SI]."""
+    left = residuals_of(found, observed)
+    names = [n for n in observed.phases if n != "end"]
+    starts = [observed.phases[n] for n in names]
+    out: dict[str, dict[str, float]] = {}
+    for c in observed.channels:
+        number = np.searchsorted(starts, c.time, side="right") - 1
+        for i, phase in enumerate(names):
+            inside = (number == i) & ~c.resting
+            if inside.sum() > 3:
+                excess = float(np.mean(left[c.name][inside] ** 2) - np.mean(c.noise_std[inside] ** 2))
+                out.setdefault(c.name, {})[phase] = float(np.sqrt(max(excess, 0.0)))
+    return out
+
+
+def total_gap(found: Fit, observed: Observed, where: dict[str, NDArray[np.bool_]] | None = None) -> float:
+    """The gap of all channels together, each in units of its noise."""
+    left = residuals_of(found, observed)
+    total = 0.0
+    for c in observed.channels:
+        mask = ~c.resting if where is None else where[c.name] & ~c.resting
+        if mask.any():
+            noise = float(np.mean(c.noise_std[mask] ** 2))
+            total += max(float(np.mean(left[c.name][mask] ** 2)) / noise - 1.0, 0.0)
+    return float(np.sqrt(total))
+
+
+def closed(before: float, after: float) -> float | None:
+    """The part of a gap that is closed; None where there was none."""
+    return None if before < LEAST_GAP else 1.0 - after / before
+
+
+def held_out(before: Fit, after: Fit, observed: Observed) -> float | None:
+    """The part of the gap closed in stretches that neither model was fitted to."""
+    gaps = np.zeros(2)
+    for fold in range(FOLDS):
+        inside = {c.name: np.floor(c.time / FOLD_TIME).astype(int) % FOLDS == fold for c in observed.channels}
+        rest = observed.without({name: mask & _burning(observed, name) for name, mask in inside.items()})
+        for k, model in enumerate((before, after)):
+            found = attempted(model.hypothesis, rest, model.x, SHORT)
+            if found is None:
+                return None
+            gaps[k] += total_gap(found, observed, inside) ** 2
+    return closed(*np.sqrt(gaps / FOLDS).tolist())
+
+
+def _burning(observed: Observed, name: str) -> NDArray[np.bool_]:
+    return ~next(c for c in observed.channels if c.name == name).resting
+
+
+def frozen(hypothesis: Hypothesis, found: Fit) -> Hypothesis:
+    """A hypothesis of another test with the effects of a fit, their constants as found there."""
+    effects = tuple(a for a in found.hypothesis.at(found.x).effects if not a.effect.name.startswith("probe_"))
+    return replace(hypothesis, engine=replace(hypothesis.engine, effects=effects))

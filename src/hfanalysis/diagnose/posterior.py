@@ -1,0 +1,76 @@
+"""Probabilities of none, each name and unknown, from log evidences.
+
+Evidences of a real test are too sure of themselves: noise and forms are never quite what they are taken for. They are
+divided by a temperature that grows with what the best name leaves open, and shifted by kind; the constants were fitted
+to simulated tests (``make blind-calibrate``), and stand in probabilities.json with their number of cases.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from importlib.resources import files
+
+import numpy as np
+
+from hfanalysis.diagnose.naming import Naming
+
+SET = 0.9
+"""Probability that the stated set of names holds."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How log evidences become probabilities: p_k ~ exp(offset of its kind + evidence / T)."""
+
+    temperature: float = 1.0
+    temperature_per_leftover: float = 0.0
+    offsets: Mapping[str, float] = field(default_factory=lambda: {"none": 0.0, "named": 0.0, "unknown": 0.0})
+
+    def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
+        """Of every label of ``evidences``; they sum to one."""
+        heat = self.temperature * (1.0 + self.temperature_per_leftover * max(0.0, leftover - 1.0))
+        labels = list(evidences)
+        logs = np.array([self.offsets[kind(label)] + evidences[label] / heat for label in labels])
+        weights = np.exp(logs - logs.max())
+        return dict(zip(labels, (weights / weights.sum()).tolist(), strict=True))
+
+
+def kind(label: str) -> str:
+    """none, unknown, or named."""
+    return label if label in ("none", "unknown") else "named"
+
+
+@lru_cache(maxsize=1)
+def scale() -> Scale:
+    """The constants that come along; none are applied where there are none."""
+    source = files("hfanalysis.diagnose") / "probabilities.json"
+    if not source.is_file():
+        return Scale()
+    found = json.loads(source.read_text(encoding="utf-8"))
+    return Scale(found["temperature"], found["temperature_per_leftover"], found["offsets"])
+
+
+def evidences_of(found: Naming) -> dict[str, float]:
+    """Log evidence of every label, that of none being 0. A set counts for its first name, the one that explains most."""
+    zero = found.base.log_evidence
+    out = {"none": 0.0}
+    for candidate in (*found.singles, *found.sets):
+        name = candidate.names[0]
+        out[name] = max(out.get(name, -np.inf), candidate.log_evidence - zero)
+    if found.unknown:
+        out["unknown"] = max(c.log_evidence for c in found.unknown) - zero
+    return out
+
+
+def smallest_set(probabilities: Mapping[str, float], share: float = SET) -> list[str]:
+    """The fewest labels that hold a share of the probability, the most probable first."""
+    out, total = [], 0.0
+    for label, p in sorted(probabilities.items(), key=lambda item: (-item[1], item[0])):
+        out.append(label)
+        total += p
+        if total >= share:
+            break
+    return out

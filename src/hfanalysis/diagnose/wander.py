@@ -1,0 +1,97 @@
+"""The slow noise of a sensor, as its quiet time before the opening shows it: a sum of exponentially correlated processes.
+
+Whether a sensor wanders over seconds (1/f) or forgets within tenths of a second decides how small a slow departure of
+the model can be seen. The variances of the processes come from the periodogram of the quiet time (Whittle's likelihood);
+between neighbouring time constants they change smoothly, so that what is slower than the quiet time is carried on from
+what it shows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from hfanalysis.segment.noise import Noise
+from hfanalysis.segment.signals import Signal
+
+Array = NDArray[np.float64]
+
+TIMES = np.array([0.02, 0.06, 0.18, 0.54, 1.6, 4.9, 15.0])
+"""Time constants [s] of the processes."""
+
+ROUGH = 1.0
+"""Standard deviation of the log of the ratio of neighbouring variances."""
+
+CAREFUL = 0.3
+"""Log of the variances by which all are raised at last, in their posterior standard deviations: a quiet time that is
+too short misleads only where it shows too little."""
+
+LEAST = 60
+"""Blocks of quiet time from which on it is analysed."""
+
+MOST = 1500
+
+
+@dataclass(frozen=True)
+class Wander:
+    """``variances`` of processes with TIMES, and ``white``: the standard deviation of a block's white noise."""
+
+    variances: Array
+    white: float
+
+    def covariance(self, time: Array) -> Array:
+        """Of block means at given times (n,): the wander's alone, without white noise."""
+        lag = np.abs(time[:, None] - time[None, :])
+        return np.asarray(sum(v * np.exp(-lag / tau) for v, tau in zip(self.variances, TIMES, strict=True)))
+
+
+def roughness(wander: Wander, block: float) -> float:
+    """What the wander adds to the squared noise of blocks that second differences show."""
+    one, two = np.exp(-block / TIMES), np.exp(-2.0 * block / TIMES)
+    return float(wander.variances @ (6.0 - 8.0 * one + 2.0 * two) / 6.0)
+
+
+def wander_of(signal: Signal, block: float) -> Wander:
+    """From the quiet time before the opening (negative times), in blocks of so many seconds."""
+    quiet = signal.between(-np.inf, -0.1)
+    noise = Noise.of(signal, quiet)
+    blocks = quiet.reduced(block)
+    white = float(noise.white * np.sqrt(min(noise.step / block, 1.0)))
+    if blocks.time.size < LEAST:
+        return Wander(np.full(TIMES.size, noise.flicker * np.log(3.0)), white)
+    values = blocks.value[-MOST:]
+    return _fitted(values - values.mean(), float(np.median(np.diff(blocks.time))), white, noise.flicker)
+
+
+def _fitted(values: Array, step: float, white: float, flicker: float) -> Wander:
+    """Maximum of Whittle's likelihood with a smooth prior."""
+    n = values.size
+    frequency = np.fft.rfftfreq(n, step)[1 : (n - 1) // 2]
+    power = 2.0 * step / n * np.abs(np.fft.rfft(values * _taper(n)))[1 : (n - 1) // 2] ** 2
+    shapes = np.stack([_spectrum(frequency, tau, step) for tau in TIMES])
+    floor = 2.0 * step * np.ones(frequency.size)
+    level = max(float(np.var(values)), 1e-300)
+
+    def cost(x: Array) -> float:
+        model = np.exp(x[:-1]) @ shapes + np.exp(x[-1]) * floor
+        prior = float(np.sum((np.diff(x[:-1]) / ROUGH) ** 2) + ((x[-1] - np.log(level)) / 10.0) ** 2)
+        return float(np.sum(np.log(model) + power / model)) + 0.5 * prior
+
+    start = np.log(np.r_[np.full(TIMES.size, max(flicker, 1e-3 * level)), max(white**2, 1e-3 * level)])
+    best = minimize(cost, start, method="L-BFGS-B", options={"maxiter": 60}).x
+    return Wander(np.exp(best[:-1]) * np.exp(CAREFUL / np.sqrt(1.0 + frequency.size / 40.0)), float(np.exp(0.5 * best[-1])))
+
+
+def _taper(n: int) -> Array:
+    """Hann's window of unit power: a slow trend must not leak into all frequencies."""
+    window = np.hanning(n + 2)[1:-1]
+    return np.asarray(window / np.sqrt(np.mean(window**2)))
+
+
+def _spectrum(frequency: Array, tau: float, step: float) -> Array:
+    """One-sided spectrum of a process of unit variance that is sampled every ``step`` seconds."""
+    kept = np.exp(-step / tau)
+    return np.asarray(2.0 * step * (1.0 - kept**2) / (1.0 - 2.0 * kept * np.cos(2.0 * np.pi * frequency * step) + kept**2))
