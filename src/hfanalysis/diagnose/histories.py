@@ -10,27 +10,37 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.localise import Localisation
-from hfanalysis.diagnose.of_test import raw_residuals
+from hfanalysis.diagnose.gap import residuals_of
+from hfanalysis.diagnose.of_test import Diagnosis
 
 Array = NDArray[np.float64]
 
+UNITS = {"thrust": "N", "m_tank": "kg"}
 
-def write_histories(path: Path, found: Localisation, provenance: Mapping[str, Any]) -> None:
-    """Groups ``sources/SITE`` {time, mean, std} and ``residuals/CHANNEL`` {time, before, after, noise_std}."""
+
+def write_histories(path: Path, found: Diagnosis, provenance: Mapping[str, Any]) -> None:
+    """Groups ``sources/SITE`` {time, mean, low90, high90} and ``residuals/CHANNEL`` {time, before, after, noise_std}."""
     import h5py
 
-    before, after = (raw_residuals(f, found.observed) for f in (found.base, found.final))
+    observed = found.naming.bench.observed
+    before, after = (residuals_of(f, observed) for f in (found.naming.base.fit, found.verdict.chosen.fit))
     with h5py.File(path, "w", libver="latest") as file:
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
-        for source in found.sources:
-            group = file.create_group(f"sources/{source.site.name}")
-            group.attrs["equation"] = source.site.equation
-            _write(group, source.site.unit, time=source.time, mean=source.mean, std=source.std)
-        for channel in found.observed.channels:
-            unit = "N" if channel.name == "thrust" else "Pa"
-            columns = {"before": before[channel.name], "after": after[channel.name], "noise_std": channel.noise_std}
-            _write(file.create_group(f"residuals/{channel.name}"), unit, time=channel.time, **columns)
+        for row in found.product["localisation"]:
+            group = file.create_group(f"sources/{row['site']}")
+            group.attrs["equation"] = row["equation"]
+            history = row["history"]
+            columns = {name: np.array(history[name]) for name in ("time", "mean", "low90", "high90")}
+            _write(group, history["unit"], **columns)
+        for channel in observed.channels:
+            burning = ~channel.resting
+            columns = {
+                "time": channel.time[burning],
+                "before": before[channel.name][burning],
+                "after": after[channel.name][burning],
+                "noise_std": channel.noise_std[burning],
+            }
+            _write(file.create_group(f"residuals/{channel.name}"), UNITS.get(channel.name, "Pa"), **columns)
 
 
 def _write(group: Any, unit: str, **columns: Array) -> None:

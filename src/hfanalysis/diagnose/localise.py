@@ -45,8 +45,6 @@ SITES = (
     Site("throat_factor", "nozzle", "1", 0.05),
     Site("thrust_factor", "nozzle", "1", 0.05),
 )
-SENSORS = ("p_tank", "p_run", "p_chamber", "thrust")
-
 BEYOND_ACCURACY = 5.0
 """Error of a pressure transducer that is typical of one that errs, in units of its stated accuracy."""
 
@@ -61,16 +59,6 @@ SPACING = 0.6
 
 CORRELATION = 1.5
 """Splines over which a source is coherent."""
-
-LEAST_EVIDENCE = 6.0
-"""Natural logarithm of the evidence against no source at all that a claim needs."""
-
-RIVALS = 5
-"""Sites that are asked once more at the end, per source."""
-
-REFITTED = 3
-"""How many of the best sites are fitted with the full model."""
-
 
 @dataclass(frozen=True)
 class Source:
@@ -133,7 +121,7 @@ def _best_scale(projected: _Projected, typical: float) -> tuple[float, float, Ar
 
 def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
     """The source at every site, linear about the fit, the best first."""
-    splines = Splines.over(0.0, observed.end, SPACING)
+    splines = Splines.over(0.0, float(observed.grid[~observed.resting][-1]), SPACING)
     engine, names = fitted.hypothesis.at(fitted.x), []
     active = []
     taken = {a.effect.name for a in engine.effects}
@@ -160,10 +148,15 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
 
 
 def _sensor(observed: Observed, name: str, splines: Splines, fitted: Fit) -> tuple[Site, _Projected]:
+    return sensor_site(observed, name), _project(fitted, sensor_slopes(observed, name, splines))
+
+
+def sensor_site(observed: Observed, name: str) -> Site:
+    """A sensor as a site: an offset over time."""
     accuracy = next(c.accuracy for c in observed.channels if c.name == name)
-    unit, typical = ("N", LOAD_CELL_DRIFT) if name == "thrust" else ("Pa", BEYOND_ACCURACY * accuracy)
-    site = Site(f"offset of {name}", "sensor", unit, typical, sensor=name)
-    return site, _project(fitted, sensor_slopes(observed, name, splines))
+    unit = "N" if name == "thrust" else "kg" if name == "m_tank" else "Pa"
+    typical = LOAD_CELL_DRIFT if name == "thrust" else BEYOND_ACCURACY * accuracy
+    return Site(f"offset of {name}", "sensor", unit, typical, sensor=name)
 
 
 def _source(site: Site, projected: _Projected, splines: Splines, time: Array) -> Source:
@@ -196,13 +189,25 @@ def coordinates(source: Source) -> Array:
     return np.asarray(np.linalg.solve(root, source.coefficients))
 
 
-def of_fit(source: Source, final: Fit) -> Source:
-    """A source as the last fit has it."""
-    for block, place in final.hypothesis.places():
-        wanted = source.site.sensor
-        if block.sensor == wanted and (wanted is not None or block.names[0].startswith(f"probe_{source.site.name}.")):
-            basis = source.splines.at(source.time) @ block.matrix
-            covariance = final.covariance[place, place]
+def source_of(found: Fit, name: str, observed: Observed) -> Source:
+    """An unknown source as a fit has it; ``name`` is that of its site."""
+    for block, place in found.hypothesis.places():
+        site = _site(name, observed)
+        if block.names[0].startswith(_prefix(site)):
+            time = np.linspace(0.0, float(observed.grid[~observed.resting][-1]), 200)
+            basis = block.splines.at(time) @ block.matrix
+            covariance = found.covariance[place, place]
             std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, covariance, basis), 0.0))
-            return replace(source, mean=basis @ final.x[place], std=std)
-    raise AssertionError(source.site.name)
+            mean = basis @ found.x[place]
+            return Source(site, time, mean, std, 0.0, 1.0, found.x[place], block.splines, found.x)
+    raise ValueError(f"the fit has no source at {name}")
+
+
+def _prefix(site: Site) -> str:
+    return f"offset_{site.sensor}." if site.sensor is not None else f"probe_{site.name}."
+
+
+def _site(name: str, observed: Observed) -> Site:
+    if name.startswith("offset of "):
+        return sensor_site(observed, name.removeprefix("offset of "))
+    return next(s for s in SITES if s.name == name)

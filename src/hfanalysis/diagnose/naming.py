@@ -54,6 +54,7 @@ class Settings:
     tempering: bool = True
     polishing: bool = True
     projection: bool = True
+    coloured: bool = True
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def name_effects(
 ) -> Naming:
     """Try the base model, every effect of the catalogue, sets of them, and unknown sources."""
     settings = settings or Settings()
-    bench = Bench(observed, settings.tempering)
+    bench = Bench(observed if settings.coloured else observed.with_white_noise(), settings.tempering)
     base, singles = _singles(hypothesis, bench, catalogue, progress, settings)
     singles = _loosened(singles, bench)
     sets = _loosened(_sets(base, singles, bench, catalogue, progress, settings), bench)
@@ -359,3 +360,42 @@ def _dropped(candidate: Candidate, bench: Bench, catalogue: Catalogue) -> Candid
         if less.log_evidence > candidate.log_evidence - WORTH:
             candidate = replace(less)
     return candidate
+
+
+def limits(
+    chosen: Candidate, bench: Bench, catalogue: Catalogue, settings: Settings
+) -> dict[str, tuple[float, str]]:
+    """For every effect that is not in the model: the size [SI] that it stays below with 95 % probability, linear."""
+    out = {}
+    observed = bench.at(chosen.steps)
+    for name, effect in catalogue.effects.items():
+        if name in chosen.names or effect.distort is not None and not set(effect.sites) & set(observed.names):
+            continue
+        made = catalogue.add(chosen.fit.hypothesis, name)
+        start = inserted(chosen.fit, made)
+        own = len(chosen.fit.hypothesis.free)
+        least, most = made.bounds
+        start[own] = FIRST_STEP
+        try:
+            there = predict(made, observed, np.clip(start, least, most), tangents=True)
+        except (ValueError, ArithmeticError):
+            continue
+        if there.slopes is None or not np.isfinite(there.slopes).all():
+            continue
+        curvature = there.slopes.T @ there.slopes + np.eye(start.size)
+        step = -np.linalg.solve(curvature, there.slopes.T @ there.residual + start)
+        std = float(np.sqrt(np.linalg.inv(curvature)[own, own]))
+        at = min(max(start[own] + step[own], least[own], 0.0) + Z95 * std, most[own])
+        out[name] = (made.free[own].value(float(at)), effect.strength.unit.replace("-", ""))
+    return out
+
+
+Z95 = 1.645
+"""One-sided 95 % of a normal distribution, in standard deviations."""
+
+
+def inserted(parent: Fit, made: Hypothesis) -> Array:
+    """The parent's parameters in a hypothesis with more effects: those come after its own and before its sources."""
+    own = len(parent.hypothesis.free)
+    new = np.zeros(len(made.free) - own)
+    return np.concatenate([parent.x[:own], new, parent.x[own:]])

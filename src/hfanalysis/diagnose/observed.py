@@ -106,6 +106,13 @@ class Channel:
         picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
         return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)])
 
+    def with_white_noise(self) -> Channel:
+        """The same with independent noise of the same size, beside offset and gain."""
+        burning = np.where(self.resting, 0.0, 1.0)
+        gain = self.value * burning / float(np.abs(self.value).max())
+        shared = self.accuracy**2 * (np.outer(burning, burning) + np.outer(gain, gain))
+        return replace(self, covariance=shared + np.diag(self.noise_std**2))
+
     def form_covariance(self, error: float) -> Array:
         """Covariance of a model-form error that is given as part of the channel's range; smooth (Matern, 3/2)."""
         lag = self.time[:, None] - self.time[None, :]
@@ -149,6 +156,10 @@ class Observed:
     def at_form(self, error: float) -> Observed:
         """The same with another model-form error."""
         return replace(self, form=error)
+
+    def with_white_noise(self) -> Observed:
+        """The same as if the noise of blocks were independent: what it costs to think so can be studied."""
+        return replace(self, channels=tuple(c.with_white_noise() for c in self.channels), common=None)
 
     def only(self, names: tuple[str, ...]) -> Observed:
         """The same with these channels alone."""

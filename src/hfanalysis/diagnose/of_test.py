@@ -1,4 +1,4 @@
-"""The diagnosis of one test: where, when and by how much the report's model departs from what was measured."""
+"""The diagnosis of one test: where model and measurement disagree, what it is, and the proof."""
 
 from __future__ import annotations
 
@@ -6,120 +6,189 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from hfanalysis.diagnose.fit import Fit, model_of
-from hfanalysis.diagnose.hypothesis import base_hypothesis
-from hfanalysis.diagnose.localise import Localisation, Source, localise
+from hfanalysis.diagnose import gap
+from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
+from hfanalysis.diagnose.naming import Catalogue, Naming, Settings, name_effects
 from hfanalysis.diagnose.observed import Observed, observe_test
+from hfanalysis.diagnose.posterior import scale
+from hfanalysis.diagnose.proof import OtherTest, Proof, prove
+from hfanalysis.diagnose.spread import Spread
+from hfanalysis.diagnose.verdict import Verdict, effects_product, places, sizes, upper_limits, verdict_of
+from hfanalysis.diagnose.weak import weak_residuals
+from hfanalysis.diagnose.weak_product import weak_product
+from hfanalysis.diagnose.words import story
+from hfanalysis.engine.effect import Effect
 from hfanalysis.quantity import Quantity
 from hfanalysis.segment.phases import Segments
+from hfanalysis.segment.signals import Signal
 from hfanalysis.stages.base import Progress, silent
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
 from hfanalysis.validate.full import run_full
 
-Array = NDArray[np.float64]
 
-Z90 = 1.6449
-"""Half-width of the 90 % interval of a normal distribution."""
+@dataclass(frozen=True)
+class Subject:
+    """What a diagnosis is made from: a test's log, its segments and base calibration, and what was stated."""
 
-SEEN = 2.0
-"""Standard deviations from which on a source counts as there."""
+    log: TestLog
+    segments: Segments
+    calibration: Mapping[str, Any]
+    definition: TestDefinition
+
+    def observed(self) -> Observed:
+        """What is compared."""
+        return observe_test(self.log, self.segments, self.definition)
+
+    def hypothesis(self) -> Hypothesis:
+        """The base model with its constants free."""
+        full = run_full(self.log, self.segments, self.calibration, self.definition)
+        return base_hypothesis(full.engine, self.calibration, self.definition.model.conventions != "report")
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What was found, and the product."""
+    """What was found, the verdict, the proof, and the product."""
 
-    localisation: Localisation
+    naming: Naming
+    verdict: Verdict
     product: dict[str, Any]
 
 
 def diagnose(
-    log: TestLog,
-    segments: Segments,
-    calibration: Mapping[str, Any],
-    definition: TestDefinition,
+    subject: Subject,
+    effects: Mapping[str, Effect],
+    other: OtherTest | None = None,
     progress: Progress = silent,
+    settings: Settings | None = None,
 ) -> Diagnosis:
-    """Localise. Raises AbsentError where the test does not state an engine or too little was recorded."""
-    observed = observe_test(log, segments, definition)
-    full = run_full(log, segments, calibration, definition)
-    found = localise(base_hypothesis(full.engine, calibration), observed, progress)
-    places = [place(source, observed) for source in found.sources]
-    product = {
-        "verdict": "unknown" if places else "none",
-        "effects": [],
-        "set90": ["unknown"] if places else ["none"],
-        "localisation": places,
-        "ranking": [
-            {"site": s.site.name, "equation": s.site.equation, "log_evidence": s.log_evidence} for s in found.ranking
-        ],
-        "gap": gap(found),
-        "nuisances": {name: value for name, value in found.final.values.items() if "." not in name},
-        "compared": {
-            "channels": list(observed.names),
-            "start": float(observed.channels[0].time[0]),
-            "end": observed.end,
-        },
-        "warnings": _warnings(found),
-    }
-    return Diagnosis(found, product)
+    """Localise, name and prove. Raises AbsentError where the test does not state an engine or too little was recorded."""
+    settings = settings or Settings()
+    observed = subject.observed()
+    catalogue = Catalogue(_visible(effects, observed), {"n2_purge": _purge(subject)})
+    found = name_effects(subject.hypothesis(), observed, catalogue, progress, settings)
+    verdict = verdict_of(found)
+    progress("proving it", 0.93)
+    proof = prove(found, verdict.chosen, other) if verdict.label != "none" else Proof({}, None, ())
+    product = _product(found, verdict, proof, catalogue, settings)
+    product["sentences"] = story(product)
+    return Diagnosis(found, verdict, product)
 
 
-def place(source: Source, observed: Observed) -> dict[str, Any]:
-    """Where and when a source acts, and how large it is on average there."""
-    seen = np.abs(source.mean) > SEEN * source.std
-    if not seen.any():
-        seen = np.abs(source.mean) >= np.abs(source.mean).max()
-    first, last = source.time[seen][0], source.time[seen][-1]
-    inside = (source.time >= first) & (source.time <= last)
-    mean = float(source.mean[inside].mean())
-    return {
-        "equation": source.site.equation,
-        "site": source.site.name,
-        "phase": _phase(source, observed),
-        "t_start": Quantity(float(first), "s", source.splines.spacing / 2.0),
-        "t_end": Quantity(float(last), "s", source.splines.spacing / 2.0),
-        "source": Quantity(mean, source.site.unit, float(source.std[inside].mean())),
-        "significance": source.log_evidence,
-        "history": {
-            "unit": source.site.unit,
-            "time": source.time.tolist(),
-            "low90": (source.mean - Z90 * source.std).tolist(),
-            "high90": (source.mean + Z90 * source.std).tolist(),
-        },
-    }
+def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Effect]:
+    """Effects that the channels of a test can show at all: a sensor's need the sensor."""
+    return {n: e for n, e in effects.items() if e.distort is None or set(e.sites) & set(observed.names)}
 
 
-def _phase(source: Source, observed: Observed) -> str:
-    """The phase in which the source is seen best."""
-    names = [name for name in observed.phases if name != "end"]
-    starts = [observed.phases[name] for name in names]
-    weight = (source.mean / np.maximum(source.std, 1e-300)) ** 2
-    number = np.searchsorted(starts, source.time, side="right") - 1
-    return names[int(np.argmax([weight[number == i].sum() for i in range(len(names))]))]
-
-
-def gap(found: Localisation) -> dict[str, Any]:
-    """Root mean square of measured less model, by channel [SI]: without sources, with them, and the noise alone."""
-    out: dict[str, dict[str, float]] = {"before": {}, "after": {}, "noise": {}}
-    for stage, fitted in (("before", found.base), ("after", found.final)):
-        for name, residual in raw_residuals(fitted, found.observed).items():
-            out[stage][name] = float(np.sqrt(np.mean(residual**2)))
-    for channel in found.observed.channels:
-        out["noise"][channel.name] = float(np.sqrt(np.mean(channel.noise_std**2)))
+def _purge(subject: Subject) -> dict[str, float]:
+    """The purge line's pressure once nitrogen may enter, as measured, and its valve's, as stated [Pa]."""
+    out: dict[str, float] = {}
+    t_purge, origin = subject.segments.time("t_purge"), subject.segments.t_open.value
+    if t_purge is not None and origin is not None and "p_purge" in subject.log:
+        level = Signal.of(subject.log["p_purge"]).shifted(origin).mean(t_purge + 0.3, t_purge + 1.5)
+        if level == level:
+            out["supply_pressure"] = level
+    section = subject.definition.purge
+    if section is not None and section.cracking_pressure is not None:
+        out["cracking_pressure"] = section.cracking_pressure.value
     return out
 
 
-def raw_residuals(fitted: Fit, observed: Observed) -> dict[str, Array]:
-    """Measured less model of every channel, in its unit."""
-    return {c.name: c.value - model_of(fitted, c) for c in observed.channels}
+def _product(
+    found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue, settings: Settings
+) -> dict[str, Any]:
+    observed, chosen = found.bench.observed, verdict.chosen
+    compared = observed.channels[0].time
+    return {
+        "verdict": verdict.label,
+        "effects": effects_product(verdict),
+        "set90": verdict.set90,
+        "posterior": verdict.posterior,
+        "evidences": verdict.evidences,
+        "leftover": found.named.leftover,
+        "localisation": places(verdict, found),
+        "gap": {
+            "before": gap.root_mean_square(found.base.fit, observed),
+            "after": gap.root_mean_square(chosen.fit, observed),
+            "noise": gap.noise_of(observed),
+            "by_phase": {
+                "before": gap.by_phase(found.base.fit, observed),
+                "after": gap.by_phase(chosen.fit, observed),
+            },
+            "closed_fraction": {arm: proof.fractions.get(arm) for arm in ("same", "held_out", "other_test", "placebo")},
+            "closed_by_free_form": proof.fractions.get("placebo_free_form"),
+            "other_test": proof.other,
+        },
+        "upper_limits": upper_limits(verdict, found, catalogue, settings),
+        "twins": _twins(verdict, catalogue),
+        "not_it": _not_it(verdict),
+        "decisive_measurements": _decisive(verdict, catalogue),
+        "plausibility": {
+            name: row for name, row in _plausibility(found).items() if name in verdict.set90 or name in chosen.names
+        },
+        "constants": _constants(found, verdict),
+        "weak_form": weak_product(weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))),
+        "compared": {
+            "channels": list(observed.names),
+            "start": float(compared[compared > 0.0][0]),
+            "end": observed.end,
+            "model_form_error": found.bench.at(chosen.steps).form,
+            "chi_square": chosen.leftover,
+            "chi_square_without": found.base.leftover,
+        },
+        "probabilities_from": "probabilities.json" if scale().temperature != 1.0 else "raw evidences",
+        "notes": list(proof.notes),
+        "warnings": [] if chosen.fit.converged else ["the last fit did not converge: sizes and intervals are rough"],
+        "runtime_s": {"value": None, "reason": "times stand in run.log, so that products are the same from run to run"},
+        "seed": 0,
+    }
 
 
-def _warnings(found: Localisation) -> list[str]:
-    if found.final.converged:
-        return []
-    return ["the last fit did not converge: sizes and intervals are rough"]
+def _constants(found: Naming, verdict: Verdict) -> dict[str, dict[str, Quantity]]:
+    """The base model's constants as fitted without and with the effects; m above all."""
+    units = {"area": "m^2", "loss_factor": "1/m^4", "oxidizer_mass": "kg", "temperature": "K"}
+    out: dict[str, dict[str, Quantity]] = {}
+    for arm, fitted in (("without", found.base.fit), ("with", verdict.chosen.fit)):
+        values, stds = fitted.values, fitted.stds
+        out[arm] = {
+            {"polytropic_exponent": "m"}.get(n, n): Quantity(values[n], units.get(n, ""), stds[n])
+            for n in values
+            if "." not in n
+        }
+    return out
+
+
+def _plausibility(found: Naming) -> dict[str, dict[str, Any]]:
+    from hfanalysis.diagnose.plausible import judged
+
+    out: dict[str, dict[str, Any]] = {}
+    for candidate in found.singles:
+        name = candidate.names[0]
+        out.setdefault(name, judged(name, sizes(candidate.fit)[name]))
+    return out
+
+
+LIKELY = 0.02
+"""Probability below which a listed effect is said not to be it."""
+
+
+def _not_it(verdict: Verdict) -> list[str]:
+    """Listed effects that were tried and are not it."""
+    return sorted(n for n, p in verdict.posterior.items() if p < LIKELY and n not in ("none", "unknown"))
+
+
+def _twins(verdict: Verdict, catalogue: Catalogue) -> list[list[str]]:
+    """Groups of names in the answer that these channels hardly tell apart, as the effects declare."""
+    groups = []
+    for name in (*verdict.set90, *verdict.chosen.names):
+        if name in catalogue.effects and catalogue.effects[name].twins:
+            group = sorted({name, *catalogue.effects[name].twins})
+            if group not in groups:
+                groups.append(group)
+    return groups
+
+
+def _decisive(verdict: Verdict, catalogue: Catalogue) -> list[str]:
+    """What would decide between the names that are left."""
+    names = [n for n in dict.fromkeys((*verdict.chosen.names, *verdict.set90)) if n in catalogue.effects]
+    return list(dict.fromkeys(f"{n}: {catalogue.effects[n].decisive}" for n in names if catalogue.effects[n].decisive))

@@ -1,44 +1,103 @@
-"""A localisation in words an engineer can act on."""
+"""A diagnosis in words an engineer can act on."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-_SITES = {
-    "tank_heat": ("the tank receives {size} that the model lacks", "W", 1.0),
-    "nitrogen_inflow": ("{size} of nitrogen enter the tank that the model lacks", "g/s", 1e3),
-    "tank_leak": ("{size} leave the tank by another way than the injector", "g/s", 1e3),
-    "tank_pressure": ("the tank's pressure differs by {size} from that of its bulk in equilibrium", "bar", 1e-5),
-    "injector_factor": ("the injector passes {size} more than its equation says", "%", 100.0),
-    "feed_loss": ("the feed line loses {size} more than its law says", "bar", 1e-5),
-    "regression_factor": ("the fuel regresses {size} faster than a G^n", "%", 100.0),
-    "temperature_factor": ("the gas is worth {size} more in R T (twice that of c*) than equilibrium says", "%", 100.0),
-    "throat_factor": ("the throat is {size} larger than stated", "%", 100.0),
-    "thrust_factor": ("the nozzle gives {size} more thrust than its equations say", "%", 100.0),
+from hfanalysis.quantity import Quantity
+
+_EQUATIONS = {
+    "tank_energy": "the tank's energy",
+    "tank_volume": "the tank's volume balance",
+    "injector": "the injector's flow",
+    "feed": "the feed line's loss",
+    "grain": "the fuel's regression",
+    "chamber_mass": "the chamber's mass",
+    "chamber_energy": "the gas's energy",
+    "nozzle": "the nozzle's thrust or throat",
+    "sensor": "a sensor",
 }
-"""What a source at a site means, the unit in which people read it, and the factor to it from SI."""
+_UNITS = {"Pa": ("bar", 1e-5), "W": ("kW", 1e-3), "kg/s": ("g/s", 1e3), "1": ("%", 100.0)}
+_CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
+_UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
 
 
-def sentence(place: Mapping[str, Any]) -> str:
-    """One localisation as a sentence."""
-    source = place["source"]
-    start, end = place["t_start"]["value"], place["t_end"]["value"]
-    text, unit, factor = _meaning(place["site"], source["unit"])
-    size = f"{factor * source['value']:.3g} ± {factor * (source['std'] or 0.0):.2g} {unit}"
-    when = f"From {start:.1f} to {end:.1f} s (mostly {place['phase']})"
-    return f"{when} {text.format(size=size)} [{place['equation']}; ln evidence {place['significance']:.0f}]."
+def story(product: Mapping[str, Any]) -> list[str]:
+    """The whole verdict, sentence by sentence."""
+    out = [headline(product)]
+    out += [place_sentence(row) for row in product["localisation"]]
+    out += [effect_sentence(row) for row in product["effects"]]
+    if product["verdict"] != "none":
+        out += [line for channel in product["gap"]["before"] if (line := gap_line(channel, product["gap"]))]
+        out += proof_sentences(product)
+    if product["verdict"] == "unknown" and product["not_it"]:
+        out.append(f"It is none of these: {', '.join(product['not_it'])}.")
+    if product["decisive_measurements"]:
+        out.append("What would decide: " + "; ".join(product["decisive_measurements"]) + ".")
+    return out
 
 
-def _meaning(site: str, unit: str) -> tuple[str, str, float]:
-    if site in _SITES:
-        return _SITES[site]
-    shown, factor = ("bar", 1e-5) if unit == "Pa" else (unit, 1.0)
-    return f"{site.replace('offset of ', '')} reads {{size}} more than the model can explain", shown, factor
+def headline(product: Mapping[str, Any]) -> str:
+    """What it is, with its probability."""
+    posterior = product["posterior"]
+    label = max(posterior, key=lambda k: (posterior[k], k))
+    others = [f"{n} ({posterior[n]:.2f})" for n in product["set90"] if n != label]
+    if product["verdict"] == "none":
+        return f"Nothing is missing from the model that these channels can show (none {posterior['none']:.2f})."
+    if product["verdict"] == "unknown":
+        return f"Something is missing that is not in the library (unknown {posterior['unknown']:.2f})."
+    names = " and ".join(row["name"] for row in product["effects"])
+    doubt = f"; {', '.join(others)} cannot be excluded" if others else ""
+    return f"The model lacks {names} ({posterior[label]:.2f}){doubt}."
 
 
-def gap_line(channel: str, gap: Mapping[str, Mapping[str, float]]) -> str:
-    """Residual of a channel without and with the sources, and its noise."""
-    factor, unit = (1.0, "N") if channel == "thrust" else (1e-5, "bar")
+def place_sentence(row: Mapping[str, Any]) -> str:
+    """Where, from when to when and how much."""
+    unit, factor = _UNITS.get(row["source"].unit, (row["source"].unit, 1.0))
+    value, std = factor * (row["source"].value or 0.0), factor * (row["source"].std or 0.0)
+    where = _EQUATIONS[row["equation"]] + (f" ({row['channel']})" if row.get("channel") else "")
+    return (
+        f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s {where} differs by "
+        f"{value:.3g} ± {std:.2g} {unit} on average (mostly in the {row['phase']} phase)."
+    )
+
+
+def effect_sentence(row: Mapping[str, Any]) -> str:
+    """What a named effect is, and whether it can be so large."""
+    size = row["plausibility"]
+    judged = "" if size["plausible"] is not False else " That is hard to believe: take the name with care."
+    return f"{row['name']}: {row['meaning']}; {size['why']}.{judged}"
+
+
+def gap_line(channel: str, gap: Mapping[str, Any]) -> str:
+    """Residual of a channel without and with the effects, and its noise."""
+    unit, factor = _CHANNELS[_UNIT_OF_CHANNEL.get(channel, "Pa")]
     before, after, noise = (factor * gap[key][channel] for key in ("before", "after", "noise"))
-    return f"{channel}: rms {before:.3g} {unit} without, {after:.3g} {unit} with it; noise {noise:.2g} {unit}"
+    return f"{channel}: rms {before:.3g} {unit} without, {after:.3g} {unit} with it; noise {noise:.2g} {unit}."
+
+
+def proof_sentences(product: Mapping[str, Any]) -> list[str]:
+    """How much of the gap closes, and on which data."""
+    arms = {
+        "same": "of the gap closes on the data that named it",
+        "held_out": "on stretches that were held out",
+        "other_test": "on another test, with the constants as found here",
+        "placebo": "with the best wrong effect",
+    }
+    found = product["gap"]["closed_fraction"]
+    parts = [f"{100.0 * found[arm]:.0f} % {text}" for arm, text in arms.items() if found.get(arm) is not None]
+    return [", ".join(parts) + "."] if parts else []
+
+
+def shown(quantity: Quantity | Mapping[str, Any]) -> str:
+    """A quantity in people's units."""
+    value, unit, std = (
+        (quantity.value, quantity.unit, quantity.std)
+        if isinstance(quantity, Quantity)
+        else (quantity["value"], quantity.get("unit", ""), quantity.get("std"))
+    )
+    name, factor = _UNITS.get(unit, (unit, 1.0))
+    if value is None:
+        return "not known"
+    return f"{factor * value:.3g}" + (f" ± {factor * std:.2g}" if std else "") + f" {name}"

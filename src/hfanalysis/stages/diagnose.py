@@ -1,26 +1,88 @@
-"""diagnose: where, when and by how much the report's model departs from the measurement, before any name.
+"""diagnose: where model and measurement disagree, which effect is missing, and the proof that it is.
 
-Reads ``ingest.h5``, ``segments.json`` and ``base_calibration.json`` (the base model
-is what is diagnosed, whatever has been adopted); writes ``diagnosis.json`` and ``diagnosis.h5``.
+Reads ``ingest.h5``, ``segments.json`` and ``base_calibration.json`` (the base model is what is diagnosed, whatever has
+been adopted), and those of another test of the same stand, on which what is found here is proved with frozen constants.
+Writes ``diagnosis.json`` and ``diagnosis.h5``.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hfanalysis.errors import AnalysisError, InputError
 from hfanalysis.stages.base import Context, Stage
+
+if TYPE_CHECKING:
+    from hfanalysis.diagnose.of_test import Subject
+    from hfanalysis.diagnose.proof import OtherTest
 
 
 def run(context: Context) -> None:
-    """Localise what the model lacks."""
+    """Name what the model lacks."""
     from hfanalysis.diagnose.histories import write_histories
     from hfanalysis.diagnose.of_test import diagnose
+    from hfanalysis.diagnose.variants import settings_of
+    from hfanalysis.effects import FOLDER, library
+
+    effects = library(context.root / FOLDER)
+    settings = settings_of(str(context.parameter("variant")))
+    found = diagnose(_subject(context), effects, _other(context), context.progress, settings)
+    write_histories(context.scratch("diagnosis.h5"), found, context.provenance())
+    context.write_json("diagnosis.json", found.product)
+
+
+def _subject(context: Context) -> Subject:
+    from hfanalysis.diagnose.of_test import Subject
     from hfanalysis.segment.phases import Segments
     from hfanalysis.testdata.log import read_log
 
-    log = read_log(context.product("ingest.h5"))
-    segments = Segments.from_json(context.read_json("segments.json"))
-    found = diagnose(log, segments, context.read_json("base_calibration.json"), context.definition, context.progress)
-    write_histories(context.scratch("diagnosis.h5"), found.localisation, context.provenance())
-    context.write_json("diagnosis.json", found.product)
+    return Subject(
+        read_log(context.product("ingest.h5")),
+        Segments.from_json(context.read_json("segments.json")),
+        context.read_json("base_calibration.json"),
+        context.definition,
+    )
+
+
+def _other(context: Context) -> OtherTest | None:
+    """The other test to prove it on: the one that is asked for, else the first of the same stand."""
+    from hfanalysis.diagnose.proof import OtherTest
+    from hfanalysis.stages.opening import open_test
+    from hfanalysis.stages.runner import run_to
+
+    asked = str(context.parameter("proof_test"))
+    for name in [asked] if asked else _siblings(context):
+        try:
+            other = run_to("calibrate", open_test(context.root, name, context.out.parent, progress=context.progress))
+            subject = _subject(other)
+            return OtherTest(name, subject.hypothesis(), subject.observed())
+        except AnalysisError:
+            if asked:
+                raise
+    return None
+
+
+def _siblings(context: Context) -> list[str]:
+    """Other tests of the same stand, hot fires, by name."""
+    from hfanalysis.testdata.definition import load_definition
+
+    stand = context.definition.test.stand
+    if stand is None:
+        return []
+    out = []
+    for path in sorted(_definitions(context.root)):
+        try:
+            test = load_definition(path).test
+        except InputError:
+            continue
+        if test.stand == stand and test.id != context.id and test.kind == "hot_fire":
+            out.append(test.id)
+    return out
+
+
+def _definitions(root: Path) -> list[Path]:
+    return list((root / "raw_tests").glob("*/test.toml"))
 
 
 STAGE = Stage(
@@ -29,4 +91,5 @@ STAGE = Stage(
     products=("diagnosis.json", "diagnosis.h5"),
     run=run,
     adopts=False,
+    parameters={"proof_test": "", "variant": ""},
 )
