@@ -229,7 +229,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     if not {"p_tank", "p_chamber", "thrust"} & set(reduced):
         raise AbsentError("neither tank, chamber nor thrust was recorded: the model cannot be compared")
     shaken = _oscillation(reduced, frame)
-    channels = tuple(_channel(r, definition, frame, shaken.get((name, name))) for name, r in reduced.items())
+    channels = tuple(_channel(r, definition, frame, shaken.get((name, name)), log[name].zero_std) for name, r in reduced.items())
     common = shaken.get(TOGETHER)
     if common is not None:
         one, two = (reduced[name] for name in TOGETHER)
@@ -276,7 +276,7 @@ class _Frame:
 
     grid: Array
     resting: NDArray[np.bool_]
-    changes: tuple[tuple[float, float], ...]
+    changes: Mapping[str, tuple[float, float]]
     start: float
     filled: float
     ends: Mapping[str, float]
@@ -289,9 +289,11 @@ class _Frame:
 def _frame(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> _Frame:
     end = _end(segments)
     ends = {"chamber": end, "tank": _tank_end(segments, definition, end)}
-    changes = tuple(
-        (value, segments.std(name)) for name in ("t_v", "t_fuel_out") if (value := segments.time(name)) is not None
-    )
+    changes = {
+        name: (value, segments.std(name))
+        for name in ("t_v", "t_fuel_out")
+        if (value := segments.time(name)) is not None
+    }
     rest = _rest(log, origin, _flow_end(definition, max(segments.time("t_end") or end, end)))
     burning = np.arange(0.5 * BLOCK, ends["tank"], BLOCK)
     after = np.zeros(0)
@@ -368,7 +370,8 @@ def _flow_end(definition: TestDefinition, end: float) -> float:
 def _end(segments: Segments) -> float:
     """Where the comparison ends [s]: with the fuel, for what follows is another story, or where the flow ends."""
     known = [(segments.time(name), segments.std(name)) for name in ("t_fuel_out", "t_end")]
-    given = [t - AROUND_CHANGE - 2.0 * deviation for t, deviation in known if t is not None]
+    # where the fuel fades, its fading is to be seen: no wide berth for a wide deviation
+    given = [t - AROUND_CHANGE - min(2.0 * deviation, AROUND_CHANGE) for t, deviation in known if t is not None]
     return min([*given, LONGEST])
 
 
@@ -391,6 +394,9 @@ def _cell_reads(cell: Signal, definition: TestDefinition) -> bool:
         return False
     return abs(float(np.median(still)) - loaded.value) < TANK_CELL * loaded.value
 
+
+UNSTEADY_ZERO = 0.25
+"""Part of a sensor's accuracy by which its zero may move in the test."""
 
 TANK_CELL = 0.03
 """Part of the loaded mass by which the tank's cell may be off at rest and still be compared."""
@@ -419,8 +425,9 @@ def _reduce(signal: Signal, frame: _Frame) -> _Reduced | None:
     means = np.where(samples > 0, np.diff(sums[at]) / np.maximum(samples, 1), 0.0)
     filled = (samples > 0) & (samples >= 0.5 * BLOCK / max(signal.step, 1e-9))
     good = filled & (centers > frame.start) & (centers < frame.end(signal.name))
-    for instant, deviation in frame.changes:
-        good &= np.abs(centers - instant) > AROUND_CHANGE + 2.0 * deviation
+    for name, (instant, deviation) in frame.changes.items():
+        berth = 2.0 * deviation if name == "t_v" else min(2.0 * deviation, AROUND_CHANGE)
+        good &= np.abs(centers - instant) > AROUND_CHANGE + berth
     if good.sum() < 10:
         return None
     first, count = _merged(good, centers, frame)
@@ -468,7 +475,9 @@ def _shaken(shaken: Mapping[str, _Reduced], frame: _Frame) -> dict[tuple[str, st
     return {pair: np.pad(matrix, (1, still - 1)) for pair, matrix in found.items()}
 
 
-def _channel(reduced: _Reduced, definition: TestDefinition, frame: _Frame, shaken: Array | None) -> Channel:
+def _channel(
+    reduced: _Reduced, definition: TestDefinition, frame: _Frame, shaken: Array | None, zero_std: float | None
+) -> Channel:
     signal, first, count = reduced.signal, reduced.first, reduced.count
     noise = wander_of(signal, BLOCK)
     resting = frame.resting[first]
@@ -484,7 +493,9 @@ def _channel(reduced: _Reduced, definition: TestDefinition, frame: _Frame, shake
     own = averaged(averaged(own, first, count).T, first, count)
     burning = np.where(resting & (signal.name in AT_REST), 0.0, 1.0)
     gain = reduced.value * burning / float(np.abs(reduced.value).max())
-    covariance = own + accuracy**2 * (np.outer(burning, burning) + np.outer(gain, gain))
+    # a zero that was taken before the opening leaves of the accuracy mostly the gain's error
+    offset = accuracy if zero_std is None else float(np.hypot(zero_std, UNSTEADY_ZERO * accuracy))
+    covariance = own + offset**2 * np.outer(burning, burning) + accuracy**2 * np.outer(gain, gain)
     filling = np.where((reduced.time < frame.filled) & ~resting, FILLING_ERROR * float(np.ptp(reduced.value)), 0.0)
     lag = np.abs(reduced.time[:, None] - reduced.time[None, :])
     covariance = covariance + np.exp(-lag / FILLING_TIME) * np.outer(filling, filling)
@@ -495,7 +506,7 @@ def _channel(reduced: _Reduced, definition: TestDefinition, frame: _Frame, shake
 def _merged(good: NDArray[np.bool_], centers: Array, frame: _Frame) -> tuple[Integers, Integers]:
     """Runs of good blocks: single near the opening and changes, MERGED of them elsewhere."""
     lively = centers < frame.start + NEAR
-    for instant, _ in frame.changes:
+    for instant, _ in frame.changes.values():
         lively |= np.abs(centers - instant) < NEAR
     first, size = [], []
     i = 0

@@ -124,7 +124,7 @@ def _product(
         "not_it": _not_it(verdict),
         "decisive_measurements": _decisive(verdict, catalogue),
         "plausibility": {
-            name: row for name, row in _plausibility(found).items() if name in verdict.set90 or name in chosen.names
+            name: row for name, row in _plausibility(found).items() if name in (*verdict.set90, *chosen.names)
         },
         "constants": _constants(found, verdict),
         "weak_form": weak_product(weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))),

@@ -11,7 +11,7 @@ import numpy as np
 from hfanalysis.diagnose.acting import Acting, acting
 from hfanalysis.diagnose.candidate import Candidate
 from hfanalysis.diagnose.fit import Fit
-from hfanalysis.diagnose.localise import SITES, Source, source_of
+from hfanalysis.diagnose.localise import Source, source_of
 from hfanalysis.diagnose.naming import Catalogue, Naming, Settings, limits
 from hfanalysis.diagnose.plausible import judged, lost
 from hfanalysis.diagnose.posterior import evidences_of, scale, smallest_set
@@ -112,19 +112,13 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     if verdict.label == "none":
         return []
     observed, chosen = found.bench.observed, verdict.chosen
-    known = {s.name for s in SITES}
+    gain = chosen.log_evidence - found.base.log_evidence
     out = []
-    for i, name in enumerate(chosen.names):
-        gain = chosen.log_evidence - found.base.log_evidence
-        if name in known or name.startswith("offset of "):
-            out.append(of_source(source_of(chosen.fit, name, observed), gain / (i + 1), observed.phases))
-        else:
-            source = acting(chosen.fit, name, observed)
-            out.append(of_acting(name, source, gain / (i + 1), observed.phases))
-    if verdict.label == "unknown":
-        out.sort(key=lambda row: row["site"] not in known and not row["site"].startswith("offset of "))
-        for i, row in enumerate(out):
-            row["significance"] = (chosen.log_evidence - found.base.log_evidence) / (i + 1)
+    if chosen.unknown:
+        out.append(of_source(source_of(chosen.fit, chosen.names[-1], observed), gain, observed.phases))
+    for name in chosen.names[: -1 if chosen.unknown else None]:
+        source = acting(chosen.fit, name, observed)
+        out.append(of_acting(name, source, gain / (len(out) + 1), observed.phases))
     return out
 
 
