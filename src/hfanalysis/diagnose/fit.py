@@ -70,7 +70,7 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, 
     least, highest = hypothesis.bounds
     x = np.clip(np.zeros(hypothesis.size) if start is None else np.asarray(start, dtype=np.float64), least, highest)
     here = predict(hypothesis, observed, x, tangents=True)
-    if not _usable(here):
+    if not usable(here):
         raise ArithmeticError("the model has no slopes where its fit starts")
     damping, done = 1e-6, False
     for _ in range(most):
@@ -89,7 +89,7 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, 
             break
         small = before - _objective(moved, x + step) < CONVERGED
         there = predict(hypothesis, observed, x + step, tangents=True)
-        if not _usable(there):
+        if not usable(there):
             damping = max(100.0 * damping, 1.0)  # a point without slopes leads nowhere: a shorter step
             continue
         x, here = x + step, there
@@ -122,7 +122,7 @@ def _step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, d
     return np.asarray(np.clip(x + step, least, most) - x)
 
 
-def _usable(prediction: Prediction) -> bool:
+def usable(prediction: Prediction) -> bool:
     """Whether slopes are numbers that a step can be made from: where a run chatters they grow beyond all bounds."""
     return prediction.slopes is not None and bool((np.abs(prediction.slopes) < STEEPEST).all())
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.candidate import CALM, SHORT, Bench, Candidate, attempted
-from hfanalysis.diagnose.fit import Fit
+from hfanalysis.diagnose.fit import Fit, usable
 from hfanalysis.diagnose.freeform import unknown_sources
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.observed import Observed
@@ -248,7 +248,7 @@ def _scores(
             there = predict(made, observed, start, tangents=True)
         except (ValueError, ArithmeticError):
             continue
-        if there.slopes is not None and np.isfinite(there.slopes).all() and np.isfinite(there.residual).all():
+        if there.slopes is not None and usable(there) and np.isfinite(there.residual).all():
             gain, strength = score(there.slopes, there.residual, start, own, (least, most), settings.projection)
             start[own] = np.clip(strength, -MOST_FIRST, MOST_FIRST)
             found.append((gain, start))
@@ -380,7 +380,7 @@ def limits(
             there = predict(made, observed, np.clip(start, least, most), tangents=True)
         except (ValueError, ArithmeticError):
             continue
-        if there.slopes is None or not np.isfinite(there.slopes).all():
+        if there.slopes is None or not usable(there):
             continue
         curvature = there.slopes.T @ there.slopes + np.eye(start.size)
         step = -np.linalg.solve(curvature, there.slopes.T @ there.residual + start)
