@@ -203,17 +203,17 @@ def _flight(context: Context, console: Console) -> None:
 
 
 def _diagnose(context: Context, console: Console) -> None:
-    from hfanalysis.diagnose.words import gap_line, sentence
-
     product = context.read_json("diagnosis.json")
-    for place in product["localisation"]:
-        console.print(Text(sentence(place)), soft_wrap=True)
-    if not product["localisation"]:
-        console.print(Text("The model with its calibrated constants explains what was measured: no source is claimed."))
-    for channel in product["compared"]["channels"]:
-        console.print(Text(f"  {gap_line(channel, product['gap'])}"), soft_wrap=True)
-    for warning in product["warnings"]:
+    for i, sentence in enumerate(product["sentences"]):
+        console.print(Text(sentence, style="bold" if i == 0 else ""), soft_wrap=True)
+    likely = sorted(((p, n) for n, p in product["posterior"].items() if p >= SHOWN), reverse=True)
+    console.print(Text("  probabilities: " + ", ".join(f"{name} {p:.2f}" for p, name in likely)), soft_wrap=True)
+    for warning in (*product["notes"], *product["warnings"]):
         console.print(Text(f"  {warning}", style="yellow"), soft_wrap=True)
+
+
+SHOWN = 0.005
+"""Probability from which on a name is shown."""
 
 
 def _report(context: Context, console: Console) -> None:

@@ -60,8 +60,8 @@ def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | 
     if start is None:
         return None
     found = attempted(made, bench.at(parent.steps), start, SHORT)
-    if found is not None and parent.steps:
-        found = attempted(made, bench.at(0), found.x, SHORT) or found
+    if found is not None and parent.steps > bench.floor:
+        found = attempted(made, bench.fine, found.x, SHORT) or found
     if found is None:
         return None
     judged = bench.judged((*parent.names, source.site.name), found, unknown=True)

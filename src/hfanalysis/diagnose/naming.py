@@ -14,7 +14,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.candidate import CALM, SHORT, Bench, Candidate, attempted
+from hfanalysis.diagnose.candidate import CALM, PRICE, SHORT, Bench, Candidate, attempted
 from hfanalysis.diagnose.fit import Fit, usable
 from hfanalysis.diagnose.freeform import unknown_sources
 from hfanalysis.diagnose.hypothesis import Hypothesis
@@ -112,20 +112,24 @@ def name_effects(
 def _singles(
     hypothesis: Hypothesis, bench: Bench, catalogue: Catalogue, progress: Progress, settings: Settings
 ) -> tuple[Candidate, list[Candidate]]:
-    coarse, base = _descended(hypothesis, bench, [np.zeros(hypothesis.size)])
-    if coarse is None or base is None:
-        raise ArithmeticError("the base model cannot be fitted to this test")
+    coarse, base = _descended(hypothesis, bench, progress)
+    rough: dict[str, Fit] = {}
+    if not _calm(base):
+        rough = _rough(coarse, catalogue, bench, progress, settings)
+        bench.settle(max((coarse, *rough.values()), key=lambda f: f.log_evidence))
+        base = attempted(hypothesis, bench.fine, coarse.x) or base
     singles: list[Candidate] = []
-    for _ in range(2 if settings.polishing else 1):
-        calm = base.residual @ base.residual < CALM * base.residual.size
-        rough = {} if calm else _rough(coarse, catalogue, bench, progress, settings)
+    for turn in range(2 if settings.polishing else 1):
+        calm = _calm(base)
+        if turn and not calm:
+            rough = _rough(coarse, catalogue, bench, progress, settings)
         singles = []
         names = list(catalogue.effects) if calm else list(rough)
         for i, name in enumerate(names):
             progress(f"fitting {name}", 0.3 + 0.3 * i / len(names))
             fine = _fine_child(base, rough.get(name), catalogue, name, bench, settings)
             if fine is not None:
-                singles.append(Candidate((name,), fine, fine.log_evidence))
+                singles.append(Candidate((name,), fine, fine.log_evidence - PRICE * bench.floor, bench.floor))
         polished = _polished(base, singles, bench) if settings.polishing else base
         if polished.log_evidence < base.log_evidence + FAR:
             break
@@ -169,13 +173,19 @@ JUDGED = 4
 """Single effects that are fitted at the model-form error they ask for."""
 
 
-def _descended(hypothesis: Hypothesis, bench: Bench, starts: list[Array]) -> tuple[Fit | None, Fit | None]:
-    """The best coarse fit from several starts, and the fine one from there."""
-    rough = [f for x in starts if (f := attempted(hypothesis, bench.at(bench.coarsest), x, SHORT)) is not None]
-    if not rough:
-        return None, None
-    best = max(rough, key=lambda f: f.log_evidence)
-    return best, attempted(hypothesis, bench.at(0), best.x)
+def _calm(base: Fit) -> bool:
+    """Whether the base model leaves hardly anything open."""
+    return bool(base.residual @ base.residual < CALM * base.residual.size)
+
+
+def _descended(hypothesis: Hypothesis, bench: Bench, progress: Progress) -> tuple[Fit, Fit]:
+    """The base model's coarse fit, and the fine one from there. Raises ArithmeticError where it cannot be run."""
+    progress("fitting the base model", 0.0)
+    coarse = attempted(hypothesis, bench.at(bench.coarsest), np.zeros(hypothesis.size), SHORT)
+    fine = None if coarse is None else attempted(hypothesis, bench.fine, coarse.x)
+    if coarse is None or fine is None:
+        raise ArithmeticError("the base model cannot be fitted to this test")
+    return coarse, fine
 
 
 def _coarse_child(coarse: Fit, catalogue: Catalogue, name: str, bench: Bench, settings: Settings) -> Fit | None:
@@ -201,19 +211,19 @@ def _fine_child(base: Fit, rough: Fit | None, catalogue: Catalogue, name: str, b
     Where nothing was fitted coarsely and the score sees nothing, there is no need for a fit.
     """
     made = catalogue.add(base.hypothesis, name)
-    scores = sorted(_scores(base, made, catalogue.effects[name].strengths, bench.at(0), settings), key=lambda s: -s[0])
+    scores = sorted(_scores(base, made, catalogue.effects[name].strengths, bench.fine, settings), key=lambda s: -s[0])
     if rough is None and (not scores or scores[0][0] < SEEN):
         return None
     best: tuple[float, Array] | None = None
     for x in [*([rough.x] if rough is not None else []), *(start for _, start in scores[:2])]:
         try:
-            there = predict(made, bench.at(0), x, tangents=False)
+            there = predict(made, bench.fine, x, tangents=False)
         except (ValueError, ArithmeticError):
             continue
         value = float(there.residual @ there.residual + x @ x)
         if np.isfinite(value) and (best is None or value < best[0]):
             best = (value, x)
-    return None if best is None else attempted(made, bench.at(0), best[1])
+    return None if best is None else attempted(made, bench.fine, best[1])
 
 
 SEEN = 0.7
@@ -283,7 +293,7 @@ def _polished(parent: Fit, children: list[Candidate], bench: Bench) -> Fit:
     """The parent, fitted again from the constants of its best children."""
     best = parent
     for child in sorted(children, key=lambda c: -c.log_evidence)[:3]:
-        found = attempted(parent.hypothesis, bench.at(0), child.fit.x[: parent.x.size])
+        found = attempted(parent.hypothesis, bench.fine, child.fit.x[: parent.x.size])
         if found is not None and found.log_evidence > best.log_evidence:
             best = found
     return best
@@ -331,18 +341,23 @@ def _partners(
         if ranked:
             gain, start = max(ranked, key=lambda s: s[0])
             scores.append((gain, name, made, start))
-    out = []
+    out: list[tuple[tuple[str, ...], Fit]] = []
     for gain, name, made, start in sorted(scores, key=lambda s: -s[0])[:PARTNERS]:
         if gain < 0.5 * WORTH:
             continue
         names = (*parent.names, name)
         tried.add(frozenset(names))
         found = attempted(made, observed, start)
-        if found is not None and parent.steps:
-            found = attempted(made, bench.at(0), found.x) or found
+        if found is not None and parent.steps > bench.floor:
+            found = attempted(made, bench.fine, found.x) or found
         if found is not None:
-            out.append(bench.judged(names, found))
-    return out
+            out.append((names, found))
+    out.sort(key=lambda c: -c[1].log_evidence)
+    return [bench.judged(names, found) for names, found in out[:JUDGED_PARTNERS]]
+
+
+JUDGED_PARTNERS = 2
+"""Of those, how many are fitted at the model-form error they ask for."""
 
 
 def _dropped(candidate: Candidate, bench: Bench, catalogue: Catalogue) -> Candidate:
@@ -352,7 +367,7 @@ def _dropped(candidate: Candidate, bench: Bench, catalogue: Catalogue) -> Candid
             break
         hypothesis = candidate.fit.hypothesis.without(name)
         kept = [i for i, f in enumerate(candidate.fit.hypothesis.free) if f.name.partition(".")[0] != name]
-        found = attempted(hypothesis, bench.at(0), candidate.fit.x[kept])
+        found = attempted(hypothesis, bench.fine, candidate.fit.x[kept])
         if found is None:
             continue
         names = tuple(n for n in candidate.names if n != name)

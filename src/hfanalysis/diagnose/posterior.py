@@ -15,6 +15,7 @@ from importlib.resources import files
 
 import numpy as np
 
+from hfanalysis.diagnose.candidate import Candidate
 from hfanalysis.diagnose.naming import Naming
 
 SET = 0.9
@@ -60,9 +61,23 @@ def evidences_of(found: Naming) -> dict[str, float]:
     for candidate in (*found.singles, *found.sets):
         name = candidate.names[0]
         out[name] = max(out.get(name, -np.inf), candidate.log_evidence - zero)
-    if found.unknown:
-        out["unknown"] = max(c.log_evidence for c in found.unknown) - zero
+    strange = [c.log_evidence - zero for c in found.unknown if counts_as_unknown(c, found)]
+    if strange:
+        out["unknown"] = max(strange)
     return out
+
+
+REST = 0.25
+"""Part of what the best names explain that a source beside them must add for the answer to be unknown: a smaller one is
+what is left open beside a name."""
+
+
+def counts_as_unknown(candidate: Candidate, found: Naming) -> bool:
+    """Whether an unknown source is an answer of its own."""
+    if len(candidate.names) == 1:
+        return True
+    explained = found.named.log_evidence - found.base.log_evidence
+    return candidate.log_evidence - found.named.log_evidence > REST * explained
 
 
 def smallest_set(probabilities: Mapping[str, float], share: float = SET) -> list[str]:

@@ -29,12 +29,12 @@ def slacked(candidate: Candidate, bench: Bench) -> Candidate:
     """The candidate with slack in its effects, where that makes the data more probable."""
     plain = candidate.fit
     try:
-        signature = signatures(plain.hypothesis, bench.at(0), plain.x)
+        signature = signatures(plain.hypothesis, bench.fine, plain.x)
     except (ValueError, ArithmeticError):
         return candidate
-    columns = SHAPE_ERROR * _over_time(signature, bench.at(0))
+    columns = SHAPE_ERROR * _over_time(signature, bench.fine)
     made = replace(plain.hypothesis, slack=columns)
-    found = attempted(made, bench.at(0), np.concatenate([plain.x, np.zeros(columns.shape[1])]), SHORT)
+    found = attempted(made, bench.fine, np.concatenate([plain.x, np.zeros(columns.shape[1])]), SHORT)
     if found is None:
         return candidate
     judged = bench.judged(candidate.names, found)

@@ -14,7 +14,7 @@ from hfanalysis.diagnose.fit import Fit
 from hfanalysis.diagnose.localise import Source, source_of
 from hfanalysis.diagnose.naming import Catalogue, Naming, Settings, limits
 from hfanalysis.diagnose.plausible import judged, lost
-from hfanalysis.diagnose.posterior import evidences_of, scale, smallest_set
+from hfanalysis.diagnose.posterior import counts_as_unknown, evidences_of, scale, smallest_set
 from hfanalysis.quantity import Quantity
 
 NAMED_FROM = 0.5
@@ -75,7 +75,7 @@ def _chosen(found: Naming, top: str) -> Candidate:
     if top == "none":
         return found.base
     if top == "unknown":
-        return max(found.unknown, key=lambda c: c.log_evidence)
+        return max((c for c in found.unknown if counts_as_unknown(c, found)), key=lambda c: c.log_evidence)
     named = [c for c in (*found.singles, *found.sets) if c.names[0] == top]
     return max(named, key=lambda c: c.log_evidence)
 
@@ -119,6 +119,10 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     for name in chosen.names[: -1 if chosen.unknown else None]:
         source = acting(chosen.fit, name, observed)
         out.append(of_acting(name, source, gain / (len(out) + 1), observed.phases))
+    beside = next((c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]), None)
+    if beside is not None and (rest := beside.log_evidence - chosen.log_evidence) > 0.0:
+        row = of_source(source_of(beside.fit, beside.names[-1], observed), rest, observed.phases)
+        out.append({**row, "beside": True, "significance": min(rest, 0.5 * out[-1]["significance"])})
     return out
 
 

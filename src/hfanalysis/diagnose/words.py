@@ -57,9 +57,10 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     unit, factor = _UNITS.get(row["source"].unit, (row["source"].unit, 1.0))
     value, std = factor * (row["source"].value or 0.0), factor * (row["source"].std or 0.0)
     where = _EQUATIONS[row["equation"]] + (f" ({row['channel']})" if row.get("channel") else "")
+    left = " Beside what is named, this is still open." if row.get("beside") else ""
     return (
         f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s {where} differs by "
-        f"{value:.3g} ± {std:.2g} {unit} on average (mostly in the {row['phase']} phase)."
+        f"{value:.3g} ± {std:.2g} {unit} on average (mostly in the {row['phase']} phase).{left}"
     )
 
 
