@@ -23,7 +23,7 @@ FORMS = tuple(FORM_ERROR * 3.0**i for i in range(6))
 PRICE = 5.0
 """Log of the odds against each of them: models of this kind are usually right to the first."""
 
-SHORT, LONG = 10, 16
+SHORT, LONG = 12, 25
 """Steps of a fit that looks around, and of one that is to converge."""
 
 

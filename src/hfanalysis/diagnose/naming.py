@@ -356,7 +356,7 @@ def _partners(
     return [bench.judged(names, found) for names, found in out[:JUDGED_PARTNERS]]
 
 
-JUDGED_PARTNERS = 2
+JUDGED_PARTNERS = 4
 """Of those, how many are fitted at the model-form error they ask for."""
 
 
