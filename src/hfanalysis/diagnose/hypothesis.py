@@ -24,6 +24,10 @@ from hfanalysis.engine.unsteady import Engine
 Array = NDArray[np.float64]
 
 
+M_RANGE = 2.0
+"""Standard deviations that the polytropic exponent may be off: 0.95 to 1.35 bounds what nitrous oxide can do near
+saturation. What a calibration found beyond that is an effect, and has to be found as one."""
+
 USUAL_N = (0.45, 0.2)
 """Flux exponent of hybrid fuels and its spread (Karabeyoglu et al. find 0.62 for paraffin with oxygen; small engines
 show as little as 0.2)."""
@@ -244,7 +248,7 @@ def base_hypothesis(engine: Engine, calibration: Mapping[str, Any], follow: bool
     mass = engine.oxidizer_mass
     free = [
         Free("area", engine.feed.area, 0.5, "positive"),
-        Free("polytropic_exponent", exponent, spread),
+        Free("polytropic_exponent", exponent, spread, least=-M_RANGE, most=M_RANGE),
         Free("oxidizer_mass", mass, max(float(loaded.get("std") or 0.0), 0.01 * mass)),
         Free("temperature", engine.temperature, 5.0),
         Free("a", engine.a * _mid_flux(engine) ** (engine.n - USUAL_N[0]), 1.0, "positive"),
