@@ -1,6 +1,6 @@
-"""Localisation on tests whose truth is known: is the right equation first, and is nothing claimed where nothing is?
+"""Diagnosis of tests whose truth is known: what is named, with which probability, and what of the gap closes.
 
-python benchmarks/localisation.py --cases ../shared/blind [--write docs/localisation.md]
+python benchmarks/practice.py --cases ../shared/blind [--write docs/diagnosis.md]
 
 CASES holds ``raw_tests/`` and ``answers/``; products go to a temporary folder. The answers are read only after all
 verdicts are there.
@@ -46,55 +46,75 @@ EQUATIONS = {
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """What was found on one case: the equations of the sources in their order, or why there is no verdict."""
+class Outcome:
+    """What was found on one case, or why nothing was."""
 
     case: str
-    equations: tuple[str, ...]
-    first: str
-    evidence: float
+    product: dict[str, Any]
     seconds: float
     failure: str = ""
 
 
-def verdict(cases: Path, name: str, scratch: Path) -> Verdict:
-    """Diagnose one case."""
-    started = perf_counter()
+def diagnosed(cases: Path, name: str, scratch: Path) -> Outcome:
+    """Diagnose one case; the time is that of the stage alone."""
     try:
-        context = run_to("diagnose", open_test(cases, name, out=scratch / name))
+        context = run_to("calibrate", open_test(cases, name, out=scratch))
+        started = perf_counter()
+        context = run_to("diagnose", context)
     except AnalysisError as error:
-        return Verdict(name, (), "", 0.0, perf_counter() - started, str(error))
-    product = context.read_json("diagnosis.json")
-    places = product["localisation"]
-    first = places[0]["site"] if places else "-"
-    evidence = places[0]["significance"] if places else product["ranking"][0]["log_evidence"]
-    return Verdict(name, tuple(p["equation"] for p in places), first, evidence, perf_counter() - started)
+        return Outcome(name, {}, 0.0, str(error))
+    return Outcome(name, context.read_json("diagnosis.json"), perf_counter() - started)
 
 
-def judged(found: Verdict, answer: dict[str, Any]) -> tuple[str, str]:
-    """The truth in words, and whether the verdict is right."""
+def judged(found: Outcome, answer: dict[str, Any]) -> tuple[str, str]:
+    """The truth in words, and what the verdict is worth."""
     hidden = answer["effect"] if isinstance(answer["effect"], dict) else {answer["effect"]: answer.get("strength")}
     truth = " + ".join(hidden)
     if found.failure:
         return truth, "no verdict"
+    product = found.product
+    named = {row["name"] for row in product["effects"]}
     if truth == "none":
-        return truth, "right" if not found.equations else "false claim"
-    if not found.equations:
+        return truth, "right" if product["verdict"] == "none" else "false claim"
+    if product["verdict"] == "none":
         return truth, "not seen"
+    if named == set(hidden):
+        return truth, "right"
+    if set(hidden) <= named:
+        return truth, "right, and more"
+    if set(hidden) & set(product["set90"]) or set(hidden) & named:
+        return truth, "in the set"
     right = set().union(*(EQUATIONS[name] for name in hidden))
-    return truth, "right" if found.equations[0] in right else "other equation"
+    placed = product["localisation"] and product["localisation"][0]["equation"] in right
+    return truth, "right equation" if placed else "wrong"
 
 
-def table(found: Iterable[Verdict], answers: Path) -> list[str]:
+def table(found: Iterable[Outcome], answers: Path) -> list[str]:
     """The table in Markdown, and the counts."""
-    rows = ["| case | hidden | first source | ln evidence | all equations | verdict |", "|---|---|---|---|---|---|"]
+    rows = [
+        "| case | hidden | verdict | 90 % set | added | gap closed: same / held out | s | judged |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
     counts: dict[str, int] = {}
     for one in found:
         truth, right = judged(one, json.loads((answers / f"{one.case}.json").read_text()))
         counts[right] = counts.get(right, 0) + 1
-        equations = ", ".join(one.equations) or one.failure[:60] or "-"
-        rows.append(f"| {one.case} | {truth} | {one.first} | {one.evidence:.0f} | {equations} | {right} |")
+        p = one.product
+        if one.failure:
+            rows.append(f"| {one.case} | {truth} | {one.failure[:60]} | | | | | {right} |")
+            continue
+        top = max(p["posterior"].values())
+        names = ", ".join(row["name"] for row in p["effects"]) or "-"
+        closed = " / ".join(_percent(p["gap"]["closed_fraction"].get(arm)) for arm in ("same", "held_out"))
+        rows.append(
+            f"| {one.case} | {truth} | {p['verdict']} ({top:.2f}) | {', '.join(p['set90'])} | {names} | {closed} "
+            f"| {one.seconds:.0f} | {right} |"
+        )
     return [*rows, "", ", ".join(f"{name}: {number}" for name, number in sorted(counts.items()))]
+
+
+def _percent(x: float | None) -> str:
+    return "-" if x is None else f"{100.0 * x:.0f} %"
 
 
 def main() -> int:
@@ -107,8 +127,9 @@ def main() -> int:
     found = []
     with tempfile.TemporaryDirectory() as scratch:
         for name in names:
-            found.append(verdict(asked.cases, name, Path(scratch)))
-            print(f"{name}: {found[-1].first} ({found[-1].seconds:.1f} s) {found[-1].failure}", file=sys.stderr)
+            found.append(diagnosed(asked.cases, name, Path(scratch)))
+            said = found[-1].product.get("verdict", found[-1].failure)
+            print(f"{name}: {said} ({found[-1].seconds:.1f} s)", file=sys.stderr)
     lines = table(found, asked.cases / "answers")
     print("\n".join(lines))
     if asked.write:
