@@ -75,7 +75,7 @@ def _relative(found: Fit, active: Active) -> float:
 
 def _std(mean: Array, relative: float) -> Array:
     whole = float(np.abs(mean).max())
-    return np.hypot(np.abs(mean) * np.hypot(relative, SHAPE_ERROR), 0.02 * whole)
+    return np.asarray(np.hypot(np.abs(mean) * np.hypot(relative, SHAPE_ERROR), 0.02 * whole))
 
 
 def _sensor(found: Fit, active: Active, observed: Observed, relative: float) -> Acting:

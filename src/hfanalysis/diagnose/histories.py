@@ -19,7 +19,7 @@ UNITS = {"thrust": "N", "m_tank": "kg"}
 
 
 def write_histories(path: Path, found: Diagnosis, provenance: Mapping[str, Any]) -> None:
-    """Groups ``sources/SITE`` {time, mean, low90, high90} and ``residuals/CHANNEL`` {time, before, after, noise_std}."""
+    """Groups ``sources/SITE`` {time, mean, low90, high90}, ``residuals/CHANNEL`` {time, before, after, noise_std}."""
     import h5py
 
     observed = found.naming.bench.observed

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fit import Fit
-from hfanalysis.diagnose.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.hypothesis import Block, Hypothesis
 from hfanalysis.diagnose.observed import Observed
+from hfanalysis.diagnose.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.probe import Splines, probe
 from hfanalysis.engine.sensitivity import run_with_tangents
 
@@ -59,6 +59,7 @@ SPACING = 0.6
 
 CORRELATION = 1.5
 """Splines over which a source is coherent."""
+
 
 @dataclass(frozen=True)
 class Source:

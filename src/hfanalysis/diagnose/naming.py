@@ -152,9 +152,7 @@ def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
     return [replace(c, log_evidence=c.log_evidence + gain) for c in candidates]
 
 
-def _rough(
-    coarse: Fit, catalogue: Catalogue, bench: Bench, progress: Progress, settings: Settings
-) -> dict[str, Fit]:
+def _rough(coarse: Fit, catalogue: Catalogue, bench: Bench, progress: Progress, settings: Settings) -> dict[str, Fit]:
     """Every effect at the coarsest form; hopeless ones are left out."""
     rough = {}
     for i, name in enumerate(catalogue.effects):
@@ -205,7 +203,9 @@ ROUGH = 1.5
 """Chi-square per observation, at the coarsest form, from which on a fit also starts from where nothing is known."""
 
 
-def _fine_child(base: Fit, rough: Fit | None, catalogue: Catalogue, name: str, bench: Bench, settings: Settings) -> Fit | None:
+def _fine_child(
+    base: Fit, rough: Fit | None, catalogue: Catalogue, name: str, bench: Bench, settings: Settings
+) -> Fit | None:
     """The fine fit from the coarse one and from the fine score, whichever is nearer.
 
     Where nothing was fitted coarsely and the score sees nothing, there is no need for a fit.
@@ -245,9 +245,7 @@ def _scores(
     least, most = made.bounds
     size = parent.x.size
     own = slice(size, size + strengths)
-    shapes = [
-        i for i in range(size + strengths, made.size) if made.free[i].shape == "positive" and made.free[i].unsure
-    ]
+    shapes = [i for i in range(size + strengths, made.size) if made.free[i].shape == "positive" and made.free[i].unsure]
     found = []
     for choice in product(STARTS, repeat=len(shapes)):
         start = np.concatenate([parent.x, np.zeros(made.size - size)])
@@ -300,7 +298,12 @@ def _polished(parent: Fit, children: list[Candidate], bench: Bench) -> Fit:
 
 
 def _sets(
-    base: Candidate, singles: list[Candidate], bench: Bench, catalogue: Catalogue, progress: Progress, settings: Settings
+    base: Candidate,
+    singles: list[Candidate],
+    bench: Bench,
+    catalogue: Catalogue,
+    progress: Progress,
+    settings: Settings,
 ) -> list[Candidate]:
     """Sets of several effects: forward from the best few, dropping what is no longer needed."""
     found: dict[frozenset[str], Candidate] = {}
@@ -310,7 +313,7 @@ def _sets(
         progress(f"trying {size} effects together", 0.6 + 0.06 * size)
         grown = []
         for parent in front:
-            grown += [c for c in _partners(parent, bench, catalogue, tried, settings)]
+            grown += _partners(parent, bench, catalogue, tried, settings)
         better = [c for c in grown if c.log_evidence > _parent_evidence(c, singles, found) + WORTH]
         if not better:
             break
@@ -377,14 +380,12 @@ def _dropped(candidate: Candidate, bench: Bench, catalogue: Catalogue) -> Candid
     return candidate
 
 
-def limits(
-    chosen: Candidate, bench: Bench, catalogue: Catalogue, settings: Settings
-) -> dict[str, tuple[float, str]]:
+def limits(chosen: Candidate, bench: Bench, catalogue: Catalogue, settings: Settings) -> dict[str, tuple[float, str]]:
     """For every effect that is not in the model: the size [SI] that it stays below with 95 % probability, linear."""
     out = {}
     observed = bench.at(chosen.steps)
     for name, effect in catalogue.effects.items():
-        if name in chosen.names or effect.distort is not None and not set(effect.sites) & set(observed.names):
+        if name in chosen.names or (effect.distort is not None and not set(effect.sites) & set(observed.names)):
             continue
         made = catalogue.add(chosen.fit.hypothesis, name)
         start = inserted(chosen.fit, made)

@@ -136,9 +136,10 @@ def averaged(rows: Array, first: Integers, count: Integers) -> Array:
 class Observed:
     """The channels of a test, the instants of its phase changes with their deviations [s], and when it ends [s].
 
-    ``grid`` [s]: points at which a model is asked: at the opening, through the flow, and ``resting`` ones after it
-    (the first, too, stands for the time before). ``stated``: what was measured outside the log (SI), with standard deviations, by name. ``common``: covariance
-    of the first and second of TOGETHER, if both are there. ``form``: model-form error, as part of a channel's range.
+    ``grid`` [s]: points at which a model is asked: at the opening, through the flow, and ``resting`` ones after it (the
+    first, too, stands for the time before). ``stated``: what was measured outside the log (SI), with standard
+    deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there. ``form``:
+    model-form error, as part of a channel's range.
     """
 
     channels: tuple[Channel, ...]
@@ -199,7 +200,8 @@ class Observed:
         return tuple(out)
 
     def whiten(self, rows: Array) -> Array:
-        """Rows (blocks of all channels one after the other, ...) in units in which the noise is white and of size one."""
+        """Rows (blocks of all channels one after the other, ...) in units in which the noise is white and of size
+        one."""
         return np.concatenate([factor @ rows[place] for place, factor in self._factors])
 
     @property
@@ -225,11 +227,15 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     live = {name: Signal.of(as_read(log[name])).shifted(origin) for name in CHANNELS if name in log}
     if "m_tank" in live and not _cell_reads(live["m_tank"], definition):
         del live["m_tank"]
-    reduced = {name: r for name, signal in live.items() if not signal.dead and (r := _reduce(signal, frame)) is not None}
+    reduced = {
+        name: r for name, signal in live.items() if not signal.dead and (r := _reduce(signal, frame)) is not None
+    }
     if not {"p_tank", "p_chamber", "thrust"} & set(reduced):
         raise AbsentError("neither tank, chamber nor thrust was recorded: the model cannot be compared")
     shaken = _oscillation(reduced, frame)
-    channels = tuple(_channel(r, definition, frame, shaken.get((name, name)), log[name].zero_std) for name, r in reduced.items())
+    channels = tuple(
+        _channel(r, definition, frame, shaken.get((name, name)), log[name].zero_std) for name, r in reduced.items()
+    )
     common = shaken.get(TOGETHER)
     if common is not None:
         one, two = (reduced[name] for name in TOGETHER)
@@ -250,7 +256,8 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
 
 
 def _whitening(covariance: Array) -> Array:
-    """W with W C W^T = 1. An estimated covariance need not be positive: what is smaller than LEAST_VARIANCE is raised."""
+    """W with W C W^T = 1. An estimated covariance need not be positive: what is smaller than LEAST_VARIANCE is
+    raised."""
     try:
         return np.tril(np.linalg.inv(cholesky(covariance, lower=True, check_finite=False)))
     except np.linalg.LinAlgError:
@@ -296,10 +303,10 @@ def _frame(log: TestLog, segments: Segments, definition: TestDefinition, origin:
     }
     rest = _rest(log, origin, _flow_end(definition, max(segments.time("t_end") or end, end)))
     burning = np.arange(0.5 * BLOCK, ends["tank"], BLOCK)
-    after = np.zeros(0)
+    after: Array = np.zeros(0)
     if rest is not None:
         width = (rest[1] - rest[0]) / REST_BLOCKS
-        after = rest[0] + width * (np.arange(REST_BLOCKS) + 0.5)
+        after = np.asarray(rest[0] + width * (np.arange(REST_BLOCKS) + 0.5), dtype=np.float64)
     grid = np.concatenate([[0.0], burning, after])
     resting = np.ones(grid.size, dtype=bool)
     resting[1 : 1 + burning.size] = False

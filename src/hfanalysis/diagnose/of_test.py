@@ -62,7 +62,7 @@ def diagnose(
     progress: Progress = silent,
     settings: Settings | None = None,
 ) -> Diagnosis:
-    """Localise, name and prove. Raises AbsentError where the test does not state an engine or too little was recorded."""
+    """Localise, name and prove. Raises AbsentError where no engine is stated or too little was recorded."""
     settings = settings or Settings()
     observed = subject.observed()
     catalogue = Catalogue(_visible(effects, observed), {"n2_purge": _purge(subject)})
@@ -94,9 +94,7 @@ def _purge(subject: Subject) -> dict[str, float]:
     return out
 
 
-def _product(
-    found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue, settings: Settings
-) -> dict[str, Any]:
+def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue, settings: Settings) -> dict[str, Any]:
     observed, chosen = found.bench.observed, verdict.chosen
     compared = observed.channels[0].time
     return {
@@ -127,7 +125,9 @@ def _product(
             name: row for name, row in _plausibility(found).items() if name in (*verdict.set90, *chosen.names)
         },
         "constants": _constants(found, verdict),
-        "weak_form": weak_product(weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))),
+        "weak_form": weak_product(
+            weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))
+        ),
         "compared": {
             "channels": list(observed.names),
             "start": float(compared[compared > 0.0][0]),

@@ -55,7 +55,7 @@ def scale() -> Scale:
 
 
 def evidences_of(found: Naming) -> dict[str, float]:
-    """Log evidence of every label, that of none being 0. A set counts for its first name, the one that explains most."""
+    """Log evidence of every label, that of none being 0. A set counts for its first name, which explains most."""
     zero = found.base.log_evidence
     out = {"none": 0.0}
     for candidate in (*found.singles, *found.sets):
@@ -68,8 +68,7 @@ def evidences_of(found: Naming) -> dict[str, float]:
 
 
 REST = 0.25
-"""Part of what the best names explain that a source beside them must add for the answer to be unknown: a smaller one is
-what is left open beside a name."""
+"""Part of what the best names explain that a source beside them must add for the answer to be unknown."""
 
 
 def counts_as_unknown(candidate: Candidate, found: Naming) -> bool:

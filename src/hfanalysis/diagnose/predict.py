@@ -84,7 +84,9 @@ def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
     for i, channel in enumerate(observed.channels):
         if channel.name == sensor:
             rows[i] = splines.at(channel.time)
-    return np.concatenate([-observed.whiten(np.concatenate(rows)), np.zeros((len(observed.events) + len(observed.stated), splines.count))])
+    return np.concatenate(
+        [-observed.whiten(np.concatenate(rows)), np.zeros((len(observed.events) + len(observed.stated), splines.count))]
+    )
 
 
 def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn) -> Array:
@@ -133,7 +135,7 @@ def aligned(observed: Observed, burnt: Burn, times: Array) -> Array:
     moved = times
     if seen is not None and gone is not None:
         moved = np.where(times < seen[0], times * gone / seen[0], times + gone - seen[0])
-    return np.minimum(moved, burnt.steps.times[-1, 1])
+    return np.asarray(np.minimum(moved, burnt.steps.times[-1, 1]))
 
 
 def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Array:
@@ -163,7 +165,7 @@ def signatures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Array:
     read = _slopes_of_readings(observed, found)
     values = hypothesis.values(x)
     size = np.array([values[n] for n in names])
-    return np.concatenate([c.averaged(read[c.name]) for c in observed.channels]) * size
+    return np.asarray(np.concatenate([c.averaged(read[c.name]) for c in observed.channels]) * size)
 
 
 def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]:

@@ -8,6 +8,7 @@ or an unknown one, the data have to be more probable than that.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +47,7 @@ def _over_time(signature: Array, observed: Observed) -> Array:
     time = np.concatenate([c.time for c in observed.channels])
     ends = [0.0, *(t for name, t in observed.phases.items() if name == "vapor"), float(time.max())]
     columns = []
-    for start, end in zip(ends, ends[1:], strict=False):
+    for start, end in pairwise(ends):
         count = max(int(np.ceil((end - start) / SHAPE_TIME)), 1) + 1
         knots = np.linspace(start, end, count)
         inside = (time >= start) & (time < end)

@@ -1,14 +1,15 @@
-"""The slow noise of a sensor, as its quiet time before the opening shows it: a sum of exponentially correlated processes.
+"""The slow noise of a sensor, as its quiet time before the opening shows it: a sum of correlated processes.
 
 Whether a sensor wanders over seconds (1/f) or forgets within tenths of a second decides how small a slow departure of
-the model can be seen. The variances of the processes come from the periodogram of the quiet time (Whittle's likelihood);
-between neighbouring time constants they change smoothly, so that what is slower than the quiet time is carried on from
-what it shows.
+the model can be seen. The variances of the processes, each correlated exponentially, come from the periodogram of the
+quiet time (Whittle's likelihood); between neighbouring time constants they change smoothly, so that what is slower than
+the quiet time is carried on from what it shows.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +72,7 @@ def _fitted(values: Array, step: float, white: float, flicker: float) -> Wander:
     n = values.size
     frequency = np.fft.rfftfreq(n, step)[1 : (n - 1) // 2]
     power = 2.0 * step / n * np.abs(np.fft.rfft(values * _taper(n)))[1 : (n - 1) // 2] ** 2
-    shapes = np.stack([_spectrum(frequency, tau, step) for tau in TIMES])
+    shapes = np.stack([_spectrum(frequency, float(tau), step) for tau in TIMES])
     floor = 2.0 * step * np.ones(frequency.size)
     level = max(float(np.var(values)), 1e-300)
 
@@ -82,7 +83,9 @@ def _fitted(values: Array, step: float, white: float, flicker: float) -> Wander:
 
     start = np.log(np.r_[np.full(TIMES.size, max(flicker, 1e-3 * level)), max(white**2, 1e-3 * level)])
     best = minimize(cost, start, method="L-BFGS-B", options={"maxiter": 60}).x
-    return Wander(np.exp(best[:-1]) * np.exp(CAREFUL / np.sqrt(1.0 + frequency.size / 40.0)), float(np.exp(0.5 * best[-1])))
+    return Wander(
+        np.exp(best[:-1]) * np.exp(CAREFUL / np.sqrt(1.0 + frequency.size / 40.0)), float(np.exp(0.5 * best[-1]))
+    )
 
 
 def _taper(n: int) -> Array:
@@ -91,7 +94,9 @@ def _taper(n: int) -> Array:
     return np.asarray(window / np.sqrt(np.mean(window**2)))
 
 
-def _spectrum(frequency: Array, tau: float, step: float) -> Array:
+def _spectrum(frequency: NDArray[np.floating[Any]], tau: float, step: float) -> Array:
     """One-sided spectrum of a process of unit variance that is sampled every ``step`` seconds."""
     kept = np.exp(-step / tau)
-    return np.asarray(2.0 * step * (1.0 - kept**2) / (1.0 - 2.0 * kept * np.cos(2.0 * np.pi * frequency * step) + kept**2))
+    return np.asarray(
+        2.0 * step * (1.0 - kept**2) / (1.0 - 2.0 * kept * np.cos(2.0 * np.pi * frequency * step) + kept**2)
+    )

@@ -10,7 +10,7 @@ from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, INJECTOR_FACTOR, IS_LI
 
 WEIGHT, OMEGA, LINE = range(3)
 OMEGA_AT, OMEGA_SLOPE, LEAST_OMEGA = 285.0, -0.032, 1.0
-"""Temperature [K] at which omega is stated, its slope [1/K] for saturated nitrous oxide, and the least that is taken."""
+"""Temperature [K] at which omega is stated, its slope [1/K] for saturated nitrous oxide, and the least of it."""
 
 LEAST_DROP = 1e-4
 """Relative pressure drop below which flashing and single-phase flow agree."""
@@ -72,7 +72,14 @@ EFFECT = Effect(
     parameters=(
         Parameter("weight", "-", "0 single-phase, 1 homogeneous equilibrium", typical=0.5, low=0.0, high=1.0),
         Parameter(
-            "omega", "-", "compressibility of the flashing liquid at 285 K", 0.3, center=3.1, low=1.0, high=8.0, given=True
+            "omega",
+            "-",
+            "compressibility of the flashing liquid at 285 K",
+            0.3,
+            center=3.1,
+            low=1.0,
+            high=8.0,
+            given=True,
         ),
         Parameter("line", "-", "how far the line takes part", typical=0.5, center=0.5, low=0.0, high=1.0),
     ),

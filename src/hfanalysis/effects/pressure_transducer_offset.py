@@ -23,10 +23,10 @@ EFFECT = Effect(
     reference="Doebelin, Measurement Systems, chapters 3 and 6: zero shift of diaphragm transducers",
     formula="p_read = p + offset, for each of p_tank, p_run, p_chamber; b offset before the opening",
     sites=CHANNELS,
-    parameters=tuple(
-        Parameter(name, "Pa", f"offset of {name}", typical=0.5e5, low=-10e5, high=10e5) for name in CHANNELS
-    )
-    + (Parameter("before", "-", "part of it that was there before the opening", 0.5, center=0.5, low=0.0, high=1.0),),
+    parameters=(
+        *(Parameter(name, "Pa", f"offset of {name}", typical=0.5e5, low=-10e5, high=10e5) for name in CHANNELS),
+        Parameter("before", "-", "part of it that was there before the opening", 0.5, center=0.5, low=0.0, high=1.0),
+    ),
     strengths=3,
     phases=("liquid", "vapor", "nitrogen"),
     distort=_distort,

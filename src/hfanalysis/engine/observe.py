@@ -90,7 +90,7 @@ def distorted_tangents(
     effects: Sequence[Active],
     names: tuple[str, ...],
 ) -> dict[str, Array]:
-    """Sensitivities to the parameters ``names`` behind the distortions, given channels and sensitivities before them."""
+    """Sensitivities to the parameters ``names`` behind the distortions, given what comes before them."""
     for active in _distorting(effects):
         slopes = _passed_on(active, times, channels, slopes, names)
         channels = distorted(channels, times, [active])

@@ -55,7 +55,8 @@ class Engine:
 
     ``oxidizer_enthalpy`` on the formation scale [J/kg]: one number for the whole run (the report), or None for that of
     the liquid or vapour leaving the tank. ``spare_web`` [m] of fuel behind the grain's wall burns on (for fits in which
-    the end of the fuel is an observation of its own). An engine without a ``vehicle`` stands at ``ambient_pressure`` [Pa].
+    the end of the fuel is an observation of its own). An engine without a ``vehicle`` stands at
+    ``ambient_pressure`` [Pa].
     """
 
     saturation: Saturation
