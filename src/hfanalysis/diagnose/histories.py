@@ -43,6 +43,14 @@ def write_histories(path: Path, found: Diagnosis, provenance: Mapping[str, Any])
             _write(file.create_group(f"residuals/{channel.name}"), UNITS.get(channel.name, "Pa"), **columns)
 
 
+def write_empty(path: Path, provenance: Mapping[str, Any]) -> None:
+    """The file of a test for which no model could be run."""
+    import h5py
+
+    with h5py.File(path, "w", libver="latest") as file:
+        file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
+
+
 def _write(group: Any, unit: str, **columns: Array) -> None:
     for name, values in columns.items():
         data = group.create_dataset(name, data=values, track_times=False)

@@ -2,7 +2,7 @@
 
 Reads ``ingest.h5``, ``segments.json`` and ``base_calibration.json`` (the base model is what is diagnosed, whatever has
 been adopted), and those of another test of the same stand, on which what is found here is proved with frozen constants.
-Writes ``diagnosis.json`` and ``diagnosis.h5``.
+A test whose engine cannot be run gets what its sensors show by themselves. Writes ``diagnosis.json`` and ``diagnosis.h5``.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hfanalysis.errors import AnalysisError, InputError
+from hfanalysis.errors import AbsentError, AnalysisError, InputError
 from hfanalysis.stages.base import Context, Stage
 
 if TYPE_CHECKING:
@@ -20,14 +20,21 @@ if TYPE_CHECKING:
 
 def run(context: Context) -> None:
     """Name what the model lacks."""
-    from hfanalysis.diagnose.histories import write_histories
+    from hfanalysis.diagnose.histories import write_empty, write_histories
     from hfanalysis.diagnose.of_test import diagnose
     from hfanalysis.diagnose.variants import settings_of
+    from hfanalysis.diagnose.without_engine import sensors_alone
     from hfanalysis.effects import FOLDER, library
 
     effects = library(context.root / FOLDER)
     settings = settings_of(str(context.parameter("variant")))
-    found = diagnose(_subject(context), effects, _other(context), context.progress, settings)
+    subject = _subject(context)
+    try:
+        found = diagnose(subject, effects, _other(context), context.progress, settings)
+    except AbsentError as missing:
+        write_empty(context.scratch("diagnosis.h5"), context.provenance())
+        context.write_json("diagnosis.json", sensors_alone(subject, str(missing)))
+        return
     write_histories(context.scratch("diagnosis.h5"), found, context.provenance())
     context.write_json("diagnosis.json", found.product)
 
