@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,18 +58,21 @@ class Diagnosis:
 def diagnose(
     subject: Subject,
     effects: Mapping[str, Effect],
-    other: OtherTest | None = None,
+    other: Callable[[], OtherTest | None] = lambda: None,
     progress: Progress = silent,
     settings: Settings | None = None,
 ) -> Diagnosis:
-    """Localise, name and prove. Raises AbsentError where no engine is stated or too little was recorded."""
+    """Localise, name and prove; ``other`` finds another test to prove it on, if there is something to prove.
+
+    Raises AbsentError where no engine is stated or too little was recorded.
+    """
     settings = settings or Settings()
     observed = subject.observed()
     catalogue = Catalogue(_visible(effects, observed), {"n2_purge": _purge(subject)})
     found = name_effects(subject.hypothesis(), observed, catalogue, progress, settings)
     verdict = verdict_of(found)
     progress("proving it", 0.93)
-    proof = prove(found, verdict.chosen, other) if verdict.label != "none" else Proof({}, None, ())
+    proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
     product = _product(found, verdict, proof, catalogue, settings)
     product["sentences"] = story(product)
     return Diagnosis(found, verdict, product)

@@ -30,7 +30,7 @@ def run(context: Context) -> None:
     settings = settings_of(str(context.parameter("variant")))
     subject = _subject(context)
     try:
-        found = diagnose(subject, effects, _other(context), context.progress, settings)
+        found = diagnose(subject, effects, lambda: _other(context), context.progress, settings)
     except AbsentError as missing:
         write_empty(context.scratch("diagnosis.h5"), context.provenance())
         context.write_json("diagnosis.json", sensors_alone(subject, str(missing)))
