@@ -47,14 +47,19 @@ def _bias(channel: Channel, residual: Array, form: float) -> Array:
 
 
 def root_mean_square(found: Fit, observed: Observed) -> dict[str, float]:
-    """Of :func:`residuals_of` in the burn, by channel [SI]."""
+    """Of :func:`residuals_of` from the full line on, by channel [SI]."""
     left = residuals_of(found, observed)
-    return {c.name: float(np.sqrt(np.mean(left[c.name][~c.resting] ** 2))) for c in observed.channels}
+    return {c.name: float(np.sqrt(np.mean(left[c.name][flowing(c, observed)] ** 2))) for c in observed.channels}
+
+
+def flowing(channel: Channel, observed: Observed) -> NDArray[np.bool_]:
+    """Blocks between the filling of the line, which the base model does not have, and the end of the flow."""
+    return ~channel.resting & (channel.time >= observed.phases["liquid"]) & (channel.time > 0.0)
 
 
 def noise_of(observed: Observed) -> dict[str, float]:
     """Root mean square of the noise of blocks, by channel [SI]."""
-    return {c.name: float(np.sqrt(np.mean(c.noise_std[~c.resting] ** 2))) for c in observed.channels}
+    return {c.name: float(np.sqrt(np.mean(c.noise_std[flowing(c, observed)] ** 2))) for c in observed.channels}
 
 
 def by_phase(found: Fit, observed: Observed) -> dict[str, dict[str, float]]:
@@ -78,7 +83,7 @@ def total_gap(found: Fit, observed: Observed, where: dict[str, NDArray[np.bool_]
     left = residuals_of(found, observed)
     total = 0.0
     for c in observed.channels:
-        mask = ~c.resting if where is None else where[c.name] & ~c.resting
+        mask = flowing(c, observed) if where is None else where[c.name] & flowing(c, observed)
         if mask.any():
             noise = float(np.mean(c.noise_std[mask] ** 2))
             total += max(float(np.mean(left[c.name][mask] ** 2)) / noise - 1.0, 0.0)
