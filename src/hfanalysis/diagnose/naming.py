@@ -71,13 +71,17 @@ class Catalogue:
 
 @dataclass(frozen=True)
 class Naming:
-    """The base model, every single effect, sets of effects, and unknown sources; each the best first."""
+    """The base model, every single effect, sets of effects, and unknown sources; each the best first.
+
+    ``names``: all effects that were thought of; those that a score test saw nothing of have no candidate.
+    """
 
     base: Candidate
     singles: tuple[Candidate, ...]
     sets: tuple[Candidate, ...]
     unknown: tuple[Candidate, ...]
     bench: Bench
+    names: tuple[str, ...] = ()
 
     @property
     def named(self) -> Candidate:
@@ -106,7 +110,7 @@ def name_effects(
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
     unknown = unknown_sources(base, named, bench)
-    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench)
+    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, tuple(catalogue.effects))
 
 
 def _singles(

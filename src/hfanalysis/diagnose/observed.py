@@ -58,6 +58,9 @@ LONGEST = 30.0
 FORM_ERROR, FORM_TIME = 2e-4, 1.0
 """Model-form error: part of a channel's range, and the time [s] over which it is coherent."""
 
+CHAMBER_FORM = 4.0
+"""How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealised more than the tank."""
+
 EVENT_STD = 0.008
 """Least standard deviation [s] of the instant of a phase change."""
 
@@ -116,7 +119,8 @@ class Channel:
     def form_covariance(self, error: float) -> Array:
         """Covariance of a model-form error that is given as part of the channel's range; smooth (Matern, 3/2)."""
         lag = self.time[:, None] - self.time[None, :]
-        burning = np.where(self.resting, 0.0, error * float(np.ptp(self.value)))
+        size = error * CHAMBER_FORM if self.name in TOGETHER else error
+        burning = np.where(self.resting, 0.0, size * float(np.ptp(self.value)))
         smooth = np.sqrt(3.0) * np.abs(lag) / FORM_TIME
         return np.asarray((1.0 + smooth) * np.exp(-smooth) * np.outer(burning, burning))
 

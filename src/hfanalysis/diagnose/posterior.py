@@ -24,11 +24,16 @@ SET = 0.9
 
 @dataclass(frozen=True)
 class Scale:
-    """How log evidences become probabilities: p_k ~ exp(offset of its kind + evidence / T)."""
+    """How log evidences become probabilities: p_k ~ exp(offset of its kind + evidence / T).
+
+    In a share ``misled`` of all tests the evidence misleads altogether; there the labels have the probabilities that
+    they have before a test.
+    """
 
     temperature: float = 1.0
     temperature_per_leftover: float = 0.0
     offsets: Mapping[str, float] = field(default_factory=lambda: {"none": 0.0, "named": 0.0, "unknown": 0.0})
+    misled: float = 0.0
 
     def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
         """Of every label of ``evidences``; they sum to one."""
@@ -36,7 +41,14 @@ class Scale:
         labels = list(evidences)
         logs = np.array([self.offsets[kind(label)] + evidences[label] / heat for label in labels])
         weights = np.exp(logs - logs.max())
-        return dict(zip(labels, (weights / weights.sum()).tolist(), strict=True))
+        before = np.array([BEFORE[kind(label)] for label in labels])
+        before[[kind(label) == "named" for label in labels]] /= max(sum(kind(k) == "named" for k in labels), 1)
+        mixed = (1.0 - self.misled) * weights / weights.sum() + self.misled * before / before.sum()
+        return dict(zip(labels, mixed.tolist(), strict=True))
+
+
+BEFORE = {"none": 0.25, "named": 0.6, "unknown": 0.15}
+"""Probabilities of the kinds of labels before a test."""
 
 
 def kind(label: str) -> str:
@@ -51,7 +63,9 @@ def scale() -> Scale:
     if not source.is_file():
         return Scale()
     found = json.loads(source.read_text(encoding="utf-8"))
-    return Scale(found["temperature"], found["temperature_per_leftover"], found["offsets"])
+    return Scale(
+        found["temperature"], found["temperature_per_leftover"], found["offsets"], float(found.get("misled", 0.0))
+    )
 
 
 def evidences_of(found: Naming) -> dict[str, float]:
@@ -61,13 +75,19 @@ def evidences_of(found: Naming) -> dict[str, float]:
     for candidate in (*found.singles, *found.sets):
         name = candidate.names[0]
         out[name] = max(out.get(name, -np.inf), candidate.log_evidence - zero)
+    unseen = min(UNSEEN, min(out.values()))
+    for name in found.names:
+        out.setdefault(name, unseen)
     strange = [c.log_evidence - zero for c in found.unknown if counts_as_unknown(c, found)]
-    if strange:
-        out["unknown"] = max(strange)
+    out["unknown"] = max(strange, default=unseen)
     return out
 
 
-REST = 0.25
+UNSEEN = -5.0
+"""Log evidence of a label of which a score test saw nothing: what its free parameters cost."""
+
+
+REST = 0.5
 """Part of what the best names explain that a source beside them must add for the answer to be unknown."""
 
 

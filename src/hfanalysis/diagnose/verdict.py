@@ -17,6 +17,9 @@ from hfanalysis.diagnose.plausible import judged, lost
 from hfanalysis.diagnose.posterior import counts_as_unknown, evidences_of, scale, smallest_set
 from hfanalysis.quantity import Quantity
 
+CLAIM = 0.15
+"""Probability of none from which on nothing is claimed: a wrong alarm costs more than an effect left unnamed."""
+
 NAMED_FROM = 0.5
 """Probability from which on one name is the verdict; below, several are."""
 
@@ -33,8 +36,9 @@ class Verdict:
 
     @property
     def top(self) -> str:
-        """The most probable label."""
-        return max(self.posterior, key=lambda k: (self.posterior[k], k))
+        """The label that the answer rests on: what is claimed, or none."""
+        claimed = {k: p for k, p in self.posterior.items() if (k == "none") == (self.label == "none")}
+        return max(claimed, key=lambda k: (claimed[k], k))
 
 
 def verdict_of(found: Naming) -> Verdict:
@@ -46,12 +50,14 @@ def verdict_of(found: Naming) -> Verdict:
     )
     evidences = evidences_of(weighed)
     posterior = scale().probabilities(evidences, found.named.leftover)
-    top = max(posterior, key=lambda k: (posterior[k], k))
     set90 = smallest_set(posterior)
+    claimed = {k: p for k, p in posterior.items() if k != "none"}
+    top = max(claimed, key=lambda k: (claimed[k], k)) if posterior["none"] < CLAIM else "none"
     if top in ("none", "unknown"):
         label = top
     else:
-        label = "named" if posterior[top] >= NAMED_FROM and len(set90) == 1 else "ambiguous"
+        rivals = [name for name in set90 if name not in (top, "none")]
+        label = "named" if posterior[top] >= NAMED_FROM and not rivals else "ambiguous"
     return Verdict(label, posterior, evidences, set90, _chosen(weighed, top))
 
 

@@ -41,7 +41,7 @@ def story(product: Mapping[str, Any]) -> list[str]:
 def headline(product: Mapping[str, Any]) -> str:
     """What it is, with its probability."""
     posterior = product["posterior"]
-    label = max(posterior, key=lambda k: (posterior[k], k))
+    label = product["effects"][0]["name"] if product["effects"] else product["verdict"]
     others = [f"{n} ({posterior[n]:.2f})" for n in product["set90"] if n != label]
     if product["verdict"] == "none":
         return f"Nothing is missing from the model that these channels can show (none {posterior['none']:.2f})."

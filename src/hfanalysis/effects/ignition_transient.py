@@ -7,15 +7,19 @@ from math import pi, sin
 from hfanalysis.engine.effect import Effect, OwnState, Parameter
 from hfanalysis.engine.sites import FUEL_SOURCE, OXIDIZER_SOURCE, RATES, term
 
-MASS, DURATION, RATIO = range(3)
+MASS, DURATION, RATIO, SKEW = range(4)
 
 
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if hook != RATES or t >= p[DURATION]:
         return
-    wave = sin(pi * t / p[DURATION])
-    flow = 2.0 * p[MASS] / p[DURATION] * wave * wave
+    if t <= 0.0:
+        return
+    s = t / p[DURATION]
+    u = s ** p[SKEW]
+    wave = sin(pi * u)
+    flow = 2.0 * p[MASS] / p[DURATION] * p[SKEW] * u / s * wave * wave
     fuel = flow / (1.0 + p[RATIO])
     site[FUEL_SOURCE] += fuel
     site[OXIDIZER_SOURCE] += flow - fuel
@@ -28,7 +32,7 @@ EFFECT = Effect(
     meaning="the igniter, and fuel that it melted or broke off, add gas to the chamber for a while",
     reference="report, section 4.4: HF4's peak in chamber pressure with its abrupt fall, which the model lacks; "
     "Sutton and Biblarz, Rocket Propulsion Elements, chapters 14 and 16 (igniters, start transients)",
-    formula="mdot = 2 m/tau sin^2(pi t/tau) for t < tau, of which 1/(1 + O/F) as fuel",
+    formula="mdot = 2 m/tau q s^(q-1) sin^2(pi s^q), s = t/tau, for t < tau, of which 1/(1 + O/F) as fuel",
     sites=("fuel_source", "oxidizer_source"),
     parameters=(
         Parameter("mass", "kg", "gas that is added in all", typical=0.05, low=0.0, high=1.0),
@@ -36,6 +40,7 @@ EFFECT = Effect(
         Parameter(
             "of_ratio", "-", "oxidizer over fuel of the added gas", 2.0, center=4.0, low=0.2, high=20.0, given=True
         ),
+        Parameter("skew", "-", "1: as long in falling as in rising; less: falls slowly", 0.15, 0.7, low=0.4, high=1.0),
     ),
     phases=("liquid",),
     term=_term,

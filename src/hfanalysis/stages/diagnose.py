@@ -1,7 +1,8 @@
 """diagnose: where model and measurement disagree, which effect is missing, and the proof that it is.
 
 Reads ``ingest.h5``, ``segments.json`` and ``base_calibration.json`` (the base model is what is diagnosed, whatever has
-been adopted), and those of another test of the same stand, to prove it there with frozen constants. A test whose engine cannot be run gets what its sensors show by themselves. Writes ``diagnosis.json`` and ``diagnosis.h5``.
+been adopted), and those of another test of the same stand, to prove it there with frozen constants. A test whose engine
+cannot be run gets what its sensors show by themselves. Writes ``diagnosis.json`` and ``diagnosis.h5``.
 """
 
 from __future__ import annotations
