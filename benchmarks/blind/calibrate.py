@@ -93,7 +93,8 @@ def _constants(one: Fitted) -> str:
     return (
         f"T0 = {k.temperature:.4g} (ln T0 +- {_pm(one, 'ln_temperature')}), "
         f"t1 = {k.per_leftover:.4g} +- {_pm(one, 'per_leftover')}, "
-        f"named = {k.named:.4g} +- {_pm(one, 'named')}, unknown = {k.unknown:.4g} +- {_pm(one, 'unknown')}"
+        f"named = {k.named:.4g} +- {_pm(one, 'named')}, unknown = {k.unknown:.4g} +- {_pm(one, 'unknown')}, "
+        f"misled = {k.misled:.3g} +- {_pm(one, 'misled')}"
     )
 
 
@@ -109,6 +110,7 @@ def to_json(one: Fitted, number: int, split: str, codes: Sequence[str]) -> dict[
         "temperature": k.temperature,
         "temperature_per_leftover": k.per_leftover,
         "offsets": {"none": 0.0, "named": k.named, "unknown": k.unknown},
+        "misled": k.misled,
         "standard_errors": one.errors,
         "cases": number,
         "split": split,

@@ -1,5 +1,6 @@
 """From raw log evidences to stated probabilities: p_k proportional to exp(b_class(k) + e_k / T).
 
+In a share ``misled`` of the cases the evidence misleads altogether, and the labels have the probabilities from before.
 T = T0 (1 + t1 max(0, leftover - 1)) with the chi-square per degree of freedom that the best named model leaves; one
 offset b for the names and one for ``unknown``, that of ``none`` is 0. Fitted by penalised likelihood of the right label
 (temperature scaling: Guo, Pleiss, Sun, Weinberger: On Calibration of Modern Neural Networks, 2017).
@@ -17,11 +18,14 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
+from hfanalysis.diagnose.posterior import BEFORE, Scale
+
 Array = NDArray[np.float64]
 
-PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0])
-"""Of ln T0, the offsets of the names and of unknown, and t1: wide, so that only what the cases leave open feels it."""
-BOUNDS = ((-5.0, 12.0), (-200.0, 200.0), (-200.0, 200.0), (0.0, 50.0))
+PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 0.1])
+"""Of ln T0, the offsets of the names and of unknown, t1, and the share misled: wide, so that only what the cases leave
+open feels it."""
+BOUNDS = ((-5.0, 12.0), (-200.0, 200.0), (-200.0, 200.0), (0.0, 50.0), (1e-4, 0.5))
 
 
 @dataclass(frozen=True)
@@ -42,10 +46,7 @@ class Constants:
     per_leftover: float = 0.0
     named: float = 0.0
     unknown: float = 0.0
-
-    def offset(self, label: str) -> float:
-        """That of a label's class."""
-        return {"none": 0.0, "unknown": self.unknown}.get(label, self.named)
+    misled: float = 0.0
 
     def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
         """The stated probabilities.
@@ -54,9 +55,13 @@ class Constants:
         >>> round(p["tank_heat"], 3)
         0.731
         """
-        temperature = self.temperature * (1.0 + self.per_leftover * max(0.0, leftover - 1.0))
-        scaled = np.array([self.offset(k) + e / temperature for k, e in evidences.items()])
-        return dict(zip(evidences, np.exp(scaled - logsumexp(scaled)).tolist(), strict=True))
+        return self.scale.probabilities(evidences, leftover)
+
+    @property
+    def scale(self) -> Scale:
+        """The constants as the diagnosis takes them."""
+        offsets = {"none": 0.0, "named": self.named, "unknown": self.unknown}
+        return Scale(self.temperature, self.per_leftover, offsets, self.misled)
 
 
 def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
@@ -77,6 +82,7 @@ class _Table:
     kind: NDArray[np.int64]
     truth: NDArray[np.int64]
     excess: Array
+    before: Array
 
 
 def _table(samples: Sequence[Sample]) -> _Table:
@@ -85,14 +91,16 @@ def _table(samples: Sequence[Sample]) -> _Table:
     evidence -= evidence.max(axis=1, keepdims=True)
     kind = np.array([{"none": 0, "unknown": 2}.get(k, 1) for k in labels])
     excess = np.maximum([s.leftover - 1.0 for s in samples], 0.0)
-    return _Table(evidence, kind, np.array([labels.index(s.truth) for s in samples]), excess)
+    before = np.array([list(BEFORE.values())[k] / np.sum(kind == k) for k in kind])
+    return _Table(evidence, kind, np.array([labels.index(s.truth) for s in samples]), excess, before / before.sum())
 
 
 def _loss(x: Array, t: _Table) -> float:
-    """Negative penalised log likelihood at (ln T0, named, unknown, t1)."""
+    """Negative penalised log likelihood at (ln T0, named, unknown, t1, share misled)."""
     temperature = exp(x[0]) * (1.0 + x[3] * t.excess)
     logits = np.array([0.0, x[1], x[2]])[t.kind] + t.evidence / temperature[:, None]
-    right = logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1)
+    shares = np.exp(logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1))
+    right = np.log((1.0 - x[4]) * shares + x[4] * t.before[t.truth])
     return float(-right.sum() + 0.5 * np.sum((x / PRIOR_STD) ** 2))
 
 
@@ -112,12 +120,12 @@ def fit(samples: Sequence[Sample], with_leftover: bool) -> Fitted:
     if not samples:
         raise ValueError("no case has evidences for its right label: nothing can be fitted")
     t = _table(samples)
-    bounds = BOUNDS if with_leftover else (*BOUNDS[:3], (0.0, 0.0))
-    starts = [np.array([ln_t, 0.0, 0.0, 0.1 if with_leftover else 0.0]) for ln_t in (0.0, 2.0, 4.0)]
+    bounds = BOUNDS if with_leftover else (*BOUNDS[:3], (0.0, 0.0), BOUNDS[4])
+    starts = [np.array([ln_t, 0.0, 0.0, 0.1 if with_leftover else 0.0, 0.05]) for ln_t in (0.0, 2.0, 4.0)]
     found = [minimize(_loss, x, (t,), method="L-BFGS-B", bounds=bounds, options={"ftol": 1e-13}) for x in starts]
     best = min(found, key=lambda r: r.fun)
     x = np.asarray(best.x, dtype=float)
-    constants = Constants(exp(x[0]), float(x[3]), float(x[1]), float(x[2]))
+    constants = Constants(exp(x[0]), float(x[3]), float(x[1]), float(x[2]), float(x[4]))
     return Fitted(constants, _errors(x, t, bounds))
 
 
@@ -136,7 +144,7 @@ def _errors(x: Array, t: _Table, bounds: Sequence[tuple[float, float]]) -> dict[
                 total += si * sj * _loss(y, t)
             curvature[a, b] = total / (4.0 * step[i] * step[j])
     std = np.sqrt(np.maximum(np.diag(np.linalg.pinv(curvature)), 0.0)) if free else []
-    out: dict[str, float | None] = dict.fromkeys(("ln_temperature", "named", "unknown", "per_leftover"))
+    out: dict[str, float | None] = dict.fromkeys(("ln_temperature", "named", "unknown", "per_leftover", "misled"))
     names = list(out)
     return out | {names[i]: float(s) for i, s in zip(free, std, strict=True)}
 

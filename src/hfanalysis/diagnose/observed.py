@@ -59,7 +59,7 @@ FORM_ERROR, FORM_TIME = 2e-4, 1.0
 """Model-form error: part of a channel's range, and the time [s] over which it is coherent."""
 
 CHAMBER_FORM = 4.0
-"""How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealised more than the tank."""
+"""How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealised further."""
 
 EVENT_STD = 0.008
 """Least standard deviation [s] of the instant of a phase change."""
