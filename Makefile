@@ -38,10 +38,10 @@ ingest: ## TEST=… raw log to canonical channels in SI with quality flags
 segment: ## TEST=… find the phases of the test
 calibrate: ## TEST=… injector coefficient, polytropic exponent, feed losses
 validate: ## TEST=… the tank model against the measurement
-diagnose: ## TEST=… where, when and by how much the model departs; FLAGS=--apply adopts what is named
+diagnose: ## TEST=… which effect the model lacks, with probabilities and proof; FLAGS=--apply adopts what is named
 flight: ## TEST=… the rocket on the measured thrust: apogee, rail departure, stability, engine files
 report: ## TEST=… processed/TEST/report.html
-run: ## TEST=… every stage but the diagnosis
+run: ## TEST=… every stage
 $(STAGES): $(STAMP)
 	@if [ -z "$$TEST" ]; then \
 		echo "make $@: which test? For example: make $@ TEST=$(or $(firstword $(TESTS)),HF5)" >&2; \

@@ -1,6 +1,7 @@
 # The way through, as rules on real files: what each stage reads and what it writes.
 #
 #   raw_tests/TEST ──► ingest.h5 ──► segments.json ──► calibration.json ──► residuals.h5 ──► report.html
+#                                                                       ├───► diagnosis.json ──┤
 #                                                                       └────► flight.json ────┘
 #
 # `hfa` judges by content whether a product is up to date; make's time stamps only tell when to ask it.
@@ -29,7 +30,7 @@ processed/%/residuals.h5: processed/%/calibration.json
 	@$(HFA) validate --quiet -- $*
 	@touch -c $@
 
-processed/%/diagnosis.json: processed/%/segments.json
+processed/%/diagnosis.json: processed/%/calibration.json
 	@$(HFA) diagnose --quiet -- $*
 	@touch -c $@
 

@@ -104,7 +104,7 @@ def test_raw_thrust_flies_lower(run: Run, root: Path) -> None:
     assert json.loads(raw)["apogee"]["value"] < json.loads(corrected)["apogee"]["value"]
 
 
-@pytest.mark.parametrize("stage", ["ingest", "segment", "calibrate", "validate", "flight", "report", "run"])
+@pytest.mark.parametrize("stage", ["ingest", "segment", "calibrate", "validate", "diagnose", "flight", "report", "run"])
 def test_every_stage_speaks_json(run: Run, root: Path, stage: str) -> None:
     ended = run(stage, "HF5", "--root", root, "--json")
     assert ended.status == 0
@@ -123,7 +123,8 @@ def test_run_does_every_stage_and_keeps_the_raw_files_as_they_are(run: Run, root
     before = sha256_tree(root / "raw_tests")
     assert run("run", "HF5", "--root", root).status == 0
     made = {path.name for path in (root / "processed/HF5").iterdir()}
-    assert {"ingest.h5", "segments.json", "calibration.json", "residuals.h5", "report.html", "run.log"} <= made
+    expected = {"ingest.h5", "segments.json", "calibration.json", "residuals.h5", "diagnosis.json", "report.html"}
+    assert expected | {"run.log"} <= made
     assert (root / "processed/index.html").exists()
     assert sha256_tree(root / "raw_tests") == before
 
@@ -143,6 +144,11 @@ def test_products_go_to_another_folder(run: Run, root: Path, tmp_path: Path) -> 
         (["calibrate", "."], "folder"),
         (["calibrate", "HF5", "--set", "calibrate.sample=3"], "calibrate.samples"),
         (["calibrate", "HF5", "--set", "calibrate.samples=many"], "400"),
+        (["diagnose", "HF5", "--proof-test", "HF6"], "HF5"),
+        (["diagnose", "HF5", "--proof-test", "HF5"], "the test itself"),
+        (["diagnose", "HF5", "--proof-test", "../HF5"], "folder"),
+        (["diagnose", "HF5", "--apply", "--proof-test", "HF6"], "HF5"),
+        (["diagnose", "HF5", "--set", "diagnose.proof_test=HF5"], "the test itself"),
         (["new", "HF5", "--log", "nowhere.csv"], "nowhere.csv"),
         (["new", "../x", "--log", "nowhere.csv"], "../x"),
     ],
@@ -240,6 +246,27 @@ def test_a_log_with_no_firing_ends_with_three_and_still_gets_its_page(run: Run, 
     assert "No firing was found in this log" in page
     assert run("report", "Q1", "--root", tmp_path, "-q").status == 0
     assert run("calibrate", "Q1", "--root", tmp_path).status == 3
+
+
+def test_the_test_to_prove_it_on_is_a_parameter_of_the_diagnosis(
+    run: Run, root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(root / "raw_tests" / "HF5", tmp_path / "raw_tests" / "HF5")
+    shutil.copytree(REPOSITORY / "raw_tests" / "HF4", tmp_path / "raw_tests" / "HF4")
+    asked: list[performing.Request] = []
+    monkeypatch.setattr(performing, "stage", lambda _name, request: asked.append(request))
+    assert run("diagnose", "HF5", "--root", tmp_path, "--proof-test", "HF4").status == 0
+    assert run("diagnose", "HF5", "--root", tmp_path).status == 0
+    assert [request.settings for request in asked] == [('diagnose.proof_test="HF4"',), ()]
+    assert performing._settings(asked[0].settings) == {"diagnose.proof_test": "HF4"}
+
+
+def test_a_mistyped_proof_test_costs_no_finished_diagnosis(run: Run, root: Path, tmp_path: Path) -> None:
+    made = tmp_path / "HF5" / "diagnosis.json"
+    made.parent.mkdir()
+    made.write_text("{}")
+    assert run("diagnose", "HF5", "--root", root, "--out", tmp_path, "--proof-test", "HF6").status == 2
+    assert made.exists()
 
 
 def shell(command: str) -> subprocess.CompletedProcess[str]:

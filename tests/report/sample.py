@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from diagnosed import DIAGNOSIS
+from diagnosed import store as diagnosed_store
 
 from hfanalysis.report.material import Column, Material, Store
 from hfanalysis.testdata.definition import load_definition
@@ -221,7 +223,12 @@ def stores() -> dict[str, Store]:
         "full/p_chamber": _residual(1.3e6, "Pa"),
         "full/thrust": _residual(2400.0, "N"),
     }
-    return {"residuals": groups, "performance": {"": _performance()}, "flight": _flight()}
+    return {
+        "residuals": groups,
+        "performance": {"": _performance()},
+        "flight": _flight(),
+        "diagnosis": diagnosed_store(),
+    }
 
 
 def material(folder: Path, label: str | None = None, **text: str) -> Material:
@@ -229,7 +236,7 @@ def material(folder: Path, label: str | None = None, **text: str) -> Material:
     made = log(label)
     about = {**summary(made), "provenance": {}}
     products = {"ingest": about, "segments": SEGMENTS, "calibration": CALIBRATION, "validation": VALIDATION}
-    products["flight"] = FLIGHT
+    products |= {"flight": FLIGHT, "diagnosis": DIAGNOSIS}
     return Material(definition(folder, **text), made, products, stores())
 
 

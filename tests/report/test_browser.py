@@ -166,15 +166,54 @@ def test_the_keyboard_does_what_the_mouse_does(opened: Page) -> None:
 
 
 def unfold(tab: Page) -> None:
-    """Open every section."""
-    tab.ask("document.querySelectorAll('details.fold').forEach((fold) => { fold.open = true })")
+    """Open every section, and what is folded within."""
+    tab.ask("document.querySelectorAll('details.fold, details.more').forEach((fold) => { fold.open = true })")
     tab.settle()
+
+
+SECTION = "document.getElementById('diagnosis')"
+WEAK = '[data-chart="diagnosis-weak-tank-energy"]'
+
+
+def test_the_diagnosis_is_read_and_drawn_without_a_complaint(opened: Page) -> None:
+    said = opened.ask(f"{SECTION}.innerText")
+    assert "The model lacks tank_heat (0.83)" in said
+    assert "m 0.75 without, 1.08 with tank_heat." in said
+    assert opened.ask(f"{SECTION}.querySelectorAll('figure .line.p_tank').length") > 0
+    bars = opened.ask(
+        f"[...{SECTION}.querySelectorAll('.share')].map((b) => b.lastChild.getBoundingClientRect().width)"
+    )
+    assert bars == sorted(bars, reverse=True)
+    assert bars[0] > 5.0 * bars[1] > 0.0
+    assert opened.console == []
+
+
+def test_what_is_folded_within_the_diagnosis_is_drawn_when_it_opens(opened: Page) -> None:
+    drawn = f"document.querySelectorAll('{WEAK} .overlay').length"
+    before = opened.ask(drawn)
+    assert not opened.ask(f"document.querySelector('{WEAK}').checkVisibility()")
+    unfold(opened)
+    assert opened.ask(f"document.querySelector('{WEAK}').checkVisibility()")
+    assert opened.ask(drawn) > before
+    left, top, width, height = opened.show(f"{WEAK} .plot")
+    opened.mouse("mouseMoved", left + 0.4 * width, top + 0.5 * height)
+    opened.settle()
+    assert read_out(opened, WEAK)[0].endswith(" kW")
+
+
+def test_paper_shows_what_is_folded_within_the_diagnosis(tab: Page, path: Path) -> None:
+    tab.open(path)
+    shown = f"document.querySelector('{WEAK}').checkVisibility()"
+    tab.ask("dispatchEvent(new Event('beforeprint'))")
+    assert tab.ask(shown)
+    tab.ask("dispatchEvent(new Event('afterprint'))")
+    assert not tab.ask(shown)
 
 
 def test_tab_reaches_every_chart_and_the_focus_is_seen(opened: Page) -> None:
     unfold(opened)
     reached, outlined = set(), True
-    for _ in range(400):
+    for _ in range(600):
         opened.press("Tab")
         name, style = opened.ask(
             "(() => { const e = document.activeElement; return [e.closest('figure') && e.classList.contains('plot')"

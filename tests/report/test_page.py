@@ -131,8 +131,8 @@ def test_every_chart_has_a_text_alternative(text: str) -> None:
     reader = Reader(text)
     charts = [attrs for attrs in reader.all("svg") if attrs["class"] == "chart"]
     ids = [attrs["id"] for _, attrs in reader.tags if "id" in attrs]
-    tables = [attrs for attrs in reader.all("details") if attrs.get("class") != "fold"]
-    assert len(charts) == len(reader.all("figure")) == len(tables) == 22
+    tables = [attrs for attrs in reader.all("details") if attrs.get("class") not in ("fold", "more")]
+    assert len(charts) == len(reader.all("figure")) == len(tables) == 27
     assert len(ids) == len(set(ids))
     for chart in charts:
         assert chart["role"] == "img"
@@ -210,7 +210,18 @@ def test_what_looks_wrong_with_the_sensors_stands_apart_from_the_rest(tmp_path: 
 
 def test_the_sections_stand_in_the_order_in_which_they_are_read(text: str) -> None:
     heads = re.findall(r'<h2 id="(\w+)-head"', text)
-    order = ["verdict", "phases", "pressures", "injector", "thrust", "flow", "regression", "residuals", "calibration"]
+    order = [
+        "verdict",
+        "phases",
+        "pressures",
+        "injector",
+        "thrust",
+        "flow",
+        "regression",
+        "diagnosis",
+        "residuals",
+        "calibration",
+    ]
     assert [head for head in heads if head in order] == order
     assert heads[-1] == "absent" or heads[-1] == "provenance"
 

@@ -68,9 +68,9 @@ _STAGES = {
     "segment": "Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end.",
     "calibrate": "Injector coefficient, feed losses, polytropic exponent and regression, with intervals.",
     "validate": "Measure the performance and run the model against the measurement.",
-    "diagnose": "Where, when and by how much the model departs from the measurement.",
+    "diagnose": "Which effect the model lacks, with probabilities and proof.",
     "flight": "Fly the rocket on the measured thrust: apogee, rail departure, stability; engine files.",
-    "run": "Every stage but the diagnosis, which takes longer.",
+    "run": "Every stage; the diagnosis takes longest.",
 }
 
 
@@ -112,6 +112,10 @@ def _add_flight(text: str) -> None:
 Apply = Annotated[bool, typer.Option("--apply", help="Adopt what is named: engines/TEST.effects.toml.")]
 Retract = Annotated[bool, typer.Option("--retract", help="Remove that file again; nothing is diagnosed.")]
 Stand = Annotated[bool, typer.Option("--stand", help="Adopt or retract for all tests of the test's stand.")]
+ProofTest = Annotated[
+    str | None,
+    typer.Option("--proof-test", metavar="OTHER", help="The test to prove it on, instead of another of the stand."),
+]
 
 
 def _add_diagnose(text: str) -> None:
@@ -129,16 +133,18 @@ def _add_diagnose(text: str) -> None:
         apply: Apply = False,
         retract: Retract = False,
         stand: Stand = False,
+        proof_test: ProofTest = None,
     ) -> None:
-        if not (apply or retract or stand):
-            _do("diagnose", test, root, out, as_json, force, quiet, settings)
-            return
         with ending():
             from hfanalysis.cli import adopt, perform
 
+            asked = [] if proof_test is None else [perform.proof_test(root, test, proof_test)]
+            request = perform.Request(test, root, out, as_json, force, quiet, (*(settings or ()), *asked))
+            if not (apply or retract or stand):
+                perform.stage("diagnose", request)
+                return
             if apply == retract:
                 raise InputError("found --apply and --retract together, or --stand alone; expected one of the two")
-            request = perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
             (adopt.apply if apply else adopt.retract)(request, stand)
 
 

@@ -89,6 +89,18 @@ def _setting(text: str) -> tuple[str, Any]:
     return name, found
 
 
+def proof_test(root: Path, test: str, other: str) -> str:
+    """The parameter that names the test to prove a diagnosis on.
+
+    Raises InputError where that is no other test: asked before anything runs, so that no finished product is lost.
+    """
+    from hfanalysis.testdata.definition import find_definition
+
+    if find_definition(root, test) == find_definition(root, other):
+        raise InputError(f"--proof-test {other}: found the test itself; expected another one")
+    return f"diagnose.proof_test={json.dumps(other)}"
+
+
 @contextmanager
 def _watch(request: Request) -> Iterator[Progress]:
     """A spinner on standard error for what takes over two seconds, at a terminal only."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from hfanalysis.quantity import Quantity
 
-_EQUATIONS = {
+EQUATIONS = {
     "tank_energy": "the tank's energy",
     "tank_volume": "the tank's volume balance",
     "injector": "the injector's flow",
@@ -18,6 +18,7 @@ _EQUATIONS = {
     "nozzle": "the nozzle's thrust or throat",
     "sensor": "a sensor",
 }
+"""Where a model may lack something, in words."""
 _UNITS = {"Pa": ("bar", 1e-5), "W": ("kW", 1e-3), "kg/s": ("g/s", 1e3), "1": ("%", 100.0)}
 _CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
 _UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
@@ -56,7 +57,7 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     """Where, from when to when and how much."""
     unit, factor = _UNITS.get(row["source"].unit, (row["source"].unit, 1.0))
     value, std = factor * (row["source"].value or 0.0), factor * (row["source"].std or 0.0)
-    where = _EQUATIONS[row["equation"]] + (f" ({row['channel']})" if row.get("channel") else "")
+    where = EQUATIONS[row["equation"]] + (f" ({row['channel']})" if row.get("channel") else "")
     left = " Beside what is named, this is still open." if row.get("beside") else ""
     return (
         f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s {where} differs by "

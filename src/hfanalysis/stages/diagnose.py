@@ -53,15 +53,23 @@ def _subject(context: Context) -> Subject:
 
 
 def _other(context: Context) -> OtherTest | None:
-    """The other test to prove it on: the one that is asked for, else the first of the same stand."""
+    """The other test to prove it on: the one that is asked for, else the first of the same stand.
+
+    Its products are made in a folder of this test's own: two tests that are diagnosed at once, each the other's proof,
+    would wait for each other's lock for ever.
+    """
     from hfanalysis.diagnose.proof import OtherTest
+    from hfanalysis.stages.freshness import STATE
     from hfanalysis.stages.opening import open_test
     from hfanalysis.stages.runner import run_to
 
     asked = str(context.parameter("proof_test"))
+    if asked == context.id:
+        raise InputError(f"diagnose.proof_test: found {asked}, the test itself; expected another one")
+    folder = context.out / STATE / "proof"
     for name in [asked] if asked else _siblings(context):
         try:
-            other = run_to("calibrate", open_test(context.root, name, context.out.parent, progress=context.progress))
+            other = run_to("calibrate", open_test(context.root, name, folder, progress=context.progress))
             subject = _subject(other)
             return OtherTest(name, subject.hypothesis(), subject.observed())
         except AnalysisError:

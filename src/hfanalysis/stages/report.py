@@ -6,7 +6,7 @@ Reads whatever the stages before it have made; a stage that found nothing to do 
 
 from __future__ import annotations
 
-from hfanalysis.stages import way_to
+from hfanalysis.stages import ORDER
 from hfanalysis.stages.base import Context, Stage
 
 
@@ -21,7 +21,7 @@ def run(context: Context) -> None:
 STAGE = Stage(
     name="report",
     needs=("ingest",),
-    wants=tuple(name for name in way_to("report") if name not in ("ingest", "report")),
+    wants=tuple(name for name in ORDER if name not in ("ingest", "report")),
     products=("report.html",),
     run=run,
 )

@@ -71,7 +71,7 @@ function drawNext() {
 
 // What is folded away is drawn when it is opened.
 function isFolded(chart) {
-  return chart.fold !== null && !chart.fold.open;
+  return chart.folds.some((fold) => !fold.open);
 }
 
 function drawForPaper() {

@@ -19,9 +19,11 @@ function startFolds() {
   addEventListener("hashchange", openLinked);
   openLinked();
   label();
+  const more = [...document.querySelectorAll("details.more")];
+  for (const part of more) part.addEventListener("toggle", () => schedule());
   let closed = [];
   addEventListener("beforeprint", () => {
-    closed = folds.filter((fold) => !fold.open);
+    closed = [...folds, ...more].filter((fold) => !fold.open);
     for (const fold of closed) fold.open = true;
   });
   addEventListener("afterprint", () => { for (const fold of closed) fold.open = false; });

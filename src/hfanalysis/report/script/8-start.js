@@ -18,7 +18,7 @@ function legendButton(chart, one, item) {
 function startChart(figure, about) {
   const chart = readChart(figure.dataset.chart, about);
   chart.frame = figure.querySelector(".plot");
-  chart.fold = figure.closest("details.fold");
+  chart.folds = [figure.closest("details.fold"), figure.closest("details.more")].filter(Boolean);
   chart.svg = chart.frame.querySelector("svg");
   chart.instant = figure.querySelector(".instant");
   const items = figure.querySelectorAll(".legend li");

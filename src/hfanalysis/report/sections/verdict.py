@@ -11,6 +11,7 @@ from markupsafe import Markup
 from hfanalysis.report import html, wording
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.sections.diagnosis import headline
 from hfanalysis.report.wording import in_words, listed, quantities
 
 KEY_NUMBERS = ("burn_time", "total_impulse", "specific_impulse", "peak_thrust", "peak_chamber_pressure")
@@ -20,6 +21,7 @@ KEY_NUMBERS = ("burn_time", "total_impulse", "specific_impulse", "peak_thrust", 
 def render(material: Material) -> Iterator[Block]:
     """A sentence, the key numbers, and four lists."""
     yield html.paragraph(sentence(material), "lead")
+    yield _diagnosed(material)
     if material.adopted:
         yield html.paragraph(material.adopted)
     for stage, reason in spoken_absences(material).items():
@@ -27,6 +29,13 @@ def render(material: Material) -> Iterator[Block]:
         yield absent.format(stage, html.switchable(reason))
     yield _numbers(key_numbers(material))
     yield Markup('<div class="findings">{}</div>').format(Markup().join(_findings(material)))
+
+
+def _diagnosed(material: Material) -> Markup | None:
+    """The first sentence of the diagnosis."""
+    said = headline(material.product("diagnosis"))
+    words = Markup('<p class="lead diagnosed"><a href="#diagnosis">Diagnosis</a>: {}</p>')
+    return words.format(html.switchable(said)) if said else None
 
 
 def spoken_absences(material: Material) -> dict[str, str]:

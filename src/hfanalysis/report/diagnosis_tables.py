@@ -1,0 +1,184 @@
+"""Tables of a diagnosis: probabilities, gaps, proof, constants and upper limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from markupsafe import Markup
+
+from hfanalysis.report import html
+from hfanalysis.report.diagnosis_charts import READ, with_what
+from hfanalysis.report.wording import MINUS, fixed, in_words
+from hfanalysis.testdata.channels import LONG_NAMES
+
+Product = Mapping[str, Any]
+
+SHOWN = 0.005
+"""Probability from which on a name has a row of its own."""
+
+_ALWAYS = ("none", "unknown")
+_MEANINGS = {
+    "none": "nothing is missing that these channels can show",
+    "unknown": "something that is not in the library",
+}
+_UNITS = {"thrust": "N", "m_tank": "kg"}
+_CONSTANTS = {
+    "area": "effective area of the injector",
+    "loss_factor": "feed loss coefficient",
+    "oxidizer_mass": "oxidizer loaded",
+    "temperature": "tank temperature at the start",
+}
+_ARMS = {
+    "same": ("the same data", "there was no gap beyond the noise to close"),
+    "held_out": ("stretches that were held out", "no gap there, or no fit of the rest came to an end"),
+    "other_test": ("another test, constants frozen", "no other test of this stand that the model could be fitted to"),
+    "placebo": ("placebo: the best wrong effect", "no other effect could be fitted"),
+}
+
+
+def probabilities(product: Product) -> Markup:
+    """Every likely name with its probability, and how plausible its size is."""
+    posterior, inside = product["posterior"], product["set90"]
+    chosen = {row["name"]: row["plausibility"] for row in product["effects"]}
+    sizes = {**product["plausibility"], **chosen}
+    ordered = sorted(posterior, key=lambda name: (-posterior[name], name))
+    kept = [name for name in ordered if posterior[name] >= SHOWN or name in inside or name in _ALWAYS]
+    rows = [
+        (
+            Markup("<span>{}</span>").format(name),
+            _probability(posterior[name]),
+            _bar(posterior[name]),
+            Markup('<span class="verdict good"><span aria-hidden="true">✓</span> yes</span>') if name in inside else "",
+            _plausible(sizes[name]) if name in sizes else _MEANINGS.get(name, ""),
+        )
+        for name in kept
+    ]
+    rest = len(ordered) - len(kept)
+    others = f" {rest} other names are below {SHOWN:g} each." if rest else ""
+    caption = f"Probability of each name.{others} {_trust(product)}"
+    columns = ("name", ">probability", "", "in the 90 % set", "how plausible its size is")
+    return html.table("Probabilities", caption, columns, rows)
+
+
+def _probability(value: float) -> str:
+    return "< 0.001" if value < 0.001 else fixed(value, 3 if value < 0.01 or value > 0.99 else 2)
+
+
+def _bar(value: float) -> Markup:
+    shape = '<svg class="share" viewBox="0 0 100 10" preserveAspectRatio="none" aria-hidden="true">'
+    return Markup(shape + '<rect class="all" width="100" height="10"/><rect width="{}" height="10"/></svg>').format(
+        f"{100.0 * value:.1f}"
+    )
+
+
+def _plausible(size: Mapping[str, Any]) -> Markup:
+    sign = {True: ("good", "✓", "plausible"), False: ("bad", "✕", "hard to believe")}
+    kind, mark, word = sign.get(size["plausible"], ("open", "?", "not judged"))
+    badge = Markup('<span class="verdict {}"><span aria-hidden="true">{}</span> {}</span> {}')
+    return badge.format(kind, mark, word, html.switchable(str(size["why"])))
+
+
+def _trust(product: Product) -> str:
+    """What the probabilities rest on."""
+    if product.get("probabilities_from") == "raw evidences":
+        return "They are raw evidences, not calibrated on simulated tests."
+    return "They are calibrated on simulated tests."
+
+
+def gaps(product: Product) -> Markup:
+    """Residual of every channel without and with what is missing, beside the noise."""
+    gap = product["gap"]
+    rows = [
+        (LONG_NAMES.get(name, name), *(_in_unit(name, gap[key].get(name)) for key in ("before", "after", "noise")))
+        for name in gap["before"]
+    ]
+    caption = (
+        "Root mean square of measured less model over the burn, beside the noise of the averages that are compared. "
+        f"With it: {with_what(product)}."
+    )
+    columns = ("channel", ">without", ">with it", ">noise")
+    return html.table("Gap", caption, columns, rows)
+
+
+def gaps_by_phase(product: Product) -> Markup | None:
+    """What is beyond the noise, by phase."""
+    found = product["gap"].get("by_phase") or {}
+    before, after = found.get("before") or {}, found.get("after") or {}
+    rows = [
+        (
+            LONG_NAMES.get(name, name),
+            in_words(phase),
+            _in_unit(name, size),
+            _in_unit(name, after.get(name, {}).get(phase)),
+        )
+        for name, phases in before.items()
+        for phase, size in phases.items()
+    ]
+    caption = "What is beyond the noise: square root of max(0, rms² − noise²)."
+    columns = ("channel", "phase", ">without", ">with it")
+    return html.table("Gap by phase", caption, columns, rows) if rows else None
+
+
+def _in_unit(channel: str, value: float | None) -> Markup:
+    return html.amount(value, _UNITS.get(channel, "Pa"), 3, True)
+
+
+def proof(product: Product) -> Markup:
+    """How much of the gap closes, and on which data; in words where it is not known."""
+    found, other = product["gap"]["closed_fraction"], product["gap"].get("other_test") or {}
+    rows: list[tuple[Any, ...]] = []
+    for arm, (words, why) in _ARMS.items():
+        named = f"{words} ({other['test']})" if arm == "other_test" and other.get("test") else words
+        rows.append((named, _closed(found.get(arm)), "" if found.get(arm) is not None else why))
+    free = product["gap"].get("closed_by_free_form")
+    if free is not None:
+        rows.append(("placebo: a free curve of equal freedom", _closed(free), ""))
+    caption = (
+        "Part of the gap of all channels that closes. A gap that shrinks on its own data proves no name: it should "
+        "shrink on data that did not name it, and less with a wrong effect."
+    )
+    return html.table("Proof", caption, ("on", ">gap closed", ""), rows)
+
+
+def _closed(part: float | None) -> str:
+    if part is None:
+        return "–"
+    return f"{100.0 * part:.0f} %".replace("-", MINUS) + (" (wider)" if part < 0.0 else "")
+
+
+def constants(product: Product) -> Iterator[Markup]:
+    """The calibrated constants without and with the effects, m first."""
+    without, better = product["constants"]["without"], product["constants"]["with"]
+    arm = with_what(product)
+    if "m" in without and without["m"].get("value") is not None:
+        values = [fixed(float(side["m"]["value"]), 2) for side in (without, better)]
+        said = f"m {values[0]} without, {values[1]} {arm}." if arm else f"m {values[0]}."
+        yield html.paragraph(Markup("Polytropic exponent of the vapour: <strong>{}</strong>").format(said), "told")
+    names = sorted(without, key=lambda name: name != "m")
+    rows = [
+        (_head(name), html.value(without[name], name), *((html.value(better[name], name),) if arm else ()))
+        for name in names
+    ]
+    columns = ("constant", ">without", *((">with it",) if arm else ()))
+    yield html.table("Constants", "Fitted to all channels together, ± one standard deviation.", columns, rows)
+
+
+def _head(name: str) -> Markup:
+    words = _CONSTANTS.get(name)
+    return html.symbol_and_words(name) if words is None else Markup('<span class="words">{}</span>').format(words)
+
+
+def limits(product: Product) -> Markup | None:
+    """The size below which every effect stays that is not in the model."""
+    rows = [(Markup("<span>{}</span>").format(name), _limit(found)) for name, found in product["upper_limits"].items()]
+    caption = "Each of these, if it is there at all, is smaller than this with 95 % probability."
+    return html.table("Upper limits", caption, ("effect", ">upper limit"), rows) if rows else None
+
+
+def _limit(found: Mapping[str, Any]) -> Markup:
+    if found.get("value") is None:
+        return Markup.escape(str(found.get("reason") or "–"))
+    unit, factor = READ.get(found["unit"], (found["unit"], 1.0))
+    value = factor * found["value"]
+    return html.amount(value, unit, max(3, len(f"{abs(value):.0f}")), True)

@@ -1,0 +1,210 @@
+"""The diagnosis on the page: its story, its numbers, and what is said where there is none."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+import pytest
+from diagnosed import DIAGNOSIS, NOTHING
+from sample import material, without
+from test_page import HOSTILE, Reader
+
+from hfanalysis.report.chart import Chart
+from hfanalysis.report.page import page
+from hfanalysis.report.sections import Laid, lay_out
+
+
+def laid_out(folder: Path, product: dict[str, Any]) -> Laid:
+    made = material(folder)
+    return section(lay_out(replace(made, products={**made.products, "diagnosis": product})))
+
+
+def section(found: list[Laid]) -> Laid:
+    return next(laid for laid in found if laid.key == "diagnosis")
+
+
+def told(laid: Laid) -> str:
+    return "\n".join(str(block) for block in laid.blocks if not isinstance(block, Chart))
+
+
+def charts(laid: Laid) -> dict[str, Chart]:
+    return {chart.key: chart for chart in laid.charts}
+
+
+def row(text: str, head: str) -> str:
+    """The text of a table's row, without its tags."""
+    found = [part for part in re.findall(r"<tr>.*?</tr>", text, re.DOTALL) if head in part]
+    assert found, head
+    return re.sub(r"<[^>]*>", " ", found[0])
+
+
+def test_the_first_sentence_stands_in_the_verdict_and_leads_the_section(tmp_path: Path) -> None:
+    text = page(material(tmp_path))
+    assert text.count(DIAGNOSIS["sentences"][0]) == 2
+    verdict = text[text.index('<section id="verdict"') : text.index('<section id="phases"')]
+    assert DIAGNOSIS["sentences"][0] in verdict
+
+
+def test_every_sentence_is_told_and_what_no_sentence_says_beside_them(tmp_path: Path) -> None:
+    found = unescape(re.sub(r"<[^>]*>", "", told(laid_out(tmp_path, DIAGNOSIS))))
+    for sentence in DIAGNOSIS["sentences"]:
+        assert sentence in found
+    assert found.count("a thermocouple on the tank's wall") == 1
+    said = {**DIAGNOSIS, "sentences": [*DIAGNOSIS["sentences"], f"Decides: {DIAGNOSIS['decisive_measurements'][0]}."]}
+    assert told(laid_out(tmp_path, said)).count("a thermocouple on the tank&#39;s wall") == 1
+
+
+def test_probabilities_come_largest_first_with_none_and_unknown(tmp_path: Path) -> None:
+    found = told(laid_out(tmp_path, DIAGNOSIS))
+    table = found[found.index('aria-label="Probabilities: table"') :].partition("</table>")[0]
+    names = re.findall(r'<th scope="row"><span>(\w+)</span>', table)
+    assert names == ["tank_heat", "tank_wall_heat_capacity", "unknown", "none"]
+    assert "2 other names are below 0.005 each" in table
+    assert "yes" in row(table, "<span>tank_heat")
+    assert "yes" not in row(table, "<span>unknown")
+    assert '<rect width="83.0" height="10"/>' in table
+    assert re.search(r"plausible\s+power of 0.9 kW is below 3 kW", row(table, "<span>tank_heat"))
+    assert "hard to believe" in row(table, "<span>tank_wall_heat_capacity")
+    assert "raw evidences, not calibrated" in table
+
+
+def test_a_source_is_drawn_with_its_band_in_the_unit_of_the_sentence(tmp_path: Path) -> None:
+    chart = charts(laid_out(tmp_path, DIAGNOSIS))["diagnosis-source-1"]
+    band, line = chart.series
+    assert chart.unit == "kW"
+    assert line.values[0] == pytest.approx(0.9)
+    assert band.upper is not None
+    assert (band.values[0], band.upper[0]) == pytest.approx((0.9 - 0.247, 0.9 + 0.247), abs=1e-3)
+    assert chart.value_span is not None
+    assert chart.value_span[0] <= 0.0
+    assert chart.value_span[1] > band.upper[0]
+
+
+def test_the_residual_is_drawn_without_and_with_beside_the_noise(tmp_path: Path) -> None:
+    chart = charts(laid_out(tmp_path, DIAGNOSIS))["diagnosis-left-p-tank"]
+    by_label = {one.label: one for one in chart.series}
+    assert abs(by_label["without"].values).max() == pytest.approx(9e4, rel=0.01)
+    assert abs(by_label["with it"].values).max() == pytest.approx(9e3, rel=0.01)
+    assert by_label["noise, 95 %"].upper is not None
+    assert by_label["noise, 95 %"].upper[0] == pytest.approx(1.96 * 9e3)
+    assert "with tank_heat" in chart.caption
+
+
+def test_the_gap_closes_in_figures_by_channel_and_phase(tmp_path: Path) -> None:
+    found = told(laid_out(tmp_path, DIAGNOSIS))
+    assert re.search(r"0\.9 bar\s+0\.1 bar\s+0\.08 bar", row(found, "run tank pressure"))
+    by_phase = found[found.index('aria-label="Gap by phase: table"') :]
+    assert re.search(r"liquid\s+0\.91 bar\s+0\.05 bar", row(by_phase, "run tank pressure"))
+
+
+def test_the_arms_of_the_proof_are_figures_or_words(tmp_path: Path) -> None:
+    found = told(laid_out(tmp_path, DIAGNOSIS))
+    assert "93 %" in row(found, "the same data")
+    assert "88 %" in row(found, "held out")
+    assert "no other test of this stand" in row(found, "another test")
+    assert "−20 % (wider)" in row(found, "best wrong effect")
+    assert "95 %" in row(found, "free curve")
+    gap = {**DIAGNOSIS["gap"], "other_test": {"test": "HF4"}}
+    gap["closed_fraction"] = {**gap["closed_fraction"], "other_test": 0.8}
+    proved = told(laid_out(tmp_path, {**DIAGNOSIS, "gap": gap}))
+    assert re.search(r"frozen \(HF4\)\s+80 %", row(proved, "another test"))
+
+
+def test_m_is_told_without_and_with(tmp_path: Path) -> None:
+    found = told(laid_out(tmp_path, DIAGNOSIS))
+    assert "m 0.75 without, 1.08 with tank_heat." in found
+    table = found[found.index('aria-label="Constants: table"') :]
+    assert table.index("polytropic exponent") < table.index("effective area of the injector")
+
+
+def test_what_was_not_found_is_limited_in_units_of_people(tmp_path: Path) -> None:
+    found = told(laid_out(tmp_path, DIAGNOSIS))
+    assert "Tried, and not it: fuel_sliver, n2_purge." in found
+    assert "0.075 mm/s" in row(found, "nozzle_throat_erosion")
+    assert "3 g/s" in row(found, "tank_leak")
+
+
+def test_every_equation_with_values_is_drawn(tmp_path: Path) -> None:
+    drawn = charts(laid_out(tmp_path, DIAGNOSIS))
+    assert {key for key in drawn if key.startswith("diagnosis-weak")} == {
+        "diagnosis-weak-tank-energy",
+        "diagnosis-weak-feed",
+    }
+    assert "it lacks 0.9 ± 0.09 kW on average" in drawn["diagnosis-weak-tank-energy"].caption
+    assert drawn["diagnosis-weak-feed"].unit == "Pa"
+    assert "Nowhere beyond two standard deviations" in drawn["diagnosis-weak-feed"].caption
+
+
+def test_equations_that_cannot_be_asked_say_why(tmp_path: Path) -> None:
+    assert "the nozzle&#39;s thrust or throat: the log has no thrust" in told(laid_out(tmp_path, DIAGNOSIS))
+
+
+def test_notes_and_warnings_are_shown(tmp_path: Path) -> None:
+    found = told(laid_out(tmp_path, {**DIAGNOSIS, "warnings": ["the last fit did not converge"]}))
+    assert "Warning:</strong> the last fit did not converge" in found
+    assert "There is no other test of this stand to prove it on." in found
+    assert "Compared: p_tank, thrust, from 0.07 s to 12.30 s." in found
+
+
+def test_where_nothing_is_missing_nothing_is_proved(tmp_path: Path) -> None:
+    laid = laid_out(tmp_path, NOTHING)
+    found = told(laid)
+    assert "nothing to prove" in found
+    assert 'aria-label="Proof: table"' not in found
+    assert "m 0.75.</strong>" in found
+    labels = [one.label for one in charts(laid)["diagnosis-left-thrust"].series]
+    assert labels == ["noise, 95 %", "model", "zero"]
+
+
+def test_a_test_that_cannot_be_diagnosed_says_why_in_the_section(tmp_path: Path) -> None:
+    bare = without(material(tmp_path), diagnosis="the engine is not stated: [engine] is missing")
+    laid = section(lay_out(bare))
+    assert "could not be diagnosed:</strong> the engine is not stated" in told(laid)
+    assert "lead diagnosed" not in page(bare)
+
+
+def test_what_stops_the_calibration_too_is_not_told_again(tmp_path: Path) -> None:
+    bare = without(material(tmp_path), diagnosis="no firing", calibration="no firing")
+    laid = section(lay_out(bare))
+    assert not laid.blocks
+    assert laid.absent == "no firing"
+
+
+def _attacked(data: Any) -> Any:
+    """Every text and name of a product made hostile, but for those that pick what is drawn."""
+    if isinstance(data, dict):
+        return {name: value if name in _KEPT else _attacked(value) for name, value in data.items()}
+    if isinstance(data, list):
+        return [_attacked(value) for value in data]
+    return HOSTILE if isinstance(data, str) else data
+
+
+_KEPT = ("verdict", "unit", "channels", "set90", "probabilities_from")
+
+
+def test_hostile_texts_of_a_diagnosis_are_shown_not_obeyed(tmp_path: Path) -> None:
+    attacked = _attacked(DIAGNOSIS)
+    for name in ("posterior", "plausibility", "upper_limits", "weak_form"):
+        (first, *_) = attacked[name]
+        attacked[name] = {**attacked[name], HOSTILE: attacked[name][first]}
+    attacked["set90"] = [HOSTILE]
+    made = material(tmp_path)
+    text = page(replace(made, products={**made.products, "diagnosis": attacked}))
+    reader = Reader(text)
+    assert reader.open == []
+    assert "img" not in {tag for tag, _ in reader.tags}
+    assert not any(name.startswith("on") for _, attrs in reader.tags for name in attrs)
+    assert len(reader.all("script")) == len(Reader(page(made)).all("script"))
+    ids = [attrs["id"] for _, attrs in reader.tags if "id" in attrs]
+    assert len(ids) == len(set(ids))
+
+
+def test_no_texts_of_a_page_depend_on_a_diagnosis_that_is_not_there(tmp_path: Path) -> None:
+    bare = without(material(tmp_path), "diagnosis")
+    text = page(bare)
+    assert "Diagnosis" in text[text.index('id="absent"') :]
+    assert Reader(text).open == []

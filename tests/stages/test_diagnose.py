@@ -1,0 +1,69 @@
+"""The diagnosis on the way through: what it may stop, and where the test that proves it is made."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.stages import ORDER, way_to
+from hfanalysis.stages import diagnose as stage
+from hfanalysis.stages.base import Context, load_stage
+from hfanalysis.stages.opening import open_test
+
+REPOSITORY = Path(__file__).parents[2]
+
+
+def context(tmp_path: Path, **settings: str) -> Context:
+    made = open_test(
+        REPOSITORY, "HF5", tmp_path, settings={f"diagnose.{name}": value for name, value in settings.items()}
+    )
+    return made.at(load_stage("diagnose"))
+
+
+def test_the_diagnosis_is_on_the_way_to_the_page() -> None:
+    assert "diagnose" in way_to("report")
+    assert way_to("run") == ORDER
+    assert "diagnose" in load_stage("report").wants
+
+
+def test_a_test_is_no_proof_of_itself(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="HF5, the test itself"):
+        stage._other(context(tmp_path, proof_test="HF5"))
+
+
+def test_two_tests_that_prove_each_other_do_not_wait_for_each_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worked: list[Path] = []
+
+    def bring(_name: str, other: Context) -> Context:
+        worked.append(other.out)
+        return other
+
+    subject = SimpleNamespace(hypothesis=lambda: None, observed=lambda: None)
+    monkeypatch.setattr("hfanalysis.stages.runner.run_to", bring)
+    monkeypatch.setattr(stage, "_subject", lambda _context: subject)
+    for name, other in (("HF5", "HF4"), ("HF4", "HF5")):
+        made = replace(open_test(REPOSITORY, name, tmp_path), settings={"diagnose.proof_test": other})
+        proof = stage._other(made.at(load_stage("diagnose")))
+        assert proof is not None
+        assert proof.name == other
+        assert worked[-1].is_relative_to(tmp_path / name)
+    assert len(set(worked)) == 2
+
+
+def test_a_sibling_that_holds_nothing_is_passed_over_but_not_one_that_was_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def bring(_name: str, _other: Context) -> Context:
+        raise AbsentError("no firing")
+
+    monkeypatch.setattr("hfanalysis.stages.runner.run_to", bring)
+    monkeypatch.setattr(stage, "_siblings", lambda _context: ["HF4"])
+    assert stage._other(context(tmp_path)) is None
+    with pytest.raises(AbsentError, match="no firing"):
+        stage._other(context(tmp_path, proof_test="HF4"))
