@@ -88,6 +88,8 @@ DIAGNOSIS: dict[str, Any] = {
     "upper_limits": {
         "nozzle_throat_erosion": _quantity(7.5e-5, "m/s", None),
         "tank_leak": _quantity(0.003, "kg/s", None),
+        "pressure_transducer_offset": _quantity(72936.1, "Pa", None),
+        "tank_wall_heat_capacity": _quantity(24521.7, "J/K", None),
     },
     "twins": [["tank_heat", "tank_wall_heat_capacity"]],
     "not_it": ["fuel_sliver", "n2_purge"],

@@ -126,6 +126,9 @@ def test_what_was_not_found_is_limited_in_units_of_people(tmp_path: Path) -> Non
     assert "Tried, and not it: fuel_sliver, n2_purge." in found
     assert "0.075 mm/s" in row(found, "nozzle_throat_erosion")
     assert "3 g/s" in row(found, "tank_leak")
+    assert "0.729 bar" in row(found, "pressure_transducer_offset")
+    limits = found[found.index('aria-label="Upper limits: table"') :]
+    assert "24522 J/K" in row(limits, "tank_wall_heat_capacity")
 
 
 def test_every_equation_with_values_is_drawn(tmp_path: Path) -> None:

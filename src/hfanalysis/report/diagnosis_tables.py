@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from hfanalysis.report import html
 from hfanalysis.report.diagnosis_charts import READ, with_what
+from hfanalysis.report.scales import scale
 from hfanalysis.report.wording import MINUS, fixed, in_words
 from hfanalysis.testdata.channels import LONG_NAMES
 
@@ -95,7 +96,7 @@ def gaps(product: Product) -> Markup:
     ]
     caption = (
         "Root mean square of measured less model over the burn, beside the noise of the averages that are compared. "
-        f"With it: {with_what(product)}."
+        f"With it: {with_what(product).removeprefix('with ')}."
     )
     columns = ("channel", ">without", ">with it", ">noise")
     return html.table("Gap", caption, columns, rows)
@@ -181,4 +182,4 @@ def _limit(found: Mapping[str, Any]) -> Markup:
         return Markup.escape(str(found.get("reason") or "–"))
     unit, factor = READ.get(found["unit"], (found["unit"], 1.0))
     value = factor * found["value"]
-    return html.amount(value, unit, max(3, len(f"{abs(value):.0f}")), True)
+    return html.amount(value, unit, max(3, len(f"{abs(scale(unit)(value)):.0f}")), True)

@@ -55,7 +55,7 @@ def _absent(material: Material) -> Markup:
 
 
 def _story(product: Mapping[str, Any]) -> Iterator[Markup]:
-    yield html.paragraph(html.switchable(headline(product)), "lead")
+    yield html.paragraph(html.switchable(headline(product)), "lead diagnosed")
     yield html.bullets(map(html.switchable, map(str, product["sentences"][1:])), "told")
     untold = [text for text in product["decisive_measurements"] if not _told(product, text)]
     if untold:
