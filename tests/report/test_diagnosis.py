@@ -163,6 +163,34 @@ def test_where_nothing_is_missing_nothing_is_proved(tmp_path: Path) -> None:
     assert labels == ["noise, 95 %", "model", "zero"]
 
 
+ALONE: dict[str, Any] = {
+    **{name: DIAGNOSIS[name] for name in ("effects", "twins", "decisive_measurements", "plausibility", "provenance")},
+    "verdict": "named",
+    "set90": ["load_cell_drift"],
+    "posterior": {"load_cell_drift": 1.0},
+    "localisation": [{k: v for k, v in DIAGNOSIS["localisation"][0].items() if k != "history"}],
+    "gap": {"before": {}, "after": {}, "noise": {}, "closed_fraction": DIAGNOSIS["gap"]["closed_fraction"]},
+    "upper_limits": {},
+    "not_it": [],
+    "compared": {"channels": ["thrust"]},
+    "sentences": ["the thrust cell does not return to zero: 190 N", "No more can be said without an engine to run."],
+    "notes": ["only what the sensors show by themselves was judged"],
+    "warnings": [],
+}
+"""A diagnosis where no engine is stated: what the sensors show by themselves."""
+
+
+def test_without_an_engine_the_section_tells_the_sensors_and_claims_no_numbers(tmp_path: Path) -> None:
+    made = without(material(tmp_path), "diagnosis")
+    laid = section(lay_out(replace(made, products={**made.products, "diagnosis": ALONE})))
+    found = told(laid)
+    assert not laid.charts
+    assert "<table>" not in found
+    assert "No more can be said without an engine to run." in found
+    assert "Compared: thrust.<" in found
+    assert "calibrated on" not in found
+
+
 def test_a_test_that_cannot_be_diagnosed_says_why_in_the_section(tmp_path: Path) -> None:
     bare = without(material(tmp_path), diagnosis="the engine is not stated: [engine] is missing")
     laid = section(lay_out(bare))

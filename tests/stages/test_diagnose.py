@@ -32,7 +32,10 @@ def test_the_diagnosis_is_on_the_way_to_the_page() -> None:
 
 def test_a_test_is_no_proof_of_itself(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="HF5, the test itself"):
-        stage._other(context(tmp_path, proof_test="HF5"))
+        stage._check_proof_test(context(tmp_path, proof_test="HF5"))
+    with pytest.raises(InputError, match="HF6"):
+        stage._check_proof_test(context(tmp_path, proof_test="HF6"))
+    stage._check_proof_test(context(tmp_path, proof_test="HF4"))
 
 
 def test_two_tests_that_prove_each_other_do_not_wait_for_each_other(
@@ -56,6 +59,7 @@ def test_two_tests_that_prove_each_other_do_not_wait_for_each_other(
     assert len(set(worked)) == 2
 
 
+# An AbsentError would read as "this test has no engine to run".
 def test_a_sibling_that_holds_nothing_is_passed_over_but_not_one_that_was_asked_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -65,5 +69,5 @@ def test_a_sibling_that_holds_nothing_is_passed_over_but_not_one_that_was_asked_
     monkeypatch.setattr("hfanalysis.stages.runner.run_to", bring)
     monkeypatch.setattr(stage, "_siblings", lambda _context: ["HF4"])
     assert stage._other(context(tmp_path)) is None
-    with pytest.raises(AbsentError, match="no firing"):
+    with pytest.raises(InputError, match="HF4 cannot prove anything: no firing"):
         stage._other(context(tmp_path, proof_test="HF4"))

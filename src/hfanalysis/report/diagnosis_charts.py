@@ -53,7 +53,9 @@ def with_what(product: Mapping[str, Any]) -> str:
 def sources(material: Material, product: Mapping[str, Any]) -> Iterator[Chart | None]:
     """What the model lacks over time, for every row of the localisation."""
     for number, row in enumerate(product["localisation"], 1):
-        history = row["history"]
+        history = row.get("history")
+        if history is None:
+            continue
         unit, factor = READ.get(history["unit"], (history["unit"], 1.0))
         time, mean, low, high = (np.asarray(history[key], float) for key in ("time", "mean", "low90", "high90"))
         style = style_of(str(row["channel"])) if row.get("channel") else _STYLES.get(row["equation"], "other")

@@ -38,8 +38,10 @@ _ARMS = {
 }
 
 
-def probabilities(product: Product) -> Markup:
-    """Every likely name with its probability, and how plausible its size is."""
+def probabilities(product: Product) -> Markup | None:
+    """Every likely name with its probability, and how plausible its size is; None where no names competed."""
+    if "none" not in product["posterior"]:
+        return None
     posterior, inside = product["posterior"], product["set90"]
     chosen = {row["name"]: row["plausibility"] for row in product["effects"]}
     sizes = {**product["plausibility"], **chosen}
@@ -84,7 +86,7 @@ def _trust(product: Product) -> str:
     """What the probabilities rest on."""
     if product.get("probabilities_from") == "raw evidences":
         return "They are raw evidences, not calibrated on simulated tests."
-    return "They are calibrated on simulated tests."
+    return "They were calibrated on simulated tests." if product.get("probabilities_from") else ""
 
 
 def gaps(product: Product) -> Markup:
@@ -149,7 +151,9 @@ def _closed(part: float | None) -> str:
 
 
 def constants(product: Product) -> Iterator[Markup]:
-    """The calibrated constants without and with the effects, m first."""
+    """The calibrated constants without and with the effects, m first; nothing where no model was fitted."""
+    if not product.get("constants"):
+        return
     without, better = product["constants"]["without"], product["constants"]["with"]
     arm = with_what(product)
     if "m" in without and without["m"].get("value") is not None:

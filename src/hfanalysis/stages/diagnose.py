@@ -29,6 +29,7 @@ def run(context: Context) -> None:
     effects = library(context.root / FOLDER)
     settings = settings_of(str(context.parameter("variant")))
     subject = _subject(context)
+    _check_proof_test(context)
     try:
         found = diagnose(subject, effects, lambda: _other(context), context.progress, settings)
     except AbsentError as missing:
@@ -52,6 +53,17 @@ def _subject(context: Context) -> Subject:
     )
 
 
+def _check_proof_test(context: Context) -> None:
+    """Before anything long runs: is the test that is asked for there, and another one?"""
+    from hfanalysis.testdata.definition import find_definition
+
+    asked = str(context.parameter("proof_test"))
+    if asked == context.id:
+        raise InputError(f"diagnose.proof_test: found {asked}, the test itself; expected another one")
+    if asked:
+        find_definition(context.root, asked)
+
+
 def _other(context: Context) -> OtherTest | None:
     """The other test to prove it on: the one that is asked for, else the first of the same stand.
 
@@ -64,17 +76,15 @@ def _other(context: Context) -> OtherTest | None:
     from hfanalysis.stages.runner import run_to
 
     asked = str(context.parameter("proof_test"))
-    if asked == context.id:
-        raise InputError(f"diagnose.proof_test: found {asked}, the test itself; expected another one")
     folder = context.out / STATE / "proof"
     for name in [asked] if asked else _siblings(context):
         try:
             other = run_to("calibrate", open_test(context.root, name, folder, progress=context.progress))
             subject = _subject(other)
             return OtherTest(name, subject.hypothesis(), subject.observed())
-        except AnalysisError:
+        except AnalysisError as error:
             if asked:
-                raise
+                raise InputError(f"diagnose.proof_test: {asked} cannot prove anything: {error}") from None
     return None
 
 

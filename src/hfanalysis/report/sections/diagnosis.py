@@ -70,7 +70,9 @@ def _told(product: Mapping[str, Any], text: str) -> bool:
 
 
 def _gap(material: Material, product: Mapping[str, Any]) -> Iterator[Block]:
-    """The residual of every channel without and with what is missing, and the proof."""
+    """The residual of every channel without and with what is missing, and the proof; nothing where no model ran."""
+    if not product["gap"]["before"]:
+        return
     yield from charts.residuals(material, product)
     if not charts.with_what(product):
         yield html.paragraph("Nothing is claimed to be missing, so there is no gap to close and nothing to prove.")
@@ -111,11 +113,9 @@ def _remarks(product: Mapping[str, Any]) -> Iterator[Markup]:
     for text in product["warnings"]:
         yield Markup('<p class="absent"><strong>Warning:</strong> {}</p>').format(html.switchable(str(text)))
     compared = product["compared"]
-    said = [
-        f"Compared: {', '.join(map(str, compared['channels']))}, from {html.seconds(compared['start'])} "
-        f"to {html.seconds(compared['end'])}."
-    ]
-    yield html.bullets(map(html.switchable, [*said, *map(_sentence, product["notes"])]), "said")
+    span = f", from {html.seconds(compared['start'])} to {html.seconds(compared['end'])}" if "end" in compared else ""
+    said = f"Compared: {', '.join(map(str, compared['channels']))}{span}."
+    yield html.bullets(map(html.switchable, [said, *map(_sentence, product["notes"])]), "said")
 
 
 def _sentence(note: Any) -> str:
