@@ -113,9 +113,12 @@ def _remarks(product: Mapping[str, Any]) -> Iterator[Markup]:
     for text in product["warnings"]:
         yield Markup('<p class="absent"><strong>Warning:</strong> {}</p>').format(html.switchable(str(text)))
     compared = product["compared"]
-    span = f", from {html.seconds(compared['start'])} to {html.seconds(compared['end'])}" if "end" in compared else ""
-    said = f"Compared: {', '.join(map(str, compared['channels']))}{span}."
-    yield html.bullets(map(html.switchable, [said, *map(_sentence, product["notes"])]), "said")
+    said = list(map(_sentence, product["notes"]))
+    if "end" in compared:
+        span = f"from {html.seconds(compared['start'])} to {html.seconds(compared['end'])}"
+        said.insert(0, f"Compared: {', '.join(map(str, compared['channels']))}, {span}.")
+    if said:
+        yield html.bullets(map(html.switchable, said), "said")
 
 
 def _sentence(note: Any) -> str:
