@@ -12,7 +12,7 @@ from typing import Any
 
 from hfanalysis.cli.ending import put, tell
 from hfanalysis.errors import AbsentError, InputError
-from hfanalysis.stages import ORDER, way_to
+from hfanalysis.stages import ASIDE, ORDER, way_to
 from hfanalysis.stages.base import BASE, Context, Progress, load_stage, silent
 from hfanalysis.stages.opening import open_test
 from hfanalysis.stages.runner import run_to
@@ -41,7 +41,7 @@ def bring(name: str, request: Request) -> Context:
         context = open_test(
             request.root, request.test, request.out, progress=progress, settings=_settings(request.settings)
         )
-        context = run_to(ORDER[-1] if name == "run" else name, context, force=request.force)
+        context = run_to(ORDER[-1] if name == "run" else name, context, force=request.force, whole=name == "run")
     if name in ("report", "run"):
         from hfanalysis.report.index import write_index
 
@@ -142,6 +142,8 @@ def _warnings(context: Context, name: str) -> list[str]:
     texts = list(context.definition.warnings)
     for stage in way_to(name):
         if stage in context.absent:
+            if stage in ASIDE and name not in ("run", stage):
+                continue  # nobody asked for it; the page says how to
             texts += [] if stage in _SPINE and name == "run" else [f"{stage}: {context.absent[stage]}"]
             continue
         texts += _product_warnings(context, stage)

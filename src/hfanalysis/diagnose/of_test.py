@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hfanalysis.diagnose import gap
+from hfanalysis.diagnose.candidate import Candidate
 from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.naming import Catalogue, Naming, Settings, name_effects
 from hfanalysis.diagnose.observed import Observed, observe_test
@@ -125,7 +126,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "not_it": _not_it(verdict),
         "decisive_measurements": _decisive(verdict, catalogue),
         "plausibility": {
-            name: row for name, row in _plausibility(found).items() if name in (*verdict.set90, *chosen.names)
+            name: row for name, row in _plausibility(found, chosen).items() if name in (*verdict.set90, *chosen.names)
         },
         "constants": _constants(found, verdict),
         "weak_form": weak_product(
@@ -149,7 +150,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
 
 def _constants(found: Naming, verdict: Verdict) -> dict[str, dict[str, Quantity]]:
     """The base model's constants as fitted without and with the effects; m above all."""
-    units = {"area": "m^2", "loss_factor": "1/m^4", "oxidizer_mass": "kg", "temperature": "K"}
+    units = {"a": "m/s (kg/m^2/s)^-n", "area": "m^2", "loss_factor": "1/m^4", "oxidizer_mass": "kg", "temperature": "K"}
     out: dict[str, dict[str, Quantity]] = {}
     for arm, fitted in (("without", found.base.fit), ("with", verdict.chosen.fit)):
         values, stds = fitted.values, fitted.stds
@@ -161,14 +162,14 @@ def _constants(found: Naming, verdict: Verdict) -> dict[str, dict[str, Quantity]
     return out
 
 
-def _plausibility(found: Naming) -> dict[str, dict[str, Any]]:
+def _plausibility(found: Naming, chosen: Candidate) -> dict[str, dict[str, Any]]:
     from hfanalysis.diagnose.plausible import judged
 
     out: dict[str, dict[str, Any]] = {}
     for candidate in found.singles:
         name = candidate.names[0]
         out.setdefault(name, judged(name, sizes(candidate.fit)[name]))
-    return out
+    return out | {name: judged(name, values) for name, values in sizes(chosen.fit).items()}
 
 
 LIKELY = 0.02

@@ -9,6 +9,10 @@ Each stage module names what it needs and what it writes (`STAGE`, see :mod:`hfa
 ORDER = ("ingest", "segment", "calibrate", "validate", "diagnose", "flight", "report")
 """The stages in the order of the way through; each is a module of this package."""
 
+ASIDE = ("diagnose",)
+"""Stages that take longer than a page may: `hfa run` makes them and who asks for them by name; the page takes their
+products as they are, if they are up to date."""
+
 
 def way_to(name: str) -> tuple[str, ...]:
     """The stages in the order of the way through up to one ("run": all of them), itself included."""

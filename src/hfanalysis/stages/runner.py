@@ -20,7 +20,7 @@ from typing import Any
 
 import hfanalysis
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
-from hfanalysis.stages import ORDER, base, freshness
+from hfanalysis.stages import ASIDE, ORDER, base, freshness
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.stages.lock import locked
 from hfanalysis.testdata import products
@@ -31,13 +31,14 @@ _REFUSED = {errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS,
 _ATTEMPTS = 3
 
 
-def run_to(name: str, context: Context, *, force: bool = False) -> Context:
+def run_to(name: str, context: Context, *, force: bool = False, whole: bool = False) -> Context:
     """Bring the products of stage ``name`` up to date, and of every stage before it.
 
     Args:
         name: the stage.
         context: the test, from :func:`hfanalysis.stages.opening.open_test`.
         force: redo the stage and all before it, even where nothing changed.
+        whole: run the stages that stand aside, too, where they are wanted; else their products are taken as they are.
 
     Returns:
         The context, with ``absent`` telling which stages the log holds nothing for.
@@ -48,7 +49,7 @@ def run_to(name: str, context: Context, *, force: bool = False) -> Context:
     for attempt in range(_ATTEMPTS):
         try:
             with _plain_refusals(context), locked(context.out, lambda: _say_waiting(context)):
-                return _Run(context, force).to(name)
+                return _Run(context, force, whole).to(name)
         except FileNotFoundError:
             if (context.out / freshness.STATE).exists() or attempt == _ATTEMPTS - 1:
                 raise
@@ -74,9 +75,10 @@ def _plain_refusals(context: Context) -> Iterator[None]:
 class _Run:
     """One run over the stages of one test, under its lock."""
 
-    def __init__(self, context: Context, force: bool) -> None:
+    def __init__(self, context: Context, force: bool, whole: bool) -> None:
         self.context = context
         self.force = force
+        self.whole = whole
         self.done: set[str] = set()
         state = context.out / freshness.STATE
         state.mkdir(exist_ok=True)
@@ -103,11 +105,26 @@ class _Run:
 
     def _bring_upstream(self, stage: Stage, needed: bool) -> None:
         try:
-            self._bring(stage)
+            if stage.name in ASIDE and not needed and not self.whole:
+                self._take(stage)
+            else:
+                self._bring(stage)
         except AbsentError as error:
             if needed:
                 raise
             self.context = replace(self.context, absent={**self.context.absent, stage.name: str(error)})
+
+    def _take(self, stage: Stage) -> None:
+        """A stage that stands aside, as it was left. Raises AbsentError where it is not there or out of date."""
+        record = freshness.provenance(self.context, stage, self.hashes)
+        note = freshness.recorded(self.context, stage)
+        key = products.sha256_json([stage.name, record])
+        if not freshness.is_fresh(self.context, stage, note, key, self.hashes):
+            raise AbsentError(
+                f"not made, or older than what it is made from: hfa {stage.name} {self.context.id} makes it"
+            )
+        if note.get("absent"):
+            raise AbsentError(note["absent"])
 
     def _bring_one(self, stage: Stage) -> None:
         record = freshness.provenance(self.context, stage, self.hashes)
