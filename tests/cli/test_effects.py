@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -24,6 +25,17 @@ EFFECT = Effect(
     distort=lambda times, channels, values: {**channels, "thrust": channels["thrust"] * (1.0 - values["share"])},
 )
 """
+
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def stand(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A root with HF5."""
+    root = tmp_path_factory.mktemp("stand")
+    shutil.copytree(ROOT / "raw_tests" / "HF5", root / "raw_tests" / "HF5")
+    return root
 
 
 @pytest.fixture
@@ -55,7 +67,8 @@ def test_json_has_all_of_it_in_si(run: Run, tmp_path: Path) -> None:
     assert list(found) == list(library())
     assert found["tank_heat"]["parameters"]["power"]["unit"] == "W"
     assert [p["strength"] for p in found["n2_purge"]["parameters"].values()] == [True, False, False, False]
-    assert all(p["strength"] for p in found["pressure_transducer_offset"]["parameters"].values())
+    offsets = found["pressure_transducer_offset"]["parameters"]
+    assert [name for name, p in offsets.items() if p["strength"]] == ["p_tank", "p_run", "p_chamber"]
 
 
 def test_a_teams_own_effect_is_listed_and_a_bound_that_is_not_there_is_null(run: Run, tmp_path: Path) -> None:
@@ -72,3 +85,45 @@ def test_a_broken_file_ends_with_one_plain_message(run: Run, tmp_path: Path) -> 
     status, out, said = run("effects", "--root", tmp_path)
     assert (status, out) == (2, "")
     assert "shim.py: found no EFFECT" in said
+
+
+def test_people_see_what_a_test_can_tell_apart(run: Run, stand: Path) -> None:
+    status, out, _ = run("effects", "HF5", "--root", stand)
+    assert status == 0
+    assert all(name in out for name in library())
+    assert "HF5: what p_tank, p_run, p_chamber, thrust, m_tank can show" in out
+    assert "twins: tank_heat and tank_wall_heat_capacity" in out
+    assert "asks for: a thermocouple on the tank's wall" in out
+
+
+def test_json_has_what_a_test_can_tell_apart_beside_the_library(run: Run, stand: Path) -> None:
+    status, out, _ = run("effects", "HF5", "--json", "--root", stand)
+    found = json.loads(out)
+    test = found["test"]
+    assert status == 0
+    assert list(found["effects"]) == list(test["effects"]) == list(library())
+    heat = test["effects"]["tank_heat"]
+    assert heat["seen_at"] * heat["detectability"] == pytest.approx(test["seen_from"] * heat["typical"])
+    assert heat["rivals"][0]["name"] == "tank_wall_heat_capacity"
+    assert all(pair["apart"] < test["twins_below"] for pair in test["twins"])
+    assert test["effects"]["fuel_sliver"]["seen_at"] is None
+    assert {"throat_radius_after", "T_tank"} <= set(test["sensors"])
+    assert set(test["sensors"]).isdisjoint(test["channels"])
+
+
+def test_a_test_that_is_not_there_ends_with_one_plain_message(run: Run, stand: Path) -> None:
+    status, out, said = run("effects", "HF6", "--root", stand)
+    assert (status, out) == (2, "")
+    assert "'HF6'" in said
+    assert "HF5" in said
+
+
+def test_a_test_without_an_engine_says_that_there_is_nothing_to_run(run: Run, stand: Path) -> None:
+    short = stand / "raw_tests" / "HF7"
+    shutil.copytree(stand / "raw_tests" / "HF5", short)
+    text = (short / "test.toml").read_text(encoding="utf-8").replace('"HF5"', '"HF7"')
+    before, after = text.split("[nozzle]\n")
+    (short / "test.toml").write_text(before + "[site]" + after.partition("[site]")[2], encoding="utf-8")
+    status, out, said = run("effects", "HF7", "--root", stand)
+    assert (status, out) == (3, "")
+    assert "nozzle" in said

@@ -245,13 +245,23 @@ def _regression(
         regression.regression(tests, root, out, as_json)
 
 
-@app.command("effects")
-def _effects(root: Root = Path(), as_json: EngineJson = False) -> None:
-    """List the effects that can be added to the model, with those in ROOT/effects/."""
-    with ending():
-        from hfanalysis.cli import effects
+AnyTest = Annotated[
+    str | None, typer.Argument(metavar="TEST", help="Name of a test: what can be told apart with its channels.")
+]
 
-        effects.effects(root, as_json)
+
+@app.command("effects")
+def _effects(test: AnyTest = None, root: Root = Path(), out: Out = None, as_json: EngineJson = False) -> None:
+    """List the effects that can be added to the model; for a TEST, what its channels can tell apart."""
+    with ending():
+        if test is None:
+            from hfanalysis.cli import effects
+
+            effects.effects(root, as_json)
+        else:
+            from hfanalysis.cli import apart
+
+            apart.apart(test, root, out, as_json)
 
 
 @app.command("new")

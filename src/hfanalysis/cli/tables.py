@@ -22,10 +22,12 @@ _NARROWEST = 124
 _WIDE = 116
 """Columns from which on the quantities' names in words fit."""
 
-_MAY_WRAP = ("symbol", "", "flags", "column", "verdict")
+_MAY_WRAP = ("symbol", "", "flags", "column", "verdict", "closest rivals")
 """Columns that give way where the terminal is narrow; numbers never do."""
 
-_NUMBERS = ("value", "± std", "samples", "rate", "least", "largest", "rms", "bias", "noise")
+_NUMBERS = (
+    "value", "± std", "samples", "rate", "least", "largest", "rms", "bias", "noise", "d'", "typical", "seen from",
+)  # fmt: skip
 
 _WORDS = {"of_ratio": "O/F"}
 """What an engine's quantities are called, where that is not plain from their names."""
@@ -41,11 +43,17 @@ class _Paper(Console):
         nobody_reads()
 
 
-def show(name: str, context: Context) -> None:
-    """Print what a stage ("run": all of them) found, on standard output."""
+def paper() -> Console:
+    """Standard output, wide enough for tables that do not break where nobody says how wide it is."""
     console = _Paper(highlight=False)
     if not console.is_terminal:
         console.width = max(console.width, _NARROWEST)
+    return console
+
+
+def show(name: str, context: Context) -> None:
+    """Print what a stage ("run": all of them) found, on standard output."""
+    console = paper()
     console.print(_headline(context))
     for stage in way_to(name) if name == "run" else (name,):
         if stage not in context.absent:
@@ -77,7 +85,8 @@ def _headline(context: Context) -> Text:
     return Text("  ").join([Text("  ".join(filter(None, words)), style="bold"), Text(source, style=style)])
 
 
-def _table(*columns: str, title: str) -> Table:
+def new_table(*columns: str, title: str) -> Table:
+    """An empty table; columns of numbers stand to the right."""
     table = Table(title=title, title_justify="left", title_style="", box=None, pad_edge=False, header_style="dim")
     for column in columns:
         right = column in _NUMBERS
@@ -86,7 +95,7 @@ def _table(*columns: str, title: str) -> Table:
 
 
 def _quantities(found: Mapping[str, Mapping[str, Any]], title: str, wide: bool) -> Table:
-    table = _table("symbol", *[""] * wide, "value", "± std", "95 % interval", "unit", "verdict", title=title)
+    table = new_table("symbol", *[""] * wide, "value", "± std", "95 % interval", "unit", "verdict", title=title)
     for name, quantity in found.items():
         text = shown(quantity)
         verdict = Text(text.verdict, style=_STYLES.get(text.verdict, "yellow"))
@@ -109,7 +118,7 @@ def _print(console: Console, found: Mapping[str, Mapping[str, Any]], title: str)
 
 
 def _ingest(context: Context, console: Console) -> None:
-    table = _table("channel", "column", "unit", "samples", "rate", "least", "largest", "flags", title="channels")
+    table = new_table("channel", "column", "unit", "samples", "rate", "least", "largest", "flags", title="channels")
     for name, row in context.read_json("ingest.json")["channels"].items():
         factor, unit = wording.people_unit(row["unit"])
         ends = [Text("–" if row[end] is None else f"{factor * row[end]:.4g}") for end in ("least", "largest")]
@@ -154,9 +163,7 @@ def _regression(regression: Mapping[str, Any], console: Console) -> None:
 
 def show_regression(product: Mapping[str, Any]) -> None:
     """Print a and n of several tests, together and each alone."""
-    console = _Paper(highlight=False)
-    if not console.is_terminal:
-        console.width = max(console.width, _NARROWEST)
+    console = paper()
     _print(console, quantities(product), f"regression common to {', '.join(product['tests'])}")
     _regression(product["regression"], console)
     agreement = product["agreement"]
@@ -168,7 +175,7 @@ def show_regression(product: Mapping[str, Any]) -> None:
 def _performance(context: Context, console: Console) -> None:
     product = context.read_json("validation.json")
     performance = product.get("performance", {})
-    table = _table("", "measured", "± std", "model", "± std ", "unit", title="performance")
+    table = new_table("", "measured", "± std", "model", "± std ", "unit", title="performance")
     for column in table.columns[1:5]:
         column.justify = "right"
     for name, measured in performance.get("measured", {}).items():
@@ -182,7 +189,7 @@ def _performance(context: Context, console: Console) -> None:
 
 def _validate(context: Context, console: Console) -> None:
     _performance(context, console)
-    table = _table("run", "channel", "phase", "rms", "bias", "noise", "unit", title="measured minus model")
+    table = new_table("run", "channel", "phase", "rms", "bias", "noise", "unit", title="measured minus model")
     for run, channels in context.read_json("validation.json").get("gap", {}).items():
         for channel, phases in channels.items():
             for phase, gap in phases.items():
@@ -222,9 +229,7 @@ def _report(context: Context, console: Console) -> None:
 
 def show_engine(product: Mapping[str, Any]) -> None:
     """Print what an engine file comes to: every quantity of the product, and of the parts in it."""
-    console = _Paper(highlight=False)
-    if not console.is_terminal:
-        console.width = max(console.width, _NARROWEST)
+    console = paper()
     words = (product["engine"], product["command"], f"conventions: {product['conventions']}")
     console.print(Text("  ".join(words), style="bold"))
     console.print(Text(f"oxidizer enthalpy: {product['oxidizer_enthalpy']['of']}"))
@@ -238,10 +243,8 @@ def show_engine(product: Mapping[str, Any]) -> None:
 
 def show_effects(product: Mapping[str, Any]) -> None:
     """Print the library of effects: where each acts, when, and how strong it typically is."""
-    console = _Paper(highlight=False)
-    if not console.is_terminal:
-        console.width = max(console.width, _NARROWEST)
-    table = _table("effect", "equation", "phases", "typical strength", "", title="effects")
+    console = paper()
+    table = new_table("effect", "equation", "phases", "typical strength", "", title="effects")
     for name, found in product["effects"].items():
         table.add_row(name, found["equation"], _phases(found["phases"]), _strength(found), Text(found["meaning"]))
     console.print(table)
@@ -262,7 +265,7 @@ def _strength(effect: Mapping[str, Any]) -> str:
 def _values(console: Console, found: Mapping[str, Mapping[str, Any]], title: str) -> None:
     """A table of values, with intervals where any has one, and below it what cannot be had, by reason."""
     spread = any(quantity.get("std") for quantity in found.values())
-    table = _table("", "value", *(["± std", "95 % interval"] if spread else []), "unit", title=title)
+    table = new_table("", "value", *(["± std", "95 % interval"] if spread else []), "unit", title=title)
     absent: dict[str, list[str]] = {}
     for name, quantity in found.items():
         text = shown(quantity)

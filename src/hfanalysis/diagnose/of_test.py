@@ -41,6 +41,10 @@ class Subject:
         """What is compared."""
         return observe_test(self.log, self.segments, self.definition)
 
+    def stated(self) -> dict[str, dict[str, float]]:
+        """What it states of parameters of effects [SI], by effect."""
+        return {"n2_purge": _purge(self)}
+
     def hypothesis(self) -> Hypothesis:
         """The base model with its constants free."""
         full = run_full(self.log, self.segments, self.calibration, self.definition)
@@ -69,7 +73,7 @@ def diagnose(
     """
     settings = settings or Settings()
     observed = subject.observed()
-    catalogue = Catalogue(_visible(effects, observed), {"n2_purge": _purge(subject)})
+    catalogue = Catalogue(_visible(effects, observed), subject.stated())
     found = name_effects(subject.hypothesis(), observed, catalogue, progress, settings)
     verdict = verdict_of(found)
     progress("proving it", 0.93)

@@ -28,7 +28,7 @@ def run(context: Context) -> None:
 
     effects = library(context.root / FOLDER)
     settings = settings_of(str(context.parameter("variant")))
-    subject = _subject(context)
+    subject = subject_of(context)
     _check_proof_test(context)
     try:
         found = diagnose(subject, effects, lambda: _other(context), context.progress, settings)
@@ -40,7 +40,8 @@ def run(context: Context) -> None:
     context.write_json("diagnosis.json", found.product)
 
 
-def _subject(context: Context) -> Subject:
+def subject_of(context: Context) -> Subject:
+    """What the products of a test give a diagnosis to work on."""
     from hfanalysis.diagnose.of_test import Subject
     from hfanalysis.segment.phases import Segments
     from hfanalysis.testdata.log import read_log
@@ -80,7 +81,7 @@ def _other(context: Context) -> OtherTest | None:
     for name in [asked] if asked else _siblings(context):
         try:
             other = run_to("calibrate", open_test(context.root, name, folder, progress=context.progress))
-            subject = _subject(other)
+            subject = subject_of(other)
             return OtherTest(name, subject.hypothesis(), subject.observed())
         except AnalysisError as error:
             if asked:
