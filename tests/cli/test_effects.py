@@ -93,7 +93,7 @@ def test_people_see_what_a_test_can_tell_apart(run: Run, stand: Path) -> None:
     assert all(name in out for name in library())
     assert "HF5: what p_tank, p_run, p_chamber, thrust, m_tank can show" in out
     assert "twins: tank_heat and tank_wall_heat_capacity" in out
-    assert "asks for: a thermocouple on the tank's wall" in out
+    assert "The library asks for: a thermocouple on the tank's wall" in out
 
 
 def test_json_has_what_a_test_can_tell_apart_beside_the_library(run: Run, stand: Path) -> None:
@@ -108,6 +108,8 @@ def test_json_has_what_a_test_can_tell_apart_beside_the_library(run: Run, stand:
     assert all(pair["apart"] < test["twins_below"] for pair in test["twins"])
     assert test["effects"]["fuel_sliver"]["seen_at"] is None
     assert {"throat_radius_after", "T_tank"} <= set(test["sensors"])
+    pairs = [pair["effects"] for pair in test["twins"]]
+    assert all([pair["effects"] for pair in sensor["twins"]] == pairs for sensor in test["sensors"].values())
     assert set(test["sensors"]).isdisjoint(test["channels"])
 
 

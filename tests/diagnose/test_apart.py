@@ -201,3 +201,19 @@ def test_what_cannot_be_negative_is_no_rival_where_it_would_have_to_be() -> None
     assert now.at_nominal(*pair) == pytest.approx(NOMINAL)
     free = replace(now, one_sided=frozenset())
     assert free.at_nominal(*pair) < TWINS
+
+
+def test_a_rival_that_may_change_its_shape_is_never_farther() -> None:
+    now = outlook(tuple(NOISE)).now
+    kept = np.flatnonzero(~now.shapes)
+    owners = tuple(now.owners[i] for i in kept)
+    stiff = replace(
+        now, owners=owners, matrix=now.matrix[np.ix_(kept, kept)], shapes=now.shapes[kept], one_sided=frozenset()
+    )
+    free = replace(now, one_sided=frozenset())
+    for rival in ("tank_wall_heat_capacity", "tank_nonequilibrium", "injector_two_phase"):
+        assert free.at_nominal("tank_heat", rival) <= stiff.at_nominal("tank_heat", rival) * (1.0 + 1e-9)
+    assert free.at_nominal("tank_heat", "tank_wall_heat_capacity") < TWINS
+    assert free.at_nominal("tank_heat", "tank_wall_heat_capacity") < 0.7 * stiff.at_nominal(
+        "tank_heat", "tank_wall_heat_capacity"
+    )

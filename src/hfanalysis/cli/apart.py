@@ -58,7 +58,7 @@ def product_of(test: str, outlook: Outlook) -> dict[str, Any]:
                 "words": sensor.words,
                 "accuracy": sensor.accuracy,
                 "unit": sensor.unit,
-                "separates": [_pair(p, d) for p, d in outlook.separated(sensor).items()],
+                "twins": [_pair(p, d) for p, d in outlook.twins_with(sensor).items()],
                 "shows": outlook.shown(sensor),
             }
             for sensor in outlook.extra
@@ -111,8 +111,9 @@ def show(product: Mapping[str, Any]) -> None:
 
 
 def _size(row: Mapping[str, Any], key: str) -> str:
+    """Two digits, in the unit of people at a stand."""
     factor, unit = wording.people_unit(row["unit"])
-    return f"{wording.tidy(factor * row[key], 2)} {unit.strip('-')}".strip()
+    return f"{wording.tidy(float(f'{factor * row[key]:.2g}'), 6)} {unit.strip('-')}".strip()
 
 
 def _seen(row: Mapping[str, Any]) -> str:
@@ -144,13 +145,19 @@ def sentences(product: Mapping[str, Any]) -> list[str]:
 
 def _advice(one: str, other: str, product: Mapping[str, Any]) -> str:
     """What would tell two twins apart."""
-    good = [
-        f"{name} ({sensor['words']})"
+    tried = {
+        f"{name} ({sensor['words']})": pair["apart"]
         for name, sensor in product["sensors"].items()
-        if any(set(pair["effects"]) == {one, other} for pair in sensor["separates"])
-    ]
+        for pair in sensor["twins"]
+        if set(pair["effects"]) == {one, other}
+    }
+    good = [words for words, d in tried.items() if d >= product["twins_below"]]
     if good:
         return f"told apart by: {', '.join(good)}"
+    best = max(tried, key=lambda words: tried[words], default="none")
     decisive = dict.fromkeys(product["effects"][n]["decisive"] for n in (one, other))
     known = "; or ".join(filter(None, decisive)) or "nothing that is known"
-    return f"told apart by no sensor that the model has; the library asks for: {known}"
+    return (
+        f"told apart by none of the sensors that were tried; best is {best}: {tried.get(best, 0.0):.1f}. "
+        f"The library asks for: {known}"
+    )

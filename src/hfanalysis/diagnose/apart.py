@@ -154,15 +154,17 @@ class Outlook:
         close = {pair: d for pair in pairs if (d := self.now.apart(*pair)) < TWINS}
         return dict(sorted(close.items(), key=lambda item: item[1]))
 
-    def separated(self, sensor: Sensor) -> dict[tuple[str, str], float]:
-        """Twins that one more sensor tells apart, at the strengths that were nominal without it."""
+    def twins_with(self, sensor: Sensor) -> dict[tuple[str, str], float]:
+        """How far apart the twins are with one more sensor, at the strengths that were nominal without it."""
         more, found = self.with_sensor(sensor), {}
         for one, other in self.twins:
             both = ((one, other), (other, one))
-            d = min(NOMINAL * more.beside(a, b) / self.now.detectability(a) for a, b in both)
-            if d >= TWINS:
-                found[one, other] = d
+            found[one, other] = min(NOMINAL * more.beside(a, b) / self.now.detectability(a) for a, b in both)
         return found
+
+    def separated(self, sensor: Sensor) -> dict[tuple[str, str], float]:
+        """Twins that are twins no longer with one more sensor."""
+        return {pair: d for pair, d in self.twins_with(sensor).items() if d >= TWINS}
 
     def shown(self, sensor: Sensor) -> dict[str, float]:
         """Effects that are seen at their typical strength with one more sensor and not without it: their d'."""
