@@ -186,6 +186,14 @@ def test_a_virtual_channel_is_worth_about_what_the_real_one_is() -> None:
         assert virtual.detectability(name) / found.now.detectability(name) == pytest.approx(gain, rel=0.5)
 
 
+def test_a_test_too_short_for_a_block_gains_nothing_from_a_further_channel() -> None:
+    found = look_ahead(base(), replace(full().only(FEW), end=0.1), Catalogue({"tank_heat": library()["tank_heat"]}, {}))
+    assert found.extra[_sensor(found, "m_tank")].shape[0] == 0
+    assert found.with_sensor(_sensor(found, "m_tank")).detectability("tank_heat") == pytest.approx(
+        found.now.detectability("tank_heat")
+    )
+
+
 def test_without_a_thrust_cell_its_drift_is_never_seen_and_a_cell_would_show_it() -> None:
     found = outlook(("p_tank", "p_chamber"))
     assert "load_cell_drift" not in found.visible
