@@ -83,7 +83,8 @@ class Sensor:
         covariance = covariance + np.exp(-lag / FILLING_TIME) * np.outer(filling, filling)
         covariance[np.diag_indices_from(covariance)] += (1e-3 * self.accuracy) ** 2
         resting, std = np.zeros(points.size, dtype=bool), np.full(points.size, self.accuracy)
-        channel = Channel(self.of, time, value, points, count, resting, std, self.accuracy, covariance)
+        name = "p_chamber" if self.of == "chamber_pressure" else self.of  # the model errs for both alike
+        channel = Channel(name, time, value, points, count, resting, std, self.accuracy, covariance)
         return replace(observed, channels=(channel,), common=None)
 
     def _points(self, observed: Observed, burnt: Burn) -> Integers:
