@@ -49,7 +49,7 @@ def test_two_tests_that_prove_each_other_do_not_wait_for_each_other(
 
     subject = SimpleNamespace(hypothesis=lambda: None, observed=lambda: None)
     monkeypatch.setattr("hfanalysis.stages.runner.run_to", bring)
-    monkeypatch.setattr(stage, "_subject", lambda _context: subject)
+    monkeypatch.setattr(stage, "subject_of", lambda _context: subject)
     for name, other in (("HF5", "HF4"), ("HF4", "HF5")):
         made = replace(open_test(REPOSITORY, name, tmp_path), settings={"diagnose.proof_test": other})
         proof = stage._other(made.at(load_stage("diagnose")))
