@@ -110,6 +110,8 @@ def name_effects(
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
     unknown = unknown_sources(base, named, bench)
+    if settings.polishing:
+        base = _base_again(base, [*sets, *unknown], bench)
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, tuple(catalogue.effects))
 
 
@@ -143,6 +145,12 @@ def _singles(
     judged = [bench.judged(c.names, c.fit) if i < JUDGED else c for i, c in enumerate(singles)]
     judged.sort(key=lambda c: -c.log_evidence)
     return bench.judged((), base), judged
+
+
+def _base_again(base: Candidate, children: list[Candidate], bench: Bench) -> Candidate:
+    """The base model from the constants of sets and sources as well: what they moved may be all that was wrong."""
+    polished = _polished(base.fit, children, bench)
+    return bench.judged((), polished) if polished.log_evidence > base.fit.log_evidence else base
 
 
 def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
