@@ -335,7 +335,7 @@ def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | Non
     half = 0.5 * (first + last)
     noise = Noise.of(signal, signal.between(-LONGEST, -0.1))
     fall = signal.mean(first, half) - signal.mean(half, last)
-    if not abs(fall) < 3.0 * noise.difference_std((first, half), (half, last)):
+    if not abs(fall) <= 3.0 * noise.difference_std((first, half), (half, last)):
         return None
     return first, last
 

@@ -35,6 +35,9 @@ LEAST = 60
 
 MOST = 1500
 
+STILL = 1e-9
+"""Part of a reading by which it has to move to have a spectrum: a coarse converter may stand on one count."""
+
 
 @dataclass(frozen=True)
 class Wander:
@@ -61,7 +64,8 @@ def wander_of(signal: Signal, block: float) -> Wander:
     noise = Noise.of(signal, quiet)
     blocks = quiet.reduced(block)
     white = float(noise.white * np.sqrt(min(noise.step / block, 1.0)))
-    if blocks.time.size < LEAST:
+    still = float(np.ptp(blocks.value)) <= STILL * float(np.abs(blocks.value).max()) if blocks.time.size else True
+    if blocks.time.size < LEAST or still:
         return Wander(np.full(TIMES.size, noise.flicker * np.log(3.0)), white)
     values = blocks.value[-MOST:]
     return _fitted(values - values.mean(), float(np.median(np.diff(blocks.time))), white, noise.flicker)
