@@ -226,7 +226,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     origin = segments.t_open.value
     if origin is None:
         raise AbsentError("no opening was found: there is nothing to compare")
-    end = _end(segments)
+    end = min(_end(segments), _last(log, origin))
     frame = _frame(log, segments, definition, origin)
     live = {name: Signal.of(as_read(log[name])).shifted(origin) for name in CHANNELS if name in log}
     if "m_tank" in live and not _cell_reads(live["m_tank"], definition):
@@ -298,8 +298,9 @@ class _Frame:
 
 
 def _frame(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> _Frame:
-    end = _end(segments)
-    ends = {"chamber": end, "tank": _tank_end(segments, definition, end)}
+    last = _last(log, origin)
+    end = min(_end(segments), last)
+    ends = {"chamber": end, "tank": min(_tank_end(segments, definition, end), last)}
     changes = {
         name: (value, segments.std(name))
         for name in ("t_v", "t_fuel_out")
@@ -384,6 +385,11 @@ def _end(segments: Segments) -> float:
     # where the fuel fades, its fading is to be seen: no wide berth for a wide deviation
     given = [t - AROUND_CHANGE - min(2.0 * deviation, AROUND_CHANGE) for t, deviation in known if t is not None]
     return min([*given, LONGEST])
+
+
+def _last(log: TestLog, origin: float) -> float:
+    """Where the log ends [s]: beyond it nothing is compared, and no model need run."""
+    return max(float(log[name].time.max()) for name in CHANNELS if name in log) - origin
 
 
 def _phases(segments: Segments, end: float) -> dict[str, float]:
