@@ -27,15 +27,16 @@ BIAS = {"p_tank": 5e3, "p_run": 5e3, "p_chamber": 5e3, "thrust": 5.0}
 COMMON = 0.6
 """Correlation of a block of chamber pressure with the same of thrust."""
 
+TIMING = {"t_v": 1e-3, "t_fuel_out": 0.03}
+"""How well instants are found [s]; what is taken for their deviation counts the model's knees as well."""
+
 SPACING, RESTING = 0.04, (12.0, 12.5)
 """Seconds between points of the grid in the burn, and where they lie after it."""
 
 
 def observed(*effects: Active, seed: int = 1, engine: Engine | None = None, common: bool = False) -> Observed:
     """What the sensors read of a run of the stand's engine with these effects; noise as the covariance says."""
-    whole = engine_on_stand(effects=effects) if engine is None else engine
-    done = burn(with_spare_fuel(whole), 10.0, ACCURACY, run_on=True)
-    fuel_out = burn(whole, 10.0, ACCURACY, run_on=True).burn_time
+    done, fuel_out = _run(effects) if engine is None else _run_of(engine)
     quiet = _quiet(done, fuel_out, common)
     rng = np.random.default_rng(seed)
     read = readings(quiet, done)
@@ -43,8 +44,19 @@ def observed(*effects: Active, seed: int = 1, engine: Engine | None = None, comm
     channels = tuple(
         replace(c, value=c.averaged(read[c.name]) + n) for c, n in zip(quiet.channels, noise, strict=True)
     )
-    events = {name: (at + std * float(rng.standard_normal()), std) for name, (at, std) in quiet.events.items()}
+    events = {n: (at + TIMING[n] * float(rng.standard_normal()), std) for n, (at, std) in quiet.events.items()}
     return replace(quiet, channels=channels, events=events)
+
+
+@cache
+def _run(effects: tuple[Active, ...]) -> tuple[Burn, float]:
+    return _run_of(engine_on_stand(effects=effects))
+
+
+def _run_of(engine: Engine) -> tuple[Burn, float]:
+    """A run of an engine that does not run out of fuel, and when it does."""
+    done = burn(with_spare_fuel(engine), 10.0, ACCURACY, run_on=True)
+    return done, burn(engine, 10.0, ACCURACY, run_on=True).burn_time
 
 
 def _quiet(done: Burn, fuel_out: float, common: bool) -> Observed:
