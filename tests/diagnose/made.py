@@ -41,9 +41,7 @@ def observed(*effects: Active, seed: int = 1, engine: Engine | None = None, comm
     rng = np.random.default_rng(seed)
     read = readings(quiet, done)
     noise = np.split(_noise(quiet, rng), np.cumsum([c.time.size for c in quiet.channels])[:-1])
-    channels = tuple(
-        replace(c, value=c.averaged(read[c.name]) + n) for c, n in zip(quiet.channels, noise, strict=True)
-    )
+    channels = tuple(replace(c, value=c.averaged(read[c.name]) + n) for c, n in zip(quiet.channels, noise, strict=True))
     events = {n: (at + TIMING[n] * float(rng.standard_normal()), std) for n, (at, std) in quiet.events.items()}
     return replace(quiet, channels=channels, events=events)
 

@@ -188,7 +188,11 @@ def test_without_blocks_the_rest_is_as_it_was() -> None:
 
 def _form_free(test: Observed, less: Observed, inside: np.ndarray) -> np.ndarray:
     """The covariance of the kept blocks; the model-form error goes with the range of what is left."""
-    return covariance_of(test.at_form(0.0))[np.ix_(inside, inside)] + covariance_of(less) - covariance_of(less.at_form(0.0))
+    return (
+        covariance_of(test.at_form(0.0))[np.ix_(inside, inside)]
+        + covariance_of(less)
+        - covariance_of(less.at_form(0.0))
+    )
 
 
 def test_only_some_channels() -> None:

@@ -1,0 +1,169 @@
+"""hfa diagnose on whole tests: what is hidden in the log is named, and what is not recorded is not needed."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from tests.adopt.firing import make_root
+
+from hfanalysis.effects import effect
+
+KEYS = {
+    "verdict",
+    "effects",
+    "set90",
+    "posterior",
+    "localisation",
+    "gap",
+    "upper_limits",
+    "twins",
+    "decisive_measurements",
+    "runtime_s",
+    "seed",
+}
+"""Of diagnosis.json, as it was agreed upon."""
+
+RATE = 2e-4
+
+
+def hfa(root: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "hfanalysis", *arguments, "--root", str(root)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A test T1 with a throat that erodes, diagnosed."""
+    made = make_root(tmp_path_factory.mktemp("stand"), effect("nozzle_throat_erosion").at(rate=RATE))
+    done = hfa(made, "diagnose", "T1")
+    assert done.returncode == 0, done.stderr
+    assert "The model lacks nozzle_throat_erosion" in done.stdout
+    return made
+
+
+@pytest.fixture(scope="module")
+def product(root: Path) -> dict:  # type: ignore[type-arg]
+    return json.loads((root / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
+
+
+def test_the_product_says_what_was_hidden(product: dict) -> None:  # type: ignore[type-arg]
+    assert set(product) >= KEYS
+    assert product["verdict"] == "named"
+    assert product["set90"] == ["nozzle_throat_erosion"]
+    assert sum(product["posterior"].values()) == pytest.approx(1.0)
+    assert {"none", "unknown", "nozzle_throat_erosion"} <= set(product["posterior"])
+    found = product["effects"][0]
+    assert set(found) >= {"name", "probability", "equation", "parameters"}
+    rate = found["parameters"]["rate"]
+    assert rate["unit"] == "m/s"
+    assert abs(rate["value"] - RATE) < 3.5 * rate["std"]
+    assert rate["std"] < 0.3 * RATE
+
+
+def test_the_place_the_gap_and_the_proof_are_there(product: dict) -> None:  # type: ignore[type-arg]
+    row = product["localisation"][0]
+    assert set(row) >= {"equation", "phase", "t_start", "t_end", "source", "significance"}
+    assert row["equation"] == "nozzle"
+    gap = product["gap"]
+    channels = {"p_tank", "p_run", "p_chamber", "thrust"}
+    for arm in ("before", "after", "noise"):
+        assert set(gap[arm]) == channels
+    assert gap["before"]["p_chamber"] > 5.0 * gap["after"]["p_chamber"]
+    assert set(gap["closed_fraction"]) == {"same", "held_out", "other_test", "placebo"}
+    assert gap["closed_fraction"]["same"] > 0.9
+    assert gap["closed_fraction"]["held_out"] > 0.8
+    assert gap["closed_fraction"]["other_test"] is None
+    assert "nozzle_throat_erosion" not in product["upper_limits"]
+    assert product["upper_limits"]["tank_heat"]["unit"] == "W"
+    assert ["chamber_tap_lag", "nozzle_throat_erosion"] in product["twins"]
+
+
+def test_histories_are_on_file(root: Path, product: dict) -> None:  # type: ignore[type-arg]
+    with h5py.File(root / "processed" / "T1" / "diagnosis.h5") as file:
+        source = file["sources/nozzle_throat_erosion"]
+        assert (source["low90"][:] < source["high90"][:]).all()
+        assert source["mean"].attrs["units"] == product["localisation"][0]["source"]["unit"]
+        for name, rms in product["gap"]["after"].items():
+            left = file[f"residuals/{name}"]
+            assert np.sqrt(np.mean(left["after"][:] ** 2)) == pytest.approx(rms)
+            assert np.sqrt(np.mean(left["before"][:] ** 2)) == pytest.approx(product["gap"]["before"][name])
+
+
+def test_a_second_run_writes_the_same_bytes(root: Path, tmp_path: Path) -> None:
+    shutil.copytree(root / "raw_tests", tmp_path / "raw_tests")
+    assert hfa(tmp_path, "diagnose", "T1").returncode == 0
+    one, two = (folder / "processed" / "T1" / "diagnosis.json" for folder in (root, tmp_path))
+    assert one.read_bytes() == two.read_bytes()
+
+
+def without(root: Path, channels: tuple[str, ...], to: Path) -> Path:
+    """The same test as if these channels had not been recorded."""
+    shutil.copytree(root / "raw_tests", to / "raw_tests")
+    path = to / "raw_tests" / "T1" / "test.toml"
+    text = path.read_text(encoding="utf-8")
+    for channel in channels:
+        text = re.sub(rf"^{channel} = .*\n", "", text, flags=re.MULTILINE)
+    path.write_text(text, encoding="utf-8")
+    return to
+
+
+def test_without_thrust_the_pressures_are_compared(root: Path, tmp_path: Path) -> None:
+    done = hfa(without(root, ("thrust",), tmp_path), "diagnose", "T1")
+    assert done.returncode == 0, done.stderr
+    found = json.loads((tmp_path / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert found["compared"]["channels"] == ["p_tank", "p_run", "p_chamber"]
+    assert "nozzle_throat_erosion" in found["set90"]
+    assert "load_cell_drift" not in {**found["posterior"], **found["upper_limits"]}
+
+
+@pytest.mark.parametrize(
+    ("missing", "reason"),
+    [
+        (("p_run",), "no p_run"),
+        (("p_tank",), "no p_tank"),
+        (("p_tank", "p_run", "p_chamber"), "no p_tank"),
+        (("p_run", "p_chamber", "thrust"), "no firing and no flow: nothing in p_tank responds"),
+    ],
+)
+def test_what_cannot_be_calibrated_is_refused_with_its_reason(
+    missing: tuple[str, ...], reason: str, root: Path, tmp_path: Path
+) -> None:
+    done = hfa(without(root, missing, tmp_path), "diagnose", "T1")
+    assert done.returncode == 3
+    assert re.search(reason, done.stderr), done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "processed" / "T1" / "diagnosis.json").exists()
+
+
+def cut(root: Path, to: Path, end: float) -> Path:
+    """The same test as if the logger had stopped ``end`` seconds after the opening."""
+    shutil.copytree(root / "raw_tests", to / "raw_tests")
+    path = to / "raw_tests" / "T1" / "log.csv"
+    lines = path.read_text(encoding="utf-8").splitlines()
+    kept = [line for line in lines[1:] if float(line.split(",")[0]) < 100.0 + end]
+    path.write_text("\n".join([lines[0], *kept]) + "\n", encoding="utf-8")
+    return to
+
+
+def test_a_log_that_stops_in_the_burn_is_compared_as_far_as_it_goes(root: Path, tmp_path: Path) -> None:
+    done = hfa(cut(root, tmp_path, 6.2), "diagnose", "T1")
+    assert done.returncode == 0, done.stderr
+    found = json.loads((tmp_path / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert found["compared"]["end"] == pytest.approx(6.2, abs=0.05)
+    assert "nozzle_throat_erosion" in found["set90"]
+    assert found["localisation"][0]["t_end"]["value"] < 6.3
+
+
+def test_a_log_that_stops_before_the_liquid_is_gone_is_refused(root: Path, tmp_path: Path) -> None:
+    done = hfa(cut(root, tmp_path, 2.0), "diagnose", "T1")
+    assert done.returncode == 3
+    assert "no end of the liquid" in done.stderr
+    assert "Traceback" not in done.stderr

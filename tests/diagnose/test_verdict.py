@@ -1,0 +1,330 @@
+"""Probabilities, plausible sizes, the proof, and what is said of them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as some
+from tests.diagnose import made
+from tests.diagnose.test_naming import catalogue
+from tests.engine.stand import engine_on_stand
+
+from hfanalysis.diagnose import gap, posterior
+from hfanalysis.diagnose.acting import acting
+from hfanalysis.diagnose.candidate import Candidate
+from hfanalysis.diagnose.fit import fit
+from hfanalysis.diagnose.naming import Naming, name_effects
+from hfanalysis.diagnose.plausible import LIMITS, MOST_LOST, excess, judged, lost
+from hfanalysis.diagnose.posterior import SET, Scale, evidences_of, kind, scale, smallest_set
+from hfanalysis.diagnose.proof import OtherTest, Proof, prove
+from hfanalysis.diagnose.variants import VARIANTS, settings_of
+from hfanalysis.diagnose.verdict import effects_product, places, verdict_of
+from hfanalysis.diagnose.words import effect_sentence, gap_line, headline, place_sentence, proof_sentences, shown, story
+from hfanalysis.effects import effect, library
+from hfanalysis.errors import InputError
+from hfanalysis.quantity import Quantity
+
+labels = some.dictionaries(
+    some.sampled_from(("none", "unknown", "tank_heat", "load_cell_drift", "n2_purge")),
+    some.floats(-500.0, 500.0),
+    min_size=1,
+)
+EROSION = effect("nozzle_throat_erosion").at(rate=2e-4)
+
+
+@cache
+def eroded() -> Naming:
+    tried = catalogue(("load_cell_drift", "nozzle_throat_erosion"))
+    return name_effects(made.hypothesis(), made.observed(EROSION), tried)
+
+
+@given(labels, some.floats(0.5, 20.0), some.floats(0.0, 5.0), some.floats(0.0, 10.0))
+def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: float, leftover: float) -> None:
+    found = Scale(t, more).probabilities(evidences, leftover)
+    assert set(found) == set(evidences)
+    assert sum(found.values()) == pytest.approx(1.0)
+    order = sorted(evidences, key=lambda k: evidences[k])
+    assert all(found[a] <= found[b] for a, b in zip(order, order[1:], strict=False))
+
+
+@given(labels)
+def test_the_set_is_the_smallest_that_holds_nine_tenths(evidences: dict[str, float]) -> None:
+    found = Scale().probabilities(evidences, 1.0)
+    names = smallest_set(found)
+    assert sum(found[n] for n in names) >= SET - 1e-12
+    assert sum(found[n] for n in names[:-1]) < SET
+    assert min(found[n] for n in names) >= max((p for n, p in found.items() if n not in names), default=0.0)
+
+
+def test_a_temperature_takes_evidences_less_seriously() -> None:
+    evidences = {"none": 0.0, "tank_heat": 10.0}
+    cold, warm = (Scale(t).probabilities(evidences, 1.0) for t in (1.0, 5.0))
+    assert cold["tank_heat"] == pytest.approx(1.0 / (1.0 + np.exp(-10.0)))
+    assert warm["tank_heat"] == pytest.approx(1.0 / (1.0 + np.exp(-2.0)))
+    left = Scale(1.0, 1.0)
+    assert left.probabilities(evidences, 0.8) == cold
+    assert left.probabilities(evidences, 5.0) == warm
+
+
+def test_an_offset_of_a_kind_shifts_its_odds() -> None:
+    shifted = Scale(offsets={"none": 2.0, "named": 0.0, "unknown": 0.0}).probabilities(
+        {"none": 0.0, "n2_purge": 2.0}, 1
+    )
+    assert shifted["none"] == pytest.approx(0.5)
+    assert [kind(label) for label in ("none", "unknown", "n2_purge")] == ["none", "unknown", "named"]
+
+
+@pytest.fixture
+def stored(monkeypatch: pytest.MonkeyPatch, tmp_path):  # type: ignore[no-untyped-def]
+    """A folder in place of the package's, whose probabilities.json a test may write."""
+    monkeypatch.setattr(posterior, "files", lambda name: tmp_path)
+    scale.cache_clear()
+    yield tmp_path
+    scale.cache_clear()
+
+
+def test_without_constants_evidences_are_taken_as_they_are(stored) -> None:  # type: ignore[no-untyped-def]
+    assert scale() == Scale()
+
+
+def test_constants_are_read_from_their_file(stored) -> None:  # type: ignore[no-untyped-def]
+    offsets = {"none": 1.0, "named": 0.0, "unknown": -1.0}
+    text = json.dumps({"temperature": 3.0, "temperature_per_leftover": 0.2, "offsets": offsets, "cases": 9})
+    (stored / "probabilities.json").write_text(text, encoding="utf-8")
+    assert scale() == Scale(3.0, 0.2, offsets)
+
+
+def test_none_is_the_zero_of_evidence_and_a_set_counts_for_its_first_name() -> None:
+    found = eroded()
+    evidences = evidences_of(found)
+    assert evidences["none"] == 0.0
+    single = found.singles[0]
+    pair = replace(single, names=("nozzle_throat_erosion", "tank_heat"), log_evidence=single.log_evidence + 7.0)
+    with_set = evidences_of(replace(found, sets=(pair,)))
+    assert with_set["nozzle_throat_erosion"] == pytest.approx(evidences["nozzle_throat_erosion"] + 7.0)
+    assert "tank_heat" not in with_set
+
+
+def test_a_size_beyond_belief_costs_evidence() -> None:
+    for name, limit in LIMITS.items():
+        # only the parameter that a limit is of, or all transducers
+        typical, huge = ({limit.parameter: share * limit.most} for share in (0.9, 5.0))
+        assert lost(name, typical) == 0.0, name
+        assert 1.0 < lost(name, huge) <= MOST_LOST, name
+        assert lost(name, {limit.parameter: -5.0 * limit.most}) == lost(name, huge), name
+        assert judged(name, huge)["plausible"] is False, name
+        assert judged(name, typical)["plausible"] is True, name
+    assert lost("tank_heat", {"power": 1e9}) == MOST_LOST
+    assert excess("an_effect_of_a_team", {"x": 1e9}) == 0.0
+    assert judged("an_effect_of_a_team", {"x": 1e9})["plausible"] is None
+
+
+def test_every_limit_is_of_a_strength_that_the_library_has() -> None:
+    assert set(LIMITS) == set(library())
+    for name, limit in LIMITS.items():
+        known = library()[name]
+        assert limit.parameter in [p.name for p in known.parameters[: known.strengths]], name
+
+
+def test_an_impossible_size_makes_a_name_less_probable() -> None:
+    """Throat erosion of a millimetre a second, and the same evidence."""
+    found = eroded()
+    single = found.singles[0]
+    engine = single.fit.burnt.steps.engine
+    worn = replace(engine, effects=(effect("nozzle_throat_erosion").at(rate=1.2e-3),))
+    burnt = replace(single.fit.burnt, steps=replace(single.fit.burnt.steps, engine=worn))
+    large = replace(single, fit=replace(single.fit, burnt=burnt))
+    odds = [verdict_of(replace(found, singles=(c,))).evidences["nozzle_throat_erosion"] for c in (single, large)]
+    assert odds[0] - odds[1] == pytest.approx(lost("nozzle_throat_erosion", {"rate": 1.2e-3}))
+
+
+def probable(*gains: tuple[str, float]) -> Naming:
+    """A naming in which these names have such log evidences beyond none."""
+    found, single = eroded(), eroded().singles[0]
+    base = found.base.log_evidence
+    singles = tuple(replace(single, names=(n,), log_evidence=base + g) for n, g in gains if n != "unknown")
+    strange = tuple(Candidate(("tank_leak",), single.fit, base + g, unknown=True) for n, g in gains if n == "unknown")
+    return replace(found, singles=singles, sets=(), unknown=strange)
+
+
+@pytest.mark.parametrize(
+    ("gains", "label"),
+    [
+        ((("tank_heat", 20.0), ("n2_purge", 3.0)), "named"),
+        ((("tank_heat", 20.0), ("n2_purge", 19.5)), "ambiguous"),
+        ((("tank_heat", -20.0),), "none"),
+        ((("tank_heat", 20.0), ("unknown", 30.0)), "unknown"),
+        ((("tank_heat", 2.0), ("n2_purge", -9.0)), "ambiguous"),
+    ],
+)
+def test_the_verdict_follows_from_the_odds(gains, label: str) -> None:  # type: ignore[no-untyped-def]
+    verdict = verdict_of(probable(*gains))
+    assert verdict.label == label
+    assert sum(verdict.posterior.values()) == pytest.approx(1.0)
+    if label == "none":
+        assert verdict.chosen.names == ()
+    if label == "named":
+        assert verdict.chosen.names == (verdict.top,)
+
+
+def test_the_effect_is_given_with_its_size() -> None:
+    row = effects_product(verdict_of(eroded()))[0]
+    assert row["name"] == "nozzle_throat_erosion"
+    rate = row["parameters"]["rate"]
+    assert abs(rate.value - 2e-4) < 3.5 * rate.std
+    assert rate.unit == "m/s"
+    assert row["plausibility"]["plausible"] is True
+
+
+@cache
+def sibling(*effects) -> OtherTest:  # type: ignore[no-untyped-def]
+    """Another test of the stand: less oxidizer, warmer."""
+    engine = engine_on_stand(effects=effects, oxidizer_mass=7.6, temperature=296.0)
+    mass = next(f for f in made.hypothesis().free if f.name == "oxidizer_mass")
+    free = tuple(replace(f, center=7.62) if f is mass else f for f in made.hypothesis().free)
+    free = tuple(replace(f, center=296.0) if f.name == "temperature" else f for f in free)
+    return OtherTest("T2", replace(made.hypothesis(), free=free), made.observed(seed=5, engine=engine))
+
+
+@cache
+def proof(eroding: bool) -> Proof:
+    return prove(eroded(), verdict_of(eroded()).chosen, sibling(EROSION) if eroding else sibling())
+
+
+def test_the_gap_closes_on_all_arms_and_hardly_with_a_wrong_effect() -> None:
+    fractions = proof(eroding=True).fractions
+    assert set(fractions) >= {"same", "held_out", "other_test", "placebo"}
+    for arm in ("same", "held_out", "other_test"):
+        assert fractions[arm] is not None, arm
+        assert 0.8 < fractions[arm] <= 1.0, arm
+    assert fractions["placebo"] is not None
+    assert fractions["placebo"] < 0.5
+
+
+def test_an_effect_that_another_test_lacks_does_not_close_its_gap() -> None:
+    found = proof(eroding=False)
+    assert found.other is not None
+    fraction = found.fractions["other_test"]
+    assert fraction is None or fraction < 0.0
+    assert found.other["after"]["p_chamber"] > found.other["before"]["p_chamber"]
+
+
+def test_the_other_test_keeps_the_constants_that_were_found_here() -> None:
+    chosen = verdict_of(eroded()).chosen
+    kept = gap.frozen(sibling(EROSION).hypothesis, chosen.fit)
+    assert kept.names == made.hypothesis().names
+    assert kept.engine.effects[0].named["rate"] == pytest.approx(chosen.fit.values["nozzle_throat_erosion.rate"])
+
+
+def test_without_another_test_the_proof_says_so() -> None:
+    alone = prove(eroded(), verdict_of(eroded()).chosen, None)
+    assert alone.fractions["other_test"] is None
+    assert any("no other test" in note for note in alone.notes)
+
+
+def test_the_gap_of_the_truth_is_the_noise() -> None:
+    test = made.observed()
+    found = fit(made.hypothesis(), test)
+    rms, noise = gap.root_mean_square(found, test), gap.noise_of(test)
+    for name, value in rms.items():
+        assert value == pytest.approx(noise[name], rel=0.2), name
+    assert gap.total_gap(found, test) < 0.8
+    assert gap.closed(0.1, 0.0) is None
+    assert gap.closed(10.0, 1.0) == pytest.approx(0.9)
+
+
+def test_offset_and_gain_of_a_sensor_are_no_gap() -> None:
+    test = made.observed()
+    found = fit(made.hypothesis(), test)
+    shifted = tuple(replace(c, value=1.002 * c.value + 4e3) if c.name == "p_run" else c for c in test.channels)
+    biased = gap.root_mean_square(found, replace(test, channels=shifted))
+    assert biased["p_run"] < 1.3 * gap.root_mean_square(found, test)["p_run"]
+
+
+def test_what_an_effect_does_is_given_over_time() -> None:
+    found = eroded()
+    source = acting(verdict_of(found).chosen.fit, "nozzle_throat_erosion", found.bench.observed)
+    assert source.equation == "nozzle"
+    assert source.unit == "N"
+    assert (source.std > 0.0).all()
+    assert abs(source.mean[-1]) > 5.0 * abs(source.mean[2])
+
+
+def product(label: str, **more: Any) -> dict[str, Any]:
+    """A small product of a verdict."""
+    gains = {
+        "none": (("nozzle_throat_erosion", -20.0),),
+        "named": (("nozzle_throat_erosion", 20.0),),
+        "ambiguous": (("nozzle_throat_erosion", 20.0), ("load_cell_drift", 19.8)),
+    }
+    found = eroded() if label == "unknown" else probable(*gains[label])
+    verdict = verdict_of(found)
+    fractions = {"same": 0.98, "held_out": 0.9, "other_test": None, "placebo": 0.1}
+    rms = {name: 2.0 * size for name, size in made.NOISE.items()}
+    return {
+        "verdict": label,
+        "posterior": {"unknown": 0.97, "none": 0.03} if label == "unknown" else verdict.posterior,
+        "set90": ["unknown"] if label == "unknown" else verdict.set90,
+        "effects": effects_product(verdict) if label in ("named", "ambiguous") else [],
+        "localisation": places(verdict, found) if label != "none" else [],
+        "gap": {"before": rms, "after": made.NOISE, "noise": made.NOISE, "closed_fraction": fractions},
+        "not_it": ["tank_heat"],
+        "decisive_measurements": [] if label == "none" else ["nozzle_throat_erosion: the throat's diameter"],
+        **more,
+    }
+
+
+@pytest.mark.parametrize("label", ["none", "named", "ambiguous", "unknown"])
+def test_every_verdict_is_said_in_sentences(label: str) -> None:
+    said = story(product(label))
+    assert all(line.endswith(".") and "None" not in line and "nan" not in line for line in said)
+    expected = {
+        "none": "Nothing is missing",
+        "named": "The model lacks nozzle_throat_erosion (1.00)",
+        "ambiguous": "cannot be excluded",
+        "unknown": "Something is missing that is not in the library (unknown 0.97)",
+    }
+    assert expected[label] in said[0]
+    assert (len(said) == 1) == (label == "none")
+    if label == "unknown":
+        assert "It is none of these: tank_heat." in said
+
+
+def test_sentences_give_sizes_in_the_units_of_engineers() -> None:
+    row = places(verdict_of(eroded()), eroded())[0]
+    assert " N on average" in place_sentence(row)
+    heat = {**row, "equation": "tank_energy", "source": Quantity(900.0, "W", 150.0)}
+    assert "the tank's energy differs by 0.9 ± 0.15 kW" in place_sentence(heat)
+    assert "(thrust)" in place_sentence({**row, "channel": "thrust"})
+    assert place_sentence({**row, "beside": True}).endswith("still open.")
+    assert shown(Quantity(2.5e5, "Pa", 1e4)) == "2.5 ± 0.1 bar"
+    assert shown(Quantity.absent("not recorded")) == "not known"
+    assert gap_line("thrust", product("named")["gap"]) == "thrust: rms 10 N without, 5 N with it; noise 5 N."
+    assert proof_sentences(product("named"))[0].startswith("98 % of the gap closes")
+    assert proof_sentences({"gap": {"closed_fraction": {}}}) == []
+
+
+def test_an_impossible_size_is_said() -> None:
+    row = effects_product(verdict_of(eroded()))[0]
+    assert "hard to believe" not in effect_sentence(row)
+    unlikely = {**row, "plausibility": judged("nozzle_throat_erosion", {"rate": 2e-3})}
+    assert "hard to believe" in effect_sentence(unlikely)
+    assert "2 mm/s is beyond 0.4 mm/s" in effect_sentence(unlikely)
+
+
+def test_the_headline_is_of_the_most_probable() -> None:
+    assert "nozzle_throat_erosion" in headline(product("named"))
+
+
+def test_variants_are_known_by_name() -> None:
+    assert settings_of("") == VARIANTS[""]
+    assert settings_of("white_noise").coloured is False
+    assert sum(settings_of(name) == settings_of("") for name in VARIANTS) == 1
+    with pytest.raises(InputError, match="expected one of no_tempering"):
+        settings_of("no_such")
