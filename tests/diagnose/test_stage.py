@@ -9,6 +9,7 @@ from typing import Any, cast
 import pytest
 from tests.adopt.firing import make_root
 
+from hfanalysis.errors import AnalysisError
 from hfanalysis.stages.diagnose import STAGE, _other, _siblings
 from hfanalysis.testdata.definition import load_definition
 
@@ -25,6 +26,7 @@ def another(root: Path, name: str, old: str = "", new: str = "") -> None:
     text = (root / "raw_tests" / "T1" / "test.toml").read_text(encoding="utf-8")
     folder = root / "raw_tests" / name
     folder.mkdir()
+    (folder / "log.csv").write_text("time,p_tank,p_run,p_chamber,thrust\n", encoding="utf-8")
     (folder / "test.toml").write_text(text.replace('id = "T1"', f'id = "{name}"').replace(old, new), encoding="utf-8")
 
 
@@ -41,12 +43,10 @@ def test_it_is_another_hot_fire_of_the_same_stand(tmp_path: Path) -> None:
 
 def test_a_sibling_that_cannot_be_calibrated_is_passed_over(tmp_path: Path) -> None:
     root = make_root(tmp_path)
-    another(root, "T3")  # it has no log
+    another(root, "T3")  # its log is empty
     assert _other(context(root)) is None
 
 
 def test_the_one_that_is_asked_for_has_to_be_there(tmp_path: Path) -> None:
-    from hfanalysis.errors import AnalysisError
-
     with pytest.raises(AnalysisError, match="T9"):
         _other(context(make_root(tmp_path), "T9"))
