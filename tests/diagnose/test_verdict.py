@@ -16,6 +16,7 @@ from tests.diagnose.test_naming import catalogue
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.diagnose import gap, posterior
+from hfanalysis.diagnose import verdict as verdict_module
 from hfanalysis.diagnose.acting import acting
 from hfanalysis.diagnose.candidate import Candidate
 from hfanalysis.diagnose.fit import fit
@@ -178,7 +179,8 @@ def probable(*gains: tuple[str, float]) -> Naming:
         ((("tank_heat", 1.2),), "none"),
     ],
 )
-def test_the_verdict_follows_from_the_odds(gains, label: str) -> None:  # type: ignore[no-untyped-def]
+def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(verdict_module, "scale", Scale)  # evidences as they are
     verdict = verdict_of(probable(*gains))
     assert verdict.label == label
     assert sum(verdict.posterior.values()) == pytest.approx(1.0)
