@@ -274,6 +274,30 @@ LEAST_VARIANCE = 1e-3
 """Of any combination of blocks, relative to a single block's."""
 
 
+def _moved_by_knee(reduced: _Reduced, frame: _Frame) -> Array:
+    """What a channel differs by if the end of the liquid was seen one standard deviation late.
+
+    The model is laid over the measurement from knee to knee: an error of t_v stretches all that comes before and shifts
+    all that comes after.
+    """
+    if "t_v" not in frame.changes:
+        return np.zeros(reduced.time.size)
+    instant, deviation = frame.changes["t_v"]
+    out = np.zeros(reduced.time.size)
+    burning = ~frame.resting[reduced.first]
+    for side in (reduced.time < instant, reduced.time >= instant):
+        part = side & burning
+        if part.sum() > SPEED_ORDER + 2:
+            t = reduced.time[part] - instant
+            speed = np.polyval(np.polyder(np.polyfit(t, reduced.value[part], SPEED_ORDER)), t)
+            out[part] = speed * np.minimum(reduced.time[part] / instant, 1.0)
+    return np.asarray(out * max(deviation, EVENT_STD))
+
+
+SPEED_ORDER = 3
+"""Order of the polynomials whose slope is a channel's speed on either side of the knee."""
+
+
 def as_read(channel: LogChannel) -> LogChannel:
     """A channel with its zero taken off but not the drift that ingest removes: a drift is an effect to be found."""
     if channel.drift == 0.0 or channel.raw is None:
@@ -513,6 +537,8 @@ def _channel(
     # a zero that was taken before the opening leaves of the accuracy mostly the gain's error
     offset = accuracy if zero_std is None else float(np.hypot(zero_std, UNSTEADY_ZERO * accuracy))
     covariance = own + offset**2 * np.outer(burning, burning) + accuracy**2 * np.outer(gain, gain)
+    moved = _moved_by_knee(reduced, frame)
+    covariance = covariance + np.outer(moved, moved)
     filling = np.where((reduced.time < frame.filled) & ~resting, FILLING_ERROR * float(np.ptp(reduced.value)), 0.0)
     lag = np.abs(reduced.time[:, None] - reduced.time[None, :])
     covariance = covariance + np.exp(-lag / FILLING_TIME) * np.outer(filling, filling)
