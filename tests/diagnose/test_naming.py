@@ -59,10 +59,12 @@ def leaking() -> Naming:
 @pytest.mark.parametrize("hidden", TRIED)
 def test_the_hidden_effect_is_named(hidden: str) -> None:
     verdict = verdict_of(named(hidden))
-    assert verdict.label == "named"
+    # a free-form source at the same place fits as well, at the price of its freedom: it may stay in the set
+    assert verdict.label == ("named" if verdict.set90 == [hidden] else "ambiguous")
     assert verdict.top == hidden
     assert verdict.chosen.names == (hidden,)
-    assert verdict.set90 == [hidden]
+    assert verdict.posterior[hidden] > 0.75
+    assert set(verdict.set90) <= {hidden, "unknown"}
     assert named(hidden).singles[0].names == (hidden,)
 
 

@@ -68,7 +68,7 @@ def test_a_drift_is_nothing_at_ignition_and_whole_when_the_cell_is_warm() -> Non
 
 
 def test_one_transducer_can_be_off_by_itself() -> None:
-    off = effect("pressure_transducer_offset").at(p_run=0.3e5)
+    off = effect("pressure_transducer_offset").at(p_run=0.3e5, before=1.0)
     read, truth = observe(base(), TIMES, [off]), observe(base(), TIMES, [])
     assert not off.idle
     assert read["p_run"] - truth["p_run"] == pytest.approx(0.3e5)
