@@ -28,8 +28,8 @@ from hfanalysis.thermo.saturation import Saturation
 
 Array = NDArray[np.float64]
 
-ROUNDS = 3
-"""C_i and the flow that the effects leave it are found in turns; they hardly move each other."""
+ROUNDS = 6
+"""C_i, K_loss and the flow that the effects leave them are found in turns."""
 
 LIQUID_STEPS, VAPOR_STEPS = 400, 100
 """Steps of the tank alone over a phase: seconds of smooth course."""
@@ -107,12 +107,15 @@ def acting(
     The load counts less what left by another way than the injector, its area times the mean of what the effects make of
     the flow. No vapour phase where C_i has no answer. Raises ArithmeticError where the tank's model cannot be run.
     """
-    balance, phase = inputs, None
+    balance, phase, share = inputs, None, 1.0
     for _ in range(ROUNDS):
         found = reduce(tables, saturation, balance)
         if not (np.isfinite(found.C_i) and found.C_i > 0.0):
             return inputs, None
-        run, tank = _liquid_phase(histories, saturation, definition, inputs, found, effects)
+        run, tank = _liquid_phase(
+            histories, saturation, definition, inputs, replace(found, K_loss=found.K_loss * share), effects
+        )
+        share = share * _loss_share(run, saturation, found.K_loss)
         factor, leak = _flow_beside(run, saturation, tank.engine.feed.area)
         balance = replace(inputs, mass=inputs.mass - leak, area=inputs.area * factor)
         phase = _vapor_phase(run, tank, saturation, tables)
@@ -135,6 +138,14 @@ def _liquid_phase(
         raise ArithmeticError("the tank's model with the adopted effects cannot be run over the liquid phase")
     wet = run.time < (run.t_v if np.isfinite(run.t_v) else np.inf)
     return TankRun(run.time[wet], run.states[wet], run.outputs[wet], run.t_v), tank
+
+
+def _loss_share(run: TankRun, saturation: Saturation, measured: float) -> float:
+    """The measured loss factor over that which the run shows: what it has to be without what effects make of it."""
+    drop = np.maximum(run.pressure - run.run_pressure, 0.0)
+    density = saturation.liquid_density(run.temperature)
+    shown = float(np.trapezoid(drop * density, run.time)) / max(float(np.trapezoid(run.flow**2, run.time)), 1e-12)
+    return float(np.clip(measured / shown, 0.2, 5.0)) if shown > 0.0 and measured > 0.0 else 1.0
 
 
 def _flow_beside(run: TankRun, saturation: Saturation, area: float) -> tuple[float, float]:
