@@ -55,6 +55,7 @@ class Observer:
     reference: Histories
     centers: Array
     used: NDArray[np.bool_]
+    flowing: NDArray[np.bool_]
     factors: tuple[Array, ...]
 
     @classmethod
@@ -66,8 +67,9 @@ class Observer:
         for instant in (0.0, reference.t_v, reference.t_fuel_out, stand.closing):
             if np.isfinite(instant):
                 used &= (edges > instant + BLIND) | (edges + width < instant - BLIND)
-        factors = _factors(stand, reference, instruments, edges, used)
-        return cls(stand, reference, edges, used, factors)
+        flowing = edges + width <= stand.closing
+        factors = _factors(stand, reference, instruments, edges, used, flowing)
+        return cls(stand, reference, edges, used, flowing[used], factors)
 
     def means(self, channels: Array, true: Histories) -> Array:
         """Block means (blocks, channels) of noise-free channels, at the reference's phase."""
@@ -89,7 +91,7 @@ class Observer:
 
     def whitened(self, means: Array, true: Histories) -> Array:
         """Block means over their noise, uncorrelated, and the instants over their uncertainty."""
-        parts = [np.concatenate([means[:, i] for i in group]) for group in GROUPS]
+        parts = [np.concatenate([means[self.flowing | (i not in TANK_SIDE), i] for i in group]) for group in GROUPS]
         white = [
             solve_triangular(f, p, lower=True, check_finite=False) for f, p in zip(self.factors, parts, strict=True)
         ]
@@ -103,14 +105,24 @@ class Observer:
 
 GROUPS = ((s.P_TANK,), (s.P_RUN,), (s.P_CHAMBER, s.THRUST), (s.P_PURGE,), (s.M_TANK,))
 """Channels whose noise goes together."""
+TANK_SIDE = (s.P_TANK, s.P_RUN, s.P_PURGE, s.M_TANK)
+"""Channels that test.toml excludes once the valve has closed: what is not in the test is no evidence."""
 
 
 def _factors(
-    stand: Stand, reference: Histories, instruments: se.Instruments, edges: Array, used: NDArray[np.bool_]
+    stand: Stand,
+    reference: Histories,
+    instruments: se.Instruments,
+    edges: Array,
+    used: NDArray[np.bool_],
+    flowing: NDArray[np.bool_],
 ) -> tuple[Array, ...]:
     n = len(edges)
-    pick = np.ix_(used, used)
-    one = {i: toeplitz(_noise_covariance(x, n))[pick] for i, x in enumerate(instruments.sensors)}
+    kept = [used & flowing if i in TANK_SIDE else used for i in range(len(instruments.sensors))]
+    one = {
+        i: toeplitz(_noise_covariance(x, n))[np.ix_(k, k)]
+        for i, (x, k) in enumerate(zip(instruments.sensors, kept, strict=True))
+    }
     # the tank's shaking, settled in a few hundredths of a second: nearly white from block to block
     shake = se.narrow_band_covariance(
         (float(np.exp(-0.01)), 2.0 * np.pi * instruments.shake_frequency / se.RATE), (n + 1) * BLOCK
@@ -118,11 +130,12 @@ def _factors(
     swing = np.interp(edges + 0.5 * BLOCK / se.RATE, reference.time, se.envelope(reference, stand.ambient), left=0.0)[
         used
     ]
-    level = instruments.shake * np.where(swing > 0.0, 1.0, 0.1)
-    one[s.M_TANK] = one[s.M_TANK] + toeplitz(block_covariance(shake, n))[pick] * np.outer(level, level)
+    level = instruments.shake * np.where(swing[flowing[used]] > 0.0, 1.0, 0.1)
+    weighed = np.ix_(kept[s.M_TANK], kept[s.M_TANK])
+    one[s.M_TANK] = one[s.M_TANK] + toeplitz(block_covariance(shake, n))[weighed] * np.outer(level, level)
     joint = block_diag(one[s.P_CHAMBER], one[s.THRUST])
     o = instruments.oscillation
-    wave = toeplitz(block_covariance(se.narrow_band_covariance(o.poles, (n + 1) * BLOCK), n))[pick]
+    wave = toeplitz(block_covariance(se.narrow_band_covariance(o.poles, (n + 1) * BLOCK), n))[np.ix_(used, used)]
     amplitude = np.concatenate([swing, swing * o.coupling * np.pi * stand.throat_radius**2]) * o.relative
     joint += np.tile(wave, (2, 2)) * np.outer(amplitude, amplitude)
     blocks = [joint if len(g) > 1 else one[g[0]] for g in GROUPS]

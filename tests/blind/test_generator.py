@@ -157,6 +157,22 @@ def test_noise_has_the_covariance_that_detectability_uses(family: str) -> None:
     assert (means[:, :-5] * means[:, 5:]).mean() == pytest.approx(theory[5], abs=0.15 * theory[0])
 
 
+def test_what_the_test_excludes_after_the_valve_has_closed_is_no_evidence() -> None:
+    rng = np.random.default_rng(5)
+    stand = st.draw(rng)
+    channels, base = observed(stand, ())
+    observer = Observer.of(stand, base, se.draw(rng, "flicker"))
+    means = observer.means(channels, base)
+    late = observer.centers[observer.used] > stand.closing
+    assert late.sum() > 20
+    moved, shifted = means.copy(), means.copy()
+    moved[late, s.P_TANK] += 1e5
+    shifted[late, s.P_CHAMBER] += 1e5
+    same = observer.whitened(means, base)
+    assert np.array_equal(observer.whitened(moved, base), same)
+    assert not np.array_equal(observer.whitened(shifted, base), same)
+
+
 @pytest.mark.parametrize("family", se.FAMILIES)
 def test_whitened_noise_of_a_whole_log_is_white_and_of_unit_size(
     family: str, stand: st.Stand, base: st.Histories
