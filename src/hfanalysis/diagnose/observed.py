@@ -38,10 +38,10 @@ BLOCK = 0.02
 MERGED, NEAR = 5, 0.4
 """Blocks that are merged into one farther than NEAR [s] from any change: the noise there is coherent anyway."""
 
-AROUND_CHANGE = 0.06
+AROUND_CHANGE = 0.04
 """Seconds on either side of a phase change (beside its own deviation) without blocks: knees are rounded."""
 
-FIRST = 0.05
+FIRST = 0.03
 """Seconds after the opening before which nothing is compared: the chamber fills, the igniter is not modelled."""
 
 AROUND_END = 0.3
@@ -61,7 +61,7 @@ FORM_ERROR, FORM_TIME = 2e-4, 1.0
 CHAMBER_FORM = 4.0
 """How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealised further."""
 
-EVENT_STD = 0.008
+EVENT_STD = 0.005
 """Least standard deviation [s] of the instant of a phase change."""
 
 FUEL_STD = 0.05
@@ -113,7 +113,7 @@ class Channel:
         """The same with independent noise of the same size, beside offset and gain."""
         burning = np.where(self.resting, 0.0, 1.0)
         gain = self.value * burning / float(np.abs(self.value).max())
-        shared = self.accuracy**2 * (np.outer(burning, burning) + np.outer(gain, gain))
+        shared = (SHARE * self.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
         return replace(self, covariance=shared + np.diag(self.noise_std**2))
 
     def form_covariance(self, error: float) -> Array:
@@ -436,8 +436,12 @@ def _cell_reads(cell: Signal, definition: TestDefinition) -> bool:
     return abs(float(np.median(still)) - loaded.value) < TANK_CELL * loaded.value
 
 
-UNSTEADY_ZERO = 0.25
-"""Part of a sensor's accuracy by which its zero may move in the test."""
+SHARE = 0.7071
+"""Part of a stated accuracy that is the zero's error; as much is the span's: squares add up to the whole."""
+
+UNSTEADY_ZERO = 0.03
+"""Part of its accuracy by which the zero of a sensor may move within a test, beside the wander that its quiet time
+shows. A zero that moves further is an effect, and has to be found as one."""
 
 TANK_CELL = 0.03
 """Part of the loaded mass by which the tank's cell may be off at rest and still be compared."""
@@ -535,8 +539,8 @@ def _channel(
     burning = np.where(resting & (signal.name in AT_REST), 0.0, 1.0)
     gain = reduced.value * burning / float(np.abs(reduced.value).max())
     # a zero that was taken before the opening leaves of the accuracy mostly the gain's error
-    offset = accuracy if zero_std is None else float(np.hypot(zero_std, UNSTEADY_ZERO * accuracy))
-    covariance = own + offset**2 * np.outer(burning, burning) + accuracy**2 * np.outer(gain, gain)
+    offset = SHARE * accuracy if zero_std is None else float(np.hypot(zero_std, UNSTEADY_ZERO * accuracy))
+    covariance = own + offset**2 * np.outer(burning, burning) + (SHARE * accuracy) ** 2 * np.outer(gain, gain)
     moved = _moved_by_knee(reduced, frame)
     covariance = covariance + np.outer(moved, moved)
     filling = np.where((reduced.time < frame.filled) & ~resting, FILLING_ERROR * float(np.ptp(reduced.value)), 0.0)

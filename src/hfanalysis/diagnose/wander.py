@@ -26,7 +26,7 @@ TIMES = np.array([0.02, 0.06, 0.18, 0.54, 1.6, 4.9, 15.0])
 ROUGH = 1.0
 """Standard deviation of the log of the ratio of neighbouring variances."""
 
-CAREFUL = 0.3
+CAREFUL = 0.15
 """Log of the variances by which all are raised at last, in their posterior standard deviations: a quiet time that is
 too short misleads only where it shows too little."""
 
