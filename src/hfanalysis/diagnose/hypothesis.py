@@ -89,6 +89,9 @@ def free_parameters(effect: Effect) -> tuple[Free, ...]:
     return tuple(out)
 
 
+MEASURED = 0.15
+"""Of the spread that a parameter of an effect has among stands, what is left where the test itself states it."""
+
 FARTHEST = 5.0
 """Standard deviations of its prior that a parameter may be off."""
 
@@ -202,7 +205,9 @@ class Hypothesis:
     def with_effect(self, effect: Effect, **stated: float) -> Hypothesis:
         """The same with an effect more, its parameters about their prior or what a test has ``stated`` [SI]."""
         free = tuple(
-            replace(f, center=stated[own]) if (own := f.name.partition(".")[2]) in stated and f.shape != "wide" else f
+            replace(f, center=stated[own], std=MEASURED * f.std)
+            if (own := f.name.partition(".")[2]) in stated and f.shape == "normal"
+            else f
             for f in free_parameters(effect)
         )
         engine = replace(self.engine, effects=(*self.engine.effects, effect.at(**stated)))

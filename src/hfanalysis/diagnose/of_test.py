@@ -89,17 +89,26 @@ def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Eff
 
 
 def _purge(subject: Subject) -> dict[str, float]:
-    """The purge line's pressure once nitrogen may enter, as measured, and its valve's, as stated [Pa]."""
+    """The purge line's pressure before nitrogen can enter, as measured, and its valve's, as stated [Pa].
+
+    Afterwards the line follows the tank through its check valve, whether or not much flows: what drives the nitrogen is
+    the pressure that its regulator was set to.
+    """
     out: dict[str, float] = {}
     t_purge, origin = subject.segments.time("t_purge"), subject.segments.t_open.value
-    if t_purge is not None and origin is not None and "p_purge" in subject.log:
-        level = Signal.of(subject.log["p_purge"]).shifted(origin).mean(t_purge + 0.3, t_purge + 1.5)
+    if origin is not None and "p_purge" in subject.log:
+        last = 0.0 if t_purge is None else t_purge
+        level = Signal.of(subject.log["p_purge"]).shifted(origin).mean(last - LEVEL, last - 0.1)
         if level == level:
             out["supply_pressure"] = level
     section = subject.definition.purge
     if section is not None and section.cracking_pressure is not None:
         out["cracking_pressure"] = section.cracking_pressure.value
     return out
+
+
+LEVEL = 1.0
+"""Seconds over which the purge line's pressure is taken."""
 
 
 def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue, settings: Settings) -> dict[str, Any]:
