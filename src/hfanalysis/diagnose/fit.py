@@ -24,6 +24,9 @@ CONVERGED = 0.02
 STEEPEST = 1e8
 """Standard deviations of an observation per one of a parameter beyond which a slope is none."""
 
+TRUST = 0.1
+"""Part of what the slopes promise of a step that it must bring: a step that brings less leads along a wrong valley."""
+
 LONGEST_STRIDE = 2.0
 """Standard deviations of its prior that a parameter moves at a time."""
 
@@ -80,7 +83,7 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, 
         for _ in range(8):
             step = _step(here.slopes, here.residual, x, least, highest, damping)
             trial = _try(hypothesis, observed, x + step)
-            if trial is not None and _objective(trial, x + step) < before:
+            if trial is not None and _objective(trial, x + step) < before - TRUST * _expected(here, x, step):
                 moved = trial
                 break
             damping = max(10.0 * damping, 1e-3)
@@ -120,6 +123,13 @@ def _step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, d
             break
         free &= ~stuck
     return np.asarray(np.clip(x + step, least, most) - x)
+
+
+def _expected(here: Prediction, x: Array, step: Array) -> float:
+    """By how much a step lowers the objective if the slopes hold."""
+    assert here.slopes is not None
+    moved = here.residual + here.slopes @ step
+    return _objective(here, x) - 0.5 * float(moved @ moved + (x + step) @ (x + step))
 
 
 def usable(prediction: Prediction) -> bool:

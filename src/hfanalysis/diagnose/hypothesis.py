@@ -33,6 +33,10 @@ USUAL_N = (0.45, 0.2)
 show as little as 0.2)."""
 
 
+N_RANGE = 2.5
+"""Standard deviations that n may be off: a flux exponent below 0 or above 1 is no regression law of a fuel."""
+
+
 @dataclass(frozen=True)
 class Free:
     """A parameter that may move, as a function of x, whose prior is N(0, 1) between ``least`` and ``most``.
@@ -257,7 +261,7 @@ def base_hypothesis(engine: Engine, calibration: Mapping[str, Any], follow: bool
         Free("oxidizer_mass", mass, max(float(loaded.get("std") or 0.0), 0.01 * mass)),
         Free("temperature", engine.temperature, 5.0),
         Free("a", engine.a * _mid_flux(engine) ** (engine.n - USUAL_N[0]), 1.0, "positive"),
-        Free("n", *USUAL_N),
+        Free("n", *USUAL_N, least=-N_RANGE, most=N_RANGE),
     ]
     if engine.feed.constant_losses is None and engine.feed.loss_factor > 0.0:
         free.insert(1, Free("loss_factor", engine.feed.loss_factor, 1.0, "positive"))

@@ -75,7 +75,7 @@ SETTLING, SHORTEST_REST, LONGEST_REST = 0.5, 0.4, 10.0
 
 REST_BLOCKS = 4
 
-FILLING_ERROR, FILLING_TIME = 0.3, 0.1
+FILLING_ERROR, FILLING_TIME = 0.1, 0.1
 """Model-form error while the line fills, as part of a channel's range, and the seconds over which it is coherent."""
 
 BEFORE_OPENING, BEFORE = ("p_tank", "m_tank"), 1.0
