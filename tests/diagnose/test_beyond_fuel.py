@@ -16,7 +16,15 @@ from hfanalysis.diagnose.alignment import MOST_MOVED, model_times, share
 from hfanalysis.diagnose.fit import fit
 from hfanalysis.diagnose.flow_end import find_flow_end
 from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
-from hfanalysis.diagnose.observed import AROUND_END, COLD_FLOW_ERROR, EVENT_STD, TANK_SIDE, Observed, observe_test
+from hfanalysis.diagnose.observed import (
+    AROUND_END,
+    AT_ONCE,
+    COLD_FLOW_ERROR,
+    EVENT_STD,
+    TANK_SIDE,
+    Observed,
+    observe_test,
+)
 from hfanalysis.diagnose.predict import predict, with_spare_fuel
 from hfanalysis.effects import effect
 from hfanalysis.engine.observe import observe
@@ -73,11 +81,11 @@ def reduced(late: bool) -> Observed:
     return observations(late, log(late), fuel_out(late))
 
 
-def observations(late: bool, of: TestLog, noted: float) -> Observed:
+def observations(late: bool, of: TestLog, noted: float, std: float = 6e-3) -> Observed:
     """What a log is reduced to; the end that was ``noted`` at the stand [s] is usually that of the fire."""
     liquid_out = run(late).liquid_out
     assert liquid_out is not None
-    known = {"t_v": Quantity(liquid_out, "s", 1e-3), "t_fuel_out": Quantity(fuel_out(late), "s", 6e-3)}
+    known = {"t_v": Quantity(liquid_out, "s", 1e-3), "t_fuel_out": Quantity(fuel_out(late), "s", std)}
     seen = Seen(burn_time=Value(round(noted, 1)))
     return observe_test(of, logged.segments(**known), logged.stated(observed=seen))
 
@@ -120,6 +128,12 @@ def test_a_log_that_ends_with_the_fire_is_compared_as_before() -> None:
     cut = {n: replace(c, time=c.time[c.time < end], values=c.values[c.time < end], flags=c.flags[c.time < end])
            for n, c in log(True).channels.items()}  # fmt: skip
     test = observations(True, TestLog(cut), fuel_out(True))
+    assert test.fuel_out is None
+    assert max(last(test, name) for name in test.names) < fuel_out(True)
+
+
+def test_a_fire_that_fades_is_compared_as_before() -> None:
+    test = observations(True, log(True), fuel_out(True), std=1.5 * AT_ONCE)
     assert test.fuel_out is None
     assert max(last(test, name) for name in test.names) < fuel_out(True)
 

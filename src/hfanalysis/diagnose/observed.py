@@ -55,6 +55,9 @@ WORTH_IT = 0.5
 APART = 0.25
 """Seconds by which the ends of liquid and fuel have to lie apart for that: the model keeps to both."""
 
+AT_ONCE = 0.05
+"""Standard deviation [s] of the end of the fuel up to which it is one: a fire that fades goes on beyond its middle."""
+
 COLD_FLOW_ERROR = 0.01
 """Part of the liquid's flow into a chamber without fire that is not known: part of it boils only behind the nozzle."""
 
@@ -371,7 +374,9 @@ def _flow_end_without_fuel(log: TestLog, segments: Segments, definition: TestDef
     What was noted at the stand is the end of the fuel. Where it is clearly later, it may be that of the flow.
     """
     gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
-    if gone is None or (t_v is not None and abs(gone - t_v) < APART) or not {"p_tank", "p_run"} <= set(log.channels):
+    if gone is None or segments.std("t_fuel_out") > AT_ONCE or not {"p_tank", "p_run"} <= set(log.channels):
+        return None
+    if t_v is not None and abs(gone - t_v) < APART:
         return None
     tank, run = (Signal.of(as_read(log[name])).shifted(origin) for name in ("p_tank", "p_run"))
     if tank.dead or run.dead:
