@@ -83,6 +83,27 @@ def test_the_times_of_events_move_as_tangents_say(name: str) -> None:
     assert tangents().event(FUEL_OUT)[column] == pytest.approx(fuel, rel=1e-3)
 
 
+@pytest.mark.parametrize("name", ["area", "a", "tank_heat.power"])
+def test_a_fire_that_is_out_at_a_given_time_has_tangents_beyond_it(name: str) -> None:
+    out, step = 4.0, 1e-4 * {**ENGINE_PARAMETERS, **TYPICAL}[name]
+    engine = replace(heated_and_purged(), spare_web=0.05, fuel_end=out)
+    found = run_with_tangents(engine, [name], SECONDS, rtol=1e-6, run_on=True, times=GRID)
+    assert found.burn.burn_time == pytest.approx(out, abs=1e-9)
+    assert found.event(FUEL_OUT)[0] == 0.0
+    assert np.ptp(found.burn.state("port_radius")[out < GRID]) < 1e-12
+    runs = []
+    for sign in (1.0, -1.0):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(sensitivity, "SHIFT", sign * 1e-4)
+            runs.append(burn(sensitivity.shifted(engine, name)[0], SECONDS, 1e-8, True, times=GRID))
+    for channel in ("tank_pressure", "run_pressure"):
+        quotient = (runs[0].output(channel) - runs[1].output(channel)) / (2.0 * step)
+        beyond = out + 0.06 < GRID
+        beyond &= np.abs(GRID - (found.burn.liquid_out or 0.0)) > 0.06
+        tangent = found.output(channel, GRID)[:, 0]
+        assert np.abs(tangent - quotient)[beyond].max() < 0.02 * np.abs(quotient[beyond]).max()
+
+
 def test_an_effect_of_strength_zero_has_a_tangent() -> None:
     idle = engine_on_stand(effects=(effect("tank_heat").at(power=0.0),))
     found = run_with_tangents(idle, ["tank_heat.power"], SECONDS, run_on=True)

@@ -96,7 +96,7 @@ def _sensor(found: Fit, active: Active, observed: Observed, relative: float) -> 
 
 def _difference(found: Fit, active: Active, observed: Observed, time: Array) -> Array:
     """What the effect changes in its equation at each state of the run."""
-    engine = with_spare_fuel(found.hypothesis.at(found.x))
+    engine = with_spare_fuel(found.hypothesis.at(found.x), observed.fuel_out)
     burnt = burn(engine, observed.longest + 1.0, run_on=True, keep_idle=True)
     where = aligned(observed, burnt, time)
     states, _ = burnt.steps.at(where)
@@ -106,8 +106,9 @@ def _difference(found: Fit, active: Active, observed: Observed, time: Array) -> 
     out = np.empty(time.size)
     for i, t in enumerate(where):
         liquid = burnt.liquid_out is None or t <= burnt.liquid_out
-        with_it = kinds[0].at(t, states[i], liquid)
-        without = kinds[1].at(t, np.delete(states[i], rows), liquid)
+        burning = bool(t <= engine.fuel_end)
+        with_it = kinds[0].at(t, states[i], liquid, burning)
+        without = kinds[1].at(t, np.delete(states[i], rows), liquid, burning)
         out[i] = _source(active, with_it, without)
     return out
 
@@ -148,9 +149,9 @@ class _Evaluation:
         composition = compose(engine.effects, constants(engine), len(STATES), idle=True)
         return cls(engine.equations(composition), composition.active)
 
-    def at(self, t: float, y: Array, liquid: bool) -> _State:
+    def at(self, t: float, y: Array, liquid: bool, burning: bool) -> _State:
         out = np.zeros(len(OUTPUTS))
-        evaluate_rates(t, np.ascontiguousarray(y), liquid, True, self.equations, np.zeros(y.size), out)
+        evaluate_rates(t, np.ascontiguousarray(y), liquid, burning, self.equations, np.zeros(y.size), out)
         return _State(out, self.equations.site.copy())
 
 

@@ -203,7 +203,7 @@ def look_ahead(hypothesis: Hypothesis, observed: Observed, catalogue: Catalogue)
 
 def _rows(made: Hypothesis, observed: Observed, sensors: tuple[Sensor, ...], x: Array) -> list[Array]:
     """Whitened slopes with x of what is observed, and of what each sensor would read."""
-    engine = with_spare_fuel(made.at(x))
+    engine = with_spare_fuel(made.at(x), observed.fuel_out)
     found = run_with_tangents(engine, made.of_engine, observed.longest + AFTER, ACCURACY, run_on=True)
     jacobian = made.jacobian(x)
     return [slopes_of(made, observed, found) @ jacobian, *(s.slopes(made, observed, found) @ jacobian for s in sensors)]

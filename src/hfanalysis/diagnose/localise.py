@@ -133,7 +133,8 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
         names.append([f"{effect.name}.c{i}" for i in range(splines.count)])
     probed = replace(engine, effects=(*engine.effects, *active))
     flat = [n for group in names for n in group]
-    tangents = run_with_tangents(with_spare_fuel(probed), flat, observed.longest + AFTER, run_on=True)
+    spared = with_spare_fuel(probed, observed.fuel_out)
+    tangents = run_with_tangents(spared, flat, observed.longest + AFTER, run_on=True)
     slopes = slopes_of(fitted.hypothesis, observed, tangents)
     time = np.linspace(0.0, observed.end, 200)
     found = []

@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cholesky
 
+from hfanalysis.diagnose.alignment import share
+from hfanalysis.diagnose.flow_end import find_flow_end
 from hfanalysis.diagnose.oscillation import oscillation
 from hfanalysis.diagnose.wander import roughness, wander_of
 from hfanalysis.errors import AbsentError
@@ -46,6 +48,18 @@ FIRST = 0.03
 
 AROUND_END = 0.3
 """Seconds before the end of the flow that was noted at the stand from which on nothing is compared."""
+
+WORTH_IT = 0.5
+"""Seconds of flow after the end of the fuel from which on they are compared."""
+
+APART = 0.25
+"""Seconds by which the ends of liquid and fuel have to lie apart for that: the model keeps to both."""
+
+AT_ONCE = 0.05
+"""Standard deviation [s] of the end of the fuel up to which it is one: a fire that fades goes on beyond its middle."""
+
+COLD_FLOW_ERROR = 0.01
+"""Part of the liquid's flow into a chamber without fire that is not known: part of it boils only behind the nozzle."""
 
 TANK_SIDE = ("p_tank", "p_run", "m_tank")
 """Channels that go on telling when the nozzle has unchoked."""
@@ -141,7 +155,8 @@ class Observed:
     """The channels of a test, the instants of its phase changes with their deviations [s], and when it ends [s].
 
     ``grid`` [s]: points at which a model is asked: at the opening, through the flow, and ``resting`` ones after it (the
-    first, too, stands for the time before). ``stated``: what was measured outside the log (SI), with standard
+    first, too, stands for the time before). ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its
+    measured end, at which that of every model ends. ``stated``: what was measured outside the log (SI), with standard
     deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there. ``form``:
     model-form error, as part of a channel's range.
     """
@@ -157,6 +172,7 @@ class Observed:
     ambient: float
     common: Array | None = None
     form: float = FORM_ERROR
+    fuel_out: float | None = None
 
     def at_form(self, error: float) -> Observed:
         """The same with another model-form error."""
@@ -249,13 +265,14 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         channels,
         frame.grid,
         frame.resting,
-        _events(segments, frame.ends["tank"]),
+        _events(segments, frame.ends["tank"], frame.fuel_out),
         _stated(definition, segments),
         _phases(segments, end),
         end,
         max(frame.ends["tank"], _flow_end(definition, end)),
         definition.ambient_pressure.value,
         common,
+        fuel_out=frame.fuel_out,
     )
 
 
@@ -290,7 +307,7 @@ def _moved_by_knee(reduced: _Reduced, frame: _Frame) -> Array:
         if part.sum() > SPEED_ORDER + 2:
             t = reduced.time[part] - instant
             speed = np.polyval(np.polyder(np.polyfit(t, reduced.value[part], SPEED_ORDER)), t)
-            out[part] = speed * np.minimum(reduced.time[part] / instant, 1.0)
+            out[part] = speed * share(reduced.time[part], instant, instant, frame.fuel_out)
     return np.asarray(out * max(deviation, EVENT_STD))
 
 
@@ -315,6 +332,7 @@ class _Frame:
     start: float
     filled: float
     ends: Mapping[str, float]
+    fuel_out: float | None = None
 
     def end(self, channel: str) -> float:
         """Where the comparison of a channel ends [s]."""
@@ -325,12 +343,19 @@ def _frame(log: TestLog, segments: Segments, definition: TestDefinition, origin:
     last = _last(log, origin)
     end = min(_end(segments), last)
     ends = {"chamber": end, "tank": min(_tank_end(segments, definition, end), last)}
+    fuel_out = segments.time("t_fuel_out")
+    flow_end = _flow_end_without_fuel(log, segments, definition, origin)
+    if flow_end is None:
+        fuel_out = None
+    else:
+        ends["tank"] = min(flow_end - AROUND_END, LONGEST)
     changes = {
         name: (value, segments.std(name))
         for name in ("t_v", "t_fuel_out")
         if (value := segments.time(name)) is not None
     }
-    rest = _rest(log, origin, _flow_end(definition, max(segments.time("t_end") or end, end)))
+    over = _flow_end(definition, max(segments.time("t_end") or end, end))
+    rest = _rest(log, origin, over if flow_end is None else max(over, flow_end))
     burning = np.arange(0.5 * BLOCK, ends["tank"], BLOCK)
     after: Array = np.zeros(0)
     if rest is not None:
@@ -340,7 +365,28 @@ def _frame(log: TestLog, segments: Segments, definition: TestDefinition, origin:
     resting = np.ones(grid.size, dtype=bool)
     resting[1 : 1 + burning.size] = False
     filled = segments.time("t_feed") or 0.0
-    return _Frame(grid, resting, changes, FIRST, filled, ends)
+    return _Frame(grid, resting, changes, FIRST, filled, ends, fuel_out)
+
+
+def _flow_end_without_fuel(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> float | None:
+    """Until when the tank goes on emptying after the end of the fuel [s]; None where that is not worth following.
+
+    What was noted at the stand is the end of the fuel. Where it is clearly later, it may be that of the flow.
+    """
+    gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
+    if gone is None or segments.std("t_fuel_out") > AT_ONCE or not {"p_tank", "p_run"} <= set(log.channels):
+        return None
+    if t_v is not None and abs(gone - t_v) < APART:
+        return None
+    tank, run = (Signal.of(as_read(log[name])).shifted(origin) for name in ("p_tank", "p_run"))
+    if tank.dead or run.dead:
+        return None
+    accuracy = float(np.hypot(_accuracy(definition, "p_tank", tank.value), _accuracy(definition, "p_run", run.value)))
+    end = find_flow_end(tank, run, gone, definition.ambient_pressure.value, accuracy, segments.time("t_purge"))
+    noted = _flow_end(definition, 0.0)
+    if end is not None and noted > gone + AROUND_END:
+        end = min(end, noted)
+    return end if end is not None and min(end - AROUND_END, LONGEST) > gone + WORTH_IT else None
 
 
 def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | None:
@@ -365,10 +411,12 @@ def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | Non
     return first, last
 
 
-def _events(segments: Segments, end: float) -> dict[str, tuple[float, float]]:
+def _events(segments: Segments, end: float, fuel_out: float | None) -> dict[str, tuple[float, float]]:
     t_v = segments.time("t_v")
-    seen = t_v is not None and t_v < end - AROUND_CHANGE
-    events = {"t_v": (t_v, max(segments.std("t_v"), EVENT_STD))} if seen and t_v is not None else {}
+    events = {}
+    if t_v is not None and t_v < end - AROUND_CHANGE:
+        cold = COLD_FLOW_ERROR * max(t_v - fuel_out, 0.0) if fuel_out is not None else 0.0
+        events["t_v"] = (t_v, float(np.hypot(max(segments.std("t_v"), EVENT_STD), cold)))
     gone = segments.time("t_fuel_out")
     if gone is not None and gone < LONGEST:
         events["t_fuel_out"] = (gone, max(segments.std("t_fuel_out"), FUEL_STD))

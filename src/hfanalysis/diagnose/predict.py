@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import pi, sqrt
+from math import inf, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.alignment import model_times, share
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.probe import Splines
@@ -46,7 +47,7 @@ class Prediction:
 def predict(hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool) -> Prediction:
     """Run a hypothesis. Raises ValueError or ArithmeticError for an engine that cannot be run."""
     longest = observed.longest + AFTER
-    engine = with_spare_fuel(hypothesis.at(x))
+    engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
     if not tangents:
         burnt = burn(engine, longest, ACCURACY, run_on=True, keep_idle=True)
         return Prediction(residuals(hypothesis, observed, x, burnt), None, burnt)
@@ -55,13 +56,14 @@ def predict(hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool
     return Prediction(residuals(hypothesis, observed, x, found.burn), slopes, found.burn)
 
 
-def with_spare_fuel(engine: Engine) -> Engine:
-    """The same grain with as much web again behind its wall.
+def with_spare_fuel(engine: Engine, fuel_out: float | None = None) -> Engine:
+    """The same grain with as much web again behind its wall, whose fire is out at ``fuel_out`` [s].
 
-    What is compared ends with the fuel at the latest. A model whose fuel is gone earlier would leap to cold gas, and no
-    slope leads out of that; when the web is burnt is an observation of its own.
+    A model whose fuel is gone earlier than measured would leap to cold gas, and no slope leads out of that. So the end
+    of the fuel is that of the measurement, where anything after it is compared; what web is left then is an observation
+    of its own.
     """
-    return replace(engine, spare_web=engine.outer_radius)
+    return replace(engine, spare_web=engine.outer_radius, fuel_end=inf if fuel_out is None else fuel_out)
 
 
 def _all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> Array:
@@ -126,15 +128,12 @@ def _resting(observed: Observed, channels: Mapping[str, Array]) -> dict[str, Arr
 
 
 def aligned(observed: Observed, burnt: Burn, times: Array) -> Array:
-    """Instants of the model that correspond to measured ones: stretched so that its liquid ends when the measured does.
-
-    Between two instants of t_v the one is liquid and the other vapour, and no slope tells how to bring them together;
-    how far apart they are is an observation of its own.
-    """
+    """Instants of the model that correspond to measured ones: stretched so that its liquid ends when the measured
+    does."""
     seen, gone = observed.events.get("t_v"), burnt.liquid_out
     moved = times
     if seen is not None and gone is not None:
-        moved = np.where(times < seen[0], times * gone / seen[0], times + gone - seen[0])
+        moved = model_times(times, seen[0], gone, observed.fuel_out)
     return np.asarray(np.minimum(moved, burnt.steps.times[-1, 1]))
 
 
@@ -156,7 +155,7 @@ def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Ar
 
 def signatures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Array:
     """What each effect's strengths add to the blocks of all channels, linear: (blocks, strengths)."""
-    engine = with_spare_fuel(hypothesis.at(x))
+    engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
     names = [
         f"{a.effect.name}.{p.name}" for a in engine.effects for p in a.effect.parameters[: a.effect.strengths]
         if f"{a.effect.name}.{p.name}" in hypothesis.of_engine
@@ -176,10 +175,10 @@ def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]
     if seen is not None and found.burn.liquid_out is not None:
         last = found.burn.steps.times[-1, 1]
         ahead, behind = (true_channels(found.burn, np.clip(times + s * TICK, 0.0, last)) for s in (1.0, -1.0))
-        share = np.minimum(observed.grid / seen[0], 1.0)
+        moved = share(observed.grid, seen[0], found.burn.liquid_out, observed.fuel_out)
         moment = np.nan_to_num(found.event(LIQUID_OUT))
         for name in slopes:
-            speed = (ahead[name] - behind[name]) / (2.0 * TICK) * share
+            speed = (ahead[name] - behind[name]) / (2.0 * TICK) * moved
             slopes[name] = slopes[name] + speed[:, np.newaxis] * moment[np.newaxis]
     for name in ("p_chamber", "p_run", "thrust"):
         slopes[name] = np.where(observed.resting[:, np.newaxis], 0.0, slopes[name])

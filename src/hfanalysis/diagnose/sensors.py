@@ -12,6 +12,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.alignment import share
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.observed import AROUND_CHANGE, FILLING_ERROR, FILLING_TIME, FIRST, Channel, Observed, averaged
 from hfanalysis.diagnose.predict import TICK, aligned, slopes_of
@@ -136,7 +137,8 @@ def _inside(name: str, observed: Observed, found: Tangents) -> tuple[Array, Arra
     seen = observed.events.get("t_v")
     if seen is not None and found.burn.liquid_out is not None:
         ahead, behind = (_value(name, found.burn, np.clip(times + s * TICK, 0.0, last)) for s in (1.0, -1.0))
-        speed = (ahead - behind) / (2.0 * TICK) * np.minimum(observed.grid / seen[0], 1.0)
+        speed = (ahead - behind) / (2.0 * TICK)
+        speed = speed * share(observed.grid, seen[0], found.burn.liquid_out, observed.fuel_out)
         slopes = slopes + speed[:, np.newaxis] * np.nan_to_num(found.event(LIQUID_OUT))[np.newaxis]
     return _value(name, found.burn, times), slopes
 

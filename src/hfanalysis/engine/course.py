@@ -24,6 +24,7 @@ from hfanalysis.engine.model import (
     EXIT_AREA,
     EXPONENT,
     FLIES,
+    FUEL_END,
     IMPULSE,
     LAUNCH_ALTITUDE,
     NITROGEN,
@@ -175,7 +176,7 @@ def event_values(t: float, y: Array, liquid: bool, burning: bool, model: int, ou
     if liquid:
         dry = liquid_mass(m.saturation, c[VOLUME], y[TANK], y[TEMPERATURE])
     values[LIQUID_OUT] = dry
-    values[FUEL_OUT] = c[OUTER_RADIUS] + c[SPARE_WEB] - y[RADIUS] if burning else 1.0
+    values[FUEL_OUT] = min(c[OUTER_RADIUS] + c[SPARE_WEB] - y[RADIUS], c[FUEL_END] - t) if burning else 1.0
     values[GROUND] = y[ALTITUDE] - c[LAUNCH_ALTITUDE] + PAD if c[FLIES] > 0.0 else 1.0
     subsonic = mach_at_area(c[EXIT_AREA] / (c[THROAT_AREA] * m.site[THROAT_FACTOR]), out[O_GAMMA], False)
     values[CHOKING] = out[O_CHAMBER_PRESSURE] * pressure_ratio(subsonic, out[O_GAMMA]) - out[O_AMBIENT]

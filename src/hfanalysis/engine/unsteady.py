@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from math import pi, sqrt
+from math import inf, pi, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,7 +55,8 @@ class Engine:
 
     ``oxidizer_enthalpy`` on the formation scale [J/kg]: one number for the whole run (the report), or None for that of
     the liquid or vapour leaving the tank. ``spare_web`` [m] of fuel behind the grain's wall burns on (for fits in which
-    the end of the fuel is an observation of its own). An engine without a ``vehicle`` stands at
+    the end of the fuel is an observation of its own), and at ``fuel_end`` [s] the fire is out whatever web is left (for
+    fits in which that instant is known). An engine without a ``vehicle`` stands at
     ``ambient_pressure`` [Pa].
     """
 
@@ -78,6 +79,7 @@ class Engine:
     ambient_pressure: float | None = None
     oxidizer_enthalpy: float | None = None
     spare_web: float = 0.0
+    fuel_end: float = inf
     effects: tuple[Active, ...] = field(default=())
 
     @property
@@ -184,6 +186,7 @@ def constants(e: Engine) -> Array:
         e.feed.volume, e.feed.area, e.feed.loss_factor, exponent, liquid_loss, vapor_loss, e.grain_length, e.a, e.n,
         e.dead_volume, e.fuel_density, e.throat_area, e.exit_area, e.outer_radius, enthalpy, *rocket,
         e.ambient, float(v is not None), e.fuel_mass, e.oxidizer_mass, e.temperature, e.spare_web,
+        e.fuel_end,
     )  # fmt: skip
     out = np.array(values)
     assert out.size == len(CONSTANTS)
@@ -223,6 +226,8 @@ def check(engine: Engine) -> None:
         "the fuel's density": e.fuel_density, "a": e.a, "the throat": e.throat_area, "the ambient pressure": e.ambient,
         "the dry mass": 1.0 if e.vehicle is None else e.vehicle.dry_mass,
     }  # fmt: skip
+    if not e.fuel_end > 0.0:
+        raise ValueError(f"the fuel has to end after ignition, not at {e.fuel_end} s")
     for name, value in sizes.items():
         if not 0.0 < value < np.inf:
             raise ValueError(f"{name} has to be positive, not {value}")
