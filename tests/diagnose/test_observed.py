@@ -17,6 +17,7 @@ from hfanalysis.diagnose.observed import (
     MERGED,
     NEAR,
     REST_BLOCKS,
+    SHARE,
     UNSTEADY_ZERO,
     Channel,
     Observed,
@@ -156,11 +157,11 @@ def test_a_sensor_that_was_zeroed_errs_by_its_gain() -> None:
     log = logged.log()
     zeroed = TestLog({n: replace(c, zero=5.0, zero_std=2e3 if n == "p_run" else None) for n, c in log.channels.items()})
     before, after = (channel(logged.reduced(of), "p_run") for of in (log, zeroed))
-    accuracy = logged.ACCURACY["p_run"]
-    less = accuracy**2 - (2e3**2 + (UNSTEADY_ZERO * accuracy) ** 2)
+    accuracy, zero = logged.ACCURACY["p_run"], SHARE * logged.ACCURACY["p_run"]
+    less = zero**2 - (2e3**2 + (UNSTEADY_ZERO * accuracy) ** 2)
     assert before.covariance - after.covariance == pytest.approx(less * np.ones_like(before.covariance), rel=1e-6)
     gain = after.value / np.abs(after.value).max()
-    left = after.covariance - accuracy**2 * np.outer(gain, gain)
+    left = after.covariance - zero**2 * np.outer(gain, gain)
     assert np.median(left) < 0.25 * accuracy**2
 
 
@@ -211,7 +212,7 @@ def test_as_if_noise_were_white() -> None:
     for c in test.channels:
         burning = np.where(c.resting, 0.0, 1.0)
         gain = c.value * burning / np.abs(c.value).max()
-        shared = c.accuracy**2 * (np.outer(burning, burning) + np.outer(gain, gain))
+        shared = (SHARE * c.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
         assert c.covariance - shared == pytest.approx(np.diag(c.noise_std**2), abs=1e-6 * c.accuracy**2)
 
 
