@@ -559,8 +559,8 @@ def _shaken(shaken: Mapping[str, _Reduced], frame: _Frame) -> dict[tuple[str, st
     guide = next(iter(shaken.values()))
     if guide.signal.name in TOGETHER:
         level = np.interp(frame.grid[~frame.resting], guide.time, guide.value)
-        still = guide.signal.between(-LONGEST, -0.05).value
-        zero = float(still.mean()) if still.size else float(guide.value.min())
+        quiet = guide.signal.between(-LONGEST, -0.05).value
+        zero = float(quiet.mean()) if quiet.size else float(guide.value.min())
         level = np.maximum(level - zero, 0.0) / max(float(guide.value.max()) - zero, 1e-300)
     else:
         level = np.ones(usable.size)
