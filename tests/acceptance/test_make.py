@@ -32,9 +32,8 @@ def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Run make there; the environment counts as set up."""
-    clean = {
-        name: value for name, value in os.environ.items() if name not in ("TEST", "MAKEFLAGS", "MFLAGS", "MAKELEVEL")
-    }
+    given = ("TEST", "OTHER", "FLAGS", "PYTHON", "MAKEFLAGS", "MFLAGS", "MAKELEVEL")
+    clean = {name: value for name, value in os.environ.items() if name not in given}
     command = ["make", "--no-print-directory", f"VENV={VENV}", "-o", f"{VENV}/.set-up", *arguments]
     return subprocess.run(command, cwd=folder, env=clean, capture_output=True, text=True, check=False)
 
