@@ -8,6 +8,7 @@ FLAGS  ?=
 VENV  := .venv
 BIN   := $(VENV)/bin
 STAMP := $(VENV)/.set-up
+ROCKETPY := .venv-rocketpy
 STAGES := ingest segment calibrate validate diagnose flight report run
 
 # The names go to hfa as they were typed, whatever is in them.
@@ -30,7 +31,7 @@ include pipeline/dag.mk
 setup: $(STAMP) ## make .venv/ with the locked packages and the command hfa
 
 $(STAMP): requirements.lock pyproject.toml
-	@sh pipeline/setup.sh '$(PYTHON)' $(VENV)
+	@sh pipeline/setup.sh '$(PYTHON)' $(VENV) requirements.lock --editable .
 	@touch $@
 
 # The stages print what they found, so they always ask hfa, which redoes only what changed.
@@ -56,7 +57,7 @@ compare: $(STAMP) ## TEST=… OTHER=… two tests over each other: processed/TES
 
 all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_tests/
 
-test: lint ## ruff, mypy and the tests
+test: lint rocketpy ## ruff, mypy and the tests
 	$(BIN)/pytest -n 2 $(FLAGS)
 
 lint: $(STAMP) ## ruff and mypy
@@ -74,9 +75,11 @@ benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers
 	$(BIN)/python benchmarks/flights.py
 	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python benchmarks/ingest_1gb.py --gigabytes 1; fi
 
-rocketpy: $(STAMP) ## install RocketPy into .venv-rocketpy/, to compare flights with
-	@test -x .venv-rocketpy/bin/python || { $(BIN)/uv venv --quiet --python '$(PYTHON)' .venv-rocketpy && \
-		$(BIN)/uv pip install --quiet --only-binary :all: --python .venv-rocketpy/bin/python 'rocketpy>=1.9'; } || \
+# Only the tests and the benchmark use it: it has an environment of its own, and where it cannot be installed they go on
+# without it and say so.
+rocketpy: ## set up .venv-rocketpy/ with the locked RocketPy, to compare flights with
+	@test $(ROCKETPY)/.set-up -nt requirements-rocketpy.lock || { \
+		sh pipeline/setup.sh '$(PYTHON)' $(ROCKETPY) requirements-rocketpy.lock && touch $(ROCKETPY)/.set-up; } || \
 		echo "make rocketpy: RocketPy cannot be installed here; flights are not compared with it" >&2
 
 random-engines: $(STAMP) ## 10,000 random engines run or are refused with a reason: docs/random-engines.md
@@ -107,9 +110,12 @@ readme: $(STAMP) ## write the sample output in README.md and the library in docs
 	@$(BIN)/python pipeline/readme.py
 	@$(BIN)/python pipeline/effects_page.py
 
-lock: $(STAMP) ## write requirements.lock anew from pyproject.toml
-	$(BIN)/uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --only-binary :all: --upgrade \
-		--generate-hashes --no-emit-index-url --custom-compile-command 'make lock' --quiet -o requirements.lock
+COMPILE := $(BIN)/uv pip compile --universal --python-version 3.11 --only-binary :all: --upgrade --generate-hashes \
+	--no-emit-index-url --custom-compile-command 'make lock' --quiet
+
+lock: $(STAMP) ## write both lock files anew from pyproject.toml
+	$(COMPILE) pyproject.toml --extra dev -o requirements.lock
+	$(COMPILE) --group rocketpy --constraint requirements.lock -o requirements-rocketpy.lock
 
 clean: ## remove processed/ and caches; raw_tests/ and .venv/ stay
 	rm -rf processed .mypy_cache .ruff_cache .pytest_cache .hypothesis .cache dist

@@ -2,8 +2,8 @@
 
 Usage: flights.py [--test HF5] [--flights 10000] [--rocketpy PYTHON]
 
-RocketPy flies the exported motor straight up without wind, in a process of its own: `make rocketpy` installs it into
-.venv-rocketpy. Its rate counts whole flights to apogee, the rocket being built once.
+RocketPy flies the exported motor straight up without wind, in a process of its own: `make rocketpy` sets up
+.venv-rocketpy for it. Its rate counts whole flights to apogee, the rocket being built once.
 """
 
 from __future__ import annotations

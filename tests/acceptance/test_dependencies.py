@@ -9,6 +9,8 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 REPOSITORY = Path(__file__).parents[2]
 COMES_WITH = {"pydantic_core": "pydantic", "sksundae": "scikit-sundae"}
 """Imported modules that come in a distribution of another name."""
@@ -30,11 +32,35 @@ def required() -> set[str]:
     return {re.split(r"[\s<>=!~;\[]", text, maxsplit=1)[0].lower() for text in project["dependencies"]}
 
 
+def pinned(lock: str) -> dict[str, set[str]]:
+    """The versions that a lock file pins of each distribution, by its name in lower case."""
+    found: dict[str, set[str]] = {}
+    for name, version in re.findall(r"(?m)^([\w.-]+)==(\S+)", (REPOSITORY / lock).read_text().lower()):
+        found.setdefault(name, set()).add(version)
+    return found
+
+
 def test_what_is_imported_is_required_and_the_other_way_round() -> None:
     third_party = set(imported()) - set(sys.stdlib_module_names) - {"hfanalysis"}
     assert {COMES_WITH.get(name, name).lower() for name in third_party} == required()
 
 
 def test_what_is_required_is_locked() -> None:
-    lock = (REPOSITORY / "requirements.lock").read_text().lower()
-    assert {name for name in required() if not re.search(rf"(?m)^{re.escape(name)}==", lock)} == set()
+    assert required() - pinned("requirements.lock").keys() == set()
+
+
+def test_what_flights_are_compared_with_is_no_part_of_the_package_and_pinned_apart() -> None:
+    """RocketPy has an environment of its own; what both environments have is of the same versions."""
+    product, compared = pinned("requirements.lock"), pinned("requirements-rocketpy.lock")
+    assert "rocketpy" in compared
+    assert "rocketpy" not in product
+    assert {name for name in product.keys() & compared.keys() if product[name] != compared[name]} == set()
+    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["project"]
+    assert "rocketpy" not in str([project["dependencies"], project["optional-dependencies"]]).lower()
+
+
+@pytest.mark.parametrize("lock", ["requirements.lock", "requirements-rocketpy.lock"])
+def test_every_locked_package_has_a_hash(lock: str) -> None:
+    entries = re.split(r"(?m)^(?=[\w.-]+==)", (REPOSITORY / lock).read_text())[1:]
+    assert len(entries) > 20
+    assert [entry.splitlines()[0] for entry in entries if "--hash=sha256:" not in entry] == []

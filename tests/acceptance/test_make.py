@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(
 def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What make works on: the rules, the source and one test, with the environment at hand."""
     folder = tmp_path_factory.mktemp("checkout")
-    for name in ("Makefile", "pyproject.toml", "requirements.lock"):
+    for name in ("Makefile", "pyproject.toml", "requirements.lock", "requirements-rocketpy.lock"):
         shutil.copy(REPOSITORY / name, folder)
     shutil.copytree(REPOSITORY / "pipeline", folder / "pipeline")
     shutil.copytree(REPOSITORY / "src", folder / "src", ignore=shutil.ignore_patterns("__pycache__"))
@@ -32,9 +32,8 @@ def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Run make there; the environment counts as set up."""
-    clean = {
-        name: value for name, value in os.environ.items() if name not in ("TEST", "MAKEFLAGS", "MFLAGS", "MAKELEVEL")
-    }
+    given = ("TEST", "OTHER", "FLAGS", "PYTHON", "MAKEFLAGS", "MFLAGS", "MAKELEVEL")
+    clean = {name: value for name, value in os.environ.items() if name not in given}
     command = ["make", "--no-print-directory", f"VENV={VENV}", "-o", f"{VENV}/.set-up", *arguments]
     return subprocess.run(command, cwd=folder, env=clean, capture_output=True, text=True, check=False)
 
@@ -44,6 +43,12 @@ def test_make_alone_prints_what_there_is_to_do(checkout: Path) -> None:
     assert ended.returncode == 0
     for target in ("calibrate", "report", "compare", "all", "test", "setup", "benchmark", "recovery", "lock", "clean"):
         assert f"  {target} " in ended.stdout
+
+
+def test_the_tests_get_rocketpy_and_an_analysis_does_not(checkout: Path) -> None:
+    """`make -n` prints the commands of a target and of all it needs."""
+    assert ".venv-rocketpy requirements-rocketpy.lock" in make(checkout, "-n", "test").stdout
+    assert "rocketpy" not in make(checkout, "-n", "calibrate", "TEST=HF5").stdout
 
 
 def test_a_missing_test_is_asked_for(checkout: Path) -> None:

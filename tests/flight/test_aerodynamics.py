@@ -85,6 +85,27 @@ def test_a_slender_nose_has_barrowman_s_centre(kind: str, share: float) -> None:
     assert nose_center(Nose(kind, 1.0), 0.01) == pytest.approx(share, abs=1e-3)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(("count", "factor"), [(3, 12.0), (4, 16.0)])
+@pytest.mark.parametrize("shape", [ALPHA, HALCYON], ids=["Alpha III", "Halcyon"])
+def test_slope_and_centre_are_those_of_barrowman_s_published_equations(shape: Shape, count: int, factor: float) -> None:
+    """NARAM-8, 1966, equations 12, 14, 44, 57 to 59, 76 to 80 (incompressible), written out as they stand there."""
+    assert shape.fins is not None
+    d, fins = shape.diameter, replace(shape.fins, count=count)
+    root, tip, across = fins.root, fins.tip, fins.sweep + 0.5 * (fins.tip - fins.root)
+    middle = np.hypot(fins.span, across)
+    alone = factor * (fins.span / d) ** 2 / (1.0 + np.sqrt(1.0 + (2.0 * middle / (root + tip)) ** 2))
+    slopes = [2.0, alone * (1.0 + 0.5 * d / (fins.span + 0.5 * d))]
+    along = fins.sweep / 3.0 * (root + 2.0 * tip) / (root + tip) + (root + tip - root * tip / (root + tip)) / 6.0
+    places = [nose_center(shape.nose, 0.5 * d), fins.position + along]
+    if shape.tail is not None:
+        ratio = d / shape.tail.diameter
+        slopes.append(2.0 * ((shape.tail.diameter / d) ** 2 - 1.0))
+        places.append(shape.tail.position + shape.tail.length / 3.0 * (1.0 + (1.0 - ratio) / (1.0 - ratio**2)))
+    slope = sum(slopes)
+    place = sum(s * x for s, x in zip(slopes, places, strict=True)) / slope
+    assert center_of_pressure(components(replace(shape, fins=fins), 0.0)) == pytest.approx((slope, place), rel=1e-9)
+
+
 def test_a_boat_tail_as_wide_as_the_body_does_nothing() -> None:
     blunt = replace(HALCYON, tail=Tail(0.254, 0.1524, 3.556 - 0.254))
     without = replace(HALCYON, tail=None)
