@@ -94,6 +94,8 @@ def _constants(one: Fitted) -> str:
         f"T0 = {k.temperature:.4g} (ln T0 +- {_pm(one, 'ln_temperature')}), "
         f"t1 = {k.per_leftover:.4g} +- {_pm(one, 'per_leftover')}, "
         f"named = {k.named:.4g} +- {_pm(one, 'named')}, unknown = {k.unknown:.4g} +- {_pm(one, 'unknown')}, "
+        f"unseen: named = {k.unseen_named:.4g} +- {_pm(one, 'unseen named')}, "
+        f"unknown = {k.unseen_unknown:.4g} +- {_pm(one, 'unseen unknown')}, "
         f"misled = {k.misled:.3g} +- {_pm(one, 'misled')}"
     )
 
@@ -109,7 +111,7 @@ def to_json(one: Fitted, number: int, split: str, codes: Sequence[str]) -> dict[
     return {
         "temperature": k.temperature,
         "temperature_per_leftover": k.per_leftover,
-        "offsets": {"none": 0.0, "named": k.named, "unknown": k.unknown},
+        "offsets": dict(k.scale.offsets),
         "misled": k.misled,
         "standard_errors": one.errors,
         "cases": number,

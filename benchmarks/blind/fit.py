@@ -2,7 +2,8 @@
 
 In a share ``misled`` of the cases the evidence misleads altogether, and the labels have the probabilities from before.
 T = T0 (1 + t1 max(0, leftover - 1)) with the chi-square per degree of freedom that the best named model leaves; one
-offset b for the names and one for ``unknown``, that of ``none`` is 0. Fitted by penalised likelihood of the right label
+offset b for the names and one for ``unknown``, that of ``none`` is 0. A label of which nothing was seen has an offset
+of its kind instead, and no evidence. Fitted by penalised likelihood of the right label
 (temperature scaling: Guo, Pleiss, Sun, Weinberger: On Calibration of Modern Neural Networks, 2017).
 """
 
@@ -18,14 +19,14 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.posterior import BEFORE, Scale
+from hfanalysis.diagnose.posterior import BEFORE, UNSEEN, Scale
 
 Array = NDArray[np.float64]
 
-PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 0.1])
-"""Of ln T0, the offsets of the names and of unknown, t1, and the share misled: wide, so that only what the cases leave
-open feels it."""
-BOUNDS = ((-5.0, 12.0), (-200.0, 200.0), (-200.0, 200.0), (0.0, 50.0), (1e-4, 0.5))
+NAMES = ("ln_temperature", "named", "unknown", "unseen named", "unseen unknown", "per_leftover", "misled")
+PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 10.0, 0.1])
+"""Of NAMES (the temperature is T0, per_leftover t1): wide, so that only what the cases leave open feels it."""
+BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * 4, (0.0, 50.0), (1e-4, 0.5))
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,8 @@ class Constants:
     named: float = 0.0
     unknown: float = 0.0
     misled: float = 0.0
+    unseen_named: float | None = None
+    unseen_unknown: float | None = None
 
     def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
         """The stated probabilities.
@@ -61,6 +64,8 @@ class Constants:
     def scale(self) -> Scale:
         """The constants as the diagnosis takes them."""
         offsets = {"none": 0.0, "named": self.named, "unknown": self.unknown}
+        unseen = {"unseen named": self.unseen_named, "unseen unknown": self.unseen_unknown}
+        offsets |= {k: v for k, v in unseen.items() if v is not None}
         return Scale(self.temperature, self.per_leftover, offsets, self.misled)
 
 
@@ -76,7 +81,8 @@ def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
 
 @dataclass(frozen=True)
 class _Table:
-    """Samples as arrays: ``evidence`` [case, label] (-inf where not stated), class of each label, the truth."""
+    """Samples as arrays: ``evidence`` [case, label] (-inf where not stated), its class (none, named, unknown, and those
+    unseen), the truth."""
 
     evidence: Array
     kind: NDArray[np.int64]
@@ -88,19 +94,21 @@ class _Table:
 def _table(samples: Sequence[Sample]) -> _Table:
     labels = sorted({k for s in samples for k in s.evidences})
     evidence = np.array([[s.evidences.get(k, -inf) for k in labels] for s in samples])
-    evidence -= evidence.max(axis=1, keepdims=True)
     kind = np.array([{"none": 0, "unknown": 2}.get(k, 1) for k in labels])
+    unseen = np.isfinite(evidence) & (evidence <= UNSEEN) & (kind > 0)
+    evidence[unseen] = 0.0
     excess = np.maximum([s.leftover - 1.0 for s in samples], 0.0)
     before = np.array([list(BEFORE.values())[k] / np.sum(kind == k) for k in kind])
-    return _Table(evidence, kind, np.array([labels.index(s.truth) for s in samples]), excess, before / before.sum())
+    kinds = np.where(unseen, kind + 2, kind)
+    return _Table(evidence, kinds, np.array([labels.index(s.truth) for s in samples]), excess, before / before.sum())
 
 
 def _loss(x: Array, t: _Table) -> float:
-    """Negative penalised log likelihood at (ln T0, named, unknown, t1, share misled)."""
-    temperature = exp(x[0]) * (1.0 + x[3] * t.excess)
-    logits = np.array([0.0, x[1], x[2]])[t.kind] + t.evidence / temperature[:, None]
+    """Negative penalised log likelihood at NAMES."""
+    temperature = exp(x[0]) * (1.0 + x[5] * t.excess)
+    logits = np.array([0.0, *x[1:5]])[t.kind] + t.evidence / temperature[:, None]
     shares = np.exp(logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1))
-    right = np.log((1.0 - x[4]) * shares + x[4] * t.before[t.truth])
+    right = np.log((1.0 - x[6]) * shares + x[6] * t.before[t.truth])
     return float(-right.sum() + 0.5 * np.sum((x / PRIOR_STD) ** 2))
 
 
@@ -120,12 +128,13 @@ def fit(samples: Sequence[Sample], with_leftover: bool) -> Fitted:
     if not samples:
         raise ValueError("no case has evidences for its right label: nothing can be fitted")
     t = _table(samples)
-    bounds = BOUNDS if with_leftover else (*BOUNDS[:3], (0.0, 0.0), BOUNDS[4])
-    starts = [np.array([ln_t, 0.0, 0.0, 0.1 if with_leftover else 0.0, 0.05]) for ln_t in (0.0, 2.0, 4.0)]
+    bounds = BOUNDS if with_leftover else (*BOUNDS[:5], (0.0, 0.0), BOUNDS[6])
+    starts = [np.array([ln_t, 0.0, 0.0, -3.0, -3.0, 0.1 if with_leftover else 0.0, 0.05]) for ln_t in (0.0, 2.0, 4.0)]
     found = [minimize(_loss, x, (t,), method="L-BFGS-B", bounds=bounds, options={"ftol": 1e-13}) for x in starts]
     best = min(found, key=lambda r: r.fun)
     x = np.asarray(best.x, dtype=float)
-    constants = Constants(exp(x[0]), float(x[3]), float(x[1]), float(x[2]), float(x[4]))
+    temperature, named, unknown, unseen_named, unseen_unknown, per_leftover, misled = x.tolist()
+    constants = Constants(exp(temperature), per_leftover, named, unknown, misled, unseen_named, unseen_unknown)
     return Fitted(constants, _errors(x, t, bounds))
 
 
@@ -144,9 +153,8 @@ def _errors(x: Array, t: _Table, bounds: Sequence[tuple[float, float]]) -> dict[
                 total += si * sj * _loss(y, t)
             curvature[a, b] = total / (4.0 * step[i] * step[j])
     std = np.sqrt(np.maximum(np.diag(np.linalg.pinv(curvature)), 0.0)) if free else []
-    out: dict[str, float | None] = dict.fromkeys(("ln_temperature", "named", "unknown", "per_leftover", "misled"))
-    names = list(out)
-    return out | {names[i]: float(s) for i, s in zip(free, std, strict=True)}
+    out: dict[str, float | None] = dict.fromkeys(NAMES)
+    return out | {NAMES[i]: float(s) for i, s in zip(free, std, strict=True)}
 
 
 def folds(samples: Sequence[Sample], number: int = 5) -> NDArray[np.int64]:

@@ -201,11 +201,12 @@ def drawn(true: Constants, number: int) -> list[Sample]:
 
 
 def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
-    true = Constants(temperature=4.0, per_leftover=0.8, named=-1.0, unknown=0.7)
+    true = Constants(4.0, per_leftover=0.8, named=-1.0, unknown=0.7, unseen_named=-2.5, unseen_unknown=-1.5)
     found = fit(drawn(true, 3000), with_leftover=True)
     k, e = found.constants, found.errors
     z = [(np.log(k.temperature / 4.0), e["ln_temperature"]), (k.per_leftover - 0.8, e["per_leftover"]),
-         (k.named + 1.0, e["named"]), (k.unknown - 0.7, e["unknown"])]  # fmt: skip
+         (k.named + 1.0, e["named"]), (k.unknown - 0.7, e["unknown"]),
+         (k.unseen_named + 2.5, e["unseen named"]), (k.unseen_unknown + 1.5, e["unseen unknown"])]  # fmt: skip
     for off, std in z:
         assert std is not None
         assert std < 0.25
@@ -222,7 +223,7 @@ def test_tests_of_one_stand_stay_in_one_fold() -> None:
 def test_calibration_betters_the_stated_probabilities_and_keeps_to_its_split(
     made: Callable[..., Folder], tmp_path: Path
 ) -> None:
-    samples = drawn(Constants(temperature=4.0, named=-1.0), 300)
+    samples = drawn(Constants(temperature=4.0, named=-1.0, unseen_named=-3.0, unseen_unknown=-3.0), 300)
     cases = [
         (None if s.truth == "none" else s.truth, {"evidences": s.evidences, "leftover": 1.0})
         for s in samples

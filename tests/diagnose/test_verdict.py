@@ -95,6 +95,16 @@ def test_an_offset_of_a_kind_shifts_its_odds() -> None:
     assert [kind(label) for label in ("none", "unknown", "n2_purge")] == ["none", "unknown", "named"]
 
 
+def test_what_was_not_seen_is_as_good_as_none_but_for_its_own_offset() -> None:
+    offsets = {"none": 0.0, "named": 1.0, "unknown": 0.0, "unseen named": -3.0}
+    seen = {"none": 0.0, "n2_purge": 4.0, "tank_heat": UNSEEN, "fuel_sliver": UNSEEN - 20.0}
+    found = Scale(temperature=2.0, offsets=offsets).probabilities(seen, 1.0)
+    assert found["tank_heat"] == found["fuel_sliver"] == pytest.approx(found["none"] * np.exp(-3.0))
+    assert found["n2_purge"] == pytest.approx(found["none"] * np.exp(1.0 + 4.0 / 2.0))
+    without = Scale(temperature=2.0, offsets={"none": 0.0, "named": 1.0, "unknown": 0.0}).probabilities(seen, 1.0)
+    assert without["fuel_sliver"] < without["tank_heat"]
+
+
 @pytest.fixture
 def stored(monkeypatch: pytest.MonkeyPatch, tmp_path):  # type: ignore[no-untyped-def]
     """A folder in place of the package's, whose probabilities.json a test may write."""

@@ -26,25 +26,30 @@ SET = 0.9
 class Scale:
     """How log evidences become probabilities: p_k ~ exp(offset of its kind + evidence / T).
 
-    In a share ``misled`` of all tests the evidence misleads altogether; there the labels have the probabilities that
-    they have before a test.
+    A label of which a score test saw nothing (UNSEEN) is as good as none, but for an offset of its own: that an effect
+    is too small to be seen is no evidence against it. In a share ``misled`` of all tests the evidence misleads
+    altogether; there the labels have the probabilities that they have before a test.
     """
 
     temperature: float = 1.0
     temperature_per_leftover: float = 0.0
-    offsets: Mapping[str, float] = field(default_factory=lambda: {"none": 0.0, "named": 0.0, "unknown": 0.0})
+    offsets: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(("none", "named", "unknown"), 0.0))
     misled: float = 0.0
 
     def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
         """Of every label of ``evidences``; they sum to one."""
         heat = self.temperature * (1.0 + self.temperature_per_leftover * max(0.0, leftover - 1.0))
         labels = list(evidences)
-        logs = np.array([self.offsets[kind(label)] + evidences[label] / heat for label in labels])
+        logs = np.array([self._log(kind(label), evidences[label], heat) for label in labels])
         weights = np.exp(logs - logs.max())
         before = np.array([BEFORE[kind(label)] for label in labels])
         before[[kind(label) == "named" for label in labels]] /= max(sum(kind(k) == "named" for k in labels), 1)
         mixed = (1.0 - self.misled) * weights / weights.sum() + self.misled * before / before.sum()
         return dict(zip(labels, mixed.tolist(), strict=True))
+
+    def _log(self, of: str, evidence: float, heat: float) -> float:
+        unseen = self.offsets.get(f"unseen {of}")
+        return unseen if unseen is not None and evidence <= UNSEEN else self.offsets[of] + evidence / heat
 
 
 BEFORE = {"none": 0.25, "named": 0.6, "unknown": 0.15}
