@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+from math import exp
+
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.sites import RATES, TANK_HEAT, term
+
+POWER, LAG = range(2)
 
 
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if hook == RATES:
-        site[TANK_HEAT] += p[0]
+        site[TANK_HEAT] += p[POWER] * (1.0 - exp(-max(t, 0.0) / p[LAG]))
 
 
 EFFECT = Effect(
     name="tank_heat",
     equation="tank_energy",
-    meaning="the oxidizer in the tank receives a constant heat flow",
+    meaning="the oxidizer in the tank receives a heat flow that soon is constant",
     reference="dU/dt = -mdot h + Qdot: the report's eq. 3.9 with a source; two 500 W blankets in section 4.1",
-    formula="Q = constant",
+    formula="Q = P (1 - exp(-t/tau)), P constant: what came in before the valve opened shows in the temperature",
     sites=("tank_heat",),
-    parameters=(Parameter("power", "W", "heat flow into the tank's content", typical=1000.0, low=-5e3, high=20e3),),
+    parameters=(
+        Parameter("power", "W", "heat flow into the tank's content", typical=1000.0, low=-5e3, high=20e3),
+        Parameter(
+            "lag", "s", "until the heat flow is there: it comes through the wall", 0.8, center=0.5, low=0.02, high=20.0
+        ),
+    ),
     phases=("liquid", "vapor"),
     term=_term,
     twins=("tank_wall_heat_capacity",),
