@@ -26,7 +26,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("power", "W", "heat flow into the tank's content", typical=1000.0, low=-5e3, high=20e3),
         Parameter(
-            "lag", "s", "until the heat flow is there: it comes through the wall", 0.8, center=0.5, low=0.02, high=20.0
+            "lag", "s", "until the heat flow is there: it comes through the wall", 0.9, center=0.1, low=0.02, high=20.0
         ),
     ),
     phases=("liquid", "vapor"),
