@@ -58,10 +58,10 @@ def test_values_have_units_and_deviations(root: Path) -> None:
     )
     assert [a.effect.name for a in found.effects] == ["n2_purge", "tank_heat"]
     purge, heat = found.effects
-    assert heat.named == {"power": 900.0}
+    assert heat.named == {"power": 900.0, "lag": 0.1}  # what is not stated: its prior's center
     assert purge.named["area"] == pytest.approx(8e-6)
     assert purge.named["temperature"] == pytest.approx(293.15)
-    assert purge.named["supply_pressure"] == 38e5  # not stated: its prior's center
+    assert purge.named["supply_pressure"] == 38e5
     power = found.to_json()[1]["parameters"]["power"]
     assert (power.value, power.std, power.unit) == (900.0, 150.0, "W")
 
@@ -78,8 +78,8 @@ def test_without_a_file_nothing_is_adopted(root: Path) -> None:
 def test_a_tests_own_file_takes_the_place_of_its_stands(root: Path) -> None:
     of_stand = adopted(root, '[tank_heat]\npower = "1 kW"\n[chamber_tap_lag]\nlag = "30 ms"\n', "paper")
     assert {a.effect.name for a in of_stand.effects} == {"tank_heat", "chamber_tap_lag"}
-    own = adopted(root, '[tank_heat]\npower = "2 kW"\n')
-    assert [(a.effect.name, a.values) for a in own.effects] == [("tank_heat", (2000.0,))]
+    own = adopted(root, '[tank_heat]\npower = "2 kW"\nlag = "500 ms"\n')
+    assert [(a.effect.name, a.values) for a in own.effects] == [("tank_heat", (2000.0, 0.5))]
 
 
 def test_a_teams_own_effect_is_adopted_in_the_unit_that_it_has(root: Path) -> None:
@@ -87,7 +87,7 @@ def test_a_teams_own_effect_is_adopted_in_the_unit_that_it_has(root: Path) -> No
     text = Path(library.__code__.co_filename).with_name("tank_heat.py").read_text(encoding="utf-8")
     text = text.replace('name="tank_heat"', 'name="lamp"').replace('"power", "W"', '"power", "lm"')
     (root / "effects" / "lamp.py").write_text(text, encoding="utf-8")
-    assert adopted(root, '[lamp]\npower = "12 +/- 2 lm"\n').effects[0].values == (12.0,)
+    assert adopted(root, '[lamp]\npower = "12 +/- 2 lm"\n').effects[0].named["power"] == 12.0
     with pytest.raises(InputError, match=r"lamp\.power: found '12 W'; expected a value in lm"):
         adopted(root, '[lamp]\npower = "12 W"\n')
 
@@ -96,7 +96,10 @@ def test_a_teams_own_effect_is_adopted_in_the_unit_that_it_has(root: Path) -> No
     ("text", "message"),
     [
         ('[tank_haet]\npower = "1 kW"', r"found 'tank_haet'; expected an effect; did you mean 'tank_heat'"),
-        ('[tank_heat]\npwoer = "1 kW"', r", tank_heat: found 'pwoer'; expected one of power; did you mean 'power'"),
+        (
+            '[tank_heat]\npwoer = "1 kW"',
+            r", tank_heat: found 'pwoer'; expected one of power, lag; did you mean 'power'",
+        ),
         ('[tank_heat]\npower = "1 bar"', r", tank_heat\.power: unit 'bar' is a unit of pressure"),
         ('[tank_heat]\npower = "1 kw_"', r", tank_heat\.power: unit 'kw_' is not a known unit"),
         ("[tank_heat]\npower = 900", r", tank_heat\.power: found 900\.0; expected a power with its unit"),

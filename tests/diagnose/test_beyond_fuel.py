@@ -174,7 +174,8 @@ def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not(late: bool) ->
 @LATE_AND_EARLY
 def test_slopes_are_differences_of_predictions(late: bool) -> None:
     made, test = hypothesis(late).with_effect(effect("tank_heat")), reduced(late)
-    x = np.concatenate([truth(late), [0.4]])
+    assert made.names[-2:] == ("tank_heat.power", "tank_heat.lag")
+    x = np.concatenate([truth(late), [0.4, 1.0]])
     here = predict(made, test, x, tangents=True)
     assert here.slopes is not None
     for k, name in enumerate(made.names):
@@ -205,9 +206,10 @@ def test_heat_shows_better_than_up_to_the_end_of_the_fuel(late: bool) -> None:
 def information(late: bool, test: Observed) -> float:
     """What a test tells of the heat's strength, with the engine's constants free."""
     made = hypothesis(late).with_effect(effect("tank_heat"))
-    slopes = predict(made, test, np.concatenate([truth(late), [0.0]]), tangents=True).slopes
+    slopes = predict(made, test, np.concatenate([truth(late), [0.0, 0.0]]), tangents=True).slopes
     assert slopes is not None
-    a, b = slopes[:, :-1], slopes[:, -1]
+    strength = made.names.index("tank_heat.power")
+    a, b = np.delete(slopes, strength, axis=1), slopes[:, strength]
     return float(b @ (b - a @ np.linalg.solve(a.T @ a + np.eye(a.shape[1]), a.T @ b)))
 
 

@@ -187,10 +187,14 @@ def test_splines_sum_to_one_where_they_reach() -> None:
 
 
 def test_a_probe_adds_its_splines_to_its_site() -> None:
-    splines = Splines.over(0.0, 4.0, 1.0)
-    constant = {f"c{i}": 700.0 for i in range(splines.count)}
-    probed = engine_on_stand(effects=(probe("tank_heat", splines, 1000.0).at(on=1.0, **constant),))
-    heated = engine_on_stand(effects=(effect("tank_heat").at(power=700.0),))
+    """Splines every quarter of a second follow a heat that comes with a lag of a second to some milliwatts."""
+    splines, dense = Splines.over(0.0, 4.0, 0.25), np.linspace(0.0, 4.0, 401)
+    heat = 700.0 * (1.0 - np.exp(-dense))
+    fitted = np.linalg.lstsq(splines.at(dense), heat, rcond=None)[0]
+    assert splines.at(dense) @ fitted == pytest.approx(heat, abs=0.02)
+    coefficients = {f"c{i}": float(c) for i, c in enumerate(fitted)}
+    probed = engine_on_stand(effects=(probe("tank_heat", splines, 1000.0).at(on=1.0, **coefficients),))
+    heated = engine_on_stand(effects=(effect("tank_heat").at(power=700.0, lag=1.0),))
     times = np.linspace(0.1, 3.9, 20)
     theirs, ours = (burn(e, 4.0, 1e-7, times=times).output("tank_pressure") for e in (heated, probed))
     assert ours == pytest.approx(theirs, rel=1e-6)

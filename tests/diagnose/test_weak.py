@@ -31,7 +31,7 @@ from hfanalysis.diagnose.spread import Spread
 from hfanalysis.diagnose.weak import UNITS, weak_residuals
 from hfanalysis.diagnose.weak_product import Z90, significance, weak_product
 from hfanalysis.effects import effect
-from hfanalysis.engine.model import NITROGEN, O_TANK_PRESSURE, TEMPERATURE
+from hfanalysis.engine.model import NITROGEN, O_CHAMBER_PRESSURE, O_TANK_PRESSURE, STATES, TEMPERATURE
 from hfanalysis.quantity import Quantity
 
 
@@ -64,12 +64,13 @@ def test_chi_square_is_as_large_as_its_degrees_of_freedom() -> None:
     assert float(np.mean(ratios)) == pytest.approx(1.0, abs=0.1)
 
 
-@pytest.mark.parametrize("power", [2000.0, 6000.0, -3000.0])
-def test_heat_is_read_in_watts(power: float) -> None:
-    found = of(effect("tank_heat").at(power=power))
+@pytest.mark.parametrize(("power", "lag"), [(2000.0, 0.02), (6000.0, 0.02), (-3000.0, 0.02), (6000.0, 2.0)])
+def test_heat_is_read_in_watts(power: float, lag: float) -> None:
+    found = of(effect("tank_heat").at(power=power, lag=lag))
     energy = found["tank_energy"]
-    assert energy.value[wet(energy)] == pytest.approx(power, rel=0.02, abs=20.0)
-    assert energy.value[~wet(energy)] == pytest.approx(power, rel=0.1)
+    heat, liquid = power * (1.0 - np.exp(-energy.time / lag)), wet(energy)
+    assert energy.value[liquid] == pytest.approx(heat[liquid], rel=0.02, abs=20.0)
+    assert energy.value[~liquid] == pytest.approx(heat[~liquid], rel=0.1)
     for name in ("feed", "chamber_mass", "nozzle"):
         assert worst(found[name]) < 0.1, name
 
@@ -117,11 +118,17 @@ def test_a_wider_throat_is_lacking_in_chamber_and_nozzle() -> None:
 
 
 def test_a_filling_line_is_lacking_in_the_feed_and_as_mass() -> None:
-    fill = effect("feed_line_fill").at(volume=4e-4)
+    """Of the feed's pressure e^k V / (V + 2 mL) (p_T - p_c), e the share of the line that is empty."""
+    fill = effect("feed_line_fill").at(volume=4e-4, steepness=1.5)
     run, found = run_of(fill), of(fill)
     feed = found["feed"]
+    states, outputs = run.steps.at(feed.time)
+    driving = outputs[:, O_TANK_PRESSURE] - outputs[:, O_CHAMBER_PRESSURE]
+    lacking = states[:, len(STATES) + 1] ** 1.5 * (4e-4 / 4.02e-4) * driving * 1e-5
     assert feed.value[0] > 1.0
-    assert np.abs(feed.value[feed.time > 1.5]).max() < 0.01
+    late, liquid = feed.time > 1.5, wet(feed)
+    assert feed.value[late & liquid] == pytest.approx(lacking[late & liquid], abs=0.01)
+    assert feed.value[~liquid] == pytest.approx(0.0, abs=0.01)
     closing = found["tank_volume"].closing
     assert closing is not None
     assert run.liquid_out is not None

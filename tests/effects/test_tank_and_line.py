@@ -11,16 +11,22 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect
 from hfanalysis.effects.feed_line_fill import LIQUID_DENSITY
-from hfanalysis.engine.tank import energy_derivatives
+from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, energy_derivatives
 from hfanalysis.engine.unsteady import Burn
 
+AT_REST = float(engine_on_stand().saturation.pressure(engine_on_stand().temperature))
+"""The tank's pressure before anything flows [Pa]."""
 
-def test_heat_keeps_the_tank_warmer_by_the_energy_it_brings() -> None:
-    """Before anything flows much: m c dT = Q t, with the saturated tank's own heat capacity."""
-    warm = only("tank_heat", power=2000.0)
+
+@pytest.mark.parametrize("lag", [0.02, 0.1, 2.0])
+def test_heat_keeps_the_tank_warmer_by_the_energy_it_brings(lag: float) -> None:
+    """Before anything flows much: m c dT = P (t - tau (1 - exp(-t/tau))), with the saturated tank's own heat
+    capacity."""
+    warm = only("tank_heat", power=2000.0, lag=lag)
     gain = channel(warm, "tank_temperature", 0.2) - channel(plain(), "tank_temperature", 0.2)
     _, by_temperature, _ = energy_derivatives(engine_on_stand().saturation.kernel_table, 16.5e-3, 8.2, 292.6)
-    assert gain == pytest.approx(2000.0 * 0.2 / by_temperature, rel=0.02)
+    brought = 2000.0 * (0.2 - lag * (1.0 - np.exp(-0.2 / lag)))
+    assert gain == pytest.approx(brought / by_temperature, rel=0.02)
 
 
 def test_nitrogen_enters_from_the_opening_on_and_is_conserved() -> None:
@@ -55,11 +61,39 @@ def test_a_wall_left_hot_by_blankets_gives_kilowatts() -> None:
 
 
 def test_late_boiling_dips_by_its_depth_and_rebounds() -> None:
-    found = only("tank_nonequilibrium", depth=3e5, delay=0.25)
-    assert gap(found, 0.25) == pytest.approx(-3e5, rel=0.02)
+    found = only("tank_nonequilibrium", depth=3e5, delay=0.25, sustained=0.0)
+    assert gap(found, 0.25) == pytest.approx(-3e5 * channel(plain(), "tank_pressure", 0.25) / AT_REST, rel=0.02)
     assert abs(gap(found, 0.0)) < 1.0
     # what did not flow out meanwhile is still there
     assert 0.0 < gap(found, 3.0) < 0.03 * 3e5
+
+
+@pytest.mark.parametrize("sustained", [0.2, 1.0])
+def test_a_sustained_dip_stays_to_the_end_of_the_liquid(sustained: float) -> None:
+    found = only("tank_nonequilibrium", depth=3e5, delay=0.25, sustained=sustained)
+    assert found.liquid_out is not None
+    early, late = (below_saturation(found, at) * AT_REST for at in (0.25, found.liquid_out - 1e-3))
+    assert early == pytest.approx(3e5 * (1.0 - sustained / np.e), rel=1e-4)
+    assert late == pytest.approx(3e5 * sustained, rel=1e-4)
+
+
+def test_the_vapour_goes_on_from_the_lower_pressure_without_a_leap() -> None:
+    """What the liquid leaves behind expands like the report's vapour, its pressure lower in proportion."""
+    found = only("tank_nonequilibrium", depth=3e5, delay=0.25, sustained=1.0)
+    gone = found.liquid_out
+    assert gone is not None
+    before, after = (channel(found, "tank_pressure", gone + wait) for wait in (-1e-6, 1e-6))
+    assert after == pytest.approx(before, rel=1e-5)
+    for at in (gone + 1e-6, gone + 0.5, gone + 1.5):
+        held = channel(found, "tank_mass", at) * channel(found, "vapor_compressibility", at)
+        vapor = held * SPECIFIC_GAS_CONSTANT * channel(found, "tank_temperature", at) / engine_on_stand().feed.volume
+        assert channel(found, "tank_pressure", at) == pytest.approx(vapor * (1.0 - 3e5 / AT_REST), rel=1e-4)
+
+
+def below_saturation(run: Burn, at: float) -> float:
+    """Part of the saturation pressure at the tank's temperature that the tank's pressure lacks."""
+    saturated = float(engine_on_stand().saturation.pressure(channel(run, "tank_temperature", at)))
+    return 1.0 - channel(run, "tank_pressure", at) / saturated
 
 
 def gap(run: Burn, at: float) -> float:

@@ -47,7 +47,7 @@ DIAGNOSIS: dict[str, Any] = {
             "probability": 0.83,
             "equation": "tank_energy",
             "meaning": "heat into the oxidizer",
-            "parameters": {"power": _quantity(900.0, "W", 150.0)},
+            "parameters": {"power": _quantity(900.0, "W", 150.0), "lag": _quantity(0.12, "s", 0.1)},
             "plausibility": _SIZE,
         }
     ],

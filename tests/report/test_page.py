@@ -435,8 +435,9 @@ def test_names_of_events_never_overlap() -> None:
 
 def test_adopted_effects_show_in_the_verdict_and_in_what_the_page_is_made_from(tmp_path: Path) -> None:
     made = material(tmp_path)
-    effect = {"name": "tank_heat", "file": "T.effects.toml", "parameters": {"power": quantity(900.0, "W", 0.0)}}
+    parameters = {"power": quantity(900.0, "W", 0.0), "lag": quantity(0.1, "s", 0.0)}
+    effect = {"name": "tank_heat", "file": "T.effects.toml", "parameters": parameters}
     products = {**made.products, "calibration": {**made.product("calibration"), "effects": [effect]}}
-    said = "With tank_heat 0.9 kW adopted (engines/T.effects.toml)."
+    said = "With tank_heat 0.9 kW (lag 0.1 s) adopted (engines/T.effects.toml)."
     assert page(replace(made, products=products)).count(said) == 2
     assert "adopted" not in page(made)
