@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from fake_way import FAULTS, RUNS, AbsentError, InputError, ran
+from fake_way import FAULTS, RUNS, STAGES, AbsentError, InputError, ran
 
 from hfanalysis.stages import freshness
 
@@ -87,6 +88,18 @@ def test_an_adopted_effect_redoes_everything(root: Path) -> None:
     (root / "engines").mkdir()
     (root / "engines/T1.effects.toml").write_text("[tank_heat]\npower = '0.9 kW'\n")
     assert ran(root, "second") == ["first", "second"]
+
+
+def test_a_teams_own_effect_redoes_what_tries_effects_and_what_rests_on_it(
+    root: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trying = replace(STAGES["second"], tries_effects=True)
+    monkeypatch.setitem(STAGES, "second", trying)
+    ran(root, "third")
+    (root / "effects").mkdir()
+    (root / "effects/slosh.py").write_text("EFFECT = 1\n")
+    assert ran(root, "third") == ["second", "third"]
+    assert ran(root, "third") == []
 
 
 def test_a_touched_file_is_not_a_changed_file(root: Path) -> None:

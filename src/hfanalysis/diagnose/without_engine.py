@@ -7,6 +7,7 @@ from typing import Any
 
 from hfanalysis.diagnose.of_test import Subject
 from hfanalysis.diagnose.plausible import judged
+from hfanalysis.diagnose.posterior import scale
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError
 from hfanalysis.quantity import Quantity
@@ -27,14 +28,15 @@ def sensors_alone(subject: Subject, why: str) -> dict[str, Any]:
     if not found:
         raise AbsentError(f"{why}; its sensors, by themselves, show nothing wrong")
     drift = next((f for f in found if f.verdict == ZERO), None)
-    effects = [] if drift is None else [_drift(drift)]
+    sure = 1.0 - scale().misled
+    effects = [] if drift is None else [_drift(drift, sure)]
     label = "named" if effects else "unknown"
-    name = DRIFT if effects else "unknown"
+    name, else_ = (DRIFT, "unknown") if effects else ("unknown", "none")
     return {
         "verdict": label,
         "effects": effects,
         "set90": [name],
-        "posterior": {name: 1.0},
+        "posterior": {name: sure, else_: 1.0 - sure},
         "localisation": [_place(f, subject) for f in found],
         "gap": {"before": {}, "after": {}, "noise": {}, "closed_fraction": dict.fromkeys(ARMS)},
         "upper_limits": {},
@@ -44,7 +46,10 @@ def sensors_alone(subject: Subject, why: str) -> dict[str, Any]:
         "plausibility": {row["name"]: row["plausibility"] for row in effects},
         "compared": {"channels": sorted({c for f in found for c in f.channels})},
         "sentences": [*(f.text for f in found), f"No more can be said without an engine to run: {why}."],
-        "notes": ["only what the sensors show by themselves was judged; no probability of other effects was formed"],
+        "notes": [
+            "only what the sensors show by themselves was judged; no probability of other effects was formed; "
+            "what is stated is as sure as any evidence was on simulated tests"
+        ],
         "warnings": [],
         "runtime_s": {"value": None, "reason": "times stand in run.log, so that products are the same from run to run"},
         "seed": 0,
@@ -54,13 +59,13 @@ def sensors_alone(subject: Subject, why: str) -> dict[str, Any]:
 ARMS: Sequence[str] = ("same", "held_out", "other_test", "placebo")
 
 
-def _drift(found: Finding) -> dict[str, Any]:
+def _drift(found: Finding, sure: float) -> dict[str, Any]:
     size: Quantity = found.size
     value = size.value or 0.0
     parameters: Mapping[str, Quantity] = {"drift": size}
     return {
         "name": DRIFT,
-        "probability": 1.0,
+        "probability": sure,
         "equation": "sensor",
         "meaning": effect(DRIFT).meaning,
         "parameters": parameters,

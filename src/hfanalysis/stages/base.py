@@ -14,7 +14,8 @@ Products that are not JSON are written to ``context.scratch("residuals.h5")``, a
 Nothing appears under its final name before ``run`` has returned. Optional fields: ``wants`` (stages to run first whose
 absence, AbsentError, does not stop this one: ask ``context.absent``), ``parameters`` (settings with their defaults,
 read with ``context.parameter("name")``; they are part of what decides whether a product is up to date) and ``adopts``
-(False for a stage that adopted effects do not change: neither their file nor products made with them are its input).
+(False for a stage that adopted effects do not change: neither their file nor products made with them are its input),
+``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input).
 """
 
 from __future__ import annotations
@@ -56,6 +57,7 @@ class Stage:
     wants: tuple[str, ...] = ()
     parameters: Mapping[str, Any] = field(default_factory=dict)
     adopts: bool = True
+    tries_effects: bool = False
 
     def reads(self, other: Stage) -> tuple[str, ...]:
         """The products of an upstream stage that this one's products follow from."""

@@ -117,5 +117,6 @@ STAGE = Stage(
     products=("diagnosis.json", "diagnosis.h5"),
     run=run,
     adopts=False,
+    tries_effects=True,
     parameters={"proof_test": "", "variant": ""},
 )

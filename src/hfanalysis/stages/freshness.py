@@ -42,9 +42,10 @@ def raw_files(definition: TestDefinition) -> list[Path]:
 
 
 def effect_files(context: Context, stage: Stage) -> list[Path]:
-    """The file of adopted effects that applies to this test, and a team's own effects, which may be in it."""
+    """The file of adopted effects that applies to this test, and a team's own effects, where they may be in play."""
     found = adopted_file(context.root, context.definition) if stage.adopts else None
-    return [] if found is None else [found, *sorted((context.root / "effects").glob("[!_]*.py"))]
+    own = sorted((context.root / "effects").glob("[!_]*.py")) if found is not None or stage.tries_effects else []
+    return [*([] if found is None else [found]), *own]
 
 
 def input_files(context: Context, stage: Stage) -> list[Path]:
