@@ -14,18 +14,12 @@ from tests.segment.stand import signal
 
 from hfanalysis.diagnose.alignment import MOST_MOVED, model_times, share
 from hfanalysis.diagnose.fit import fit
-from hfanalysis.diagnose.flow_end import find_flow_end
+from hfanalysis.diagnose.flow_end import AROUND_END, AT_ONCE, find_flow_end
+from hfanalysis.diagnose.frame import COLD_FLOW_ERROR, EVENT_STD, TANK_SIDE
 from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
-from hfanalysis.diagnose.observed import (
-    AROUND_END,
-    AT_ONCE,
-    COLD_FLOW_ERROR,
-    EVENT_STD,
-    TANK_SIDE,
-    Observed,
-    observe_test,
-)
+from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import predict, with_spare_fuel
+from hfanalysis.diagnose.reduction import observe_test
 from hfanalysis.effects import effect
 from hfanalysis.engine.observe import observe
 from hfanalysis.engine.unsteady import Burn, Engine, burn

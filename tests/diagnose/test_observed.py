@@ -9,20 +9,11 @@ import pytest
 from tests.diagnose import logged, made
 from tests.diagnose.made import covariance_of
 
-from hfanalysis.diagnose.observed import (
-    AROUND_CHANGE,
-    BLOCK,
-    FIRST,
-    FORM_ERROR,
-    MERGED,
-    NEAR,
-    REST_BLOCKS,
-    SHARE,
-    UNSTEADY_ZERO,
-    Channel,
-    Observed,
-    as_read,
-)
+from hfanalysis.diagnose.blocks import MERGED, NEAR
+from hfanalysis.diagnose.covariance import UNSTEADY_ZERO
+from hfanalysis.diagnose.frame import AROUND_CHANGE, BLOCK, FIRST, REST_BLOCKS
+from hfanalysis.diagnose.observed import FORM_ERROR, SHARE, Channel, Observed
+from hfanalysis.diagnose.recorded import as_read
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.quantity import Quantity

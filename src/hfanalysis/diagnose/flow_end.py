@@ -9,9 +9,25 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.recorded import LONGEST, accuracy_of, signal_of
+from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import TestLog
 
 Array = NDArray[np.float64]
+
+AROUND_END = 0.3
+"""Seconds before the end of the flow that was noted at the stand from which on nothing is compared."""
+
+WORTH_IT = 0.5
+"""Seconds of flow after the end of the fuel from which on they are compared."""
+
+APART = 0.25
+"""Seconds by which the ends of liquid and fuel have to lie apart for that: the model keeps to both."""
+
+AT_ONCE = 0.05
+"""Standard deviation [s] of the end of the fuel up to which it is one: a fire that fades goes on beyond its middle."""
 
 AFTER_FUEL = 0.1
 """Seconds after the fuel's end in which the feed settles."""
@@ -42,6 +58,34 @@ CLEAR_FALL = 1.0
 
 EMPTY = 0.3e5
 """Excess of the tank's over the ambient pressure [Pa] below which hardly anything flows."""
+
+
+def flow_end_without_fuel(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> float | None:
+    """Until when the tank goes on emptying after the end of the fuel [s]; None where that is not worth following.
+
+    What was noted at the stand is the end of the fuel. Where it is clearly later, it may be that of the flow.
+    """
+    gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
+    if gone is None or segments.std("t_fuel_out") > AT_ONCE or not {"p_tank", "p_run"} <= set(log.channels):
+        return None
+    if t_v is not None and abs(gone - t_v) < APART:
+        return None
+    tank, run = (signal_of(log, name, origin) for name in ("p_tank", "p_run"))
+    if tank.dead or run.dead:
+        return None
+    of_tank, of_run = (accuracy_of(definition, s.name, s.value) for s in (tank, run))
+    accuracy = float(np.hypot(of_tank, of_run))
+    end = find_flow_end(tank, run, gone, definition.ambient_pressure.value, accuracy, segments.time("t_purge"))
+    noted = noted_flow_end(definition, 0.0)
+    if end is not None and noted > gone + AROUND_END:
+        end = min(end, noted)
+    return end if end is not None and min(end - AROUND_END, LONGEST) > gone + WORTH_IT else None
+
+
+def noted_flow_end(definition: TestDefinition, end: float) -> float:
+    """Until when something flowed, as noted at the stand [s], but not before ``end``."""
+    seen = definition.observed.burn_time if definition.observed is not None else None
+    return max(float(seen.value), end) if seen is not None else end
 
 
 def find_flow_end(

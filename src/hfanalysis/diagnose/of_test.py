@@ -10,9 +10,10 @@ from hfanalysis.diagnose import gap
 from hfanalysis.diagnose.candidate import Candidate
 from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.naming import Catalogue, Naming, Settings, name_effects
-from hfanalysis.diagnose.observed import Observed, observe_test
+from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.posterior import scale
 from hfanalysis.diagnose.proof import OtherTest, Proof, prove
+from hfanalysis.diagnose.reduction import observe_test
 from hfanalysis.diagnose.spread import Spread
 from hfanalysis.diagnose.verdict import Verdict, effects_product, places, sizes, upper_limits, verdict_of
 from hfanalysis.diagnose.weak import weak_residuals

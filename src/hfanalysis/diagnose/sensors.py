@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.alignment import share
+from hfanalysis.diagnose.covariance import FILLING_ERROR, FILLING_TIME
+from hfanalysis.diagnose.frame import AROUND_CHANGE, FIRST
 from hfanalysis.diagnose.hypothesis import Hypothesis
-from hfanalysis.diagnose.observed import AROUND_CHANGE, FILLING_ERROR, FILLING_TIME, FIRST, Channel, Observed, averaged
+from hfanalysis.diagnose.observed import Channel, Observed, averaged
 from hfanalysis.diagnose.predict import TICK, aligned, slopes_of
 from hfanalysis.engine.course import LIQUID_OUT
 from hfanalysis.engine.model import OUTPUTS, RADIUS, STATES
