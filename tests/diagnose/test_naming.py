@@ -11,12 +11,15 @@ from tests.diagnose import made
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.diagnose.candidate import FORMS, PRICE, SHORT, Bench, Candidate, attempted
+from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.fit import fit
 from hfanalysis.diagnose.freeform import BESIDE, LEAST
+from hfanalysis.diagnose.limits import inserted, limits
 from hfanalysis.diagnose.localise import linear_sources
-from hfanalysis.diagnose.naming import Catalogue, Naming, Settings, inserted, limits, name_effects, score
+from hfanalysis.diagnose.naming import Naming, name_effects
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.probe import Splines, probe
+from hfanalysis.diagnose.score import score
 from hfanalysis.diagnose.slack import slacked
 from hfanalysis.diagnose.verdict import places, verdict_of
 from hfanalysis.effects import effect
@@ -200,13 +203,13 @@ def test_parameters_of_the_parent_keep_their_values_in_the_child() -> None:
 
 def test_upper_limits_hold_the_truth() -> None:
     none = named("none")
-    stay = limits(none.base, none.bench, catalogue(), Settings())
+    stay = limits(none.base, none.bench, catalogue())
     assert set(stay) == set(TRIED)
     assert 100.0 < stay["tank_heat"][0] < 2000.0
     assert stay["tank_heat"][1] == "W"
     assert 0.0 < stay["nozzle_throat_erosion"][0] < 1e-4
     heated = verdict_of(named("tank_heat")).chosen
-    assert "tank_heat" not in limits(heated, named("tank_heat").bench, catalogue(), Settings())
+    assert "tank_heat" not in limits(heated, named("tank_heat").bench, catalogue())
 
 
 def test_slack_takes_what_a_closure_gets_wrong() -> None:

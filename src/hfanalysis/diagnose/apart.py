@@ -17,8 +17,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.hypothesis import Hypothesis
-from hfanalysis.diagnose.naming import Catalogue
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import ACCURACY, AFTER, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.sensors import Sensor, missing_sensors

@@ -8,13 +8,15 @@ from typing import Any
 
 from hfanalysis.diagnose import gap
 from hfanalysis.diagnose.candidate import Candidate
+from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
-from hfanalysis.diagnose.naming import Catalogue, Naming, Settings, name_effects
+from hfanalysis.diagnose.naming import Naming, name_effects
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.posterior import scale
 from hfanalysis.diagnose.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.reduction import observe_test
 from hfanalysis.diagnose.spread import Spread
+from hfanalysis.diagnose.variants import Settings
 from hfanalysis.diagnose.verdict import Verdict, effects_product, places, sizes, upper_limits, verdict_of
 from hfanalysis.diagnose.weak import weak_residuals
 from hfanalysis.diagnose.weak_product import weak_product
@@ -72,14 +74,13 @@ def diagnose(
 
     Raises AbsentError where no engine is stated or too little was recorded.
     """
-    settings = settings or Settings()
     observed = subject.observed()
     catalogue = Catalogue(_visible(effects, observed), subject.stated())
     found = name_effects(subject.hypothesis(), observed, catalogue, progress, settings)
     verdict = verdict_of(found)
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
-    product = _product(found, verdict, proof, catalogue, settings)
+    product = _product(found, verdict, proof, catalogue)
     product["sentences"] = story(product)
     return Diagnosis(found, verdict, product)
 
@@ -112,7 +113,7 @@ LEVEL = 1.0
 """Seconds over which the purge line's pressure is taken."""
 
 
-def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue, settings: Settings) -> dict[str, Any]:
+def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue) -> dict[str, Any]:
     observed, chosen = found.bench.observed, verdict.chosen
     compared = observed.channels[0].time
     return {
@@ -135,7 +136,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
             "closed_by_free_form": proof.fractions.get("placebo_free_form"),
             "other_test": proof.other,
         },
-        "upper_limits": upper_limits(verdict, found, catalogue, settings),
+        "upper_limits": upper_limits(verdict, found, catalogue),
         "twins": _twins(verdict, catalogue),
         "not_it": _not_it(verdict),
         "decisive_measurements": _decisive(verdict, catalogue),

@@ -2,8 +2,20 @@
 
 from __future__ import annotations
 
-from hfanalysis.diagnose.naming import Settings
+from dataclasses import dataclass
+
 from hfanalysis.errors import InputError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the method does; all on but in studies of what each is good for."""
+
+    tempering: bool = True
+    polishing: bool = True
+    projection: bool = True
+    coloured: bool = True
+
 
 VARIANTS = {
     "": Settings(),

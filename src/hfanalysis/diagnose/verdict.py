@@ -10,9 +10,11 @@ import numpy as np
 
 from hfanalysis.diagnose.acting import Acting, acting
 from hfanalysis.diagnose.candidate import Candidate
+from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.fit import Fit
+from hfanalysis.diagnose.limits import limits
 from hfanalysis.diagnose.localise import Source, source_of
-from hfanalysis.diagnose.naming import Catalogue, Naming, Settings, limits
+from hfanalysis.diagnose.naming import Naming
 from hfanalysis.diagnose.plausible import judged, lost
 from hfanalysis.diagnose.posterior import counts_as_unknown, evidences_of, kind, scale, smallest_set
 from hfanalysis.quantity import Quantity
@@ -197,10 +199,10 @@ def _phase(source: Acting, phases: Mapping[str, float]) -> str:
     return max(weight, key=lambda n: weight[n])
 
 
-def upper_limits(verdict: Verdict, found: Naming, catalogue: Catalogue, settings: Settings) -> dict[str, Quantity]:
+def upper_limits(verdict: Verdict, found: Naming, catalogue: Catalogue) -> dict[str, Quantity]:
     """The size below which each effect that is not in the model stays with 95 % probability."""
     return {
         name: Quantity(value, unit, ci95=(0.0, abs(value)) if value >= 0 else (value, 0.0))
-        for name, (value, unit) in limits(verdict.chosen, found.bench, catalogue, settings).items()
+        for name, (value, unit) in limits(verdict.chosen, found.bench, catalogue).items()
         if np.isfinite(value)
     }

@@ -1,0 +1,104 @@
+"""Sets of several effects: forward from the best few, by score tests, dropping what is no longer needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from hfanalysis.diagnose.candidate import Bench, Candidate, attempted
+from hfanalysis.diagnose.catalogue import Catalogue
+from hfanalysis.diagnose.fit import Fit
+from hfanalysis.diagnose.score import score_tests
+from hfanalysis.diagnose.variants import Settings
+from hfanalysis.stages.base import Progress
+
+WORTH = 5.0
+"""Log evidence that a further effect must bring."""
+
+PARTNERS = 4
+"""Effects that are tried as a further one, by their score."""
+
+JUDGED_PARTNERS = 4
+"""Of those, how many are fitted at the model-form error they ask for."""
+
+MOST_EFFECTS = 4
+
+
+def sets_of(
+    base: Candidate,
+    singles: list[Candidate],
+    bench: Bench,
+    catalogue: Catalogue,
+    progress: Progress,
+    settings: Settings,
+) -> list[Candidate]:
+    """Sets of several effects: forward from the best few, dropping what is no longer needed."""
+    found: dict[frozenset[str], Candidate] = {}
+    tried: set[frozenset[str]] = set()
+    front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + WORTH]
+    for size in range(2, MOST_EFFECTS + 1):
+        progress(f"trying {size} effects together", 0.6 + 0.06 * size)
+        grown = []
+        for parent in front:
+            grown += _partners(parent, bench, catalogue, tried, settings)
+        better = [c for c in grown if c.log_evidence > _parent_evidence(c, singles, found) + WORTH]
+        if not better:
+            break
+        better = [_dropped(c, bench, catalogue) for c in sorted(better, key=lambda c: -c.log_evidence)[:2]]
+        found |= {frozenset(c.names): c for c in better if len(c.names) > 1}
+        front = better[:1]
+    return sorted(found.values(), key=lambda c: -c.log_evidence)
+
+
+def _parent_evidence(child: Candidate, singles: list[Candidate], found: Mapping[frozenset[str], Candidate]) -> float:
+    """The best evidence among subsets of a set."""
+    names = set(child.names)
+    known = [c.log_evidence for c in (*singles, *found.values()) if set(c.names) < names]
+    return max(known, default=-np.inf)
+
+
+def _partners(
+    parent: Candidate, bench: Bench, catalogue: Catalogue, tried: set[frozenset[str]], settings: Settings
+) -> list[Candidate]:
+    """The parent with each of the few effects that a score test asks for."""
+    scores = []
+    observed = bench.at(parent.steps)
+    for name in catalogue.effects:
+        if name in parent.names or frozenset((*parent.names, name)) in tried:
+            continue
+        made, tests = score_tests(parent.fit, catalogue, name, observed, settings)
+        if tests:
+            gain, start = tests[0]
+            scores.append((gain, name, made, start))
+    out: list[tuple[tuple[str, ...], Fit]] = []
+    for gain, name, made, start in sorted(scores, key=lambda s: -s[0])[:PARTNERS]:
+        if gain < 0.5 * WORTH:
+            continue
+        names = (*parent.names, name)
+        tried.add(frozenset(names))
+        found = attempted(made, observed, start)
+        if found is not None and parent.steps > bench.floor:
+            found = attempted(made, bench.fine, found.x) or found
+        if found is not None:
+            out.append((names, found))
+    out.sort(key=lambda c: -c[1].log_evidence)
+    return [bench.judged(names, found) for names, found in out[:JUDGED_PARTNERS]]
+
+
+def _dropped(candidate: Candidate, bench: Bench, catalogue: Catalogue) -> Candidate:
+    """The set without the effects whose loss makes the data no less probable."""
+    for name in candidate.names[:-1]:
+        if len(candidate.names) < 2:
+            break
+        hypothesis = candidate.fit.hypothesis.without(name)
+        kept = [i for i, f in enumerate(candidate.fit.hypothesis.free) if f.name.partition(".")[0] != name]
+        found = attempted(hypothesis, bench.fine, candidate.fit.x[kept])
+        if found is None:
+            continue
+        names = tuple(n for n in candidate.names if n != name)
+        less = bench.judged(names, found)
+        if less.log_evidence > candidate.log_evidence - WORTH:
+            candidate = replace(less)
+    return candidate
