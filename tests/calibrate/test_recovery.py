@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stand import HOLE_AREA, HOLES, Stand, Trial, definition, fire, log_of, segments_of
 
-from hfanalysis.calibrate.tank import Calibration, calibrate
+from hfanalysis.calibrate.calibration import Calibration
+from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.testdata.sections import Injector
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.nitrous import saturation

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from stand import AMBIENT, Stand, Trial, definition, fire, log_of, segments_of
 
-from hfanalysis.calibrate.tank import Calibration, calibrate
+from hfanalysis.calibrate.calibration import Calibration
+from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.errors import AbsentError
 from hfanalysis.quantity import NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 from hfanalysis.segment.kind import Kind

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from stand import Stand, Trial, definition, fire, log_of, segments_of
 
+from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.rest import blowdown_mass, fit_bulk, liquid_phase_heat, state_remarks
-from hfanalysis.calibrate.tank import Calibration, calibrate
+from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.engine.blowdown import FeedSystem, blow_down
 from hfanalysis.engine.tank import split
 from hfanalysis.errors import InputError

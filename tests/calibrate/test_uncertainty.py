@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from stand import Trial, definition, fire, log_of, segments_of
 
-from hfanalysis.calibrate.tank import Calibration, calibrate
+from hfanalysis.calibrate.calibration import Calibration
+from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.quantity import Quantity
 from hfanalysis.testdata.sections import Injector
 from hfanalysis.units import Value

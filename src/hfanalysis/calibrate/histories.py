@@ -29,6 +29,9 @@ READING_POINTS = 150
 FINEST = 0.002
 """Block means over this time [s]: fine against every phase, coarse enough for hundreds of repetitions."""
 
+SMOOTHING = 0.2
+"""Seconds of the tank pressure through which a straight line gives the pressure at the full line."""
+
 
 @dataclass(frozen=True)
 class Histories:
@@ -119,6 +122,14 @@ def read_at_break(signal: Signal, noise: Noise, instant: float, before: float, a
         return Reading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
     weights = np.linalg.pinv(np.vander(window.time - instant, 4, increasing=True), rcond=1e-9)
     return Reading(float(weights[0] @ window.value), float(weights[1] @ window.value), weights[0], window.time)
+
+
+def line_at(signal: Signal, instant: float) -> float:
+    """Value of a signal at an instant, from a straight line through what follows."""
+    head = signal.between(instant, instant + SMOOTHING + 8.0 * signal.step)
+    if head.time.size > 3:
+        return float(np.polyfit(head.time - instant, head.value, 1)[1])
+    return signal.mean(instant, np.inf)
 
 
 def quiet_noises(log: TestLog, segments: Segments) -> dict[str, Noise]:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hfanalysis.calibrate.evidence import Evidence, evidence_of
+from hfanalysis.calibrate.calibration import Calibration
+from hfanalysis.calibrate.evidence import Evidence
+from hfanalysis.calibrate.evidence_of_test import evidence_of
 from hfanalysis.calibrate.regression import Joint, RegressionResult, fit, fit_together, result
-from hfanalysis.calibrate.tank import Calibration
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.segment.phases import Segments

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.calibrate.acting import VaporPhase, acting
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, reduce
-from hfanalysis.calibrate.diagnostics import CoefficientHistory, TankHistory, coefficient_history, rest_of, tank_history
+from hfanalysis.calibrate.calibration import Calibration
+from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
 from hfanalysis.calibrate.histories import Histories, Reading, read_at_break
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
-from hfanalysis.calibrate.rest import Rest
 from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
 from hfanalysis.engine.effect import Active
@@ -30,31 +28,6 @@ Array = NDArray[np.float64]
 
 VAPOR_PRESSURE_SHARE = 0.6
 """Without nitrogen the vapour phase is followed until the tank has this share of its pressure at t_v."""
-
-
-@dataclass(frozen=True)
-class Calibration:
-    """Result of the tank calibration: quantities by their names in calibration.json."""
-
-    quantities: dict[str, Quantity]
-    rest: Rest | None
-    history: CoefficientHistory | None
-    tank_history: TankHistory | None
-    warnings: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
-    draws: Draws | None = None
-
-    def to_json(self) -> dict[str, Any]:
-        """The content of calibration.json."""
-        return {
-            **self.quantities,
-            "rest": self.rest.to_json() if self.rest else None,
-            "C_i_history": self.history.to_json() if self.history else None,
-            "tank_history": self.tank_history.to_json() if self.tank_history else None,
-            "notes": list(self.notes),
-            "warnings": list(self.warnings),
-        }
-
 
 SPAN_SHARE = 0.25
 """Part of a sensor's accuracy that a zero at ambient does not take away: its error of span."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.calibrate.engine_of_test import Regression, engine_of_test, starting_for
-from hfanalysis.calibrate.evidence import line_at
+from hfanalysis.calibrate.histories import line_at
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.model import OUTPUTS, evaluate_rates
 from hfanalysis.engine.observe import read_as

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.evidence import VIDEO
+from hfanalysis.calibrate.evidence_of_test import VIDEO
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.adopt.sensors import corrected
 from hfanalysis.calibrate.engine_of_test import effective_area, exponent, loaded_mass, loss_factor, tank_of_test
-from hfanalysis.calibrate.evidence import line_at
+from hfanalysis.calibrate.histories import line_at
 from hfanalysis.engine.blowdown import FeedSystem, blow_down
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.model import NITROGEN, STATES
