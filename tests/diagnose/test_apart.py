@@ -104,12 +104,11 @@ def test_d_prime_goes_with_the_strength() -> None:
     assert at_ten == pytest.approx(2.0 * at_five)
     typical = library()["tank_heat"].strength.typical
     assert found.strength_at("tank_heat", found.now.detectability("tank_heat")) == pytest.approx(typical)
-    strong = replace(library()["tank_heat"].parameters[0], typical=3.0 * typical)
+    heat = library()["tank_heat"]
+    power, *shape = heat.parameters
     once, thrice = (
-        look_ahead(
-            base(), full().only(FEW), Catalogue({"tank_heat": replace(library()["tank_heat"], parameters=(p,))}, {})
-        )
-        for p in (library()["tank_heat"].strength, strong)
+        look_ahead(base(), full().only(FEW), Catalogue({"tank_heat": replace(heat, parameters=(p, *shape))}, {}))
+        for p in (power, replace(power, typical=3.0 * typical))
     )
     assert thrice.now.detectability("tank_heat") == pytest.approx(3.0 * once.now.detectability("tank_heat"), rel=1e-6)
     assert thrice.strength_at("tank_heat", 5.0) == pytest.approx(once.strength_at("tank_heat", 5.0), rel=1e-6)
