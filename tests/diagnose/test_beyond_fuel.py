@@ -18,7 +18,7 @@ from hfanalysis.diagnose.flow_end import AROUND_END, AT_ONCE, find_flow_end
 from hfanalysis.diagnose.frame import COLD_FLOW_ERROR, EVENT_STD, TANK_SIDE
 from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.observed import Observed
-from hfanalysis.diagnose.predict import predict, with_spare_fuel
+from hfanalysis.diagnose.predict import predict, readings, with_spare_fuel
 from hfanalysis.diagnose.reduction import observe_test
 from hfanalysis.effects import effect
 from hfanalysis.engine.observe import observe
@@ -157,12 +157,15 @@ def test_the_model_burns_out_when_the_fuel_was_seen_to_end_whatever_its_web(late
 def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not(late: bool) -> None:
     test = reduced(late)
     on = replace(test, fuel_out=None)
-    noise, wrong = (predict(hypothesis(late), t, truth(late), tangents=False).residual for t in (test, on))
+    right, wrong = (predict(hypothesis(late), t, truth(late), tangents=False) for t in (test, on))
     beyond = np.concatenate([(c.time > fuel_out(late)) & ~c.resting for c in test.channels])
     assert beyond.sum() > 60
     # the noise of a sample is estimated from four quiet seconds
-    assert 0.6 < np.mean(noise[: beyond.size][beyond] ** 2) < 1.4
-    assert np.mean(wrong[: beyond.size][beyond] ** 2) > 3.0
+    assert 0.6 < np.mean(right.residual[: beyond.size][beyond] ** 2) < 1.4
+    # how fast the tank empties without fire is taken as known to a tenth only, so that it is the readings that tell
+    told, untrue = readings(test, right.burnt), readings(on, wrong.burnt)
+    apart = [c.averaged(told[c.name] - untrue[c.name]) / c.noise_std for c in test.channels]
+    assert np.mean(np.concatenate(apart)[beyond] ** 2) > 3.0
 
 
 @LATE_AND_EARLY
@@ -191,10 +194,12 @@ def test_the_constants_come_back_from_a_wrong_start(late: bool) -> None:
 
 
 @LATE_AND_EARLY
-def test_heat_shows_better_than_up_to_the_end_of_the_fuel(late: bool) -> None:
+def test_heat_shows_no_less_than_up_to_the_end_of_the_fuel_and_better_while_liquid_flows(late: bool) -> None:
     test = reduced(late)
     beyond = {c.name: c.time > fuel_out(late) for c in test.channels}
-    assert information(late, test) > 1.25 * information(late, test.without(beyond))
+    # of the vapour's fall without fire only the course counts, not how fast it is
+    least = 0.95 if late else 1.25
+    assert information(late, test) > least * information(late, test.without(beyond))
 
 
 def information(late: bool, test: Observed) -> float:
