@@ -30,9 +30,6 @@ FIRST = 0.03
 TANK_SIDE = ("p_tank", "p_run", "m_tank")
 """Channels that go on telling when the nozzle has unchoked."""
 
-COLD_FLOW_ERROR = 0.01
-"""Part of the liquid's flow into a chamber without fire that is not known: part of it boils only behind the nozzle."""
-
 EVENT_STD = 0.005
 """Least standard deviation [s] of the instant of a phase change."""
 
@@ -134,16 +131,15 @@ def _end(segments: Segments) -> float:
     return min([*given, LONGEST])
 
 
-def events_of(segments: Segments, end: float, fuel_out: float | None) -> dict[str, tuple[float, float]]:
+def events_of(segments: Segments, end: float) -> dict[str, tuple[float, float]]:
     """The instants [s] of the changes of phase that are observations, with their standard deviations.
 
-    ``end``: where the comparison of the tank ends; ``fuel_out``: the end of the fuel, if it goes on beyond that.
+    ``end``: where the comparison of the tank ends.
     """
     t_v = segments.time("t_v")
     events = {}
     if t_v is not None and t_v < end - AROUND_CHANGE:
-        cold = COLD_FLOW_ERROR * max(t_v - fuel_out, 0.0) if fuel_out is not None else 0.0
-        events["t_v"] = (t_v, float(np.hypot(max(segments.std("t_v"), EVENT_STD), cold)))
+        events["t_v"] = (t_v, max(segments.std("t_v"), EVENT_STD))
     gone = segments.time("t_fuel_out")
     if gone is not None and gone < LONGEST:
         events["t_fuel_out"] = (gone, max(segments.std("t_fuel_out"), FUEL_STD))

@@ -34,7 +34,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         channels,
         frame.grid,
         frame.resting,
-        events_of(segments, frame.ends["tank"], frame.fuel_out),
+        events_of(segments, frame.ends["tank"]),
         _stated(definition, segments),
         phases_of(segments, end),
         end,
