@@ -216,7 +216,7 @@ def test_slack_takes_what_a_closure_gets_wrong() -> None:
     """An effect that is a fifth stronger in the middle of the burn than its closure says."""
     found = named("tank_heat")
     chosen = verdict_of(found).chosen
-    plain = replace(chosen, fit=fit(chosen.fit.hypothesis, found.bench.fine, chosen.fit.x, SHORT))
+    plain = replace(chosen, fit=fit(chosen.fit.hypothesis, found.bench.at(chosen.steps), chosen.fit.x, SHORT))
     assert slacked(plain, found.bench).log_evidence <= chosen.log_evidence + 3.0
 
 

@@ -212,19 +212,26 @@ def test_the_product_says_where_and_how_much() -> None:
     assert quiet["mean"].reason == "nowhere beyond two standard deviations"
 
 
-def test_seventeen_seconds_of_four_channels_take_less_than_a_third_of_one() -> None:
-    test, time = recorded(run_of()), np.arange(0.05, 17.0, 0.02)
+def test_its_time_grows_with_a_log_no_faster_than_its_length_squared() -> None:
+    """Side by side in one run, the best of several: what other work the machine has does not count."""
+    taken = {seconds: min(_time_of(_stretched(seconds)) for _ in range(5)) for seconds in (8.5, 17.0)}
+    assert taken[17.0] < 4.0 * taken[8.5]
+
+
+def _stretched(seconds: float) -> Record:
+    """A run drawn out to a length, at 50 Hz."""
+    test, time = recorded(run_of()), np.arange(0.05, seconds, 0.02)
     slow = tuple(
-        Reading(c.name, time, np.interp(0.38 * time, c.time, c.value), NOISE[c.name] ** 2 * np.eye(time.size))
+        Reading(c.name, time, np.interp(6.46 / seconds * time, c.time, c.value), NOISE[c.name] ** 2 * np.eye(time.size))
         for c in test.channels
     )
-    long = Record(slow, {"liquid": 0.0, "vapor": 13.0, "end": 17.0}, 17.0)
-    taken = []
-    for _ in range(5):
-        start = process_time()
-        residuals(long)
-        taken.append(process_time() - start)
-    assert min(taken) < 0.3
+    return Record(slow, {"liquid": 0.0, "vapor": 0.765 * seconds, "end": seconds}, seconds)
+
+
+def _time_of(record: Record) -> float:
+    start = process_time()
+    residuals(record)
+    return process_time() - start
 
 
 def test_a_constant_that_is_not_known_here_is_refused() -> None:

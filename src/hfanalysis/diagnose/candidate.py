@@ -55,7 +55,6 @@ class Bench:
         self.observed = observed
         self.tempering = tempering
         self._at: dict[int, Observed] = {0: observed}
-        self.floor = 0
 
     def at(self, steps: int) -> Observed:
         """The data at a step of FORMS."""
@@ -64,41 +63,54 @@ class Bench:
         return self._at[steps]
 
     @property
-    def fine(self) -> Observed:
-        """The data at the finest form that any candidate can be expected to meet."""
-        return self.at(self.floor)
-
-    def settle(self, best: Fit) -> None:
-        """Find that form: down from the coarsest, as long as the best coarse fit can follow."""
-        found = best
-        for steps in range(self.coarsest - 1, -1, -1):
-            again = attempted(found.hypothesis, self.at(steps), found.x, SHORT)
-            if again is None or again.residual @ again.residual > HOPELESSLY * again.residual.size:
-                self.floor = steps + 1
-                return
-            found = again
-        self.floor = 0
-
-    @property
     def coarsest(self) -> int:
         """The last step."""
         return len(FORMS) - 1
 
-    def judged(self, names: tuple[str, ...], found: Fit, unknown: bool = False) -> Candidate:
-        """A fit at the finest form, refitted at the one that makes the data most probable."""
-        best = Candidate(names, found, found.log_evidence - PRICE * self.floor, self.floor, unknown)
-        if not self.tempering or best.leftover < CALM:
+    def judged(self, found: Candidate) -> Candidate:
+        """A candidate at the form that makes the data most probable: finer as long as that helps, or else coarser.
+
+        Without tempering it is the finest one, whatever that leaves.
+        """
+        if not self.tempering:
+            return self.refitted(found, 0) or found
+        best = found
+        while best.steps > 0 and (again := self.refitted(best, best.steps - 1)) and more_probable(again, best):
+            best = again
+        if best.steps < found.steps:
             return best
-        for steps in range(self.floor + 1, len(FORMS)):
-            again = attempted(best.fit.hypothesis, self.at(steps), best.fit.x, SHORT)
-            if again is None or again.log_evidence - PRICE * steps <= best.log_evidence:
-                break
-            best = Candidate(names, again, again.log_evidence - PRICE * steps, steps, unknown)
+        while (
+            best.leftover > CALM
+            and best.steps < self.coarsest
+            and (again := self.refitted(best, best.steps + 1))
+            and more_probable(again, best)
+        ):
+            best = again
         return best
 
+    def refitted(self, found: Candidate, steps: int) -> Candidate | None:
+        """The candidate at another form, None where it cannot be run."""
+        again = attempted(found.fit.hypothesis, self.at(steps), found.fit.x, SHORT)
+        return None if again is None else candidate(found.names, again, steps, found.unknown)
 
-HOPELESSLY = 6.0
-"""Chi-square per observation from which on the best explanation does not follow the data to a form at all."""
+    def converged(self, found: Candidate) -> Candidate:
+        """The candidate, its fit brought to its end."""
+        if found.fit.converged:
+            return found
+        again = attempted(found.fit.hypothesis, self.at(found.steps), found.fit.x, LONG)
+        better = None if again is None else candidate(found.names, again, found.steps, found.unknown)
+        return better if better is not None and more_probable(better, found) else found
+
+
+def candidate(names: tuple[str, ...], found: Fit, steps: int, unknown: bool = False) -> Candidate:
+    """A fit at a form as a candidate, at the price of the form."""
+    return Candidate(names, found, found.log_evidence - PRICE * steps, steps, unknown)
+
+
+def more_probable(one: Candidate, other: Candidate) -> bool:
+    """Whether one candidate has more evidence than another."""
+    return one.log_evidence > other.log_evidence
+
 
 CALM = 1.15
 """Chi-square per observation below which no larger model-form error is asked for."""

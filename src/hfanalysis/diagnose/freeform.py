@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted
+from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.localise import Source, coordinates, linear_sources, with_source
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import predict
@@ -60,11 +60,9 @@ def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | 
     if start is None:
         return None
     found = attempted(made, bench.at(parent.steps), start, SHORT)
-    if found is not None and parent.steps > bench.floor:
-        found = attempted(made, bench.fine, found.x, SHORT) or found
     if found is None:
         return None
-    judged = bench.judged((*parent.names, source.site.name), found, unknown=True)
+    judged = bench.judged(candidate((*parent.names, source.site.name), found, parent.steps, unknown=True))
     return replace(judged, log_evidence=judged.log_evidence - (BESIDE if parent.names else 0.0))
 
 

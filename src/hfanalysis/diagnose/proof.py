@@ -38,7 +38,7 @@ class Proof:
 
 def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
     """All four arms for a set of named effects."""
-    observed = found.bench.observed
+    observed = found.bench.at(chosen.steps)  # both arms at the form that the explanation needs
     base, after = found.base.fit, chosen.fit
     before = total_gap(base, observed)
     notes = []
@@ -46,7 +46,7 @@ def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
     if fractions["same"] is None:
         notes.append("the gap was within the noise of blocks before: there is no fraction of it to close")
     fractions["held_out"] = held_out(base, after, observed)
-    elsewhere = _elsewhere(chosen, other) if other is not None else None
+    elsewhere = _elsewhere(chosen, other, observed.form) if other is not None else None
     fractions["other_test"] = elsewhere["closed_fraction"] if elsewhere else None
     if other is None:
         notes.append("there is no other test of this stand to prove it on")
@@ -63,19 +63,19 @@ def _placebo(found: Naming, chosen: Candidate) -> Candidate | None:
     return max(wrong, key=lambda c: c.log_evidence, default=None)
 
 
-def _elsewhere(chosen: Candidate, other: OtherTest) -> dict[str, Any] | None:
+def _elsewhere(chosen: Candidate, other: OtherTest, form: float) -> dict[str, Any] | None:
     """The other test without and with the effects, their constants frozen and its own free."""
-    start = np.zeros(other.hypothesis.size)
-    base = attempted(other.hypothesis, other.observed, start)
+    observed = other.observed.at_form(form)
+    base = attempted(other.hypothesis, observed, np.zeros(other.hypothesis.size))
     if base is None:
         return None
-    after = attempted(frozen(other.hypothesis, chosen.fit), other.observed, base.x)
+    after = attempted(frozen(other.hypothesis, chosen.fit), observed, base.x)
     if after is None:
         return None
-    gaps = [total_gap(f, other.observed) for f in (base, after)]
+    gaps = [total_gap(f, observed) for f in (base, after)]
     return {
         "test": other.name,
         "closed_fraction": closed(*gaps),
-        "before": root_mean_square(base, other.observed),
-        "after": root_mean_square(after, other.observed),
+        "before": root_mean_square(base, observed),
+        "after": root_mean_square(after, observed),
     }

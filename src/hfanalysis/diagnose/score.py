@@ -19,8 +19,11 @@ from hfanalysis.diagnose.variants import Settings
 
 Array = NDArray[np.float64]
 
-STARTS = (-1.2, 0.0, 1.2)
-"""Standard deviations from its prior's center at which a parameter of an effect's shape may start."""
+STARTS = {0: (), 1: (-2.0, -1.0, 0.0, 1.0, 2.0)}
+"""Standard deviations from its prior's center at which the parameter of an effect's shape may start, if it has one."""
+
+FEW_STARTS = (-1.2, 0.0, 1.2)
+"""The same of each parameter if there are more."""
 
 FIRST_STEP = 0.05
 """Strength, in units of the typical one (as x), at which slopes of an effect are taken."""
@@ -42,7 +45,7 @@ def score_tests(
     own = slice(size, size + catalogue.effects[name].strengths)
     shapes = [i for i in range(own.stop, made.size) if made.free[i].shape == "positive" and made.free[i].unsure]
     found = []
-    for choice in product(STARTS, repeat=len(shapes)):
+    for choice in product(STARTS.get(len(shapes), FEW_STARTS), repeat=len(shapes)):
         start = np.concatenate([parent.x, np.zeros(made.size - size)])
         start[shapes] = choice
         start[own] = FIRST_STEP

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
-from hfanalysis.diagnose.candidate import Bench, Candidate, attempted
+from hfanalysis.diagnose.candidate import Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.catalogue import Catalogue
-from hfanalysis.diagnose.fit import Fit
 from hfanalysis.diagnose.score import score_tests
+from hfanalysis.diagnose.singles import HOPELESS
 from hfanalysis.diagnose.variants import Settings
 from hfanalysis.stages.base import Progress
 
@@ -19,9 +18,6 @@ WORTH = 5.0
 
 PARTNERS = 4
 """Effects that are tried as a further one, by their score."""
-
-JUDGED_PARTNERS = 4
-"""Of those, how many are fitted at the model-form error they ask for."""
 
 MOST_EFFECTS = 4
 
@@ -46,7 +42,7 @@ def sets_of(
         better = [c for c in grown if c.log_evidence > _parent_evidence(c, singles, found) + WORTH]
         if not better:
             break
-        better = [_dropped(c, bench, catalogue) for c in sorted(better, key=lambda c: -c.log_evidence)[:2]]
+        better = [_dropped(c, bench) for c in sorted(better, key=lambda c: -c.log_evidence)[:2]]
         found |= {frozenset(c.names): c for c in better if len(c.names) > 1}
         front = better[:1]
     return sorted(found.values(), key=lambda c: -c.log_evidence)
@@ -62,43 +58,43 @@ def _parent_evidence(child: Candidate, singles: list[Candidate], found: Mapping[
 def _partners(
     parent: Candidate, bench: Bench, catalogue: Catalogue, tried: set[frozenset[str]], settings: Settings
 ) -> list[Candidate]:
-    """The parent with each of the few effects that a score test asks for."""
+    """The parent with each of the few effects that a score test asks for, at the form that suits them.
+
+    The score is taken at the next finer form, to which the parent does not fit: what it lacks shows there.
+    """
     scores = []
-    observed = bench.at(parent.steps)
+    finer = bench.at(max(parent.steps - 1, 0))
     for name in catalogue.effects:
         if name in parent.names or frozenset((*parent.names, name)) in tried:
             continue
-        made, tests = score_tests(parent.fit, catalogue, name, observed, settings)
+        made, tests = score_tests(parent.fit, catalogue, name, finer, settings)
         if tests:
             gain, start = tests[0]
             scores.append((gain, name, made, start))
-    out: list[tuple[tuple[str, ...], Fit]] = []
+    out = []
     for gain, name, made, start in sorted(scores, key=lambda s: -s[0])[:PARTNERS]:
         if gain < 0.5 * WORTH:
             continue
         names = (*parent.names, name)
         tried.add(frozenset(names))
-        found = attempted(made, observed, start)
-        if found is not None and parent.steps > bench.floor:
-            found = attempted(made, bench.fine, found.x) or found
+        found = attempted(made, bench.at(parent.steps), start)
         if found is not None:
-            out.append((names, found))
-    out.sort(key=lambda c: -c[1].log_evidence)
-    return [bench.judged(names, found) for names, found in out[:JUDGED_PARTNERS]]
+            out.append(candidate(names, found, parent.steps))
+    top = max((c.log_evidence for c in out), default=0.0)
+    return [bench.judged(c) for c in out if c.log_evidence > top - HOPELESS]
 
 
-def _dropped(candidate: Candidate, bench: Bench, catalogue: Catalogue) -> Candidate:
+def _dropped(found: Candidate, bench: Bench) -> Candidate:
     """The set without the effects whose loss makes the data no less probable."""
-    for name in candidate.names[:-1]:
-        if len(candidate.names) < 2:
+    for name in found.names[:-1]:
+        if len(found.names) < 2:
             break
-        hypothesis = candidate.fit.hypothesis.without(name)
-        kept = [i for i, f in enumerate(candidate.fit.hypothesis.free) if f.name.partition(".")[0] != name]
-        found = attempted(hypothesis, bench.fine, candidate.fit.x[kept])
-        if found is None:
+        hypothesis = found.fit.hypothesis.without(name)
+        kept = [i for i, f in enumerate(found.fit.hypothesis.free) if f.name.partition(".")[0] != name]
+        again = attempted(hypothesis, bench.at(found.steps), found.fit.x[kept])
+        if again is None:
             continue
-        names = tuple(n for n in candidate.names if n != name)
-        less = bench.judged(names, found)
-        if less.log_evidence > candidate.log_evidence - WORTH:
-            candidate = replace(less)
-    return candidate
+        less = bench.judged(candidate(tuple(n for n in found.names if n != name), again, found.steps))
+        if less.log_evidence > found.log_evidence - WORTH:
+            found = less
+    return found

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted
+from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import signatures
 
@@ -26,20 +26,20 @@ SHAPE_TIME = 1.5
 """Seconds between the knots of that error."""
 
 
-def slacked(candidate: Candidate, bench: Bench) -> Candidate:
+def slacked(found: Candidate, bench: Bench) -> Candidate:
     """The candidate with slack in its effects, where that makes the data more probable."""
-    plain = candidate.fit
+    plain, observed = found.fit, bench.at(found.steps)
     try:
-        signature = signatures(plain.hypothesis, bench.fine, plain.x)
+        signature = signatures(plain.hypothesis, observed, plain.x)
     except (ValueError, ArithmeticError):
-        return candidate
-    columns = SHAPE_ERROR * _over_time(signature, bench.fine)
+        return found
+    columns = SHAPE_ERROR * _over_time(signature, observed)
     made = replace(plain.hypothesis, slack=columns)
-    found = attempted(made, bench.fine, np.concatenate([plain.x, np.zeros(columns.shape[1])]), SHORT)
-    if found is None:
-        return candidate
-    judged = bench.judged(candidate.names, found)
-    return judged if judged.log_evidence > candidate.log_evidence else candidate
+    loose = attempted(made, observed, np.concatenate([plain.x, np.zeros(columns.shape[1])]), SHORT)
+    if loose is None:
+        return found
+    judged = bench.judged(candidate(found.names, loose, found.steps))
+    return max(found, judged, key=lambda c: c.log_evidence)
 
 
 def _over_time(signature: Array, observed: Observed) -> Array:

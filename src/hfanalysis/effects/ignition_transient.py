@@ -40,7 +40,9 @@ EFFECT = Effect(
         Parameter(
             "of_ratio", "-", "oxidizer over fuel of the added gas", 2.0, center=4.0, low=0.2, high=20.0, given=True
         ),
-        Parameter("skew", "-", "1: as long in falling as in rising; less: falls slowly", 0.15, 0.7, low=0.4, high=1.0),
+        Parameter(
+            "skew", "-", "1: falls as long as it rises; less: falls slowly; more: abruptly", 0.35, 0.75, 0.4, 2.0
+        ),
     ),
     phases=("liquid",),
     term=_term,

@@ -1,0 +1,135 @@
+"""The base model, and every effect of the library alone.
+
+The base model comes down from the coarsest model-form error as long as that makes the data more probable. There every
+effect is fitted with all calibrated constants free, from the start at which a score test with the constants projected
+out sees most of it. From there all go down together: at each finer form those that have fallen far behind are left
+out, and each stays at the form at which it has most evidence. The base model is fitted again from its children's
+constants, for an unconverged base poses as evidence for a wrong effect.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.catalogue import Catalogue
+from hfanalysis.diagnose.hypothesis import Hypothesis
+from hfanalysis.diagnose.score import score_tests
+from hfanalysis.diagnose.variants import Settings
+from hfanalysis.stages.base import Progress
+
+Array = NDArray[np.float64]
+
+HOPELESS = 30.0
+"""Log evidence behind the best at the same form from which on an effect is not fitted any finer."""
+
+FAR = 3.0
+"""Units of log evidence that a base gains from a child's constants before all are fitted again."""
+
+SEEN = 0.7
+"""Gain in log probability below which a score test has seen nothing."""
+
+MODERATE = 0.3
+"""Strength (as x) from which a fit starts that a score test does not lead: a large effect is not linear."""
+
+STARTS = 2
+"""Starts of an effect's fit."""
+
+POLISHING = 3
+"""Children whose constants a parent is fitted again from."""
+
+
+def base_and_singles(
+    hypothesis: Hypothesis, bench: Bench, catalogue: Catalogue, progress: Progress, settings: Settings
+) -> tuple[Candidate, list[Candidate]]:
+    """The base model and every effect that is seen at all, the best first.
+
+    Raises ArithmeticError where the base model cannot be run.
+    """
+    progress("fitting the base model", 0.0)
+    base = _descended(hypothesis, bench)
+    best: dict[str, Candidate] = {}
+    _keep(best, _raced(_children(base, bench, catalogue, progress, settings), bench))
+    if settings.polishing and best:
+        winner = max(best.values(), key=lambda c: c.log_evidence)
+        again = polished(base, list(best.values()), bench)
+        if winner.steps < base.steps or again.log_evidence > base.log_evidence + FAR:
+            parent = bench.refitted(again, winner.steps) or again
+            _keep(best, _raced(_children(parent, bench, catalogue, progress, settings, again=True), bench))
+            again = polished(again, list(best.values()), bench)
+        base = again
+    return base, sorted((bench.converged(c) for c in best.values()), key=lambda c: -c.log_evidence)
+
+
+def _keep(best: dict[str, Candidate], found: list[Candidate]) -> None:
+    """Of every effect the candidate with most evidence."""
+    for one in found:
+        name = one.names[0]
+        if name not in best or more_probable(one, best[name]):
+            best[name] = one
+
+
+def polished(parent: Candidate, children: list[Candidate], bench: Bench) -> Candidate:
+    """The parent, fitted again from the constants of its best children."""
+    best = parent
+    for child in sorted(children, key=lambda c: -c.log_evidence)[:POLISHING]:
+        start = child.fit.x[: parent.fit.hypothesis.nuisances]
+        found = attempted(parent.fit.hypothesis, bench.at(parent.steps), start)
+        if found is not None:
+            best = max(best, candidate((), found, parent.steps), key=lambda c: c.log_evidence)
+    return bench.judged(best) if best is not parent else parent
+
+
+def _descended(hypothesis: Hypothesis, bench: Bench) -> Candidate:
+    """The base model at the form that suits it, from the coarsest on."""
+    coarse = attempted(hypothesis, bench.at(bench.coarsest), np.zeros(hypothesis.size), SHORT)
+    if coarse is None:
+        raise ArithmeticError("the base model cannot be fitted to this test")
+    return bench.converged(bench.judged(candidate((), coarse, bench.coarsest)))
+
+
+def _children(
+    base: Candidate,
+    bench: Bench,
+    catalogue: Catalogue,
+    progress: Progress,
+    settings: Settings,
+    again: bool = False,
+) -> list[Candidate]:
+    """Every effect that is seen at all, at the base's form; the first time also those that only a large one shows."""
+    out = []
+    for i, name in enumerate(catalogue.effects):
+        progress(f"fitting {name}", 0.3 * (again + i / len(catalogue.effects)))
+        made, tests = score_tests(base.fit, catalogue, name, bench.at(base.steps), settings)
+        starts = [x for gain, x in tests[:STARTS] if gain > SEEN]
+        if base.steps > 0 and not again:
+            starts = [*starts[: STARTS - 1], _moderate(base, catalogue.effects[name].strengths, made.size)]
+        fits = [f for x in starts if (f := attempted(made, bench.at(base.steps), x, SHORT)) is not None]
+        if fits:
+            out.append(candidate((name,), max(fits, key=lambda f: f.log_evidence), base.steps))
+    return out
+
+
+def _moderate(base: Candidate, strengths: int, size: int) -> Array:
+    """The base's constants with an effect of moderate size."""
+    start = np.zeros(size)
+    start[: base.fit.x.size] = base.fit.x
+    start[base.fit.x.size : base.fit.x.size + strengths] = MODERATE
+    return start
+
+
+def _raced(started: list[Candidate], bench: Bench) -> list[Candidate]:
+    """Each at the form with most evidence for it, going down together; who falls far behind goes no further."""
+    out, running = [], started
+    while running:
+        top = max(c.log_evidence for c in running)
+        ahead = []
+        for c in running:
+            finer = bench.refitted(c, c.steps - 1) if c.steps > 0 and c.log_evidence > top - HOPELESS else None
+            if finer is not None and (more_probable(finer, c) or not bench.tempering):
+                ahead.append(finer)
+            else:
+                out.append(c)
+        running = ahead
+    return out
