@@ -28,16 +28,18 @@ def limits(chosen: Candidate, bench: Bench, catalogue: Catalogue) -> dict[str, t
         made = catalogue.add(chosen.fit.hypothesis, name)
         start = inserted(chosen.fit, made)
         own = len(chosen.fit.hypothesis.free)
+        new = slice(own, len(made.free))
         least, most = made.bounds
         start[own] = FIRST_STEP
         try:
-            there = predict(made, observed, np.clip(start, least, most), tangents=True)
+            there = predict(made, observed, np.clip(start, least, most), tangents=True, only=new)
         except (ValueError, ArithmeticError):
             continue
         if there.slopes is None or not usable(there):
             continue
-        curvature = there.slopes.T @ there.slopes + np.eye(start.size)
-        step = -np.linalg.solve(curvature, there.slopes.T @ there.residual + start)
+        slopes = np.column_stack([chosen.fit.slopes[:, :own], there.slopes, chosen.fit.slopes[:, own:]])
+        curvature = slopes.T @ slopes + np.eye(start.size)
+        step = -np.linalg.solve(curvature, slopes.T @ there.residual + start)
         std = float(np.sqrt(np.linalg.inv(curvature)[own, own]))
         at = min(max(start[own] + step[own], least[own], 0.0) + Z95 * std, most[own])
         out[name] = (made.free[own].value(float(at)), effect.strength.unit.replace("-", ""))

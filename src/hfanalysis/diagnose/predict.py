@@ -44,13 +44,24 @@ class Prediction:
     burnt: Burn
 
 
-def predict(hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool) -> Prediction:
-    """Run a hypothesis. Raises ValueError or ArithmeticError for an engine that cannot be run."""
+def predict(
+    hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool, only: slice | None = None
+) -> Prediction:
+    """Run a hypothesis; ``only``: slopes with these of its free parameters, which costs the less the fewer they are.
+
+    Raises ValueError or ArithmeticError for an engine that cannot be run.
+    """
     longest = observed.longest + AFTER
     engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
     if not tangents:
         burnt = burn(engine, longest, ACCURACY, run_on=True, keep_idle=True)
         return Prediction(residuals(hypothesis, observed, x, burnt), None, burnt)
+    if only is not None:
+        free = hypothesis.free[only]
+        found = run_with_tangents(engine, [f.name for f in free], longest, ACCURACY, run_on=True)
+        scales = np.array([f.slope(float(v)) for f, v in zip(free, x[only], strict=True)])
+        slopes = slopes_of(hypothesis, observed, found) * scales
+        return Prediction(residuals(hypothesis, observed, x, found.burn), slopes, found.burn)
     found = run_with_tangents(engine, hypothesis.of_engine, longest, ACCURACY, run_on=True)
     slopes = _all_slopes(hypothesis, observed, slopes_of(hypothesis, observed, found)) @ hypothesis.jacobian(x)
     return Prediction(residuals(hypothesis, observed, x, found.burn), slopes, found.burn)

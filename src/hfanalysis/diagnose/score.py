@@ -33,11 +33,12 @@ MOST_FIRST = 1.5
 
 
 def score_tests(
-    parent: Fit, catalogue: Catalogue, name: str, observed: Observed, settings: Settings
+    parent: Fit, slopes: Array, catalogue: Catalogue, name: str, observed: Observed, settings: Settings
 ) -> tuple[Hypothesis, list[tuple[float, Array]]]:
     """The parent with an effect more, and each start of its shape with the gain in log probability that it promises.
 
-    The starts are those of a fit, the strengths as the score test sees them; the best first.
+    ``slopes`` (observations, parameters) of the parent, which hardly change by a small effect. The starts are those of
+    a fit, the strengths as the score test sees them; the best first.
     """
     made = catalogue.add(parent.hypothesis, name)
     least, most = made.bounds
@@ -51,11 +52,12 @@ def score_tests(
         start[own] = FIRST_STEP
         start = np.clip(start, least, most)
         try:
-            there = predict(made, observed, start, tangents=True)
+            there = predict(made, observed, start, tangents=True, only=own)
         except (ValueError, ArithmeticError):
             continue
         if there.slopes is not None and usable(there) and np.isfinite(there.residual).all():
-            gain, strength = score(there.slopes, there.residual, start, own, (least, most), settings.projection)
+            both = np.column_stack([slopes, there.slopes])
+            gain, strength = score(both, there.residual, start, own, (least, most), settings.projection)
             start[own] = np.clip(strength, -MOST_FIRST, MOST_FIRST)
             found.append((gain, start))
     return made, sorted(found, key=lambda s: -s[0])

@@ -8,6 +8,7 @@ import numpy as np
 
 from hfanalysis.diagnose.candidate import Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.catalogue import Catalogue
+from hfanalysis.diagnose.predict import predict
 from hfanalysis.diagnose.score import score_tests
 from hfanalysis.diagnose.singles import HOPELESS
 from hfanalysis.diagnose.variants import Settings
@@ -64,10 +65,12 @@ def _partners(
     """
     scores = []
     finer = bench.at(max(parent.steps - 1, 0))
+    slopes = predict(parent.fit.hypothesis, finer, parent.fit.x, tangents=True).slopes
+    assert slopes is not None
     for name in catalogue.effects:
         if name in parent.names or frozenset((*parent.names, name)) in tried:
             continue
-        made, tests = score_tests(parent.fit, catalogue, name, finer, settings)
+        made, tests = score_tests(parent.fit, slopes, catalogue, name, finer, settings)
         if tests:
             gain, start = tests[0]
             scores.append((gain, name, made, start))

@@ -50,13 +50,15 @@ def base_and_singles(
     progress("fitting the base model", 0.0)
     base = _descended(hypothesis, bench)
     best: dict[str, Candidate] = {}
-    _keep(best, _raced(_children(base, bench, catalogue, progress, settings), bench))
+    _keep(best, _raced(_children(base, bench, catalogue, progress, settings, list(catalogue.effects)), bench))
     if settings.polishing and best:
         winner = max(best.values(), key=lambda c: c.log_evidence)
         again = polished(base, list(best.values()), bench)
-        if winner.steps < base.steps or again.log_evidence > base.log_evidence + FAR:
+        moved = again.log_evidence > base.log_evidence + FAR
+        behind = [n for n in catalogue.effects if moved or n not in best or best[n].steps > winner.steps]
+        if winner.steps < base.steps or moved:
             parent = bench.refitted(again, winner.steps) or again
-            _keep(best, _raced(_children(parent, bench, catalogue, progress, settings, again=True), bench))
+            _keep(best, _raced(_children(parent, bench, catalogue, progress, settings, behind, again=True), bench))
             again = polished(again, list(best.values()), bench)
         base = again
     return base, sorted((bench.converged(c) for c in best.values()), key=lambda c: -c.log_evidence)
@@ -95,19 +97,23 @@ def _children(
     catalogue: Catalogue,
     progress: Progress,
     settings: Settings,
+    names: list[str],
     again: bool = False,
 ) -> list[Candidate]:
-    """Every effect that is seen at all, at the base's form; the first time also those that only a large one shows."""
-    out = []
-    for i, name in enumerate(catalogue.effects):
-        progress(f"fitting {name}", 0.3 * (again + i / len(catalogue.effects)))
-        made, tests = score_tests(base.fit, catalogue, name, bench.at(base.steps), settings)
-        starts = [x for gain, x in tests[:STARTS] if gain > SEEN]
-        if base.steps > 0 and not again:
-            starts = [*starts[: STARTS - 1], _moderate(base, catalogue.effects[name].strengths, made.size)]
-        fits = [f for x in starts if (f := attempted(made, bench.at(base.steps), x, SHORT)) is not None]
-        if fits:
-            out.append(candidate((name,), max(fits, key=lambda f: f.log_evidence), base.steps))
+    """Those of the effects that are seen, at the base's form: by a score test, or else, the first time, if they are of
+    moderate size."""
+    observed, out = bench.at(base.steps), []
+    for i, name in enumerate(names):
+        progress(f"fitting {name}", 0.3 * again + 0.3 * i / len(names))
+        made, tests = score_tests(base.fit, base.fit.slopes, catalogue, name, observed, settings)
+        fits = [attempted(made, observed, x, SHORT) for gain, x in tests[: 1 if again else STARTS] if gain > SEEN]
+        seen = any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
+        if base.steps > 0 and not seen and not again:
+            start = _moderate(base, catalogue.effects[name].strengths, made.size)
+            fits.append(attempted(made, observed, start, SHORT))
+        found = [f for f in fits if f is not None]
+        if found:
+            out.append(candidate((name,), max(found, key=lambda f: f.log_evidence), base.steps))
     return out
 
 
