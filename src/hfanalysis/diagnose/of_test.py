@@ -122,6 +122,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "set90": verdict.set90,
         "posterior": verdict.posterior,
         "evidences": verdict.evidences,
+        "tried": [_tried(c, found) for c in (*found.singles, *found.sets, *found.unknown)],
         "leftover": found.named.leftover,
         "localisation": places(verdict, found),
         "gap": {
@@ -160,6 +161,16 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "warnings": [] if chosen.fit.converged else ["the last fit did not converge: sizes and intervals are rough"],
         "runtime_s": {"value": None, "reason": "times stand in run.log, so that products are the same from run to run"},
         "seed": 0,
+    }
+
+
+def _tried(candidate: Candidate, found: Naming) -> dict[str, Any]:
+    """A row of what was tried: its names, the log evidence beyond the base model's, and the form it was judged at."""
+    return {
+        "names": list(candidate.names),
+        "unknown": candidate.unknown,
+        "log_evidence": candidate.log_evidence - found.base.log_evidence,
+        "model_form_error": found.bench.at(candidate.steps).form,
     }
 
 

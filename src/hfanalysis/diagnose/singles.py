@@ -30,7 +30,7 @@ FAR = 3.0
 SEEN = 0.7
 """Gain in log probability below which a score test has seen nothing."""
 
-MODERATE = 0.3
+MODERATE = 0.6
 """Strength (as x) from which a fit starts that a score test does not lead: a large effect is not linear."""
 
 STARTS = 2
