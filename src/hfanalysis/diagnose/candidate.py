@@ -20,8 +20,9 @@ Array = NDArray[np.float64]
 FORMS = tuple(FORM_ERROR * 3.0**i for i in range(6))
 """Model-form errors that a candidate may ask for, as parts of a channel's range."""
 
-PRICE = 5.0
-"""Log of the odds against each of them: models of this kind are usually right to the first."""
+PRICE = 10.0
+"""Log of the odds against each of them. Of 136 calibration tests without an effect or with a right name the finest form
+suits 130: odds of 22 to 1, or 3 units, at the temperature of 3.2 that evidences turned out to have there."""
 
 SHORT, LONG = 12, 25
 """Steps of a fit that looks around, and of one that is to converge."""
