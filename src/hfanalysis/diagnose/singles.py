@@ -39,9 +39,6 @@ STARTS = 2
 FROM_EXPONENTS = (0.0, -1.5, 1.5)
 """Where the base model's fit starts in n, in standard deviations of its prior."""
 
-SAME = 0.1
-"""Standard deviations of a prior within which two coarse fits are one."""
-
 POLISHING = 3
 """Children whose constants a parent is fitted again from."""
 
@@ -90,22 +87,23 @@ def polished(parent: Candidate, children: list[Candidate], bench: Bench) -> Cand
 
 
 def _descended(hypothesis: Hypothesis, bench: Bench) -> Candidate:
-    """The base model at the form that suits it, from the coarsest on, and from several exponents of regression.
+    """The base model at the form that suits it, from the coarsest on, and there from other exponents of regression.
 
-    Where no instant tells when the fuel is gone, a and n have more than one valley.
+    Where no instant tells when the fuel is gone a and n have more than one valley; coarse forms do not tell them apart.
     """
-    place = [f.name for f in hypothesis.free].index("n")
-    found: list[Candidate] = []
-    for exponent in FROM_EXPONENTS:
-        start = np.zeros(hypothesis.size)
-        start[place] = exponent
-        coarse = attempted(hypothesis, bench.at(bench.coarsest), start, SHORT)
-        if coarse is None or any(np.abs(coarse.x - c.fit.x).max() < SAME for c in found):
-            continue
-        found.append(candidate((), coarse, bench.coarsest))
-    if not found:
+    coarse = attempted(hypothesis, bench.at(bench.coarsest), np.zeros(hypothesis.size), SHORT)
+    if coarse is None:
         raise ArithmeticError("the base model cannot be fitted to this test")
-    return max((bench.converged(bench.judged(c)) for c in found), key=lambda c: c.log_evidence)
+    best = bench.converged(bench.judged(candidate((), coarse, bench.coarsest)))
+    place, steps = [f.name for f in hypothesis.free].index("n"), best.steps
+    for exponent in FROM_EXPONENTS:
+        start = best.fit.x.copy()
+        start[place] = exponent
+        found = attempted(hypothesis, bench.at(steps), start, SHORT)
+        other = None if found is None else candidate((), found, steps)
+        if other is not None and other.log_evidence > best.log_evidence + FAR:
+            best = bench.converged(bench.judged(other))
+    return best
 
 
 def _children(
