@@ -14,16 +14,20 @@ from hfanalysis.diagnose.candidate import FORMS, PRICE, SHORT, Bench, Candidate,
 from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.fit import fit
 from hfanalysis.diagnose.freeform import BESIDE, LEAST
+from hfanalysis.diagnose.hypothesis import mid_flux
 from hfanalysis.diagnose.limits import inserted, limits
 from hfanalysis.diagnose.localise import linear_sources
 from hfanalysis.diagnose.naming import Naming, name_effects
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.probe import Splines, probe
 from hfanalysis.diagnose.score import score
+from hfanalysis.diagnose.singles import base_and_singles
 from hfanalysis.diagnose.slack import slacked
+from hfanalysis.diagnose.variants import Settings
 from hfanalysis.diagnose.verdict import places, verdict_of
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
+from hfanalysis.stages.base import silent
 
 TRIED = ("injector_choked_vapor", "load_cell_drift", "nozzle_throat_erosion", "tank_heat")
 
@@ -247,3 +251,20 @@ def test_observations_of_the_truth_are_calm() -> None:
     test: Observed = made.observed()
     assert name_effects(made.hypothesis(), test, catalogue(())).base.leftover < 1.15
     assert engine_on_stand().effects == ()
+
+
+def test_the_base_model_finds_the_deepest_of_its_valleys() -> None:
+    """A rate that goes with the flux to 0.8, and no instant at which the fuel is gone: one start ends at n = 0.55."""
+    engine = engine_on_stand()
+    steep = replace(
+        engine, n=0.8, a=engine.a * mid_flux(engine) ** (engine.n - 0.8), outer_radius=1.15 * engine.outer_radius
+    )
+    seen = made.observed(engine=steep)
+    seen = replace(seen, events={"t_v": seen.events["t_v"]})
+    calibrated = made.hypothesis()
+    hypothesis = replace(calibrated, engine=replace(calibrated.engine, outer_radius=steep.outer_radius))
+    true = {f.name: float(getattr(steep.feed, f.name, getattr(steep, f.name, np.nan))) for f in hypothesis.free}
+    from_truth = fit(hypothesis, seen, np.array([f.place(true[f.name]) for f in hypothesis.free]))
+    found, _ = base_and_singles(hypothesis, Bench(seen), Catalogue({}, {}), silent, Settings())
+    assert found.log_evidence > from_truth.log_evidence - 3.0
+    assert found.fit.values["n"] > 0.65

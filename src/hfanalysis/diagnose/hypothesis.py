@@ -231,7 +231,7 @@ class Hypothesis:
         return Hypothesis(engine, self.free, (*self.blocks, block))
 
 
-def _mid_flux(engine: Engine) -> float:
+def mid_flux(engine: Engine) -> float:
     """Oxidizer flux [kg/(m^2 s)] half-way through the web at two thirds of the tank's pressure across the injector."""
     pressure = float(engine.saturation.pressure(engine.temperature))
     density = float(engine.saturation.liquid_density(engine.temperature))
@@ -260,7 +260,7 @@ def base_hypothesis(engine: Engine, calibration: Mapping[str, Any], follow: bool
         Free("polytropic_exponent", exponent, spread, least=-M_RANGE, most=M_RANGE),
         Free("oxidizer_mass", mass, max(float(loaded.get("std") or 0.0), 0.01 * mass)),
         Free("temperature", engine.temperature, 5.0),
-        Free("a", engine.a * _mid_flux(engine) ** (engine.n - USUAL_N[0]), 1.0, "positive"),
+        Free("a", engine.a * mid_flux(engine) ** (engine.n - USUAL_N[0]), 1.0, "positive"),
         Free("n", *USUAL_N, least=-N_RANGE, most=N_RANGE),
     ]
     if engine.feed.constant_losses is None and engine.feed.loss_factor > 0.0:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.catalogue import Catalogue
+from hfanalysis.diagnose.fit import Fit
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.score import score_tests
 from hfanalysis.diagnose.variants import Settings
@@ -38,6 +39,9 @@ STARTS = 2
 
 FROM_EXPONENTS = (0.0, -1.5, 1.5)
 """Where the base model's fit starts in n, in standard deviations of its prior."""
+
+SAME = 0.1
+"""Standard deviations of a prior within which two fits are one."""
 
 POLISHING = 3
 """Children whose constants a parent is fitted again from."""
@@ -95,15 +99,20 @@ def _descended(hypothesis: Hypothesis, bench: Bench) -> Candidate:
     if coarse is None:
         raise ArithmeticError("the base model cannot be fitted to this test")
     best = bench.converged(bench.judged(candidate((), coarse, bench.coarsest)))
-    place, steps = [f.name for f in hypothesis.free].index("n"), best.steps
+    place, found = [f.name for f in hypothesis.free].index("n"), best
     for exponent in FROM_EXPONENTS:
-        start = best.fit.x.copy()
+        start = found.fit.x.copy()
         start[place] = exponent
-        found = attempted(hypothesis, bench.at(steps), start, SHORT)
-        other = None if found is None else candidate((), found, steps)
-        if other is not None and other.log_evidence > best.log_evidence + FAR:
-            best = bench.converged(bench.judged(other))
+        other = attempted(hypothesis, bench.at(found.steps), start, SHORT)
+        if other is None or other.log_evidence < found.fit.log_evidence - FAR or _same(other, found.fit):
+            continue
+        best = max(best, bench.converged(bench.judged(candidate((), other, found.steps))), key=lambda c: c.log_evidence)
     return best
+
+
+def _same(one: Fit, other: Fit) -> bool:
+    """Whether two fits are in the same valley."""
+    return bool(np.abs(one.x - other.x).max() < SAME)
 
 
 def _children(
