@@ -36,19 +36,22 @@ def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Can
 
 
 def _with_sources(parent: Candidate, bench: Bench) -> list[Candidate]:
-    observed = bench.at(parent.steps)
-    out = []
+    """The parent with each of the few sources that are seen at its form, or else at the next finer one, to which the
+    parent does not fit: what is too weak for a coarse form may be plain there."""
+    start, sources = parent, _seen(parent, bench)
+    if not sources and parent.steps > 0 and (finer := bench.refitted(parent, parent.steps - 1)):
+        start, sources = finer, _seen(finer, bench)
+    fitted = (with_fitted(start, source, bench) for source in sources[:REFITTED])
+    return [found for found in fitted if found is not None]
+
+
+def _seen(parent: Candidate, bench: Bench) -> list[Source]:
+    """Sources that the linear search sees, the best first; none where the engine cannot be run with all sites open."""
     try:
-        sources = linear_sources(parent.fit, observed)
+        sources = linear_sources(parent.fit, bench.at(parent.steps))
     except (ValueError, ArithmeticError):
-        return []  # the engine cannot be run with all sites open
-    for source in sources[:REFITTED]:
-        if source.log_evidence < LEAST:
-            continue
-        found = with_fitted(parent, source, bench)
-        if found is not None:
-            out.append(found)
-    return out
+        return []
+    return [source for source in sources if source.log_evidence >= LEAST]
 
 
 def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | None:
