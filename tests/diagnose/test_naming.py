@@ -13,7 +13,7 @@ from tests.engine.stand import engine_on_stand
 from hfanalysis.diagnose.candidate import FORMS, PRICE, SHORT, Bench, Candidate, attempted
 from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.fit import fit
-from hfanalysis.diagnose.freeform import BESIDE, LEAST
+from hfanalysis.diagnose.freeform import BESIDE, LEAST, unknown_sources
 from hfanalysis.diagnose.hypothesis import mid_flux
 from hfanalysis.diagnose.limits import inserted, limits
 from hfanalysis.diagnose.localise import linear_sources
@@ -45,11 +45,11 @@ def catalogue(names: tuple[str, ...] = TRIED) -> Catalogue:
     return Catalogue({name: effect(name) for name in names}, {})
 
 
-def leak() -> Active:
+def leak(size: float = 0.2) -> Active:
     """Two hundred grammes a second that leave the tank elsewhere, from 2 to 4 s: no effect of the library."""
     splines = Splines.over(0.0, 6.0, 0.5)
     peak = splines.first + splines.spacing * np.arange(splines.count)
-    flow = {f"c{i}": 0.2 * float(2.0 < t < 4.0) for i, t in enumerate(peak)}
+    flow = {f"c{i}": size * float(2.0 < t < 4.0) for i, t in enumerate(peak)}
     return probe("tank_leak", splines, 0.05).at(on=1.0, **flow)
 
 
@@ -268,3 +268,14 @@ def test_the_base_model_finds_the_deepest_of_its_valleys() -> None:
     found, _ = base_and_singles(hypothesis, Bench(seen), Catalogue({}, {}), silent, Settings())
     assert found.log_evidence > from_truth.log_evidence - 3.0
     assert found.fit.values["n"] > 0.65
+
+
+def test_a_source_that_a_coarse_form_hides_is_found_at_the_next_finer_one() -> None:
+    bench = Bench(made.observed(leak(0.02)))
+    base, _ = base_and_singles(made.hypothesis(), bench, Catalogue({}, {}), silent, Settings())
+    coarse = bench.refitted(base, 1)
+    assert coarse is not None
+    assert max(s.log_evidence for s in linear_sources(coarse.fit, bench.at(1))) < LEAST
+    found = unknown_sources(coarse, coarse, bench)
+    assert found[0].names[0] in ("tank_heat", "nitrogen_inflow", "tank_leak", "tank_pressure")
+    assert found[0].steps == 0
