@@ -11,6 +11,7 @@ from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted, ca
 from hfanalysis.diagnose.localise import Source, coordinates, linear_sources, with_source
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import predict
+from hfanalysis.diagnose.threads import each
 
 Array = NDArray[np.float64]
 
@@ -41,7 +42,7 @@ def _with_sources(parent: Candidate, bench: Bench) -> list[Candidate]:
     start, sources = parent, _seen(parent, bench)
     if not sources and parent.steps > 0 and (finer := bench.refitted(parent, parent.steps - 1)):
         start, sources = finer, _seen(finer, bench)
-    fitted = (with_fitted(start, source, bench) for source in sources[:REFITTED])
+    fitted = each(lambda source: with_fitted(start, source, bench), sources[:REFITTED])
     return [found for found in fitted if found is not None]
 
 

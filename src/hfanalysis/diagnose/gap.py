@@ -16,6 +16,7 @@ from hfanalysis.diagnose.fit import Fit
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.observed import Channel, Observed
 from hfanalysis.diagnose.predict import readings
+from hfanalysis.diagnose.threads import each
 
 Array = NDArray[np.float64]
 
@@ -97,16 +98,22 @@ def closed(before: float, after: float) -> float | None:
 
 def held_out(before: Fit, after: Fit, observed: Observed) -> float | None:
     """The part of the gap closed in stretches that neither model was fitted to."""
-    gaps = np.zeros(2)
-    for fold in range(FOLDS):
-        inside = {c.name: np.floor(c.time / FOLD_TIME).astype(int) % FOLDS == fold for c in observed.channels}
-        rest = observed.without({name: mask & _burning(observed, name) for name, mask in inside.items()})
-        for k, model in enumerate((before, after)):
-            found = attempted(model.hypothesis, rest, model.x, SHORT)
-            if found is None:
-                return None
-            gaps[k] += total_gap(found, observed, inside) ** 2
-    return closed(*np.sqrt(gaps / FOLDS).tolist())
+    folds = [_fold(observed, fold) for fold in range(FOLDS)]
+    rest = [
+        observed.without({name: mask & _burning(observed, name) for name, mask in inside.items()}) for inside in folds
+    ]
+    tried = [(fold, model) for fold in range(FOLDS) for model in (before, after)]
+    fits = each(lambda t: attempted(t[1].hypothesis, rest[t[0]], t[1].x, SHORT), tried)
+    found = [f for f in fits if f is not None]
+    if len(found) < len(tried):
+        return None
+    gaps = [total_gap(f, observed, folds[fold]) for f, (fold, _) in zip(found, tried, strict=True)]
+    return closed(*np.sqrt(np.mean(np.reshape(gaps, (FOLDS, 2)) ** 2, axis=0)).tolist())
+
+
+def _fold(observed: Observed, fold: int) -> dict[str, NDArray[np.bool_]]:
+    """The blocks of each channel that are held out in turn."""
+    return {c.name: np.floor(c.time / FOLD_TIME).astype(int) % FOLDS == fold for c in observed.channels}
 
 
 def _burning(observed: Observed, name: str) -> NDArray[np.bool_]:

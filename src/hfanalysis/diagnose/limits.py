@@ -9,8 +9,10 @@ from hfanalysis.diagnose.candidate import Bench, Candidate
 from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.fit import Fit, usable
 from hfanalysis.diagnose.hypothesis import Hypothesis
+from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import predict
 from hfanalysis.diagnose.score import FIRST_STEP
+from hfanalysis.diagnose.threads import each
 
 Array = NDArray[np.float64]
 
@@ -20,30 +22,38 @@ Z95 = 1.645
 
 def limits(chosen: Candidate, bench: Bench, catalogue: Catalogue) -> dict[str, tuple[float, str]]:
     """For every effect that is not in the model: the size [SI] that it stays below with 95 % probability, linear."""
-    out = {}
     observed = bench.at(chosen.steps)
-    for name, effect in catalogue.effects.items():
-        if name in chosen.names or (effect.distort is not None and not set(effect.sites) & set(observed.names)):
-            continue
-        made = catalogue.add(chosen.fit.hypothesis, name)
-        start = inserted(chosen.fit, made)
-        own = len(chosen.fit.hypothesis.free)
-        new = slice(own, len(made.free))
-        least, most = made.bounds
-        start[own] = FIRST_STEP
-        try:
-            there = predict(made, observed, np.clip(start, least, most), tangents=True, only=new)
-        except (ValueError, ArithmeticError):
-            continue
-        if there.slopes is None or not usable(there):
-            continue
-        slopes = np.column_stack([chosen.fit.slopes[:, :own], there.slopes, chosen.fit.slopes[:, own:]])
-        curvature = slopes.T @ slopes + np.eye(start.size)
-        step = -np.linalg.solve(curvature, slopes.T @ there.residual + start)
-        std = float(np.sqrt(np.linalg.inv(curvature)[own, own]))
-        at = min(max(start[own] + step[own], least[own], 0.0) + Z95 * std, most[own])
-        out[name] = (made.free[own].value(float(at)), effect.strength.unit.replace("-", ""))
-    return out
+    visible = {
+        name: effect
+        for name, effect in catalogue.effects.items()
+        if name not in chosen.names and (effect.distort is None or set(effect.sites) & set(observed.names))
+    }
+    found = each(lambda name: _limit(chosen.fit, catalogue.add(chosen.fit.hypothesis, name), observed), list(visible))
+    return {
+        name: (limit, effect.strength.unit.replace("-", ""))
+        for (name, effect), limit in zip(visible.items(), found, strict=True)
+        if limit is not None
+    }
+
+
+def _limit(parent: Fit, made: Hypothesis, observed: Observed) -> float | None:
+    """The limit of the last effect of a hypothesis [SI]; None where it cannot be run."""
+    start = inserted(parent, made)
+    own = len(parent.hypothesis.free)
+    least, most = made.bounds
+    start[own] = FIRST_STEP
+    try:
+        there = predict(made, observed, np.clip(start, least, most), tangents=True, only=slice(own, len(made.free)))
+    except (ValueError, ArithmeticError):
+        return None
+    if there.slopes is None or not usable(there):
+        return None
+    slopes = np.column_stack([parent.slopes[:, :own], there.slopes, parent.slopes[:, own:]])
+    curvature = slopes.T @ slopes + np.eye(start.size)
+    step = -np.linalg.solve(curvature, slopes.T @ there.residual + start)
+    std = float(np.sqrt(np.linalg.inv(curvature)[own, own]))
+    at = min(max(start[own] + step[own], least[own], 0.0) + Z95 * std, most[own])
+    return made.free[own].value(float(at))
 
 
 def inserted(parent: Fit, made: Hypothesis) -> Array:

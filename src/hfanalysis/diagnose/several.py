@@ -11,6 +11,7 @@ from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.predict import predict
 from hfanalysis.diagnose.score import score_tests
 from hfanalysis.diagnose.singles import HOPELESS
+from hfanalysis.diagnose.threads import each
 from hfanalysis.diagnose.variants import Settings
 from hfanalysis.stages.base import Progress
 
@@ -63,28 +64,22 @@ def _partners(
 
     The score is taken at the next finer form, to which the parent does not fit: what it lacks shows there.
     """
-    scores = []
     finer = bench.at(max(parent.steps - 1, 0))
     slopes = predict(parent.fit.hypothesis, finer, parent.fit.x, tangents=True).slopes
     assert slopes is not None
-    for name in catalogue.effects:
-        if name in parent.names or frozenset((*parent.names, name)) in tried:
-            continue
-        made, tests = score_tests(parent.fit, slopes, catalogue, name, finer, settings)
-        if tests:
-            gain, start = tests[0]
-            scores.append((gain, name, made, start))
-    out = []
-    for gain, name, made, start in sorted(scores, key=lambda s: -s[0])[:PARTNERS]:
-        if gain < 0.5 * WORTH:
-            continue
-        names = (*parent.names, name)
-        tried.add(frozenset(names))
-        found = attempted(made, bench.at(parent.steps), start)
-        if found is not None:
-            out.append(candidate(names, found, parent.steps))
+    names = [n for n in catalogue.effects if n not in parent.names and frozenset((*parent.names, n)) not in tried]
+    tests = each(lambda n: score_tests(parent.fit, slopes, catalogue, n, finer, settings), names)
+    scores = [(found[0], name, made) for name, (made, found) in zip(names, tests, strict=True) if found]
+    asked = [s for s in sorted(scores, key=lambda s: -s[0][0])[:PARTNERS] if s[0][0] >= 0.5 * WORTH]
+    tried |= {frozenset((*parent.names, name)) for _, name, _ in asked}
+    fits = each(lambda s: attempted(s[2], bench.at(parent.steps), s[0][1]), asked)
+    out = [
+        candidate((*parent.names, name), found, parent.steps)
+        for (_, name, _), found in zip(asked, fits, strict=True)
+        if found is not None
+    ]
     top = max((c.log_evidence for c in out), default=0.0)
-    return [bench.judged(c) for c in out if c.log_evidence > top - HOPELESS]
+    return each(bench.judged, [c for c in out if c.log_evidence > top - HOPELESS])
 
 
 def _dropped(found: Candidate, bench: Bench) -> Candidate:

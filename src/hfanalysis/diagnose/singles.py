@@ -9,6 +9,9 @@ constants, for an unconverged base poses as evidence for a wrong effect.
 
 from __future__ import annotations
 
+from functools import partial
+from itertools import count
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +20,7 @@ from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.fit import Fit
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.score import score_tests
+from hfanalysis.diagnose.threads import each
 from hfanalysis.diagnose.variants import Settings
 from hfanalysis.stages.base import Progress
 
@@ -68,7 +72,7 @@ def base_and_singles(
             _keep(best, _raced(_children(parent, bench, catalogue, progress, settings, behind, again=True), bench))
             again = polished(again, list(best.values()), bench)
         base = again
-    return base, sorted((bench.converged(c) for c in best.values()), key=lambda c: -c.log_evidence)
+    return base, sorted(each(bench.converged, list(best.values())), key=lambda c: -c.log_evidence)
 
 
 def _keep(best: dict[str, Candidate], found: list[Candidate]) -> None:
@@ -126,9 +130,10 @@ def _children(
 ) -> list[Candidate]:
     """Those of the effects that are seen, at the base's form: by a score test, or else, the first time, if they are of
     moderate size."""
-    observed, out = bench.at(base.steps), []
-    for i, name in enumerate(names):
-        progress(f"fitting {name}", 0.3 * again + 0.3 * i / len(names))
+    observed, done = bench.at(base.steps), count()
+
+    def child(name: str) -> Candidate | None:
+        progress(f"fitting {name}", 0.3 * again + 0.3 * next(done) / len(names))
         made, tests = score_tests(base.fit, base.fit.slopes, catalogue, name, observed, settings)
         fits = [attempted(made, observed, x, SHORT) for gain, x in tests[: 1 if again else STARTS] if gain > SEEN]
         seen = any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
@@ -136,9 +141,9 @@ def _children(
             start = _moderate(base, catalogue.effects[name].strengths, made.size)
             fits.append(attempted(made, observed, start, SHORT))
         found = [f for f in fits if f is not None]
-        if found:
-            out.append(candidate((name,), max(found, key=lambda f: f.log_evidence), base.steps))
-    return out
+        return candidate((name,), max(found, key=lambda f: f.log_evidence), base.steps) if found else None
+
+    return [c for c in each(child, names) if c is not None]
 
 
 def _moderate(base: Candidate, strengths: int, size: int) -> Array:
@@ -154,12 +159,15 @@ def _raced(started: list[Candidate], bench: Bench) -> list[Candidate]:
     out, running = [], started
     while running:
         top = max(c.log_evidence for c in running)
-        ahead = []
-        for c in running:
-            finer = bench.refitted(c, c.steps - 1) if c.steps > 0 and c.log_evidence > top - HOPELESS else None
-            if finer is not None and (more_probable(finer, c) or not bench.tempering):
-                ahead.append(finer)
-            else:
-                out.append(c)
-        running = ahead
+        finer = each(partial(_finer, bench=bench, least=top - HOPELESS), running)
+        out += [c for c, further in zip(running, finer, strict=True) if further is None]
+        running = [further for further in finer if further is not None]
     return out
+
+
+def _finer(found: Candidate, bench: Bench, least: float) -> Candidate | None:
+    """The candidate at the next finer form, if it is above the ``least`` evidence here and has more there."""
+    if found.steps == 0 or found.log_evidence <= least:
+        return None
+    again = bench.refitted(found, found.steps - 1)
+    return again if again is not None and (more_probable(again, found) or not bench.tempering) else None
