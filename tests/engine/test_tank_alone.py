@@ -50,7 +50,7 @@ def test_a_given_loss_takes_the_place_of_the_modelled_one() -> None:
 
 def test_it_starts_where_it_is_told() -> None:
     tank = TankAlone.of(engine_on_stand(effects=(typical("tank_stratification"),)))
-    moved = tank.at(tank_temperature=285.0, own=np.array([2e4]))
+    moved = tank.at(tank_temperature=285.0, own=np.array([0.5, 4e4]))  # half of the layer is left
     first = moved.run(TIME[:2], np.full(2, 14e5))
-    assert first.states[0, len(STATES)] == 2e4
+    assert first.states[0, len(STATES) :].tolist() == [0.5, 4e4]
     assert first.pressure[0] == pytest.approx(float(tank.engine.saturation.pressure(285.0)) + 2e4)
