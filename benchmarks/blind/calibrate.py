@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from math import sqrt
 from pathlib import Path
@@ -65,7 +66,7 @@ def calibrate(
     # t1 is kept where it pays beyond its own noise on cases that it was not fitted to
     gain = scores[True] - scores[False]
     grows = bool(gain.mean() > gain.std(ddof=1) / sqrt(len(gain)))
-    lines = _report(cases, samples, fits, held_out, grows, without)
+    lines = _report(cases, samples, fits, held_out, grows, without) + ["", forms(cases)]
     return lines, to_json(fits[grows], len(samples), split, codes)
 
 
@@ -86,6 +87,14 @@ def _report(
         lines.append(f"{name:22s}  {s.mean():+.4f} +- {spread:.4f}   {error.value:.4f} "
                      f"({error.low:.3f} to {error.high:.3f})")  # fmt: skip
     return lines
+
+
+def forms(cases: Sequence[Case]) -> str:
+    """Model-form errors that right explanations ask for: the price of a coarser one goes by it."""
+    right = [c for c in cases if c.stated == c.truth and c.truth != "unknown"]
+    asked = Counter(form for c in right if (form := c.product.get("compared", {}).get("model_form_error")) is not None)
+    each = ", ".join(f"{100.0 * form:.2g} %: {number}" for form, number in sorted(asked.items()))
+    return f"model-form error of the {asked.total()} cases that are right (none, or the name): {each}"
 
 
 def _constants(one: Fitted) -> str:

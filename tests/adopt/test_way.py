@@ -107,9 +107,9 @@ def test_next_to_no_heat_is_next_to_no_change(root: Path, base: dict[str, dict[s
     found = done(root, "calibrate", '[tank_heat]\npower = "1e-6 W"\n')["calibration"]
     for name, off in (("m", 2e-3), ("C_i", 1e-6), ("K_loss", 1e-6)):
         assert found[name]["value"] == pytest.approx(base["calibration"][name]["value"], rel=off)
-    # n follows m's change through the flow of the vapour phase, by a small part of what it is uncertain by
+    # this burn tells little of n: its fit ends within a hundredth of n's deviation, and starts elsewhere as m differs
     moved = found["n"]["value"] - base["calibration"]["n"]["value"]
-    assert abs(moved) < 0.1 * base["calibration"]["n"]["std"]
+    assert abs(moved) < 0.03 * base["calibration"]["n"]["std"]
     for name in ("m", "C_i", "K_loss", "n"):
         assert found[name]["std"] == pytest.approx(base["calibration"][name]["std"], rel=0.1)
 

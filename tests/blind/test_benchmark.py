@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.blind import folder as fo
-from benchmarks.blind.calibrate import Unfit, calibrate, save
+from benchmarks.blind.calibrate import Unfit, calibrate, forms, save
 from benchmarks.blind.document import document, write
 from benchmarks.blind.fit import Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
@@ -247,6 +247,17 @@ def test_calibration_betters_the_stated_probabilities_and_keeps_to_its_split(
 
 def command(*arguments: str) -> list[str]:
     return [sys.executable, "-m", "benchmarks.blind", *arguments]
+
+
+def test_calibration_counts_the_forms_of_what_is_right(made: Callable[..., Folder]) -> None:
+    found = [("tank_heat", 2e-4), ("tank_heat", 6e-4), (None, 2e-4), ("n2_purge", 2e-4)]
+    labels = ["tank_heat", "tank_heat", "none", "tank_heat"]  # the last is wrong
+    cases = [
+        (truth, {"posterior": {label: 0.9}, "compared": {"model_form_error": form}})
+        for (truth, form), label in zip(found, labels, strict=True)
+    ]
+    line = forms(list(results(made(cases), "calibration").cases.values()))
+    assert line.endswith("the 3 cases that are right (none, or the name): 0.02 %: 2, 0.06 %: 1")
 
 
 def test_the_scored_split_is_not_fitted_to_under_any_name(made: Callable[..., Folder], tmp_path: Path) -> None:

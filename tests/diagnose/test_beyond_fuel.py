@@ -37,22 +37,20 @@ CLOSING, DRAINING = 9.5, 0.12
 LESS = 0.6
 """Part of the fuel with which it is gone while there is liquid; all of it is gone in the vapour."""
 
-LATE = pytest.mark.parametrize("late", [True], ids=["in the vapour"])
-
 
 @cache
-def short_of_fuel(late: bool) -> Engine:
+def short_of_fuel(late: bool = True) -> Engine:
     whole = engine_on_stand()
     return whole if late else replace(whole, fuel_mass=LESS * whole.fuel_mass)
 
 
 @cache
-def run(late: bool) -> Burn:
+def run(late: bool = True) -> Burn:
     return burn(short_of_fuel(late), CLOSING, run_on=True)
 
 
 @cache
-def log(late: bool) -> TestLog:
+def log(late: bool = True) -> TestLog:
     """What its sensors read, until after the valve has closed."""
     done, rng = run(late), np.random.default_rng(7)
     time = np.arange(-logged.QUIET + 0.5 / logged.RATE, CLOSING + 3.0, 1.0 / logged.RATE)
@@ -65,13 +63,13 @@ def log(late: bool) -> TestLog:
     return TestLog({n: logged.channel(n, time + logged.OPENING, v, logged.ACCURACY[n]) for n, v in noisy.items()})
 
 
-def fuel_out(late: bool) -> float:
+def fuel_out(late: bool = True) -> float:
     assert run(late).fuel_out
     return run(late).burn_time
 
 
 @cache
-def reduced(late: bool) -> Observed:
+def reduced(late: bool = True) -> Observed:
     return observations(late, log(late), fuel_out(late))
 
 
@@ -84,12 +82,12 @@ def observations(late: bool, of: TestLog, noted: float, std: float = 6e-3) -> Ob
     return observe_test(of, logged.segments(**known), logged.stated(observed=seen))
 
 
-def hypothesis(late: bool) -> Hypothesis:
+def hypothesis(late: bool = True) -> Hypothesis:
     engine = short_of_fuel(late)
     return base_hypothesis(engine, {"oxidizer_mass": {"value": engine.oxidizer_mass, "std": 0.02}})
 
 
-def truth(late: bool) -> Array:
+def truth(late: bool = True) -> Array:
     engine, base = short_of_fuel(late), hypothesis(late)
     true = {name: getattr(engine.feed, name, getattr(engine, name, None)) for name in base.names}
     return np.array([f.place(float(true[f.name])) for f in base.free])
@@ -101,35 +99,34 @@ def last(test: Observed, name: str) -> float:
     return float(channel.time[~channel.resting].max())
 
 
-@LATE
-def test_the_tank_is_compared_until_shortly_before_the_valve_closes(late: bool) -> None:
-    test = reduced(late)
-    assert test.fuel_out == fuel_out(late)
+def test_the_tank_is_compared_until_shortly_before_the_valve_closes() -> None:
+    test = reduced()
+    assert test.fuel_out == fuel_out()
     for name in test.names:
         if name in TANK_SIDE:
             assert CLOSING - AROUND_END - 0.2 < last(test, name) <= CLOSING - AROUND_END + 0.06
         else:
-            assert last(test, name) < fuel_out(late)
+            assert last(test, name) < fuel_out()
     assert "t_v" in test.events
 
 
 def test_an_end_of_the_flow_that_was_noted_is_kept_to() -> None:
-    assert last(observations(True, log(True), 8.0), "p_tank") <= 8.0 - AROUND_END
+    assert last(observations(True, log(), 8.0), "p_tank") <= 8.0 - AROUND_END
 
 
 def test_a_log_that_ends_with_the_fire_is_compared_as_before() -> None:
-    end = logged.OPENING + fuel_out(True) + 0.4
+    end = logged.OPENING + fuel_out() + 0.4
     cut = {n: replace(c, time=c.time[c.time < end], values=c.values[c.time < end], flags=c.flags[c.time < end])
-           for n, c in log(True).channels.items()}  # fmt: skip
-    test = observations(True, TestLog(cut), fuel_out(True))
+           for n, c in log().channels.items()}  # fmt: skip
+    test = observations(True, TestLog(cut), fuel_out())
     assert test.fuel_out is None
-    assert max(last(test, name) for name in test.names) < fuel_out(True)
+    assert max(last(test, name) for name in test.names) < fuel_out()
 
 
 def test_a_fire_that_fades_is_compared_as_before() -> None:
-    test = observations(True, log(True), fuel_out(True), std=1.5 * AT_ONCE)
+    test = observations(True, log(), fuel_out(), std=1.5 * AT_ONCE)
     assert test.fuel_out is None
-    assert max(last(test, name) for name in test.names) < fuel_out(True)
+    assert max(last(test, name) for name in test.names) < fuel_out()
 
 
 def test_a_test_whose_fuel_ends_while_liquid_flows_is_compared_up_to_there() -> None:
@@ -138,26 +135,24 @@ def test_a_test_whose_fuel_ends_while_liquid_flows_is_compared_up_to_there() -> 
     assert max(last(early, name) for name in early.names) < fuel_out(False)
 
 
-@LATE
-def test_the_model_burns_out_when_the_fuel_was_seen_to_end_whatever_its_web(late: bool) -> None:
-    test, x = reduced(late), truth(late)
+def test_the_model_burns_out_when_the_fuel_was_seen_to_end_whatever_its_web() -> None:
+    test, x = reduced(), truth()
     slower = x.copy()
-    slower[hypothesis(late).names.index("a")] -= 0.1
-    burnt = predict(hypothesis(late), test, slower, tangents=False).burnt
-    assert burnt.burn_time == pytest.approx(fuel_out(late), abs=1e-9)
-    web = hypothesis(late).engine.outer_radius - burnt.state("port_radius")[-1]
+    slower[hypothesis().names.index("a")] -= 0.1
+    burnt = predict(hypothesis(), test, slower, tangents=False).burnt
+    assert burnt.burn_time == pytest.approx(fuel_out(), abs=1e-9)
+    web = hypothesis().engine.outer_radius - burnt.state("port_radius")[-1]
     assert web > 1e-4
     row = sum(c.time.size for c in test.channels) + list(test.events).index("t_fuel_out")
-    assert predict(hypothesis(late), test, slower, tangents=False).residual[row] > 1.0
-    assert abs(predict(hypothesis(late), test, x, tangents=False).residual[row]) < 0.1
+    assert predict(hypothesis(), test, slower, tangents=False).residual[row] > 1.0
+    assert abs(predict(hypothesis(), test, x, tangents=False).residual[row]) < 0.1
 
 
-@LATE
-def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not(late: bool) -> None:
-    test = reduced(late)
+def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not() -> None:
+    test = reduced()
     on = replace(test, fuel_out=None)
-    right, wrong = (predict(hypothesis(late), t, truth(late), tangents=False) for t in (test, on))
-    beyond = np.concatenate([(c.time > fuel_out(late)) & ~c.resting for c in test.channels])
+    right, wrong = (predict(hypothesis(), t, truth(), tangents=False) for t in (test, on))
+    beyond = np.concatenate([(c.time > fuel_out()) & ~c.resting for c in test.channels])
     assert beyond.sum() > 60
     # the noise of a sample is estimated from four quiet seconds
     assert 0.6 < np.mean(right.residual[: beyond.size][beyond] ** 2) < 1.4
@@ -167,11 +162,10 @@ def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not(late: bool) ->
     assert np.mean(np.concatenate(apart)[beyond] ** 2) > 3.0
 
 
-@LATE
-def test_slopes_are_differences_of_predictions(late: bool) -> None:
-    made, test = hypothesis(late).with_effect(effect("tank_heat")), reduced(late)
+def test_slopes_are_differences_of_predictions() -> None:
+    made, test = hypothesis().with_effect(effect("tank_heat")), reduced()
     assert made.names[-2:] == ("tank_heat.power", "tank_heat.lag")
-    x = np.concatenate([truth(late), [0.4, 1.0]])
+    x = np.concatenate([truth(), [0.4, 1.0]])
     here = predict(made, test, x, tangents=True)
     assert here.slopes is not None
     for k, name in enumerate(made.names):
@@ -182,30 +176,29 @@ def test_slopes_are_differences_of_predictions(late: bool) -> None:
         assert np.linalg.norm(here.slopes[:, k] - quotient) < 0.02 * np.linalg.norm(quotient) + 1.0, name
 
 
-@LATE
-def test_the_constants_come_back_from_a_wrong_start(late: bool) -> None:
-    start = truth(late)
-    start[hypothesis(late).names.index("area")] += 0.3
-    found = fit(hypothesis(late), reduced(late), start)
+def test_the_constants_come_back_from_a_wrong_start() -> None:
+    start = truth()
+    start[hypothesis().names.index("area")] += 0.3
+    found = fit(hypothesis(), reduced(), start)
     assert found.converged
-    assert found.values["area"] == pytest.approx(short_of_fuel(late).feed.area, rel=0.05)
+    assert found.values["area"] == pytest.approx(short_of_fuel().feed.area, rel=0.05)
     assert found.residual @ found.residual < 1.4 * found.residual.size
 
 
-@LATE
-def test_heat_shows_no_less_than_up_to_the_end_of_the_fuel(late: bool) -> None:
-    test = reduced(late)
-    beyond = {c.name: c.time > fuel_out(late) for c in test.channels}
-    # of the vapour's fall without fire only the course counts, not how fast it is
-    assert information(late, test) > 0.95 * information(late, test.without(beyond))
+def test_nitrogen_shows_only_where_it_flows() -> None:
+    """It enters once the tank is below its line: most of what tells of it lies beyond the fuel's end."""
+    test = reduced()
+    beyond = {c.name: c.time > fuel_out() for c in test.channels}
+    assert information(test) > 3.0 * information(test.without(beyond))
 
 
-def information(late: bool, test: Observed) -> float:
-    """What a test tells of the heat's strength, with the engine's constants free."""
-    made = hypothesis(late).with_effect(effect("tank_heat"))
-    slopes = predict(made, test, np.concatenate([truth(late), [0.0, 0.0]]), tangents=True).slopes
+def information(test: Observed) -> float:
+    """What a test tells of the nitrogen's strength, with the engine's constants free."""
+    made = hypothesis().with_effect(effect("n2_purge"))
+    start = np.concatenate([truth(), np.zeros(made.size - hypothesis().size)])
+    slopes = predict(made, test, start, tangents=True).slopes
     assert slopes is not None
-    strength = made.names.index("tank_heat.power")
+    strength = made.names.index("n2_purge.area")
     a, b = np.delete(slopes, strength, axis=1), slopes[:, strength]
     return float(b @ (b - a @ np.linalg.solve(a.T @ a + np.eye(a.shape[1]), a.T @ b)))
 

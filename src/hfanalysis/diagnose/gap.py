@@ -96,12 +96,13 @@ def closed(before: float, after: float) -> float | None:
     return None if before < LEAST_GAP else 1.0 - after / before
 
 
-def held_out(before: Fit, after: Fit, observed: Observed) -> float | None:
-    """The part of the gap closed in stretches that neither model was fitted to."""
+def held_out(before: Fit, after: Fit, fitted: Observed, observed: Observed) -> float | None:
+    """The part of the gap closed in stretches that neither model was fitted to.
+
+    ``fitted``: the observations at the model-form error of the fits; ``observed``: those that the gap is measured by.
+    """
     folds = [_fold(observed, fold) for fold in range(FOLDS)]
-    rest = [
-        observed.without({name: mask & _burning(observed, name) for name, mask in inside.items()}) for inside in folds
-    ]
+    rest = [fitted.without({name: mask & _burning(fitted, name) for name, mask in inside.items()}) for inside in folds]
     tried = [(fold, model) for fold in range(FOLDS) for model in (before, after)]
     fits = each(lambda t: attempted(t[1].hypothesis, rest[t[0]], t[1].x, SHORT), tried)
     found = [f for f in fits if f is not None]

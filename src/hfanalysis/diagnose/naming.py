@@ -9,6 +9,7 @@ from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.freeform import unknown_sources
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.observed import Observed
+from hfanalysis.diagnose.search import Search
 from hfanalysis.diagnose.several import sets_of
 from hfanalysis.diagnose.singles import base_and_singles, polished
 from hfanalysis.diagnose.slack import slacked
@@ -51,9 +52,10 @@ def name_effects(
     """Try the base model, every effect of the catalogue, sets of them, and unknown sources."""
     settings = settings or Settings()
     bench = Bench(observed if settings.coloured else observed.with_white_noise(), settings.tempering)
-    base, singles = base_and_singles(hypothesis, bench, catalogue, progress, settings)
+    search = Search(bench, catalogue, settings, progress)
+    base, singles = base_and_singles(hypothesis, search)
     singles = _loosened(singles, bench)
-    sets = _loosened(sets_of(base, singles, bench, catalogue, progress, settings), bench)
+    sets = _loosened(sets_of(base, singles, search), bench)
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
     unknown = unknown_sources(base, named, bench)

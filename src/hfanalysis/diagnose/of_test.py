@@ -12,6 +12,7 @@ from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.naming import Naming, name_effects
 from hfanalysis.diagnose.observed import Observed
+from hfanalysis.diagnose.plausible import judged
 from hfanalysis.diagnose.posterior import scale
 from hfanalysis.diagnose.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.reduction import observe_test
@@ -125,18 +126,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "tried": [_tried(c, found) for c in (*found.singles, *found.sets, *found.unknown)],
         "leftover": found.named.leftover,
         "localisation": places(verdict, found),
-        "gap": {
-            "before": gap.root_mean_square(found.base.fit, observed),
-            "after": gap.root_mean_square(chosen.fit, observed),
-            "noise": gap.noise_of(observed),
-            "by_phase": {
-                "before": gap.by_phase(found.base.fit, observed),
-                "after": gap.by_phase(chosen.fit, observed),
-            },
-            "closed_fraction": {arm: proof.fractions.get(arm) for arm in ("same", "held_out", "other_test", "placebo")},
-            "closed_by_free_form": proof.fractions.get("placebo_free_form"),
-            "other_test": proof.other,
-        },
+        "gap": _gap(found.base, chosen, proof, observed),
         "upper_limits": upper_limits(verdict, found, catalogue),
         "twins": _twins(verdict, catalogue),
         "not_it": _not_it(verdict),
@@ -161,6 +151,19 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "warnings": [] if chosen.fit.converged else ["the last fit did not converge: sizes and intervals are rough"],
         "runtime_s": {"value": None, "reason": "times stand in run.log, so that products are the same from run to run"},
         "seed": 0,
+    }
+
+
+def _gap(base: Candidate, chosen: Candidate, proof: Proof, observed: Observed) -> dict[str, Any]:
+    """The gap without and with what was found, by channel and phase [SI], and how much of it each arm closes."""
+    return {
+        "before": gap.root_mean_square(base.fit, observed),
+        "after": gap.root_mean_square(chosen.fit, observed),
+        "noise": gap.noise_of(observed),
+        "by_phase": {"before": gap.by_phase(base.fit, observed), "after": gap.by_phase(chosen.fit, observed)},
+        "closed_fraction": {arm: proof.fractions.get(arm) for arm in ("same", "held_out", "other_test", "placebo")},
+        "closed_by_free_form": proof.fractions.get("placebo_free_form"),
+        "other_test": proof.other,
     }
 
 
@@ -189,8 +192,6 @@ def _constants(found: Naming, verdict: Verdict) -> dict[str, dict[str, Quantity]
 
 
 def _plausibility(found: Naming, chosen: Candidate) -> dict[str, dict[str, Any]]:
-    from hfanalysis.diagnose.plausible import judged
-
     out: dict[str, dict[str, Any]] = {}
     for candidate in found.singles:
         name = candidate.names[0]

@@ -2,6 +2,9 @@
 
 Four arms. The same data; stretches of it that were held out; another test of the stand with the effect's constants as
 found here; and placebos: the best wrong effect, and an unknown source of as much freedom.
+
+Models are fitted at the model-form error that the explanation asks for; gaps are measured at the finest, where a
+sensor's offset and gain are all that is taken off.
 """
 
 from __future__ import annotations
@@ -38,15 +41,15 @@ class Proof:
 
 def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
     """All four arms for a set of named effects."""
-    observed = found.bench.at(chosen.steps)  # both arms at the form that the explanation needs
+    observed, fitted = found.bench.observed, found.bench.at(chosen.steps)
     base, after = found.base.fit, chosen.fit
     before = total_gap(base, observed)
     notes = []
     fractions: dict[str, float | None] = {"same": closed(before, total_gap(after, observed))}
     if fractions["same"] is None:
         notes.append("the gap was within the noise of blocks before: there is no fraction of it to close")
-    fractions["held_out"] = held_out(base, after, observed)
-    elsewhere = _elsewhere(chosen, other, observed.form) if other is not None else None
+    fractions["held_out"] = held_out(base, after, fitted, observed)
+    elsewhere = _elsewhere(chosen, other, fitted.form) if other is not None else None
     fractions["other_test"] = elsewhere["closed_fraction"] if elsewhere else None
     if other is None:
         notes.append("there is no other test of this stand to prove it on")
@@ -65,11 +68,11 @@ def _placebo(found: Naming, chosen: Candidate) -> Candidate | None:
 
 def _elsewhere(chosen: Candidate, other: OtherTest, form: float) -> dict[str, Any] | None:
     """The other test without and with the effects, their constants frozen and its own free."""
-    observed = other.observed.at_form(form)
-    base = attempted(other.hypothesis, observed, np.zeros(other.hypothesis.size))
+    observed, fitted = other.observed, other.observed.at_form(form)
+    base = attempted(other.hypothesis, fitted, np.zeros(other.hypothesis.size))
     if base is None:
         return None
-    after = attempted(frozen(other.hypothesis, chosen.fit), observed, base.x)
+    after = attempted(frozen(other.hypothesis, chosen.fit), fitted, base.x)
     if after is None:
         return None
     gaps = [total_gap(f, observed) for f in (base, after)]

@@ -19,7 +19,7 @@ from hfanalysis.diagnose.variants import Settings
 
 Array = NDArray[np.float64]
 
-STARTS = {0: (), 1: (-2.0, -1.0, 0.0, 1.0, 2.0)}
+STARTS = (-2.0, -1.0, 0.0, 1.0, 2.0)
 """Standard deviations from its prior's center at which the parameter of an effect's shape may start, if it has one."""
 
 FEW_STARTS = (-1.2, 0.0, 1.2)
@@ -46,7 +46,7 @@ def score_tests(
     own = slice(size, size + catalogue.effects[name].strengths)
     shapes = [i for i in range(own.stop, made.size) if made.free[i].shape == "positive" and made.free[i].unsure]
     found = []
-    for choice in product(STARTS.get(len(shapes), FEW_STARTS), repeat=len(shapes)):
+    for choice in product(STARTS if len(shapes) == 1 else FEW_STARTS, repeat=len(shapes)):
         start = np.concatenate([parent.x, np.zeros(made.size - size)])
         start[shapes] = choice
         start[own] = FIRST_STEP

@@ -7,13 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from hfanalysis.diagnose.candidate import Bench, Candidate, attempted, candidate
-from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.predict import predict
 from hfanalysis.diagnose.score import score_tests
+from hfanalysis.diagnose.search import Search
 from hfanalysis.diagnose.singles import HOPELESS
 from hfanalysis.diagnose.threads import each
-from hfanalysis.diagnose.variants import Settings
-from hfanalysis.stages.base import Progress
 
 WORTH = 5.0
 """Log evidence that a further effect must bring."""
@@ -24,27 +22,20 @@ PARTNERS = 4
 MOST_EFFECTS = 4
 
 
-def sets_of(
-    base: Candidate,
-    singles: list[Candidate],
-    bench: Bench,
-    catalogue: Catalogue,
-    progress: Progress,
-    settings: Settings,
-) -> list[Candidate]:
+def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> list[Candidate]:
     """Sets of several effects: forward from the best few, dropping what is no longer needed."""
     found: dict[frozenset[str], Candidate] = {}
     tried: set[frozenset[str]] = set()
     front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + WORTH]
     for size in range(2, MOST_EFFECTS + 1):
-        progress(f"trying {size} effects together", 0.6 + 0.06 * size)
+        search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
         grown = []
         for parent in front:
-            grown += _partners(parent, bench, catalogue, tried, settings)
+            grown += _partners(parent, search, tried)
         better = [c for c in grown if c.log_evidence > _parent_evidence(c, singles, found) + WORTH]
         if not better:
             break
-        better = [_dropped(c, bench) for c in sorted(better, key=lambda c: -c.log_evidence)[:2]]
+        better = [_dropped(c, search.bench) for c in sorted(better, key=lambda c: -c.log_evidence)[:2]]
         found |= {frozenset(c.names): c for c in better if len(c.names) > 1}
         front = better[:1]
     return sorted(found.values(), key=lambda c: -c.log_evidence)
@@ -57,18 +48,17 @@ def _parent_evidence(child: Candidate, singles: list[Candidate], found: Mapping[
     return max(known, default=-np.inf)
 
 
-def _partners(
-    parent: Candidate, bench: Bench, catalogue: Catalogue, tried: set[frozenset[str]], settings: Settings
-) -> list[Candidate]:
+def _partners(parent: Candidate, search: Search, tried: set[frozenset[str]]) -> list[Candidate]:
     """The parent with each of the few effects that a score test asks for, at the form that suits them.
 
     The score is taken at the next finer form, to which the parent does not fit: what it lacks shows there.
     """
+    bench, catalogue = search.bench, search.catalogue
     finer = bench.at(max(parent.steps - 1, 0))
     slopes = predict(parent.fit.hypothesis, finer, parent.fit.x, tangents=True).slopes
     assert slopes is not None
     names = [n for n in catalogue.effects if n not in parent.names and frozenset((*parent.names, n)) not in tried]
-    tests = each(lambda n: score_tests(parent.fit, slopes, catalogue, n, finer, settings), names)
+    tests = each(lambda n: score_tests(parent.fit, slopes, catalogue, n, finer, search.settings), names)
     scores = [(found[0], name, made) for name, (made, found) in zip(names, tests, strict=True) if found]
     asked = [s for s in sorted(scores, key=lambda s: -s[0][0])[:PARTNERS] if s[0][0] >= 0.5 * WORTH]
     tried |= {frozenset((*parent.names, name)) for _, name, _ in asked}

@@ -16,13 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted, candidate, more_probable
-from hfanalysis.diagnose.catalogue import Catalogue
 from hfanalysis.diagnose.fit import Fit
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.score import score_tests
+from hfanalysis.diagnose.search import Search
 from hfanalysis.diagnose.threads import each
-from hfanalysis.diagnose.variants import Settings
-from hfanalysis.stages.base import Progress
 
 Array = NDArray[np.float64]
 
@@ -51,28 +49,34 @@ POLISHING = 3
 """Children whose constants a parent is fitted again from."""
 
 
-def base_and_singles(
-    hypothesis: Hypothesis, bench: Bench, catalogue: Catalogue, progress: Progress, settings: Settings
-) -> tuple[Candidate, list[Candidate]]:
+def base_and_singles(hypothesis: Hypothesis, search: Search) -> tuple[Candidate, list[Candidate]]:
     """The base model and every effect that is seen at all, the best first.
 
     Raises ArithmeticError where the base model cannot be run.
     """
-    progress("fitting the base model", 0.0)
+    bench, names = search.bench, list(search.catalogue.effects)
+    search.progress("fitting the base model", 0.0)
     base = _descended(hypothesis, bench)
     best: dict[str, Candidate] = {}
-    _keep(best, _raced(_children(base, bench, catalogue, progress, settings, list(catalogue.effects)), bench))
-    if settings.polishing and best:
-        winner = max(best.values(), key=lambda c: c.log_evidence)
-        again = polished(base, list(best.values()), bench)
-        moved = again.log_evidence > base.log_evidence + FAR
-        behind = [n for n in catalogue.effects if moved or n not in best or best[n].steps > winner.steps]
-        if winner.steps < base.steps or moved:
-            parent = bench.refitted(again, winner.steps) or again
-            _keep(best, _raced(_children(parent, bench, catalogue, progress, settings, behind, again=True), bench))
-            again = polished(again, list(best.values()), bench)
-        base = again
+    _keep(best, _raced(_first_children(base, search, names), bench))
+    if search.settings.polishing and best:
+        base = _second_turn(base, best, search)
     return base, sorted(each(bench.converged, list(best.values())), key=lambda c: -c.log_evidence)
+
+
+def _second_turn(base: Candidate, best: dict[str, Candidate], search: Search) -> Candidate:
+    """The base model, polished; if that moved it, or the best effect asks for a finer form than it, effects are fitted
+    anew from there: all of them, or those that stayed at a coarser form than the best."""
+    bench = search.bench
+    better = polished(base, list(best.values()), bench)
+    winner = max(best.values(), key=lambda c: c.log_evidence)
+    moved = better.log_evidence > base.log_evidence + FAR
+    if winner.steps < base.steps or moved:
+        names = [n for n in search.catalogue.effects if moved or n not in best or best[n].steps > winner.steps]
+        parent = bench.refitted(better, winner.steps) or better
+        _keep(best, _raced(_further_children(parent, search, names), bench))
+        better = polished(better, list(best.values()), bench)
+    return better
 
 
 def _keep(best: dict[str, Candidate], found: list[Candidate]) -> None:
@@ -90,7 +94,7 @@ def polished(parent: Candidate, children: list[Candidate], bench: Bench) -> Cand
         start = child.fit.x[: parent.fit.hypothesis.nuisances]
         found = attempted(parent.fit.hypothesis, bench.at(parent.steps), start)
         if found is not None:
-            best = max(best, candidate((), found, parent.steps), key=lambda c: c.log_evidence)
+            best = max(best, candidate(parent.names, found, parent.steps), key=lambda c: c.log_evidence)
     return bench.judged(best) if best is not parent else parent
 
 
@@ -119,31 +123,50 @@ def _same(one: Fit, other: Fit) -> bool:
     return bool(np.abs(one.x - other.x).max() < SAME)
 
 
-def _children(
-    base: Candidate,
-    bench: Bench,
-    catalogue: Catalogue,
-    progress: Progress,
-    settings: Settings,
-    names: list[str],
-    again: bool = False,
-) -> list[Candidate]:
-    """Those of the effects that are seen, at the base's form: by a score test, or else, the first time, if they are of
-    moderate size."""
-    observed, done = bench.at(base.steps), count()
+def _first_children(base: Candidate, search: Search, names: list[str]) -> list[Candidate]:
+    """Each of the effects with what makes the base model's data most probable, at its form.
+
+    From the starts that score tests promise most of. Where the base model is far from the data those see little of an
+    effect; what they do not lead to anything starts from a moderate size.
+    """
+    observed, done = search.bench.at(base.steps), count()
 
     def child(name: str) -> Candidate | None:
-        progress(f"fitting {name}", 0.3 * again + 0.3 * next(done) / len(names))
-        made, tests = score_tests(base.fit, base.fit.slopes, catalogue, name, observed, settings)
-        fits = [attempted(made, observed, x, SHORT) for gain, x in tests[: 1 if again else STARTS] if gain > SEEN]
+        search.progress(f"fitting {name}", 0.3 * next(done) / len(names))
+        made, starts = _promising(base, search, name)
+        fits = [attempted(made, observed, x, SHORT) for x in starts[:STARTS]]
         seen = any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
-        if base.steps > 0 and not seen and not again:
-            start = _moderate(base, catalogue.effects[name].strengths, made.size)
+        if base.steps > 0 and not seen:
+            start = _moderate(base, search.catalogue.effects[name].strengths, made.size)
             fits.append(attempted(made, observed, start, SHORT))
-        found = [f for f in fits if f is not None]
-        return candidate((name,), max(found, key=lambda f: f.log_evidence), base.steps) if found else None
+        return _best((name,), fits, base.steps)
 
     return [c for c in each(child, names) if c is not None]
+
+
+def _further_children(parent: Candidate, search: Search, names: list[str]) -> list[Candidate]:
+    """Those of the effects that a score test sees, each from its best start, at the parent's form."""
+    observed, done = search.bench.at(parent.steps), count()
+
+    def child(name: str) -> Candidate | None:
+        search.progress(f"fitting {name}", 0.3 + 0.3 * next(done) / len(names))
+        made, starts = _promising(parent, search, name)
+        return _best((name,), [attempted(made, observed, x, SHORT) for x in starts[:1]], parent.steps)
+
+    return [c for c in each(child, names) if c is not None]
+
+
+def _promising(parent: Candidate, search: Search, name: str) -> tuple[Hypothesis, list[Array]]:
+    """The parent with an effect more, and the starts of which a score test sees something, the best first."""
+    observed = search.bench.at(parent.steps)
+    made, tests = score_tests(parent.fit, parent.fit.slopes, search.catalogue, name, observed, search.settings)
+    return made, [x for gain, x in tests if gain > SEEN]
+
+
+def _best(names: tuple[str, ...], fits: list[Fit | None], steps: int) -> Candidate | None:
+    """The most probable of the fits that could be had."""
+    found = max((f for f in fits if f is not None), key=lambda f: f.log_evidence, default=None)
+    return None if found is None else candidate(names, found, steps)
 
 
 def _moderate(base: Candidate, strengths: int, size: int) -> Array:
@@ -169,5 +192,5 @@ def _finer(found: Candidate, bench: Bench, least: float) -> Candidate | None:
     """The candidate at the next finer form, if it is above the ``least`` evidence here and has more there."""
     if found.steps == 0 or found.log_evidence <= least:
         return None
-    again = bench.refitted(found, found.steps - 1)
-    return again if again is not None and (more_probable(again, found) or not bench.tempering) else None
+    finer = bench.refitted(found, found.steps - 1)
+    return finer if finer is not None and (more_probable(finer, found) or not bench.tempering) else None
