@@ -66,7 +66,7 @@ def calibrate(
     # t1 is kept where it pays beyond its own noise on cases that it was not fitted to
     gain = scores[True] - scores[False]
     grows = bool(gain.mean() > gain.std(ddof=1) / sqrt(len(gain)))
-    lines = _report(cases, samples, fits, held_out, grows, without) + ["", forms(cases)]
+    lines = [*_report(cases, samples, fits, held_out, grows, without), "", forms(cases)]
     return lines, to_json(fits[grows], len(samples), split, codes)
 
 
