@@ -24,6 +24,9 @@ PRICE = 10.0
 """Log of the odds against each of them. Right explanations of simulated tests hardly ever ask for one: `make
 blind-calibrate` prints how many (95 of 97 asked for none: odds of 48 to 1, or 12 at a temperature of 3.12)."""
 
+FURTHER = 5.0
+"""Log of the odds against each effect beyond the first: several at once are rarer than one."""
+
 SHORT, LONG = 12, 25
 """Steps of a fit that looks around, and of one that is to converge."""
 
@@ -104,8 +107,9 @@ class Bench:
 
 
 def candidate(names: tuple[str, ...], found: Fit, steps: int, unknown: bool = False) -> Candidate:
-    """A fit at a form as a candidate, at the price of the form."""
-    return Candidate(names, found, found.log_evidence - PRICE * steps, steps, unknown)
+    """A fit at a form as a candidate, at the price of the form and of effects beyond the first."""
+    further = max(len(names) - unknown - 1, 0)
+    return Candidate(names, found, found.log_evidence - PRICE * steps - FURTHER * further, steps, unknown)
 
 
 def more_probable(one: Candidate, other: Candidate) -> bool:

@@ -13,8 +13,11 @@ from hfanalysis.diagnose.search import Search
 from hfanalysis.diagnose.singles import HOPELESS
 from hfanalysis.diagnose.threads import each
 
-WORTH = 5.0
-"""Log evidence that a further effect must bring."""
+SEEN = 5.0
+"""Log evidence of a single effect from which on others are tried beside it."""
+
+ASKED = 2.5
+"""Gain in log probability that a score test must promise for a further effect to be fitted."""
 
 PARTNERS = 4
 """Effects that are tried as a further one, by their score."""
@@ -26,13 +29,13 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> list[C
     """Sets of several effects: forward from the best few, dropping what is no longer needed."""
     found: dict[frozenset[str], Candidate] = {}
     tried: set[frozenset[str]] = set()
-    front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + WORTH]
+    front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + SEEN]
     for size in range(2, MOST_EFFECTS + 1):
         search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
         grown = []
         for parent in front:
             grown += _partners(parent, search, tried)
-        better = [c for c in grown if c.log_evidence > _parent_evidence(c, singles, found) + WORTH]
+        better = [c for c in grown if c.log_evidence > _parent_evidence(c, singles, found)]
         if not better:
             break
         better = [_dropped(c, search.bench) for c in sorted(better, key=lambda c: -c.log_evidence)[:2]]
@@ -60,7 +63,7 @@ def _partners(parent: Candidate, search: Search, tried: set[frozenset[str]]) -> 
     names = [n for n in catalogue.effects if n not in parent.names and frozenset((*parent.names, n)) not in tried]
     tests = each(lambda n: score_tests(parent.fit, slopes, catalogue, n, finer, search.settings), names)
     scores = [(found[0], name, made) for name, (made, found) in zip(names, tests, strict=True) if found]
-    asked = [s for s in sorted(scores, key=lambda s: -s[0][0])[:PARTNERS] if s[0][0] >= 0.5 * WORTH]
+    asked = [s for s in sorted(scores, key=lambda s: -s[0][0])[:PARTNERS] if s[0][0] >= ASKED]
     tried |= {frozenset((*parent.names, name)) for _, name, _ in asked}
     fits = each(lambda s: attempted(s[2], bench.at(parent.steps), s[0][1]), asked)
     out = [
@@ -83,6 +86,6 @@ def _dropped(found: Candidate, bench: Bench) -> Candidate:
         if again is None:
             continue
         less = bench.judged(candidate(tuple(n for n in found.names if n != name), again, found.steps))
-        if less.log_evidence > found.log_evidence - WORTH:
+        if less.log_evidence > found.log_evidence:
             found = less
     return found

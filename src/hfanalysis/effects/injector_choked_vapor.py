@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, P_CHAMBER, P_TANK, term
 
@@ -12,16 +13,26 @@ LEAST_DROP = 1e-4
 """Relative pressure drop below which the two laws agree."""
 
 
+@compiled
+def expanding_flow(ratio: float, gamma: float) -> float:
+    """Flow of a gas that expands to p / p_0, or chokes, over that of an incompressible fluid of the density at p_0.
+
+    >>> round(expanding_flow(0.9, 1.2), 4)
+    0.9361
+    """
+    ratio = min(max(ratio, 0.0), 1.0 - LEAST_DROP)
+    # at the critical ratio the flow is stationary: holding it there leaves no corner
+    throat = max(ratio, (2.0 / (gamma + 1.0)) ** (gamma / (gamma - 1.0)))
+    square = gamma / (gamma - 1.0) * (throat ** (2.0 / gamma) - throat ** ((gamma + 1.0) / gamma)) / (1.0 - ratio)
+    return sqrt(square)
+
+
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if hook != AT_FLOW or env[IS_LIQUID] > 0.0:
         return
-    g = p[GAMMA]
-    ratio = min(max(env[P_CHAMBER] / env[P_TANK], 0.0), 1.0 - LEAST_DROP)
-    # at the critical ratio the flow is stationary: holding it there leaves no corner
-    throat = max(ratio, (2.0 / (g + 1.0)) ** (g / (g - 1.0)))
-    square = g / (g - 1.0) * (throat ** (2.0 / g) - throat ** ((g + 1.0) / g)) / (1.0 - ratio)
-    site[INJECTOR_FACTOR] *= 1.0 + p[WEIGHT] * (sqrt(square) - 1.0)
+    flow = expanding_flow(env[P_CHAMBER] / env[P_TANK], p[GAMMA])
+    site[INJECTOR_FACTOR] *= 1.0 + p[WEIGHT] * (flow - 1.0)
 
 
 EFFECT = Effect(

@@ -1,14 +1,22 @@
-"""Liquid that flashes on its way through the injector, so that its flow hardly asks for the chamber's pressure."""
+"""Liquid that flashes on its way through the injector, so that its flow hardly asks for the chamber's pressure.
+
+The vapour that follows expands on the same way: saturated vapour is where homogeneous equilibrium flow ends as the
+share of liquid goes to nothing.
+"""
 
 from __future__ import annotations
 
 from math import log, sqrt
 
 from hfanalysis.compiled import compiled
+from hfanalysis.effects.injector_choked_vapor import expanding_flow
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, INJECTOR_FACTOR, IS_LIQUID, P_CHAMBER, P_TANK, T_TANK, term
 
-WEIGHT, OMEGA, LINE = range(3)
+WEIGHT, OMEGA, LINE, VAPOR = range(4)
+GAMMA = 1.2
+"""Isentropic exponent of the vapour."""
+
 OMEGA_AT, OMEGA_SLOPE, LEAST_OMEGA = 285.0, -0.032, 1.0
 """Temperature [K] at which omega is stated, its slope [1/K] for saturated nitrous oxide, and the least of it."""
 
@@ -48,9 +56,12 @@ def critical_ratio(omega: float) -> float:
 
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
-    if hook != AT_FLOW or env[IS_LIQUID] == 0.0:
+    if hook != AT_FLOW:
         return
     ratio = min(max(env[P_CHAMBER] / env[P_TANK], 0.0), 1.0 - LEAST_DROP)
+    if env[IS_LIQUID] == 0.0:
+        site[INJECTOR_FACTOR] *= 1.0 + p[WEIGHT] * p[VAPOR] * (expanding_flow(ratio, GAMMA) - 1.0)
+        return
     omega = max(p[OMEGA] + OMEGA_SLOPE * (env[T_TANK] - OMEGA_AT), LEAST_OMEGA)
     # at the critical ratio the flow is stationary: holding it there leaves no corner
     flashing = flashing_flow(max(ratio, critical_ratio(omega)), omega)
@@ -67,7 +78,8 @@ EFFECT = Effect(
     "1/(1 + kappa), one half for saturated liquid; equilibrium flow by Leung, AIChE Journal 32 (1986) 1743, with omega "
     "= c_p T p / v_l ((v_v - v_l) / (h_v - h_l))^2, which is 3.7 to 2.9 for nitrous oxide from 270 to 295 K",
     formula="f = 1 - w + w G_eq(max(eta, eta_c)) / sqrt(2 (1 - eta)),  eta = p_c / p_T;  mdot = f mdot_injector;  "
-    "K_loss (1 + l (1 / f^2 - 1)): the line's loss grows as it flashes there too",
+    "K_loss (1 + l (1 / f^2 - 1)): the line's loss grows as it flashes there too; in the vapour "
+    "f = 1 + w v (psi / sqrt(2 (1 - eta)) - 1), psi of the isentropic orifice",
     sites=("injector_factor", "feed_factor"),
     parameters=(
         Parameter("weight", "-", "0 single-phase, 1 homogeneous equilibrium", typical=0.5, low=0.0, high=1.0),
@@ -82,8 +94,9 @@ EFFECT = Effect(
             given=True,
         ),
         Parameter("line", "-", "how far the line takes part", typical=0.5, center=0.5, low=0.0, high=1.0),
+        Parameter("vapor", "-", "how far the vapour takes part", typical=0.5, center=0.5, low=0.0, high=1.0),
     ),
-    phases=("liquid",),
+    phases=("liquid", "vapor", "nitrogen"),
     term=_term,
     twins=(),
     decisive="cold flow of liquid through the injector at two back pressures",

@@ -24,7 +24,7 @@ EFFECT = Effect(
     formula="Q = P (1 - exp(-t/tau)), P constant: what came in before the valve opened shows in the temperature",
     sites=("tank_heat",),
     parameters=(
-        Parameter("power", "W", "heat flow into the tank's content", typical=1000.0, low=-5e3, high=20e3),
+        Parameter("power", "W", "heat flow into the tank's content", typical=1000.0, low=0.0, high=20e3),
         Parameter(
             "lag", "s", "until the heat flow is there: it comes through the wall", 0.9, center=0.1, low=0.02, high=20.0
         ),
