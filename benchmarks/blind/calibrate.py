@@ -66,7 +66,7 @@ def calibrate(
     # t1 is kept where it pays beyond its own noise on cases that it was not fitted to
     gain = scores[True] - scores[False]
     grows = bool(gain.mean() > gain.std(ddof=1) / sqrt(len(gain)))
-    lines = [*_report(cases, samples, fits, held_out, grows, without), "", forms(cases)]
+    lines = [*_report(cases, samples, fits, held_out, grows, without), "", *forms(cases)]
     return lines, to_json(fits[grows], len(samples), split, codes)
 
 
@@ -89,12 +89,16 @@ def _report(
     return lines
 
 
-def forms(cases: Sequence[Case]) -> str:
+def forms(cases: Sequence[Case]) -> list[str]:
     """Model-form errors that right explanations ask for: the price of a coarser one goes by it."""
     right = [c for c in cases if c.stated == c.truth and c.truth != "unknown"]
-    asked = Counter(form for c in right if (form := c.product.get("compared", {}).get("model_form_error")) is not None)
-    each = ", ".join(f"{100.0 * form:.2g} %: {number}" for form, number in sorted(asked.items()))
-    return f"model-form error of the {asked.total()} cases that are right (none, or the name): {each}"
+    errors = [e for c in right if (e := c.product.get("compared", {}).get("model_form_error")) is not None]
+    lines = [f"model-form error of the {len(errors)} cases that are right (none, or the name)"]
+    for side in ("tank", "chamber"):
+        asked = Counter(e[side] for e in errors)
+        each = ", ".join(f"{100.0 * error:.2g} %: {number}" for error, number in sorted(asked.items()))
+        lines.append(f"  {side}: {each}")
+    return lines
 
 
 def _constants(one: Fitted) -> str:

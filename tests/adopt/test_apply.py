@@ -82,7 +82,7 @@ def test_what_is_not_named_is_not_adopted(root: Path, diagnosis: dict[str, Any])
 
 def test_a_diagnosis_beyond_the_bounds_of_an_effect_writes_nothing(root: Path) -> None:
     wild = {"name": "tank_heat", "probability": 1.0, "parameters": {"power": {"value": 1e6, "unit": "W", "std": None}}}
-    with pytest.raises(InputError, match=r"diagnosis\.json, tank_heat\.power.*expected -5000 to 20000 W"):
+    with pytest.raises(InputError, match=r"diagnosis\.json, tank_heat\.power.*expected 0 to 20000 W"):
         adopt(opened(root), {**NAMED, "effects": [wild]})
     assert not (root / "engines" / "T1.effects.toml").exists()
 

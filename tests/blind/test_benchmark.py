@@ -253,11 +253,13 @@ def test_calibration_counts_the_forms_of_what_is_right(made: Callable[..., Folde
     found = [("tank_heat", 2e-4), ("tank_heat", 6e-4), (None, 2e-4), ("n2_purge", 2e-4)]
     labels = ["tank_heat", "tank_heat", "none", "tank_heat"]  # the last is wrong
     cases = [
-        (truth, {"posterior": {label: 0.9}, "compared": {"model_form_error": form}})
+        (truth, {"posterior": {label: 0.9}, "compared": {"model_form_error": {"tank": form, "chamber": 8e-4}}})
         for (truth, form), label in zip(found, labels, strict=True)
     ]
-    line = forms(list(results(made(cases), "calibration").cases.values()))
-    assert line.endswith("the 3 cases that are right (none, or the name): 0.02 %: 2, 0.06 %: 1")
+    first, tank, chamber = forms(list(results(made(cases), "calibration").cases.values()))
+    assert "the 3 cases" in first
+    assert tank.split() == ["tank:", "0.02", "%:", "2,", "0.06", "%:", "1"]
+    assert chamber.split() == ["chamber:", "0.08", "%:", "3"]
 
 
 def test_the_scored_split_is_not_fitted_to_under_any_name(made: Callable[..., Folder], tmp_path: Path) -> None:

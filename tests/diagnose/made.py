@@ -94,7 +94,7 @@ def _channel(name: str, reading: Array, grid: Array, resting: NDArray[np.bool_],
 
 def covariance_of(test: Observed) -> Array:
     """The covariance of all blocks, channel after channel."""
-    out = block_diag(*(c.covariance + c.form_covariance(test.form) for c in test.channels))
+    out = block_diag(*(c.covariance + c.form_covariance(test.errors) for c in test.channels))
     if test.common is not None:
         edges = np.cumsum([0, *(c.time.size for c in test.channels)])
         a, b = (slice(edges[i], edges[i + 1]) for i in (test.names.index(name) for name in TOGETHER))

@@ -181,9 +181,9 @@ def test_without_blocks_the_rest_is_as_it_was() -> None:
 def _form_free(test: Observed, less: Observed, inside: np.ndarray) -> np.ndarray:
     """The covariance of the kept blocks; the model-form error goes with the range of what is left."""
     return (
-        covariance_of(test.at_form(0.0))[np.ix_(inside, inside)]
+        covariance_of(test.with_errors(0.0, 0.0))[np.ix_(inside, inside)]
         + covariance_of(less)
-        - covariance_of(less.at_form(0.0))
+        - covariance_of(less.with_errors(0.0, 0.0))
     )
 
 
@@ -210,9 +210,11 @@ def test_as_if_noise_were_white() -> None:
 def test_a_larger_model_form_error_is_a_smaller_residual() -> None:
     test = made.observed()
     step = np.concatenate([np.where(c.time > 3.0, 1e-3 * np.ptp(c.value), 0.0) for c in test.channels])
-    sizes = [float(np.sum(test.at_form(form).whiten(step) ** 2)) for form in (0.0, FORM_ERROR, 30.0 * FORM_ERROR)]
+    sizes = [
+        float(np.sum(test.with_errors(form, form).whiten(step) ** 2)) for form in (0.0, FORM_ERROR, 30.0 * FORM_ERROR)
+    ]
     assert sizes[0] > sizes[1] > 5.0 * sizes[2]
-    assert test.at_form(0.1).log_size > test.log_size
+    assert test.with_errors(0.1, 0.1).log_size > test.log_size
 
 
 def test_what_cannot_be_compared_is_left_out() -> None:

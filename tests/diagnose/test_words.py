@@ -27,6 +27,7 @@ def product(label: str, **more: Any) -> dict[str, Any]:
     rms = {name: 2.0 * size for name, size in made.NOISE.items()}
     return {
         "verdict": label,
+        "partners": {},
         "posterior": {"unknown": 0.97, "none": 0.03} if label == "unknown" else verdict.posterior,
         "set90": ["unknown"] if label == "unknown" else verdict.set90,
         "effects": effects_product(verdict) if label in ("named", "ambiguous") else [],

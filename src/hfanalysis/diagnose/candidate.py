@@ -12,17 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fit import Fit, fit
+from hfanalysis.diagnose.form import FINEST, Form
 from hfanalysis.diagnose.hypothesis import Hypothesis
-from hfanalysis.diagnose.observed import FORM_ERROR, Observed
+from hfanalysis.diagnose.observed import Observed
 
 Array = NDArray[np.float64]
 
-FORMS = tuple(FORM_ERROR * 3.0**i for i in range(6))
-"""Model-form errors that a candidate may ask for, as parts of a channel's range."""
-
-PRICE = 10.0
-"""Log of the odds against each of them. Right explanations of simulated tests hardly ever ask for one: `make
-blind-calibrate` prints how many (95 of 97 asked for none: odds of 48 to 1, or 12 at a temperature of 3.12)."""
+PRICE = 5.0
+"""Log of the odds against each step of the model-form error, on either side. Right explanations of simulated tests
+hardly ever ask for one: `make blind-calibrate` prints how many. 95 of 97 asked for none when both sides went together:
+odds of 48 to 1, or 12 for two steps at a temperature of 3.12."""
 
 FURTHER = 5.0
 """Log of the odds against each effect beyond the first: several at once are rarer than one."""
@@ -33,12 +32,12 @@ SHORT, LONG = 12, 25
 
 @dataclass(frozen=True)
 class Candidate:
-    """A set of ``names``, the fit, and its log evidence; ``steps`` of FORMS that it asks for."""
+    """A set of ``names``, the fit, and its log evidence; the ``form`` that it asks for."""
 
     names: tuple[str, ...]
     fit: Fit
     log_evidence: float
-    steps: int = 0
+    form: Form = FINEST
     unknown: bool = False
 
     @property
@@ -58,58 +57,60 @@ class Bench:
     def __init__(self, observed: Observed, tempering: bool = True) -> None:
         self.observed = observed
         self.tempering = tempering
-        self._at: dict[int, Observed] = {0: observed}
+        self._at: dict[Form, Observed] = {FINEST: observed}
 
-    def at(self, steps: int) -> Observed:
-        """The data at a step of FORMS."""
-        if steps not in self._at:
-            self._at[steps] = self.observed.at_form(FORMS[steps])
-        return self._at[steps]
-
-    @property
-    def coarsest(self) -> int:
-        """The last step."""
-        return len(FORMS) - 1
+    def at(self, form: Form) -> Observed:
+        """The data at a form."""
+        if form not in self._at:
+            self._at[form] = self.observed.with_errors(*form.errors)
+        return self._at[form]
 
     def judged(self, found: Candidate) -> Candidate:
-        """A candidate at the form that makes the data most probable: finer as long as that helps, or else coarser.
+        """A candidate at the form that makes the data most probable: finer or coarser as long as that helps.
 
         Without tempering it is the finest one, whatever that leaves.
         """
         if not self.tempering:
-            return self.refitted(found, 0) or found
+            return self.refitted(found, FINEST) or found
         best = found
-        while best.steps > 0 and (again := self.refitted(best, best.steps - 1)) and more_probable(again, best):
-            best = again
-        if best.steps < found.steps:
-            return best
-        while (
-            best.leftover > CALM
-            and best.steps < self.coarsest
-            and (again := self.refitted(best, best.steps + 1))
-            and more_probable(again, best)
-        ):
-            best = again
+        while (better := self.finer(best) or self.eased(best)) is not None:
+            best = better
         return best
 
-    def refitted(self, found: Candidate, steps: int) -> Candidate | None:
+    def finer(self, found: Candidate) -> Candidate | None:
+        """The candidate one step finer, on both sides or else on one; None where it has no more evidence."""
+        for forms in found.form.finer:
+            tried = [self.refitted(found, form) for form in forms]
+            better = [c for c in tried if c is not None and more_probable(c, found)]
+            if better:
+                return max(better, key=lambda c: c.log_evidence)
+        return None
+
+    def eased(self, found: Candidate) -> Candidate | None:
+        """The candidate one step coarser where it leaves much open; None where it has no more evidence."""
+        much = [left > CALM for left in self.at(found.form).left_open(found.fit.residual)]
+        form = found.form.coarser(*much)
+        coarser = None if form == found.form else self.refitted(found, form)
+        return coarser if coarser is not None and more_probable(coarser, found) else None
+
+    def refitted(self, found: Candidate, form: Form) -> Candidate | None:
         """The candidate at another form, None where it cannot be run."""
-        again = attempted(found.fit.hypothesis, self.at(steps), found.fit.x, SHORT)
-        return None if again is None else candidate(found.names, again, steps, found.unknown)
+        again = attempted(found.fit.hypothesis, self.at(form), found.fit.x, SHORT)
+        return None if again is None else candidate(found.names, again, form, found.unknown)
 
     def converged(self, found: Candidate) -> Candidate:
         """The candidate, its fit brought to its end."""
         if found.fit.converged:
             return found
-        again = attempted(found.fit.hypothesis, self.at(found.steps), found.fit.x, LONG)
-        better = None if again is None else candidate(found.names, again, found.steps, found.unknown)
+        again = attempted(found.fit.hypothesis, self.at(found.form), found.fit.x, LONG)
+        better = None if again is None else candidate(found.names, again, found.form, found.unknown)
         return better if better is not None and more_probable(better, found) else found
 
 
-def candidate(names: tuple[str, ...], found: Fit, steps: int, unknown: bool = False) -> Candidate:
+def candidate(names: tuple[str, ...], found: Fit, form: Form, unknown: bool = False) -> Candidate:
     """A fit at a form as a candidate, at the price of the form and of effects beyond the first."""
     further = max(len(names) - unknown - 1, 0)
-    return Candidate(names, found, found.log_evidence - PRICE * steps - FURTHER * further, steps, unknown)
+    return Candidate(names, found, found.log_evidence - PRICE * form.total - FURTHER * further, form, unknown)
 
 
 def more_probable(one: Candidate, other: Candidate) -> bool:
@@ -118,7 +119,7 @@ def more_probable(one: Candidate, other: Candidate) -> bool:
 
 
 CALM = 1.15
-"""Chi-square per observation below which no larger model-form error is asked for."""
+"""Chi-square per observation, on a side, below which no larger model-form error is asked for there."""
 
 
 def attempted(hypothesis: Hypothesis, observed: Observed, start: Array, most: int = LONG) -> Fit | None:

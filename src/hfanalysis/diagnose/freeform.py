@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.form import FINEST
 from hfanalysis.diagnose.localise import Source, coordinates, linear_sources, with_source
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import predict
@@ -24,32 +25,37 @@ LEAST = 4.0
 BESIDE = 6.0
 """Log of the odds against an unknown source beside a named effect: what a closure gets wrong looks like one."""
 
+REST = 0.5
+"""Part of what the best names explain that a source beside them must add for the answer to be unknown."""
+
 STRIDES = (1.0, 0.5, 0.2)
 """Parts of the way to the linear estimate from which a full fit may start: a large source is not linear."""
 
 
 def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
     """Sources instead of any name, and beside the best name, where either is worth it; the best first."""
-    out = _with_sources(base, bench)
+    out = _with_sources(base, bench, REFITTED)
     if named.names:
-        out += _with_sources(named, bench)
+        # no more can be gained than what is left; a source that cannot be the answer is fitted to show where that is
+        decides = 0.5 * named.chi2 > REST * (named.log_evidence - base.log_evidence)
+        out += _with_sources(named, bench, REFITTED if decides else 1)
     return sorted(out, key=lambda c: -c.log_evidence)
 
 
-def _with_sources(parent: Candidate, bench: Bench) -> list[Candidate]:
+def _with_sources(parent: Candidate, bench: Bench, most: int) -> list[Candidate]:
     """The parent with each of the few sources that are seen at its form, or else at the next finer one, to which the
     parent does not fit: what is too weak for a coarse form may be plain there."""
     start, sources = parent, _seen(parent, bench)
-    if not sources and parent.steps > 0 and (finer := bench.refitted(parent, parent.steps - 1)):
+    if not sources and parent.form != FINEST and (finer := bench.refitted(parent, parent.form.both_finer)):
         start, sources = finer, _seen(finer, bench)
-    fitted = each(lambda source: with_fitted(start, source, bench), sources[:REFITTED])
+    fitted = each(lambda source: with_fitted(start, source, bench), sources[:most])
     return [found for found in fitted if found is not None]
 
 
 def _seen(parent: Candidate, bench: Bench) -> list[Source]:
     """Sources that the linear search sees, the best first; none where the engine cannot be run with all sites open."""
     try:
-        sources = linear_sources(parent.fit, bench.at(parent.steps))
+        sources = linear_sources(parent.fit, bench.at(parent.form))
     except (ValueError, ArithmeticError):
         return []
     return [source for source in sources if source.log_evidence >= LEAST]
@@ -60,13 +66,13 @@ def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | 
     made = with_source(parent.fit.hypothesis, source)
     moved = np.concatenate([source.nuisances - parent.fit.x, coordinates(source)])
     still = np.concatenate([parent.fit.x, np.zeros(source.splines.count)])
-    start = _nearest(made, bench.at(parent.steps), [still + share * moved for share in STRIDES])
+    start = _nearest(made, bench.at(parent.form), [still + share * moved for share in STRIDES])
     if start is None:
         return None
-    found = attempted(made, bench.at(parent.steps), start, SHORT)
+    found = attempted(made, bench.at(parent.form), start, SHORT)
     if found is None:
         return None
-    judged = bench.judged(candidate((*parent.names, source.site.name), found, parent.steps, unknown=True))
+    judged = bench.judged(candidate((*parent.names, source.site.name), found, parent.form, unknown=True))
     return replace(judged, log_evidence=judged.log_evidence - (BESIDE if parent.names else 0.0))
 
 

@@ -33,15 +33,15 @@ def residuals_of(found: Fit, observed: Observed) -> dict[str, Array]:
     out = {}
     for c in observed.channels:
         raw = c.value - c.averaged(read[c.name]) - found.hypothesis.offset(c.name, found.x, c.time)
-        out[c.name] = raw - _bias(c, raw, observed.form)
+        out[c.name] = raw - _bias(c, raw, observed.errors)
     return out
 
 
-def _bias(channel: Channel, residual: Array, form: float) -> Array:
+def _bias(channel: Channel, residual: Array, errors: tuple[float, float]) -> Array:
     """The most probable offset and gain error of a sensor, as its stated accuracy allows."""
     burning = ~channel.resting
     shapes = np.column_stack([burning, burning * channel.value / float(np.abs(channel.value).max())])
-    noise = np.diag(channel.noise_std**2) + channel.form_covariance(form)
+    noise = np.diag(channel.noise_std**2) + channel.form_covariance(errors)
     weighted = np.linalg.solve(noise, shapes)
     prior = np.eye(2) / channel.accuracy**2
     return np.asarray(shapes @ np.linalg.solve(shapes.T @ weighted + prior, weighted.T @ residual))

@@ -22,7 +22,7 @@ Z95 = 1.645
 
 def limits(chosen: Candidate, bench: Bench, catalogue: Catalogue) -> dict[str, tuple[float, str]]:
     """For every effect that is not in the model: the size [SI] that it stays below with 95 % probability, linear."""
-    observed = bench.at(chosen.steps)
+    observed = bench.at(chosen.form)
     visible = {
         name: effect
         for name, effect in catalogue.effects.items()

@@ -23,7 +23,7 @@ TOGETHER = ("p_chamber", "thrust")
 """Channels that share the oscillation of the burn."""
 
 FORM_ERROR, FORM_TIME = 2e-4, 1.0
-"""Model-form error: part of a channel's range, and the time [s] over which it is coherent."""
+"""The finest model-form error: part of a channel's range, and the time [s] over which it is coherent."""
 
 CHAMBER_FORM = 4.0
 """How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealised further."""
@@ -65,11 +65,13 @@ class Channel:
         shared = (SHARE * self.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
         return replace(self, covariance=shared + np.diag(self.noise_std**2))
 
-    def form_covariance(self, error: float) -> Array:
-        """Covariance of a model-form error that is given as part of the channel's range; smooth (Matern, 3/2)."""
+    def form_covariance(self, errors: tuple[float, float]) -> Array:
+        """Covariance of a model-form error, given as part of the range of tank channels, and of chamber and thrust.
+
+        It is smooth (Matern, 3/2).
+        """
         lag = self.time[:, None] - self.time[None, :]
-        size = error * CHAMBER_FORM if self.name in TOGETHER else error
-        burning = np.where(self.resting, 0.0, size * float(np.ptp(self.value)))
+        burning = np.where(self.resting, 0.0, errors[self.name in TOGETHER] * float(np.ptp(self.value)))
         smooth = np.sqrt(3.0) * np.abs(lag) / FORM_TIME
         return np.asarray((1.0 + smooth) * np.exp(-smooth) * np.outer(burning, burning))
 
@@ -92,8 +94,8 @@ class Observed:
     ``grid`` [s]: points at which a model is asked: at the opening, through the flow, and ``resting`` ones after it (the
     first, too, stands for the time before). ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its
     measured end, at which that of every model ends. ``stated``: what was measured outside the log (SI), with standard
-    deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there. ``form``:
-    model-form error, as part of a channel's range.
+    deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there. ``errors``:
+    model-form error, as part of the range of the tank's channels, and of chamber and thrust.
     """
 
     channels: tuple[Channel, ...]
@@ -106,12 +108,12 @@ class Observed:
     flow_end: float
     ambient: float
     common: Array | None = None
-    form: float = FORM_ERROR
+    errors: tuple[float, float] = (FORM_ERROR, CHAMBER_FORM * FORM_ERROR)
     fuel_out: float | None = None
 
-    def at_form(self, error: float) -> Observed:
+    def with_errors(self, tank: float, chamber: float) -> Observed:
         """The same with another model-form error."""
-        return replace(self, form=error)
+        return replace(self, errors=(tank, chamber))
 
     def with_white_noise(self) -> Observed:
         """The same as if the noise of blocks were independent: what it costs to think so can be studied."""
@@ -142,11 +144,11 @@ class Observed:
         out, at, i = [], 0, 0
         while i < len(self.channels):
             c = self.channels[i]
-            covariance = c.covariance + c.form_covariance(self.form)
+            covariance = c.covariance + c.form_covariance(self.errors)
             i += 1
             if c.name == TOGETHER[0] and self.common is not None:
                 other = self.channels[i]
-                second = other.covariance + other.form_covariance(self.form)
+                second = other.covariance + other.form_covariance(self.errors)
                 covariance = np.block([[covariance, self.common], [self.common.T, second]])
                 i += 1
             factor = _whitening(covariance)
@@ -158,6 +160,13 @@ class Observed:
         """Rows (blocks of all channels one after the other, ...) in units in which the noise is white and of size
         one."""
         return np.concatenate([factor @ rows[place] for place, factor in self._factors])
+
+    def left_open(self, residual: Array) -> tuple[float, float]:
+        """Mean square of a whitened residual over the tank's channels, and over chamber and thrust; 0 without any."""
+        together = np.concatenate([np.full(c.time.size, c.name in TOGETHER) for c in self.channels])
+        square = residual[: together.size] ** 2
+        tank, chamber = (float(square[side].mean()) if side.any() else 0.0 for side in (~together, together))
+        return tank, chamber
 
     @property
     def longest(self) -> float:

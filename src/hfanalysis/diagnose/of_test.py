@@ -122,6 +122,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "effects": effects_product(verdict),
         "set90": verdict.set90,
         "posterior": verdict.posterior,
+        "partners": verdict.partners,
         "evidences": verdict.evidences,
         "tried": [_tried(c, found) for c in (*found.singles, *found.sets, *found.unknown)],
         "leftover": found.named.leftover,
@@ -142,7 +143,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
             "channels": list(observed.names),
             "start": float(compared[compared > 0.0][0]),
             "end": observed.end,
-            "model_form_error": found.bench.at(chosen.steps).form,
+            "model_form_error": _errors(chosen),
             "chi_square": chosen.leftover,
             "chi_square_without": found.base.leftover,
         },
@@ -173,8 +174,13 @@ def _tried(candidate: Candidate, found: Naming) -> dict[str, Any]:
         "names": list(candidate.names),
         "unknown": candidate.unknown,
         "log_evidence": candidate.log_evidence - found.base.log_evidence,
-        "model_form_error": found.bench.at(candidate.steps).form,
+        "model_form_error": _errors(candidate),
     }
+
+
+def _errors(candidate: Candidate) -> dict[str, float]:
+    """The model-form error that a candidate asks for, as parts of the channels' ranges."""
+    return dict(zip(("tank", "chamber"), candidate.form.errors, strict=True))
 
 
 def _constants(found: Naming, verdict: Verdict) -> dict[str, dict[str, Quantity]]:

@@ -16,6 +16,7 @@ from importlib.resources import files
 import numpy as np
 
 from hfanalysis.diagnose.candidate import Candidate
+from hfanalysis.diagnose.freeform import REST
 from hfanalysis.diagnose.naming import Naming
 
 SET = 0.9
@@ -38,14 +39,17 @@ class Scale:
 
     def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
         """Of every label of ``evidences``; they sum to one."""
-        heat = self.temperature * (1.0 + self.temperature_per_leftover * max(0.0, leftover - 1.0))
-        labels = list(evidences)
+        heat, labels = self.heat(leftover), list(evidences)
         logs = np.array([self._log(kind(label), evidences[label], heat) for label in labels])
         weights = np.exp(logs - logs.max())
         before = np.array([BEFORE[kind(label)] for label in labels])
         before[[kind(label) == "named" for label in labels]] /= max(sum(kind(k) == "named" for k in labels), 1)
         mixed = (1.0 - self.misled) * weights / weights.sum() + self.misled * before / before.sum()
         return dict(zip(labels, mixed.tolist(), strict=True))
+
+    def heat(self, leftover: float) -> float:
+        """The temperature that evidences are divided by."""
+        return self.temperature * (1.0 + self.temperature_per_leftover * max(0.0, leftover - 1.0))
 
     def _log(self, of: str, evidence: float, heat: float) -> float:
         unseen = self.offsets.get(f"unseen {of}")
@@ -88,12 +92,21 @@ def evidences_of(found: Naming) -> dict[str, float]:
     return out
 
 
+def partners_of(first: str, found: Naming) -> dict[str, float]:
+    """Probability of each further effect if the first is there, by all explanations that it is part of."""
+    with_first = [c for c in (*found.singles, *found.sets) if first in c.names]
+    logs = np.array([c.log_evidence for c in with_first]) / scale().heat(found.named.leftover)
+    weights = np.exp(logs - logs.max())
+    out: dict[str, float] = {}
+    for candidate, weight in zip(with_first, (weights / weights.sum()).tolist(), strict=True):
+        for name in candidate.names:
+            if name != first:
+                out[name] = out.get(name, 0.0) + weight
+    return out
+
+
 UNSEEN = -5.0
 """Log evidence of a label of which a score test saw nothing: what its free parameters cost."""
-
-
-REST = 0.5
-"""Part of what the best names explain that a source beside them must add for the answer to be unknown."""
 
 
 def counts_as_unknown(candidate: Candidate, found: Naming) -> bool:

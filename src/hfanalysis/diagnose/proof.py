@@ -41,7 +41,7 @@ class Proof:
 
 def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
     """All four arms for a set of named effects."""
-    observed, fitted = found.bench.observed, found.bench.at(chosen.steps)
+    observed, fitted = found.bench.observed, found.bench.at(chosen.form)
     base, after = found.base.fit, chosen.fit
     before = total_gap(base, observed)
     notes = []
@@ -49,7 +49,7 @@ def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
     if fractions["same"] is None:
         notes.append("the gap was within the noise of blocks before: there is no fraction of it to close")
     fractions["held_out"] = held_out(base, after, fitted, observed)
-    elsewhere = _elsewhere(chosen, other, fitted.form) if other is not None else None
+    elsewhere = _elsewhere(chosen, other) if other is not None else None
     fractions["other_test"] = elsewhere["closed_fraction"] if elsewhere else None
     if other is None:
         notes.append("there is no other test of this stand to prove it on")
@@ -66,9 +66,9 @@ def _placebo(found: Naming, chosen: Candidate) -> Candidate | None:
     return max(wrong, key=lambda c: c.log_evidence, default=None)
 
 
-def _elsewhere(chosen: Candidate, other: OtherTest, form: float) -> dict[str, Any] | None:
+def _elsewhere(chosen: Candidate, other: OtherTest) -> dict[str, Any] | None:
     """The other test without and with the effects, their constants frozen and its own free."""
-    observed, fitted = other.observed, other.observed.at_form(form)
+    observed, fitted = other.observed, other.observed.with_errors(*chosen.form.errors)
     base = attempted(other.hypothesis, fitted, np.zeros(other.hypothesis.size))
     if base is None:
         return None

@@ -24,6 +24,9 @@ PARTNERS = 4
 
 MOST_EFFECTS = 4
 
+CERTAIN = 8.0
+"""Standard deviations from nothing, other constants free, from which on an effect is not tried to be left out."""
+
 
 def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> list[Candidate]:
     """Sets of several effects: forward from the best few, dropping what is no longer needed."""
@@ -38,9 +41,9 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> list[C
         better = [c for c in grown if c.log_evidence > _parent_evidence(c, singles, found)]
         if not better:
             break
-        better = [_dropped(c, search.bench) for c in sorted(better, key=lambda c: -c.log_evidence)[:2]]
-        found |= {frozenset(c.names): c for c in better if len(c.names) > 1}
-        front = better[:1]
+        best = [_dropped(c, search.bench) for c in sorted(better, key=lambda c: -c.log_evidence)[:2]]
+        found |= {frozenset(c.names): c for c in (*better, *best) if len(c.names) > 1}
+        front = best[:1]
     return sorted(found.values(), key=lambda c: -c.log_evidence)
 
 
@@ -57,7 +60,7 @@ def _partners(parent: Candidate, search: Search, tried: set[frozenset[str]]) -> 
     The score is taken at the next finer form, to which the parent does not fit: what it lacks shows there.
     """
     bench, catalogue = search.bench, search.catalogue
-    finer = bench.at(max(parent.steps - 1, 0))
+    finer = bench.at(parent.form.both_finer)
     slopes = predict(parent.fit.hypothesis, finer, parent.fit.x, tangents=True).slopes
     assert slopes is not None
     names = [n for n in catalogue.effects if n not in parent.names and frozenset((*parent.names, n)) not in tried]
@@ -65,9 +68,9 @@ def _partners(parent: Candidate, search: Search, tried: set[frozenset[str]]) -> 
     scores = [(found[0], name, made) for name, (made, found) in zip(names, tests, strict=True) if found]
     asked = [s for s in sorted(scores, key=lambda s: -s[0][0])[:PARTNERS] if s[0][0] >= ASKED]
     tried |= {frozenset((*parent.names, name)) for _, name, _ in asked}
-    fits = each(lambda s: attempted(s[2], bench.at(parent.steps), s[0][1]), asked)
+    fits = each(lambda s: attempted(s[2], bench.at(parent.form), s[0][1]), asked)
     out = [
-        candidate((*parent.names, name), found, parent.steps)
+        candidate((*parent.names, name), found, parent.form)
         for (_, name, _), found in zip(asked, fits, strict=True)
         if found is not None
     ]
@@ -80,12 +83,22 @@ def _dropped(found: Candidate, bench: Bench) -> Candidate:
     for name in found.names[:-1]:
         if len(found.names) < 2:
             break
+        if _certain(found, name):
+            continue
         hypothesis = found.fit.hypothesis.without(name)
         kept = [i for i, f in enumerate(found.fit.hypothesis.free) if f.name.partition(".")[0] != name]
-        again = attempted(hypothesis, bench.at(found.steps), found.fit.x[kept])
+        again = attempted(hypothesis, bench.at(found.form), found.fit.x[kept])
         if again is None:
             continue
-        less = bench.judged(candidate(tuple(n for n in found.names if n != name), again, found.steps))
+        less = bench.judged(candidate(tuple(n for n in found.names if n != name), again, found.form))
         if less.log_evidence > found.log_evidence:
             found = less
     return found
+
+
+def _certain(found: Candidate, name: str) -> bool:
+    """Whether a strength of an effect is so far from nothing that the set cannot do without it."""
+    active = next(a for a in found.fit.burnt.steps.engine.effects if a.effect.name == name)
+    strengths = [f"{name}.{p.name}" for p in active.effect.parameters[: active.effect.strengths]]
+    values, stds = found.fit.values, found.fit.stds
+    return any(abs(values[s]) > CERTAIN * stds[s] for s in strengths)

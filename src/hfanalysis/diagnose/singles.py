@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.candidate import SHORT, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.fit import Fit
+from hfanalysis.diagnose.form import COARSEST, FINEST, Form
 from hfanalysis.diagnose.hypothesis import Hypothesis
 from hfanalysis.diagnose.score import score_tests
 from hfanalysis.diagnose.search import Search
@@ -71,9 +72,11 @@ def _second_turn(base: Candidate, best: dict[str, Candidate], search: Search) ->
     better = polished(base, list(best.values()), bench)
     winner = max(best.values(), key=lambda c: c.log_evidence)
     moved = better.log_evidence > base.log_evidence + FAR
-    if winner.steps < base.steps or moved:
-        names = [n for n in search.catalogue.effects if moved or n not in best or best[n].steps > winner.steps]
-        parent = bench.refitted(better, winner.steps) or better
+    if winner.form.total < base.form.total or moved:
+        names = [
+            n for n in search.catalogue.effects if moved or n not in best or best[n].form.total > winner.form.total
+        ]
+        parent = bench.refitted(better, winner.form) or better
         _keep(best, _raced(_further_children(parent, search, names), bench))
         better = polished(better, list(best.values()), bench)
     return better
@@ -92,9 +95,9 @@ def polished(parent: Candidate, children: list[Candidate], bench: Bench) -> Cand
     best = parent
     for child in sorted(children, key=lambda c: -c.log_evidence)[:POLISHING]:
         start = child.fit.x[: parent.fit.hypothesis.nuisances]
-        found = attempted(parent.fit.hypothesis, bench.at(parent.steps), start)
+        found = attempted(parent.fit.hypothesis, bench.at(parent.form), start)
         if found is not None:
-            best = max(best, candidate(parent.names, found, parent.steps), key=lambda c: c.log_evidence)
+            best = max(best, candidate(parent.names, found, parent.form), key=lambda c: c.log_evidence)
     return bench.judged(best) if best is not parent else parent
 
 
@@ -103,18 +106,18 @@ def _descended(hypothesis: Hypothesis, bench: Bench) -> Candidate:
 
     Where no instant tells when the fuel is gone a and n have more than one valley; coarse forms do not tell them apart.
     """
-    coarse = attempted(hypothesis, bench.at(bench.coarsest), np.zeros(hypothesis.size), SHORT)
+    coarse = attempted(hypothesis, bench.at(COARSEST), np.zeros(hypothesis.size), SHORT)
     if coarse is None:
         raise ArithmeticError("the base model cannot be fitted to this test")
-    best = bench.converged(bench.judged(candidate((), coarse, bench.coarsest)))
+    best = bench.converged(bench.judged(candidate((), coarse, COARSEST)))
     place, found = [f.name for f in hypothesis.free].index("n"), best
     for exponent in FROM_EXPONENTS:
         start = found.fit.x.copy()
         start[place] = exponent
-        other = attempted(hypothesis, bench.at(found.steps), start, SHORT)
+        other = attempted(hypothesis, bench.at(found.form), start, SHORT)
         if other is None or other.log_evidence < found.fit.log_evidence - FAR or _same(other, found.fit):
             continue
-        best = max(best, bench.converged(bench.judged(candidate((), other, found.steps))), key=lambda c: c.log_evidence)
+        best = max(best, bench.converged(bench.judged(candidate((), other, found.form))), key=lambda c: c.log_evidence)
     return best
 
 
@@ -129,44 +132,44 @@ def _first_children(base: Candidate, search: Search, names: list[str]) -> list[C
     From the starts that score tests promise most of. Where the base model is far from the data those see little of an
     effect; what they do not lead to anything starts from a moderate size.
     """
-    observed, done = search.bench.at(base.steps), count()
+    observed, done = search.bench.at(base.form), count()
 
     def child(name: str) -> Candidate | None:
         search.progress(f"fitting {name}", 0.3 * next(done) / len(names))
         made, starts = _promising(base, search, name)
         fits = [attempted(made, observed, x, SHORT) for x in starts[:STARTS]]
         seen = any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
-        if base.steps > 0 and not seen:
+        if base.form != FINEST and not seen:
             start = _moderate(base, search.catalogue.effects[name].strengths, made.size)
             fits.append(attempted(made, observed, start, SHORT))
-        return _best((name,), fits, base.steps)
+        return _best((name,), fits, base.form)
 
     return [c for c in each(child, names) if c is not None]
 
 
 def _further_children(parent: Candidate, search: Search, names: list[str]) -> list[Candidate]:
     """Those of the effects that a score test sees, each from its best start, at the parent's form."""
-    observed, done = search.bench.at(parent.steps), count()
+    observed, done = search.bench.at(parent.form), count()
 
     def child(name: str) -> Candidate | None:
         search.progress(f"fitting {name}", 0.3 + 0.3 * next(done) / len(names))
         made, starts = _promising(parent, search, name)
-        return _best((name,), [attempted(made, observed, x, SHORT) for x in starts[:1]], parent.steps)
+        return _best((name,), [attempted(made, observed, x, SHORT) for x in starts[:1]], parent.form)
 
     return [c for c in each(child, names) if c is not None]
 
 
 def _promising(parent: Candidate, search: Search, name: str) -> tuple[Hypothesis, list[Array]]:
     """The parent with an effect more, and the starts of which a score test sees something, the best first."""
-    observed = search.bench.at(parent.steps)
+    observed = search.bench.at(parent.form)
     made, tests = score_tests(parent.fit, parent.fit.slopes, search.catalogue, name, observed, search.settings)
     return made, [x for gain, x in tests if gain > SEEN]
 
 
-def _best(names: tuple[str, ...], fits: list[Fit | None], steps: int) -> Candidate | None:
+def _best(names: tuple[str, ...], fits: list[Fit | None], form: Form) -> Candidate | None:
     """The most probable of the fits that could be had."""
     found = max((f for f in fits if f is not None), key=lambda f: f.log_evidence, default=None)
-    return None if found is None else candidate(names, found, steps)
+    return None if found is None else candidate(names, found, form)
 
 
 def _moderate(base: Candidate, strengths: int, size: int) -> Array:
@@ -181,16 +184,22 @@ def _raced(started: list[Candidate], bench: Bench) -> list[Candidate]:
     """Each at the form with most evidence for it, going down together; who falls far behind goes no further."""
     out, running = [], started
     while running:
-        top = max(c.log_evidence for c in running)
-        finer = each(partial(_finer, bench=bench, least=top - HOPELESS), running)
+        least = max(c.log_evidence for c in running) - HOPELESS
+        finer = each(partial(_finer, bench=bench, least=least), running)
         out += [c for c, further in zip(running, finer, strict=True) if further is None]
         running = [further for further in finer if further is not None]
-    return out
+    least = max((c.log_evidence for c in out), default=0.0) - HOPELESS
+    return each(lambda c: _settled(c, bench) if bench.tempering and c.log_evidence > least else c, out)
+
+
+def _settled(found: Candidate, bench: Bench) -> Candidate:
+    """The candidate after a step back where going down on both sides left one of them too fine."""
+    eased = bench.eased(found)
+    return found if eased is None else bench.judged(eased)
 
 
 def _finer(found: Candidate, bench: Bench, least: float) -> Candidate | None:
     """The candidate at the next finer form, if it is above the ``least`` evidence here and has more there."""
-    if found.steps == 0 or found.log_evidence <= least:
+    if found.form == FINEST or found.log_evidence <= least:
         return None
-    finer = bench.refitted(found, found.steps - 1)
-    return finer if finer is not None and (more_probable(finer, found) or not bench.tempering) else None
+    return bench.finer(found) if bench.tempering else bench.refitted(found, found.form.both_finer)

@@ -28,7 +28,7 @@ SHAPE_TIME = 1.5
 
 def slacked(found: Candidate, bench: Bench) -> Candidate:
     """The candidate with slack in its effects, where that makes the data more probable."""
-    plain, observed = found.fit, bench.at(found.steps)
+    plain, observed = found.fit, bench.at(found.form)
     try:
         signature = signatures(plain.hypothesis, observed, plain.x)
     except (ValueError, ArithmeticError):
@@ -38,7 +38,7 @@ def slacked(found: Candidate, bench: Bench) -> Candidate:
     loose = attempted(made, observed, np.concatenate([plain.x, np.zeros(columns.shape[1])]), SHORT)
     if loose is None:
         return found
-    judged = bench.judged(candidate(found.names, loose, found.steps))
+    judged = bench.judged(candidate(found.names, loose, found.form))
     return max(found, judged, key=lambda c: c.log_evidence)
 
 

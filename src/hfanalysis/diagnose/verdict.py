@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from hfanalysis.diagnose.limits import limits
 from hfanalysis.diagnose.localise import Source, source_of
 from hfanalysis.diagnose.naming import Naming
 from hfanalysis.diagnose.plausible import judged, lost
-from hfanalysis.diagnose.posterior import counts_as_unknown, evidences_of, kind, scale, smallest_set
+from hfanalysis.diagnose.posterior import SET, counts_as_unknown, evidences_of, kind, partners_of, scale, smallest_set
 from hfanalysis.quantity import Quantity
 
 CLAIM = 0.15
@@ -33,13 +33,17 @@ NAMED_FROM = 0.5
 
 @dataclass(frozen=True)
 class Verdict:
-    """``label``: none, named, ambiguous or unknown; probabilities of all labels; the candidate that is the answer."""
+    """``label``: none, named, ambiguous or unknown; probabilities of all labels; the candidate that is the answer.
+
+    ``partners``: probabilities of effects beside the first that is named.
+    """
 
     label: str
     posterior: dict[str, float]
     evidences: dict[str, float]
     set90: list[str]
     chosen: Candidate
+    partners: dict[str, float] = field(default_factory=dict)
 
     @property
     def top(self) -> str:
@@ -62,12 +66,14 @@ def verdict_of(found: Naming) -> Verdict:
     top = max(claimed, key=lambda k: (claimed[k], k))
     if posterior["none"] >= CLAIM or evidences[top] < LEAST_EVIDENCE[kind(top)]:
         top = "none"
+    chosen = _chosen(weighed, top)
     if top in ("none", "unknown"):
-        label = top
-    else:
-        rivals = [name for name in set90 if name not in (top, "none")]
-        label = "named" if posterior[top] >= NAMED_FROM and not rivals else "ambiguous"
-    return Verdict(label, posterior, evidences, set90, _chosen(weighed, top))
+        return Verdict(top, posterior, evidences, set90, chosen)
+    partners = partners_of(top, weighed)
+    rivals = [name for name in set90 if name not in (top, "none")]
+    sure = posterior[top] >= NAMED_FROM and not rivals and all(partners[n] >= SET for n in chosen.names[1:])
+    beside = {name: posterior[top] * p for name, p in partners.items()}
+    return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
 
 
 def _believed(candidate: Candidate) -> Candidate:
@@ -112,7 +118,7 @@ def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
         out.append(
             {
                 "name": name,
-                "probability": verdict.posterior.get(name, verdict.posterior[verdict.top]),
+                "probability": verdict.partners.get(name, verdict.posterior[verdict.top]),
                 "equation": active.effect.equation,
                 "meaning": active.effect.meaning,
                 "parameters": parameters,

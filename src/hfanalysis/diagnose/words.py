@@ -19,6 +19,9 @@ EQUATIONS = {
     "sensor": "a sensor",
 }
 """Where a model may lack something, in words."""
+LIKELY = 0.1
+"""Probability from which on an effect that may be beside the first is mentioned."""
+
 _UNITS = {"Pa": ("bar", 1e-5), "W": ("kW", 1e-3), "kg/s": ("g/s", 1e3), "1": ("%", 100.0)}
 _CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
 _UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
@@ -48,9 +51,12 @@ def headline(product: Mapping[str, Any]) -> str:
         return f"Nothing is missing from the model that these channels can show (none {posterior['none']:.2f})."
     if product["verdict"] == "unknown":
         return f"Something is missing that is not in the library (unknown {posterior['unknown']:.2f})."
-    names = " and ".join(row["name"] for row in product["effects"])
+    named = [row["name"] for row in product["effects"]]
+    names = " and ".join(f"{row['name']} ({row['probability']:.2f})" for row in product["effects"])
+    beside = [f"{n} ({p:.2f})" for n, p in product["partners"].items() if n not in named and p >= LIKELY]
     doubt = f"; {', '.join(others)} cannot be excluded" if others else ""
-    return f"The model lacks {names} ({posterior[label]:.2f}){doubt}."
+    either = f"; in place of what is beside it: {', '.join(beside)}" if beside else ""
+    return f"The model lacks {names}{doubt}{either}."
 
 
 def place_sentence(row: Mapping[str, Any]) -> str:
