@@ -72,6 +72,18 @@ def test_probabilities_come_largest_first_with_none_and_unknown(tmp_path: Path) 
     assert "raw evidences, not calibrated" in table
 
 
+def test_effects_beside_the_first_have_their_probabilities(tmp_path: Path) -> None:
+    beside = {"fuel_sliver": 0.44, "load_cell_drift": 0.5, "n2_purge": 0.001}
+    added = [*DIAGNOSIS["effects"], {**DIAGNOSIS["effects"][0], "name": "load_cell_drift"}]
+    found = told(laid_out(tmp_path, {**DIAGNOSIS, "partners": beside, "effects": added}))
+    table = found[found.index('aria-label="Beside it: table"') :].partition("</table>")[0]
+    assert re.findall(r'<th scope="row">(\w+)', table) == ["load_cell_drift", "fuel_sliver"]
+    assert "0.50" in row(table, "load_cell_drift")
+    assert "yes" in row(table, "load_cell_drift")
+    assert "yes" not in row(table, "fuel_sliver")
+    assert "Beside it" not in told(laid_out(tmp_path, DIAGNOSIS))
+
+
 def test_a_source_is_drawn_with_its_band_in_the_unit_of_the_sentence(tmp_path: Path) -> None:
     chart = charts(laid_out(tmp_path, DIAGNOSIS))["diagnosis-source-1"]
     band, line = chart.series

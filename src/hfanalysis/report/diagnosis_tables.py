@@ -64,6 +64,17 @@ def probabilities(product: Product) -> Markup | None:
     return html.table("Probabilities", caption, columns, rows)
 
 
+def partners(product: Product) -> Markup | None:
+    """Effects that may be there beside the first, with their probabilities; None where one effect is all."""
+    found, added = product.get("partners") or {}, [row["name"] for row in product["effects"]]
+    kept = sorted((n for n, p in found.items() if p >= SHOWN or n in added), key=lambda n: (-found[n], n))
+    if not kept:
+        return None
+    rows = [(name, _probability(found[name]), _bar(found[name]), "yes" if name in added else "") for name in kept]
+    caption = f"Effects beside {added[0]}, by all sets of effects that were tried."
+    return html.table("Beside it", caption, ("name", ">probability", "", "added to the model"), rows)
+
+
 def _probability(value: float) -> str:
     return "< 0.001" if value < 0.001 else fixed(value, 3 if value < 0.01 or value > 0.99 else 2)
 

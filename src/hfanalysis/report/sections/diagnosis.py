@@ -26,6 +26,7 @@ def render(material: Material) -> Iterator[Block]:
     product = material.product("diagnosis")
     yield from _story(product)
     yield tables.probabilities(product)
+    yield tables.partners(product)
     yield from charts.sources(material, product)
     yield from _gap(material, product)
     yield from tables.constants(product)
