@@ -36,11 +36,17 @@ class Form(NamedTuple):
         return Form(max(self.tank - 1, 0), max(self.chamber - 1, 0))
 
     @property
+    def either_finer(self) -> list[Form]:
+        """The forms one step finer on one side."""
+        both = self.both_finer
+        either = (Form(both.tank, self.chamber), Form(self.tank, both.chamber))
+        return [form for form in either if form != self]
+
+    @property
     def finer(self) -> list[list[Form]]:
         """The forms one step finer: on both sides, and if none of these will do, on either."""
         both = self.both_finer
-        either = [Form(both.tank, self.chamber), Form(self.tank, both.chamber)]
-        return [] if both == self else [[both], [form for form in either if form not in (self, both)]]
+        return [] if both == self else [[both], [form for form in self.either_finer if form != both]]
 
     def coarser(self, tank: bool, chamber: bool) -> Form:
         """One step coarser on these sides, as far as there is one."""

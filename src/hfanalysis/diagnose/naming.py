@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from hfanalysis.diagnose.candidate import Bench, Candidate
 from hfanalysis.diagnose.catalogue import Catalogue
@@ -12,7 +12,6 @@ from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.search import Search
 from hfanalysis.diagnose.several import sets_of
 from hfanalysis.diagnose.singles import base_and_singles, polished
-from hfanalysis.diagnose.slack import slacked
 from hfanalysis.diagnose.variants import Settings
 from hfanalysis.stages.base import Progress, silent
 
@@ -54,22 +53,10 @@ def name_effects(
     bench = Bench(observed if settings.coloured else observed.with_white_noise(), settings.tempering)
     search = Search(bench, catalogue, settings, progress)
     base, singles = base_and_singles(hypothesis, search)
-    singles = _loosened(singles, bench)
-    sets = _loosened(sets_of(base, singles, search), bench)
+    singles, sets = sets_of(base, singles, search)
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
     unknown = unknown_sources(base, named, bench)
     if settings.polishing:
         base = polished(base, [*sets, *unknown], bench)
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, tuple(catalogue.effects))
-
-
-def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
-    """Candidates of one kind, all as much more probable as slack makes the best of them.
-
-    Among themselves they are compared without slack, which would make neighbours alike.
-    """
-    if not candidates:
-        return candidates
-    gain = slacked(candidates[0], bench).log_evidence - candidates[0].log_evidence
-    return [replace(c, log_evidence=c.log_evidence + gain) for c in candidates]

@@ -8,7 +8,7 @@ to simulated tests (``make blind-calibrate``), and stand in probabilities.json w
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib.resources import files
@@ -95,14 +95,19 @@ def evidences_of(found: Naming) -> dict[str, float]:
 def partners_of(first: str, found: Naming) -> dict[str, float]:
     """Probability of each further effect if the first is there, by all explanations that it is part of."""
     with_first = [c for c in (*found.singles, *found.sets) if first in c.names]
-    logs = np.array([c.log_evidence for c in with_first]) / scale().heat(found.named.leftover)
-    weights = np.exp(logs - logs.max())
     out: dict[str, float] = {}
-    for candidate, weight in zip(with_first, (weights / weights.sum()).tolist(), strict=True):
+    for candidate, weight in zip(with_first, weights_of(with_first, found), strict=True):
         for name in candidate.names:
             if name != first:
                 out[name] = out.get(name, 0.0) + weight
     return out
+
+
+def weights_of(candidates: Sequence[Candidate], found: Naming) -> list[float]:
+    """Probabilities of explanations of which one is taken to be right."""
+    logs = np.array([c.log_evidence for c in candidates]) / scale().heat(found.named.leftover)
+    weights = np.exp(logs - logs.max())
+    return list((weights / weights.sum()).tolist())
 
 
 UNSEEN = -5.0

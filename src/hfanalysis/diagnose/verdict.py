@@ -16,11 +16,21 @@ from hfanalysis.diagnose.limits import limits
 from hfanalysis.diagnose.localise import Source, source_of
 from hfanalysis.diagnose.naming import Naming
 from hfanalysis.diagnose.plausible import judged, lost
-from hfanalysis.diagnose.posterior import SET, counts_as_unknown, evidences_of, kind, partners_of, scale, smallest_set
+from hfanalysis.diagnose.posterior import (
+    SET,
+    counts_as_unknown,
+    evidences_of,
+    kind,
+    partners_of,
+    scale,
+    smallest_set,
+    weights_of,
+)
 from hfanalysis.quantity import Quantity
 
 CLAIM = 0.15
-"""Probability of none from which on nothing is claimed: a wrong alarm costs more than an effect left unnamed."""
+"""Probability of none from which on nothing is claimed, and of fewer effects from which on no more of them are: a wrong
+alarm costs more than an effect left unnamed."""
 
 LEAST_EVIDENCE = {"named": 6.0, "unknown": 12.0}
 """Log evidence that a claim needs besides. On simulated tests without an effect nearly all names stay below 2.5 (the
@@ -98,7 +108,12 @@ def _chosen(found: Naming, top: str) -> Candidate:
     if top == "unknown":
         return max((c for c in found.unknown if counts_as_unknown(c, found)), key=lambda c: c.log_evidence)
     named = [c for c in (*found.singles, *found.sets) if c.names[0] == top]
-    return max(named, key=lambda c: c.log_evidence)
+    best = max(named, key=lambda c: c.log_evidence)
+    weights = weights_of(named, found)
+    # as for the first effect: none is claimed where fewer explain as much
+    while sum(w for c, w in zip(named, weights, strict=True) if len(c.names) < len(best.names)) >= CLAIM:
+        best = max((c for c in named if len(c.names) < len(best.names)), key=lambda c: c.log_evidence)
+    return best
 
 
 def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
