@@ -201,6 +201,34 @@ def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> No
         assert verdict.chosen.names == (verdict.top,)
 
 
+def with_set(gain: float, further: str = "load_cell_drift") -> Naming:
+    """Throat erosion, which explains 20 units, and a set with another effect, which explains so much more."""
+    found = probable(("nozzle_throat_erosion", 20.0))
+    names = ("nozzle_throat_erosion", further)
+    return replace(found, sets=(replace(found.singles[0], names=names, log_evidence=found.named.log_evidence + gain),))
+
+
+@pytest.mark.parametrize(("gain", "claimed"), [(1.0, 1), (1.6, 1), (1.9, 2), (10.0, 2)])
+def test_a_second_effect_is_claimed_where_one_does_not_explain_as_much(gain: float, claimed: int, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    """One alone has the probability 1 / (1 + e^gain), and 0.15 is enough."""
+    monkeypatch.setattr(verdict_module, "scale", Scale)
+    monkeypatch.setattr(posterior, "scale", Scale)
+    verdict = verdict_of(with_set(gain))
+    assert len(verdict.chosen.names) == claimed
+    assert verdict.partners["load_cell_drift"] == pytest.approx(1.0 / (1.0 + np.exp(-gain)), abs=1e-6)
+    if claimed == 2:
+        assert verdict.label == ("named" if gain > 3.0 else "ambiguous")
+
+
+def test_partners_that_explain_as_much_share_the_probability(monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(verdict_module, "scale", Scale)
+    monkeypatch.setattr(posterior, "scale", Scale)
+    found = replace(with_set(12.0), sets=(*with_set(12.0).sets, *with_set(12.0, "chamber_tap_lag").sets))
+    verdict = verdict_of(found)
+    assert verdict.label == "ambiguous"
+    assert verdict.partners == pytest.approx({"load_cell_drift": 0.5, "chamber_tap_lag": 0.5}, abs=1e-4)
+
+
 def test_the_effect_is_given_with_its_size() -> None:
     row = effects_product(verdict_of(eroded()))[0]
     assert row["name"] == "nozzle_throat_erosion"

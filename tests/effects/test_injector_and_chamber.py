@@ -10,6 +10,7 @@ from tests.effects.runs import channel, only, own_state, plain, with_effects
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect
+from hfanalysis.effects.injector_choked_vapor import expanding_flow
 from hfanalysis.effects.injector_two_phase import critical_ratio, flashing_flow
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn
@@ -48,17 +49,32 @@ def test_flashing_liquid_flows_less_and_hardly_responds_to_the_chamber() -> None
     )
 
 
-def test_flashing_leaves_the_vapour_alone_and_choking_the_liquid() -> None:
+def test_choking_leaves_the_liquid_alone() -> None:
     choked = only("injector_choked_vapor", weight=1.0)
     assert channel(choked, "oxidizer_flow", 4.0) == pytest.approx(channel(plain(), "oxidizer_flow", 4.0), rel=1e-6)
-    flashing = only("injector_two_phase", weight=0.1)
+
+
+@pytest.mark.parametrize("vapor", [0.0, 0.6])
+def test_the_vapour_takes_as_much_part_in_flashing_as_it_is_said_to(vapor: float) -> None:
+    """Without a part it flows as the report says; with one, that share of the weight chokes (g = 1.2)."""
+    flashing = only("injector_two_phase", weight=0.1, vapor=vapor)
     assert flashing.liquid_out is not None
     after = flashing.liquid_out + 0.3
     pressure, density = channel(flashing, "tank_pressure", after), channel(flashing, "tank_mass", after) / 16.5e-3
     drop = pressure - channel(flashing, "chamber_pressure", after)
     feed = engine_on_stand().feed
     expected = sqrt(density * drop / (feed.loss_factor + 0.5 / feed.area**2))
-    assert channel(flashing, "oxidizer_flow", after) == pytest.approx(expected, rel=1e-6)
+    back = channel(flashing, "chamber_pressure", after) / pressure
+    assert back < 0.5
+    share = 1.0 + 0.1 * vapor * (0.6485 / sqrt(2.0 * (1.0 - back)) - 1.0)
+    assert channel(flashing, "oxidizer_flow", after) == pytest.approx(share * expected, rel=1e-5)
+
+
+def test_gas_that_hardly_expands_flows_as_a_fluid_and_more_drop_only_costs() -> None:
+    assert expanding_flow(0.9999, 1.2) == pytest.approx(1.0, abs=1e-4)
+    shares = [expanding_flow(ratio, 1.2) for ratio in np.linspace(0.99, 0.0, 100)]
+    assert all(np.diff(shares) < 0.0)
+    assert shares[-1] == pytest.approx(0.6485 / sqrt(2.0), rel=1e-3)
 
 
 def test_choked_vapour_flows_as_an_orifice_says() -> None:
