@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fit import Fit
 from hfanalysis.diagnose.observed import Observed
 from hfanalysis.diagnose.predict import aligned, readings, with_spare_fuel
-from hfanalysis.engine.effect import Active, compose
+from hfanalysis.engine.effect import Active, Effect, compose
 from hfanalysis.engine.model import OUTPUTS, STATES, evaluate_rates
 from hfanalysis.engine.sites import SITES
 from hfanalysis.engine.unsteady import burn, constants
@@ -26,6 +26,12 @@ POINTS = 120
 
 SHAPE_ERROR = 0.15
 """By how much, relative to itself, a source may be wrong where the effect has another shape than its closure."""
+
+LEAST_ERROR = 0.02
+"""The least deviation of a source, relative to its largest value."""
+
+STEP = 0.02
+"""Of x, for the slopes of a source."""
 
 UNITS = {
     "tank_energy": "W",
@@ -53,32 +59,37 @@ class Acting:
 
 
 def acting(found: Fit, name: str, observed: Observed) -> Acting:
-    """The source that an effect of a fit is."""
+    """The source that an effect of a fit is.
+
+    Its band holds what is uncertain of all constants of the fit, at the states of its run, and of the effect's shape.
+    """
     active = next(a for a in found.burnt.steps.engine.effects if a.effect.name == name)
-    relative = _relative(found, active)
     time = np.linspace(0.0, float(observed.grid[~observed.resting][-1]), POINTS)
     if active.effect.distort is not None:
-        return _sensor(found, active, observed, relative)
-    mean = _difference(found, active, observed, time)
+        return _sensor(found, active, observed)
+    course = _Course.of(found, observed, time)
+    mean = course.source(active.effect, found.x)
+    slopes = np.column_stack([course.slope(active.effect, k, mean) for k in range(found.x.size)])
+    std = np.sqrt(np.maximum(np.einsum("ti,ij,tj->t", slopes, found.covariance, slopes), 0.0))
     unit = "Pa" if active.effect.sites == ("tank_pressure",) else UNITS[active.effect.equation]
-    return Acting(active.effect.equation, unit, time, mean, _std(mean, relative))
+    return Acting(active.effect.equation, unit, time, mean, _with_shape(mean, std))
 
 
-def _relative(found: Fit, active: Active) -> float:
+def _with_shape(mean: Array, std: Array) -> Array:
+    """A source's deviation with that of its shape."""
+    size = np.abs(mean)
+    return np.asarray(np.sqrt(std**2 + (SHAPE_ERROR * size) ** 2 + (LEAST_ERROR * float(size.max())) ** 2))
+
+
+def _relative(found: Fit, effect: Effect) -> float:
     """Standard deviation of the strength, relative to it."""
-    effect = active.effect
     names = [f"{effect.name}.{p.name}" for p in effect.parameters[: effect.strengths]]
     values, stds = found.values, found.stds
     main = max(names, key=lambda n: abs(values[n]) / max(stds[n], 1e-300))
     return stds[main] / max(abs(values[main]), 1e-300)
 
 
-def _std(mean: Array, relative: float) -> Array:
-    whole = float(np.abs(mean).max())
-    return np.asarray(np.hypot(np.abs(mean) * np.hypot(relative, SHAPE_ERROR), 0.02 * whole))
-
-
-def _sensor(found: Fit, active: Active, observed: Observed, relative: float) -> Acting:
+def _sensor(found: Fit, active: Active, observed: Observed) -> Acting:
     """What a sensor reads too much, on the channel that it distorts most."""
     engine = found.burnt.steps.engine
     others = tuple(a for a in engine.effects if a.effect.name != active.effect.name)
@@ -91,34 +102,55 @@ def _sensor(found: Fit, active: Active, observed: Observed, relative: float) -> 
     burning = ~observed.resting
     mean = extra[channel][burning]
     unit = "N" if channel == "thrust" else "kg" if channel == "m_tank" else "Pa"
-    return Acting("sensor", unit, observed.grid[burning], mean, _std(mean, relative), channel)
+    std = _relative(found, active.effect) * np.abs(mean)
+    return Acting("sensor", unit, observed.grid[burning], mean, _with_shape(mean, std), channel)
 
 
-def _difference(found: Fit, active: Active, observed: Observed, time: Array) -> Array:
-    """What the effect changes in its equation at each state of the run."""
-    engine = with_spare_fuel(found.hypothesis.at(found.x), observed.fuel_out)
-    burnt = burn(engine, observed.longest + 1.0, run_on=True, keep_idle=True)
-    where = aligned(observed, burnt, time)
-    states, _ = burnt.steps.at(where)
-    other = replace(engine, effects=tuple(a for a in engine.effects if a.effect.name != active.effect.name))
-    kinds = [_Evaluation.of(e) for e in (engine, other)]
-    rows = _own_rows(kinds[0], active)
-    out = np.empty(time.size)
-    for i, t in enumerate(where):
-        liquid = burnt.liquid_out is None or t <= burnt.liquid_out
-        burning = bool(t <= engine.fuel_end)
-        with_it = kinds[0].at(t, states[i], liquid, burning)
-        without = kinds[1].at(t, np.delete(states[i], rows), liquid, burning)
-        out[i] = _source(active, with_it, without)
-    return out
+@dataclass(frozen=True)
+class _Course:
+    """The states of a fit's run at the instants at which its sources are asked for."""
+
+    found: Fit
+    fuel_out: float | None
+    where: Array
+    states: Array
+    liquid_out: float | None
+
+    @classmethod
+    def of(cls, found: Fit, observed: Observed, time: Array) -> _Course:
+        engine = with_spare_fuel(found.hypothesis.at(found.x), observed.fuel_out)
+        burnt = burn(engine, observed.longest + 1.0, run_on=True, keep_idle=True)
+        where = aligned(observed, burnt, time)
+        return cls(found, observed.fuel_out, where, burnt.steps.at(where)[0], burnt.liquid_out)
+
+    def source(self, effect: Effect, x: Array) -> Array:
+        """What the effect changes in its equation at each state, with the constants that ``x`` stands for."""
+        engine = with_spare_fuel(self.found.hypothesis.at(x), self.fuel_out)
+        other = replace(engine, effects=tuple(a for a in engine.effects if a.effect.name != effect.name))
+        with_it, without = (_Evaluation.of(e) for e in (engine, other))
+        rows = _own_rows(with_it, effect)
+        out = np.empty(self.where.size)
+        for i, t in enumerate(self.where):
+            liquid = self.liquid_out is None or t <= self.liquid_out
+            burning = bool(t <= engine.fuel_end)
+            there = with_it.at(t, self.states[i], liquid, burning)
+            out[i] = _source(effect, there, without.at(t, np.delete(self.states[i], rows), liquid, burning))
+        return out
+
+    def slope(self, effect: Effect, number: int, here: Array) -> Array:
+        """Of the source with one of the fit's x, by a difference that stays within bounds."""
+        step = np.zeros(self.found.x.size)
+        inside = self.found.x[number] + STEP <= self.found.hypothesis.bounds[1][number]
+        step[number] = STEP if inside else -STEP
+        return np.asarray((self.source(effect, self.found.x + step) - here) / step[number])
 
 
-def _own_rows(evaluation: _Evaluation, active: Active) -> list[int]:
+def _own_rows(evaluation: _Evaluation, effect: Effect) -> list[int]:
     """Where the effect's own states are among all."""
     at, rows = len(STATES), []
     for a in evaluation.active:
         for _ in a.effect.states:
-            if a.effect.name == active.effect.name:
+            if a.effect.name == effect.name:
                 rows.append(at)
             at += 1
     return rows
@@ -155,9 +187,9 @@ class _Evaluation:
         return _State(out, self.equations.site.copy())
 
 
-def _source(active: Active, with_it: _State, without: _State) -> float:
+def _source(effect: Effect, with_it: _State, without: _State) -> float:
     """The difference in the unit of the effect's equation."""
-    equation, sites = active.effect.equation, active.effect.sites
+    equation, sites = effect.equation, effect.sites
     if sites == ("tank_pressure",):
         return with_it.site("tank_pressure") - without.site("tank_pressure")
     if equation == "tank_energy":

@@ -29,8 +29,10 @@ from hfanalysis.diagnose.posterior import (
 from hfanalysis.quantity import Quantity
 
 CLAIM = 0.15
-"""Probability of none from which on nothing is claimed, and of fewer effects from which on no more of them are: a wrong
-alarm costs more than an effect left unnamed."""
+"""Probability of none from which on nothing is claimed: a wrong alarm costs more than an effect left unnamed."""
+
+FEWER = 0.3
+"""Probability of fewer effects from which on no more of them are claimed; more have paid a price before."""
 
 LEAST_EVIDENCE = {"named": 6.0, "unknown": 12.0}
 """Log evidence that a claim needs besides. On simulated tests without an effect nearly all names stay below 2.5 (the
@@ -110,8 +112,7 @@ def _chosen(found: Naming, top: str) -> Candidate:
     named = [c for c in (*found.singles, *found.sets) if c.names[0] == top]
     best = max(named, key=lambda c: c.log_evidence)
     weights = weights_of(named, found)
-    # as for the first effect: none is claimed where fewer explain as much
-    while sum(w for c, w in zip(named, weights, strict=True) if len(c.names) < len(best.names)) >= CLAIM:
+    while sum(w for c, w in zip(named, weights, strict=True) if len(c.names) < len(best.names)) >= FEWER:
         best = max((c for c in named if len(c.names) < len(best.names)), key=lambda c: c.log_evidence)
     return best
 
