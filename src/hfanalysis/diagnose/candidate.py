@@ -20,8 +20,7 @@ Array = NDArray[np.float64]
 
 PRICE = 5.0
 """Log of the odds against each step of the model-form error, on either side. Right explanations of simulated tests
-hardly ever ask for one: `make blind-calibrate` prints how many. 95 of 97 asked for none when both sides went together:
-odds of 48 to 1, or 12 for two steps at a temperature of 3.12."""
+hardly ever ask for one: `make blind-calibrate` prints how many (of 98 none did on the tank's side, 5 in the chamber)."""
 
 FURTHER = 5.0
 """Log of the odds against each effect beyond the first: several at once are rarer than one."""
