@@ -103,7 +103,7 @@ def table(found: Iterable[Outcome], answers: Path) -> list[str]:
         if one.failure:
             rows.append(f"| {one.case} | {truth} | {one.failure[:60]} | | | | | {right} |")
             continue
-        top = max(p["posterior"].values())
+        top = p["posterior"]["none"] if p["verdict"] == "none" else max(p["posterior"].values())
         names = ", ".join(row["name"] for row in p["effects"]) or "-"
         closed = " / ".join(_percent(p["gap"]["closed_fraction"].get(arm)) for arm in ("same", "held_out"))
         rows.append(

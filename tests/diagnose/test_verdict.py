@@ -312,6 +312,19 @@ def test_what_an_effect_does_is_given_over_time() -> None:
     assert abs(source.mean[-1]) > 5.0 * abs(source.mean[2])
 
 
+def test_the_band_of_a_source_holds_what_its_other_constants_leave_open() -> None:
+    """Pressure against a reference that nobody knows: how much of the regression is the effect's is a convention."""
+    hidden = effect("grain_pressure_regression").at(exponent=0.5)
+    test = made.observed(hidden)
+    found = fit(made.hypothesis().with_effect(effect("grain_pressure_regression")), test)
+    source = acting(found, "grain_pressure_regression", test)
+    burning = source.time < 0.9 * test.end
+    size = np.abs(source.mean[burning])
+    there = int(np.argmin(size))
+    assert size[there] < 0.1 * size.max()  # the pressure is the reference there, if that is what was assumed
+    assert source.std[burning][there] > 0.1 * size.max()
+
+
 def test_variants_are_known_by_name() -> None:
     assert settings_of("") == VARIANTS[""]
     assert settings_of("white_noise").coloured is False

@@ -56,6 +56,12 @@ def test_every_verdict_is_said_in_sentences(label: str) -> None:
         assert "It is none of these: tank_heat." in said
 
 
+def test_what_is_likelier_than_none_is_said_where_nothing_is_claimed() -> None:
+    odds = {"none": 0.1, "unknown": 0.7, "tank_heat": 0.2}
+    assert headline(product("none", posterior=odds)).startswith("Nothing is claimed to be missing: unknown (0.70)")
+    assert headline(product("none", posterior={**odds, "none": 0.6})).startswith("Nothing is missing from the model")
+
+
 def test_sentences_give_sizes_in_the_units_of_engineers() -> None:
     row = places(verdict_of(eroded()), eroded())[0]
     assert " N on average" in place_sentence(row)

@@ -22,6 +22,9 @@ EQUATIONS = {
 LIKELY = 0.1
 """Probability from which on an effect that may be beside the first is mentioned."""
 
+LIKELIER = 1.5
+"""How much more probable than none a label has to be to be mentioned where nothing is claimed."""
+
 _UNITS = {"Pa": ("bar", 1e-5), "W": ("kW", 1e-3), "kg/s": ("g/s", 1e3), "1": ("%", 100.0)}
 _CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
 _UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
@@ -48,7 +51,13 @@ def headline(product: Mapping[str, Any]) -> str:
     label = product["effects"][0]["name"] if product["effects"] else product["verdict"]
     others = [f"{n} ({posterior[n]:.2f})" for n in product["set90"] if n != label]
     if product["verdict"] == "none":
-        return f"Nothing is missing from the model that these channels can show (none {posterior['none']:.2f})."
+        likeliest = max(posterior, key=lambda name: (posterior[name], name))
+        if likeliest == "none" or posterior[likeliest] < LIKELIER * posterior["none"]:
+            return f"Nothing is missing from the model that these channels can show (none {posterior['none']:.2f})."
+        return (
+            f"Nothing is claimed to be missing: {likeliest} ({posterior[likeliest]:.2f}) is more probable than none "
+            f"({posterior['none']:.2f}), but too little in the data speaks for it."
+        )
     if product["verdict"] == "unknown":
         return f"Something is missing that is not in the library (unknown {posterior['unknown']:.2f})."
     named = [row["name"] for row in product["effects"]]
