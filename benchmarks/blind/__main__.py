@@ -24,7 +24,7 @@ def _arguments(given: list[str] | None) -> argparse.Namespace:
     parsers["table"].add_argument("--write", type=Path, help="the page to write; a picture goes beside it")
     parsers["table"].add_argument("--json", type=Path, help="write all figures here as well")
     parsers["calibrate"].add_argument(
-        "--write", type=Path, help="instead of src/hfanalysis/diagnose/probabilities.json"
+        "--write", type=Path, help="instead of src/hfanalysis/diagnose/answer/probabilities.json"
     )
     parsers["calibrate"].add_argument("--mixed", action="store_true", help="even if several versions of the code ran")
     return parser.parse_args(given)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.posterior import BEFORE, UNSEEN, Scale
+from hfanalysis.diagnose.answer.posterior import BEFORE, UNSEEN, Scale
 
 Array = NDArray[np.float64]
 

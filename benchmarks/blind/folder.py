@@ -16,7 +16,7 @@ from typing import Any
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PACKAGE = REPOSITORY / "src" / "hfanalysis"
-PROBABILITIES = PACKAGE / "diagnose" / "probabilities.json"
+PROBABILITIES = PACKAGE / "diagnose" / "answer" / "probabilities.json"
 """The constants that ``calibrate`` fits and the diagnosis reads."""
 ABSENT = "none"
 

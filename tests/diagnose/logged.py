@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from tests.engine.stand import engine_on_stand
 from tests.segment.stand import channel, definition
 
-from hfanalysis.diagnose.observed import Observed
-from hfanalysis.diagnose.reduction import observe_test
+from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.observations.reduction import observe_test
 from hfanalysis.engine.observe import observe
 from hfanalysis.engine.unsteady import Burn, burn
 from hfanalysis.quantity import Quantity

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from tests.engine.stand import engine_on_stand
 
-from hfanalysis.diagnose.frame import AROUND_CHANGE, EVENT_STD, FIRST, FUEL_STD
-from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
-from hfanalysis.diagnose.observed import TOGETHER, Channel, Observed
-from hfanalysis.diagnose.predict import ACCURACY, readings, with_spare_fuel
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
+from hfanalysis.diagnose.fitting.predict import ACCURACY, readings, with_spare_fuel
+from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, EVENT_STD, FIRST, FUEL_STD
+from hfanalysis.diagnose.observations.observed import TOGETHER, Channel, Observed
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from tests.engine.stand import engine_on_stand
 
-from hfanalysis.diagnose.spread import Spread
-from hfanalysis.diagnose.weak import WeakResidual, weak_residuals
+from hfanalysis.diagnose.weak_form.spread import Spread
+from hfanalysis.diagnose.weak_form.weak import WeakResidual, weak_residuals
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.observe import observe
 from hfanalysis.engine.unsteady import Burn, Engine, burn

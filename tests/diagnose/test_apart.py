@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.diagnose.apart import NOMINAL, TWINS, Outlook, look_ahead, projected
-from hfanalysis.diagnose.catalogue import Catalogue
-from hfanalysis.diagnose.frame import EVENT_STD
-from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
-from hfanalysis.diagnose.observed import Channel, Observed
-from hfanalysis.diagnose.predict import readings, with_spare_fuel
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
+from hfanalysis.diagnose.fitting.predict import readings, with_spare_fuel
+from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.observations.frame import EVENT_STD
+from hfanalysis.diagnose.observations.observed import Channel, Observed
 from hfanalysis.diagnose.sensors import FURTHER, USUAL, Sensor, missing_sensors
 from hfanalysis.effects import library
 from hfanalysis.engine.unsteady import burn

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from tests.diagnose import logged
 
+from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.of_test import Subject
-from hfanalysis.diagnose.posterior import scale
 from hfanalysis.diagnose.without_engine import sensors_alone
 from hfanalysis.errors import AbsentError
 from hfanalysis.testdata.log import TestLog

@@ -14,7 +14,7 @@ from hfanalysis.cli import tables
 from hfanalysis.cli.ending import put
 from hfanalysis.cli.perform import Request, bring
 from hfanalysis.diagnose.apart import NOMINAL, SEEN, TWINS, Outlook, look_ahead
-from hfanalysis.diagnose.catalogue import Catalogue
+from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.errors import AbsentError
 from hfanalysis.report import wording

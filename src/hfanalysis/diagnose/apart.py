@@ -17,10 +17,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.catalogue import Catalogue
-from hfanalysis.diagnose.hypothesis import Hypothesis
-from hfanalysis.diagnose.observed import Observed
-from hfanalysis.diagnose.predict import ACCURACY, AFTER, slopes_of, with_spare_fuel
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.predict import ACCURACY, AFTER, slopes_of, with_spare_fuel
+from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.sensors import Sensor, missing_sensors
 from hfanalysis.engine.effect import Effect
 from hfanalysis.engine.sensitivity import run_with_tangents

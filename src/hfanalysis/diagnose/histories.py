@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.gap import residuals_of
+from hfanalysis.diagnose.answer.gap import residuals_of
 from hfanalysis.diagnose.of_test import Diagnosis
 
 Array = NDArray[np.float64]

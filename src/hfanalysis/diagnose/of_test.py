@@ -6,22 +6,22 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hfanalysis.diagnose import gap
-from hfanalysis.diagnose.candidate import Candidate
-from hfanalysis.diagnose.catalogue import Catalogue
-from hfanalysis.diagnose.hypothesis import Hypothesis, base_hypothesis
-from hfanalysis.diagnose.naming import Naming, name_effects
-from hfanalysis.diagnose.observed import Observed
-from hfanalysis.diagnose.plausible import judged
-from hfanalysis.diagnose.posterior import scale
-from hfanalysis.diagnose.proof import OtherTest, Proof, prove
-from hfanalysis.diagnose.reduction import observe_test
-from hfanalysis.diagnose.spread import Spread
-from hfanalysis.diagnose.variants import Settings
-from hfanalysis.diagnose.verdict import Verdict, effects_product, places, sizes, upper_limits, verdict_of
-from hfanalysis.diagnose.weak import weak_residuals
-from hfanalysis.diagnose.weak_product import weak_product
-from hfanalysis.diagnose.words import story
+from hfanalysis.diagnose.answer import gap
+from hfanalysis.diagnose.answer.plausible import judged
+from hfanalysis.diagnose.answer.posterior import scale
+from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
+from hfanalysis.diagnose.answer.verdict import Verdict, effects_product, places, sizes, upper_limits, verdict_of
+from hfanalysis.diagnose.answer.words import story
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
+from hfanalysis.diagnose.naming.candidate import Candidate
+from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.naming.naming import Naming, name_effects
+from hfanalysis.diagnose.naming.variants import Settings
+from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.observations.reduction import observe_test
+from hfanalysis.diagnose.weak_form.spread import Spread
+from hfanalysis.diagnose.weak_form.weak import weak_residuals
+from hfanalysis.diagnose.weak_form.weak_product import weak_product
 from hfanalysis.engine.effect import Effect
 from hfanalysis.quantity import Quantity
 from hfanalysis.segment.phases import Segments

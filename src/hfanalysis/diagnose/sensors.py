@@ -12,12 +12,12 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.alignment import share
-from hfanalysis.diagnose.covariance import FILLING_ERROR, FILLING_TIME
-from hfanalysis.diagnose.frame import AROUND_CHANGE, FIRST
-from hfanalysis.diagnose.hypothesis import Hypothesis
-from hfanalysis.diagnose.observed import Channel, Observed, averaged
-from hfanalysis.diagnose.predict import TICK, aligned, slopes_of
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.predict import TICK, aligned, slopes_of
+from hfanalysis.diagnose.observations.alignment import share
+from hfanalysis.diagnose.observations.covariance import FILLING_ERROR, FILLING_TIME
+from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, FIRST
+from hfanalysis.diagnose.observations.observed import Channel, Observed, averaged
 from hfanalysis.engine.course import LIQUID_OUT
 from hfanalysis.engine.model import OUTPUTS, RADIUS, STATES
 from hfanalysis.engine.observe import true_channels

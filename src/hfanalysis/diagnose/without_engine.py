@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from hfanalysis.diagnose.answer.plausible import judged
+from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.of_test import Subject
-from hfanalysis.diagnose.plausible import judged
-from hfanalysis.diagnose.posterior import scale
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError
 from hfanalysis.quantity import Quantity

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hfanalysis.diagnose.words import EQUATIONS
+from hfanalysis.diagnose.answer.words import EQUATIONS
 from hfanalysis.report.chart import Chart, Series, around, over_time
 from hfanalysis.report.colours import style_of
 from hfanalysis.report.material import Material, required

@@ -14,15 +14,15 @@ from hfanalysis.errors import AbsentError, AnalysisError, InputError
 from hfanalysis.stages.base import Context, Stage
 
 if TYPE_CHECKING:
+    from hfanalysis.diagnose.answer.proof import OtherTest
     from hfanalysis.diagnose.of_test import Subject
-    from hfanalysis.diagnose.proof import OtherTest
 
 
 def run(context: Context) -> None:
     """Name what the model lacks."""
     from hfanalysis.diagnose.histories import write_empty, write_histories
+    from hfanalysis.diagnose.naming.variants import settings_of
     from hfanalysis.diagnose.of_test import diagnose
-    from hfanalysis.diagnose.variants import settings_of
     from hfanalysis.diagnose.without_engine import sensors_alone
     from hfanalysis.effects import FOLDER, library
 
@@ -71,7 +71,7 @@ def _other(context: Context) -> OtherTest | None:
     Its products are made in a folder of this test's own: two tests that are diagnosed at once, each the other's proof,
     would wait for each other's lock for ever.
     """
-    from hfanalysis.diagnose.proof import OtherTest
+    from hfanalysis.diagnose.answer.proof import OtherTest
     from hfanalysis.stages.freshness import STATE
     from hfanalysis.stages.opening import open_test
     from hfanalysis.stages.runner import run_to

@@ -1,0 +1,1 @@
+"""What is said in the end: probabilities, sizes, limits, the proof, and words."""

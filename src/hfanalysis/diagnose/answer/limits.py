@@ -1,0 +1,63 @@
+"""Upper limits: how large an effect can be that is not in the model, and still be overlooked."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.fit import Fit, usable
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.predict import predict
+from hfanalysis.diagnose.fitting.threads import each
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate
+from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.naming.score import FIRST_STEP
+from hfanalysis.diagnose.observations.observed import Observed
+
+Array = NDArray[np.float64]
+
+Z95 = 1.645
+"""One-sided 95 % of a normal distribution, in standard deviations."""
+
+
+def limits(chosen: Candidate, bench: Bench, catalogue: Catalogue) -> dict[str, tuple[float, str]]:
+    """For every effect that is not in the model: the size [SI] that it stays below with 95 % probability, linear."""
+    observed = bench.at(chosen.form)
+    visible = {
+        name: effect
+        for name, effect in catalogue.effects.items()
+        if name not in chosen.names and (effect.distort is None or set(effect.sites) & set(observed.names))
+    }
+    found = each(lambda name: _limit(chosen.fit, catalogue.add(chosen.fit.hypothesis, name), observed), list(visible))
+    return {
+        name: (limit, effect.strength.unit.replace("-", ""))
+        for (name, effect), limit in zip(visible.items(), found, strict=True)
+        if limit is not None
+    }
+
+
+def _limit(parent: Fit, made: Hypothesis, observed: Observed) -> float | None:
+    """The limit of the last effect of a hypothesis [SI]; None where it cannot be run."""
+    start = inserted(parent, made)
+    own = len(parent.hypothesis.free)
+    least, most = made.bounds
+    start[own] = FIRST_STEP
+    try:
+        there = predict(made, observed, np.clip(start, least, most), tangents=True, only=slice(own, len(made.free)))
+    except (ValueError, ArithmeticError):
+        return None
+    if there.slopes is None or not usable(there):
+        return None
+    slopes = np.column_stack([parent.slopes[:, :own], there.slopes, parent.slopes[:, own:]])
+    curvature = slopes.T @ slopes + np.eye(start.size)
+    step = -np.linalg.solve(curvature, slopes.T @ there.residual + start)
+    std = float(np.sqrt(np.linalg.inv(curvature)[own, own]))
+    at = min(max(start[own] + step[own], least[own], 0.0) + Z95 * std, most[own])
+    return made.free[own].value(float(at))
+
+
+def inserted(parent: Fit, made: Hypothesis) -> Array:
+    """The parent's parameters in a hypothesis with more effects: those come after its own and before its sources."""
+    own = len(parent.hypothesis.free)
+    new = np.zeros(len(made.free) - own)
+    return np.concatenate([parent.x[:own], new, parent.x[own:]])

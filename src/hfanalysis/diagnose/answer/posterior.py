@@ -1,0 +1,133 @@
+"""Probabilities of none, each name and unknown, from log evidences.
+
+Evidences of a real test are too sure of themselves: noise and forms are never quite what they are taken for. They are
+divided by a temperature that grows with what the best name leaves open, and shifted by kind; the constants were fitted
+to simulated tests (``make blind-calibrate``), and stand in probabilities.json with their number of cases.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from importlib.resources import files
+
+import numpy as np
+
+from hfanalysis.diagnose.naming.candidate import Candidate
+from hfanalysis.diagnose.naming.freeform import REST
+from hfanalysis.diagnose.naming.naming import Naming
+
+SET = 0.9
+"""Probability that the stated set of names holds."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How log evidences become probabilities: p_k ~ exp(offset of its kind + evidence / T).
+
+    A label of which a score test saw nothing (UNSEEN) is as good as none, but for an offset of its own: that an effect
+    is too small to be seen is no evidence against it. In a share ``misled`` of all tests the evidence misleads
+    altogether; there the labels have the probabilities that they have before a test.
+    """
+
+    temperature: float = 1.0
+    temperature_per_leftover: float = 0.0
+    offsets: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(("none", "named", "unknown"), 0.0))
+    misled: float = 0.0
+
+    def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
+        """Of every label of ``evidences``; they sum to one."""
+        heat, labels = self.heat(leftover), list(evidences)
+        logs = np.array([self._log(kind(label), evidences[label], heat) for label in labels])
+        weights = np.exp(logs - logs.max())
+        before = np.array([BEFORE[kind(label)] for label in labels])
+        before[[kind(label) == "named" for label in labels]] /= max(sum(kind(k) == "named" for k in labels), 1)
+        mixed = (1.0 - self.misled) * weights / weights.sum() + self.misled * before / before.sum()
+        return dict(zip(labels, mixed.tolist(), strict=True))
+
+    def heat(self, leftover: float) -> float:
+        """The temperature that evidences are divided by."""
+        return self.temperature * (1.0 + self.temperature_per_leftover * max(0.0, leftover - 1.0))
+
+    def _log(self, of: str, evidence: float, heat: float) -> float:
+        unseen = self.offsets.get(f"unseen {of}")
+        return unseen if unseen is not None and evidence <= UNSEEN else self.offsets[of] + evidence / heat
+
+
+BEFORE = {"none": 0.25, "named": 0.6, "unknown": 0.15}
+"""Probabilities of the kinds of labels before a test."""
+
+
+def kind(label: str) -> str:
+    """none, unknown, or named."""
+    return label if label in ("none", "unknown") else "named"
+
+
+@lru_cache(maxsize=1)
+def scale() -> Scale:
+    """The constants that come along; none are applied where there are none."""
+    source = files("hfanalysis.diagnose.answer") / "probabilities.json"
+    if not source.is_file():
+        return Scale()
+    found = json.loads(source.read_text(encoding="utf-8"))
+    return Scale(
+        found["temperature"], found["temperature_per_leftover"], found["offsets"], float(found.get("misled", 0.0))
+    )
+
+
+def evidences_of(found: Naming) -> dict[str, float]:
+    """Log evidence of every label, that of none being 0. A set counts for its first name, which explains most."""
+    zero = found.base.log_evidence
+    out = {"none": 0.0}
+    for candidate in (*found.singles, *found.sets):
+        name = candidate.names[0]
+        out[name] = max(out.get(name, -np.inf), candidate.log_evidence - zero)
+    unseen = min(UNSEEN, min(out.values()))
+    for name in found.names:
+        out.setdefault(name, unseen)
+    strange = [c.log_evidence - zero for c in found.unknown if counts_as_unknown(c, found)]
+    out["unknown"] = max(strange, default=unseen)
+    return out
+
+
+def partners_of(first: str, found: Naming) -> dict[str, float]:
+    """Probability of each further effect if the first is there, by all explanations that it is part of."""
+    with_first = [c for c in (*found.singles, *found.sets) if first in c.names]
+    out: dict[str, float] = {}
+    for candidate, weight in zip(with_first, weights_of(with_first, found), strict=True):
+        for name in candidate.names:
+            if name != first:
+                out[name] = out.get(name, 0.0) + weight
+    return out
+
+
+def weights_of(candidates: Sequence[Candidate], found: Naming) -> list[float]:
+    """Probabilities of explanations of which one is taken to be right."""
+    logs = np.array([c.log_evidence for c in candidates]) / scale().heat(found.named.leftover)
+    weights = np.exp(logs - logs.max())
+    return list((weights / weights.sum()).tolist())
+
+
+UNSEEN = -5.0
+"""Log evidence of a label of which a score test saw nothing: what its free parameters cost."""
+
+
+def counts_as_unknown(candidate: Candidate, found: Naming) -> bool:
+    """Whether an unknown source is an answer of its own."""
+    if len(candidate.names) == 1:
+        return True
+    explained = found.named.log_evidence - found.base.log_evidence
+    return candidate.log_evidence - found.named.log_evidence > REST * explained
+
+
+def smallest_set(probabilities: Mapping[str, float], share: float = SET) -> list[str]:
+    """The fewest labels that hold a share of the probability, the most probable first."""
+    out, total = [], 0.0
+    for label, p in sorted(probabilities.items(), key=lambda item: (-item[1], item[0])):
+        out.append(label)
+        total += p
+        if total >= share:
+            break
+    return out

@@ -1,0 +1,230 @@
+"""The verdict: what is named, with which probability, and what it rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from hfanalysis.diagnose.answer.acting import Acting, acting
+from hfanalysis.diagnose.answer.limits import limits
+from hfanalysis.diagnose.answer.plausible import judged, lost
+from hfanalysis.diagnose.answer.posterior import (
+    SET,
+    counts_as_unknown,
+    evidences_of,
+    kind,
+    partners_of,
+    scale,
+    smallest_set,
+    weights_of,
+)
+from hfanalysis.diagnose.fitting.fit import Fit
+from hfanalysis.diagnose.naming.candidate import Candidate
+from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.naming.localise import Source, source_of
+from hfanalysis.diagnose.naming.naming import Naming
+from hfanalysis.quantity import Quantity
+
+CLAIM = 0.15
+"""Probability of none from which on nothing is claimed: a wrong alarm costs more than an effect left unnamed."""
+
+FEWER = 0.3
+"""Probability of fewer effects from which on no more of them are claimed; more have paid a price before."""
+
+LEAST_EVIDENCE = {"named": 6.0, "unknown": 12.0}
+"""Log evidence that a claim needs besides. On simulated tests without an effect nearly all names stay below 2.5 (the
+next is 6.1) and nearly all sources are not even fitted; a source that explains little is what two tables of nitrous
+oxide differ by."""
+
+NAMED_FROM = 0.5
+"""Probability from which on one name is the verdict; below, several are."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """``label``: none, named, ambiguous or unknown; probabilities of all labels; the candidate that is the answer.
+
+    ``partners``: probabilities of effects beside the first that is named.
+    """
+
+    label: str
+    posterior: dict[str, float]
+    evidences: dict[str, float]
+    set90: list[str]
+    chosen: Candidate
+    partners: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def top(self) -> str:
+        """The label that the answer rests on: what is claimed, or none."""
+        claimed = {k: p for k, p in self.posterior.items() if (k == "none") == (self.label == "none")}
+        return max(claimed, key=lambda k: (claimed[k], k))
+
+
+def verdict_of(found: Naming) -> Verdict:
+    """Probabilities, and what they amount to."""
+    weighed = replace(
+        found,
+        singles=tuple(_believed(c) for c in found.singles),
+        sets=tuple(_believed(c) for c in found.sets),
+    )
+    evidences = evidences_of(weighed)
+    posterior = scale().probabilities(evidences, found.named.leftover)
+    set90 = smallest_set(posterior)
+    claimed = {k: p for k, p in posterior.items() if k != "none"}
+    top = max(claimed, key=lambda k: (claimed[k], k))
+    if posterior["none"] >= CLAIM or evidences[top] < LEAST_EVIDENCE[kind(top)]:
+        top = "none"
+    chosen = _chosen(weighed, top)
+    if top in ("none", "unknown"):
+        return Verdict(top, posterior, evidences, set90, chosen)
+    partners = partners_of(top, weighed)
+    rivals = [name for name in set90 if name not in (top, "none")]
+    sure = posterior[top] >= NAMED_FROM and not rivals and all(partners[n] >= SET for n in chosen.names[1:])
+    beside = {name: posterior[top] * p for name, p in partners.items()}
+    return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
+
+
+def _believed(candidate: Candidate) -> Candidate:
+    """The candidate with what impossible sizes cost it."""
+    cost = sum(lost(name, values) for name, values in sizes(candidate.fit).items() if name in candidate.names)
+    return replace(candidate, log_evidence=candidate.log_evidence - cost)
+
+
+def sizes(found: Fit) -> dict[str, dict[str, float]]:
+    """Strengths of the effects of a fit, by effect and parameter [SI]."""
+    return {
+        a.effect.name: {p.name: a.named[p.name] for p in a.effect.parameters[: a.effect.strengths]}
+        for a in found.burnt.steps.engine.effects
+        if not a.effect.name.startswith("probe_")
+    }
+
+
+def _chosen(found: Naming, top: str) -> Candidate:
+    """The candidate behind the most probable label."""
+    if top == "none":
+        return found.base
+    if top == "unknown":
+        return max((c for c in found.unknown if counts_as_unknown(c, found)), key=lambda c: c.log_evidence)
+    named = [c for c in (*found.singles, *found.sets) if c.names[0] == top]
+    best = max(named, key=lambda c: c.log_evidence)
+    weights = weights_of(named, found)
+    while sum(w for c, w in zip(named, weights, strict=True) if len(c.names) < len(best.names)) >= FEWER:
+        best = max((c for c in named if len(c.names) < len(best.names)), key=lambda c: c.log_evidence)
+    return best
+
+
+def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
+    """What was added to the model: name, probability, equation, parameters, and how large that is."""
+    if verdict.label not in ("named", "ambiguous"):
+        return []
+    found = verdict.chosen.fit
+    values, stds = found.values, found.stds
+    out = []
+    for name in verdict.chosen.names:
+        active = next(a for a in found.burnt.steps.engine.effects if a.effect.name == name)
+        parameters = {
+            p.name: Quantity(values[full], p.unit.replace("-", "") if p.unit == "-" else p.unit, stds[full])
+            for p in active.effect.parameters
+            if (full := f"{name}.{p.name}") in values
+        }
+        out.append(
+            {
+                "name": name,
+                "probability": verdict.partners.get(name, verdict.posterior[verdict.top]),
+                "equation": active.effect.equation,
+                "meaning": active.effect.meaning,
+                "parameters": parameters,
+                "plausibility": judged(name, sizes(found)[name]),
+            }
+        )
+    return out
+
+
+def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
+    """Where, when and how much: the source of every named effect, or the unknown one."""
+    if verdict.label == "none":
+        return []
+    observed, chosen = found.bench.observed, verdict.chosen
+    gain = chosen.log_evidence - found.base.log_evidence
+    out = []
+    if chosen.unknown:
+        out.append(of_source(source_of(chosen.fit, chosen.names[-1], observed), gain, observed.phases))
+    for name in chosen.names[: -1 if chosen.unknown else None]:
+        source = acting(chosen.fit, name, observed)
+        out.append(of_acting(name, source, gain / (len(out) + 1), observed.phases))
+    beside = next((c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]), None)
+    if beside is not None and (rest := beside.log_evidence - chosen.log_evidence) > 0.0:
+        row = of_source(source_of(beside.fit, beside.names[-1], observed), rest, observed.phases)
+        out.append({**row, "beside": True, "significance": min(rest, 0.5 * out[-1]["significance"])})
+    return out
+
+
+def of_source(source: Source, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:
+    """A row for an unknown source."""
+    site = source.site
+    made = Acting(site.equation, site.unit, source.time, source.mean, source.std, site.sensor)
+    return of_acting(site.name, made, gain, phases, source.splines.spacing / 2.0)
+
+
+SEEN = 0.05
+"""Part of its largest size from which on a source is there."""
+
+Z90 = 1.6449
+
+
+def of_acting(
+    name: str, source: Acting, gain: float, phases: Mapping[str, float], blur: float | None = None
+) -> dict[str, Any]:
+    """A row of the localisation: equation, phase, from when to when, how much, with bands."""
+    size = np.abs(source.mean)
+    there = size > SEEN * size.max() if blur is None else size > 2.0 * source.std
+    if not there.any():
+        there = size >= size.max()
+    step = float(source.time[1] - source.time[0])
+    first, last = float(source.time[there][0]), float(source.time[there][-1])
+    inside = (source.time >= first) & (source.time <= last)
+    return {
+        "equation": source.equation,
+        "site": name,
+        "phase": _phase(source, phases),
+        "t_start": Quantity(first, "s", max(blur or 0.0, step)),
+        "t_end": Quantity(last, "s", max(blur or 0.0, step)),
+        "source": Quantity(float(source.mean[inside].mean()), source.unit, float(source.std[inside].mean())),
+        "channel": source.channel,
+        "significance": gain,
+        "history": {
+            "unit": source.unit,
+            "time": source.time.tolist(),
+            "mean": source.mean.tolist(),
+            "low90": (source.mean - Z90 * source.std).tolist(),
+            "high90": (source.mean + Z90 * source.std).tolist(),
+        },
+    }
+
+
+PHASE_NAMES = {"filling": "liquid", "nitrogen": "purge"}
+"""Phases as products call them: the filling is part of the liquid phase; from t_purge on nitrogen could enter."""
+
+
+def _phase(source: Acting, phases: Mapping[str, float]) -> str:
+    """The phase that holds most of the squared source."""
+    names = [n for n in phases if n != "end"]
+    number = np.searchsorted([phases[n] for n in names], source.time, side="right") - 1
+    weight: dict[str, float] = {}
+    for i, name in enumerate(names):
+        label = PHASE_NAMES.get(name, name)
+        weight[label] = weight.get(label, 0.0) + float((source.mean[number == i] ** 2).sum())
+    return max(weight, key=lambda n: weight[n])
+
+
+def upper_limits(verdict: Verdict, found: Naming, catalogue: Catalogue) -> dict[str, Quantity]:
+    """The size below which each effect that is not in the model stays with 95 % probability."""
+    return {
+        name: Quantity(value, unit, ci95=(0.0, abs(value)) if value >= 0 else (value, 0.0))
+        for name, (value, unit) in limits(verdict.chosen, found.bench, catalogue).items()
+        if np.isfinite(value)
+    }

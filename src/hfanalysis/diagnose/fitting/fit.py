@@ -1,0 +1,149 @@
+"""Fitting a hypothesis to what a test says: damped Gauss-Newton on exact tangents, with priors and bounds.
+
+The result is the most probable set of parameters, their covariance, and the evidence by Laplace's approximation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.predict import Prediction, predict
+from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.engine.unsteady import Burn
+
+Array = NDArray[np.float64]
+
+ITERATIONS = 25
+CONVERGED = 0.02
+"""Change of the objective below which a fit is done, in units of log probability."""
+
+STEEPEST = 1e8
+"""Standard deviations of an observation per one of a parameter beyond which a slope is none."""
+
+TRUST = 0.1
+"""Part of what the slopes promise of a step that it must bring: a step that brings less leads along a wrong valley."""
+
+LONGEST_STRIDE = 2.0
+"""Standard deviations of its prior that a parameter moves at a time."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The most probable ``x`` of a hypothesis, its covariance, the whitened residual there and the log evidence.
+
+    The evidence is a density, in units that do not depend on the hypothesis or on the model-form error.
+    """
+
+    hypothesis: Hypothesis
+    x: Array
+    covariance: Array
+    residual: Array
+    slopes: Array
+    burnt: Burn
+    log_evidence: float
+    converged: bool
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Parameters by name [SI]."""
+        return self.hypothesis.values(self.x)
+
+    @property
+    def stds(self) -> dict[str, float]:
+        """Standard deviations of :attr:`values`."""
+        jacobian = self.hypothesis.jacobian(self.x)
+        spread = np.sqrt(np.maximum(np.diag(jacobian @ self.covariance @ jacobian.T), 0.0))
+        return dict(zip(self.hypothesis.names, spread.tolist(), strict=True))
+
+    @property
+    def objective(self) -> float:
+        """Minus the log of posterior density, up to a constant."""
+        return 0.5 * float(self.residual @ self.residual + self.x @ self.x)
+
+
+def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, most: int = ITERATIONS) -> Fit:
+    """The most probable parameters: Gauss-Newton steps, damped where one does not lower the objective.
+
+    Raises ValueError or ArithmeticError where the start cannot be run.
+    """
+    least, highest = hypothesis.bounds
+    x = np.clip(np.zeros(hypothesis.size) if start is None else np.asarray(start, dtype=np.float64), least, highest)
+    here = predict(hypothesis, observed, x, tangents=True)
+    if not usable(here):
+        raise ArithmeticError("the model has no slopes where its fit starts")
+    damping, done = 1e-6, False
+    for _ in range(most):
+        assert here.slopes is not None
+        before = _objective(here, x)
+        moved = None
+        for _ in range(8):
+            step = _step(here.slopes, here.residual, x, least, highest, damping)
+            trial = _try(hypothesis, observed, x + step)
+            if trial is not None and _objective(trial, x + step) < before - TRUST * _expected(here, x, step):
+                moved = trial
+                break
+            damping = max(10.0 * damping, 1e-3)
+        if moved is None:
+            done = True
+            break
+        small = before - _objective(moved, x + step) < CONVERGED
+        there = predict(hypothesis, observed, x + step, tangents=True)
+        if not usable(there):
+            damping = max(100.0 * damping, 1.0)  # a point without slopes leads nowhere: a shorter step
+            continue
+        x, here = x + step, there
+        damping = max(0.1 * damping, 1e-9)
+        if small:
+            done = True
+            break
+    assert here.slopes is not None
+    curvature = here.slopes.T @ here.slopes + np.eye(x.size)
+    evidence = -_objective(here, x) - 0.5 * float(np.linalg.slogdet(curvature)[1]) - observed.log_size
+    covariance = np.asarray(np.linalg.inv(curvature))
+    return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, done)
+
+
+def _step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, damping: float) -> Array:
+    """A damped Gauss-Newton step that stays within bounds: what would leave them stays where it is."""
+    gradient = slopes.T @ residual + x
+    curvature = slopes.T @ slopes + np.eye(x.size)
+    curvature = curvature + damping * np.diag(curvature.diagonal())
+    free = np.ones(x.size, dtype=bool)
+    step = np.zeros(x.size)
+    for _ in range(x.size):
+        step = np.zeros(x.size)
+        step[free] = -np.linalg.solve(curvature[np.ix_(free, free)], gradient[free])
+        step *= min(1.0, LONGEST_STRIDE / max(float(np.abs(step).max()), 1e-12))
+        stuck = free & (((x <= least) & (step < 0.0)) | ((x >= most) & (step > 0.0)))
+        if not stuck.any():
+            break
+        free &= ~stuck
+    return np.asarray(np.clip(x + step, least, most) - x)
+
+
+def _expected(here: Prediction, x: Array, step: Array) -> float:
+    """By how much a step lowers the objective if the slopes hold."""
+    assert here.slopes is not None
+    moved = here.residual + here.slopes @ step
+    return _objective(here, x) - 0.5 * float(moved @ moved + (x + step) @ (x + step))
+
+
+def usable(prediction: Prediction) -> bool:
+    """Whether slopes are numbers that a step can be made from: where a run chatters they grow beyond all bounds."""
+    return prediction.slopes is not None and bool((np.abs(prediction.slopes) < STEEPEST).all())
+
+
+def _objective(prediction: Prediction, x: Array) -> float:
+    return 0.5 * float(prediction.residual @ prediction.residual + x @ x)
+
+
+def _try(hypothesis: Hypothesis, observed: Observed, x: Array) -> Prediction | None:
+    try:
+        found = predict(hypothesis, observed, x, tangents=False)
+    except (ValueError, ArithmeticError):
+        return None
+    return found if np.isfinite(found.residual).all() else None

@@ -1,0 +1,234 @@
+"""What a hypothesis says the sensors read, and its slopes: one run of the engine, or one with tangents."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import inf, pi, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.probe import Splines
+from hfanalysis.diagnose.observations.alignment import model_times, share
+from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.engine.course import LIQUID_OUT
+from hfanalysis.engine.model import RADIUS, STATES
+from hfanalysis.engine.observe import distorted, distorted_tangents, true_channels, true_tangents
+from hfanalysis.engine.sensitivity import Tangents, run_with_tangents
+from hfanalysis.engine.tangents import at_times
+from hfanalysis.engine.unsteady import Burn, Engine, burn
+
+Array = NDArray[np.float64]
+
+AFTER = 1.0
+"""Seconds that a run goes on after the last observation, for its liquid may end later than the measured."""
+
+TICK = 1e-3
+"""Seconds over which a channel's speed is a difference; blocks stay farther than that from the end of the liquid."""
+
+ACCURACY = 3e-5
+"""Relative tolerance of the runs."""
+
+THROAT_GROWTH = "throat_growth"
+"""The own state that a throat's radius after the test tells of."""
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """A run of a hypothesis: whitened residuals (measured less model) and, if asked for, their slopes with ``x``."""
+
+    residual: Array
+    slopes: Array | None
+    burnt: Burn
+
+
+def predict(
+    hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool, only: slice | None = None
+) -> Prediction:
+    """Run a hypothesis; ``only``: slopes with these of its free parameters, which costs the less the fewer they are.
+
+    Raises ValueError or ArithmeticError for an engine that cannot be run.
+    """
+    longest = observed.longest + AFTER
+    engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
+    if not tangents:
+        burnt = burn(engine, longest, ACCURACY, run_on=True, keep_idle=True)
+        return Prediction(residuals(hypothesis, observed, x, burnt), None, burnt)
+    if only is not None:
+        free = hypothesis.free[only]
+        found = run_with_tangents(engine, [f.name for f in free], longest, ACCURACY, run_on=True)
+        scales = np.array([f.slope(float(v)) for f, v in zip(free, x[only], strict=True)])
+        slopes = slopes_of(hypothesis, observed, found) * scales
+        return Prediction(residuals(hypothesis, observed, x, found.burn), slopes, found.burn)
+    found = run_with_tangents(engine, hypothesis.of_engine, longest, ACCURACY, run_on=True)
+    slopes = _all_slopes(hypothesis, observed, slopes_of(hypothesis, observed, found)) @ hypothesis.jacobian(x)
+    return Prediction(residuals(hypothesis, observed, x, found.burn), slopes, found.burn)
+
+
+def with_spare_fuel(engine: Engine, fuel_out: float | None = None) -> Engine:
+    """The same grain with as much web again behind its wall, whose fire is out at ``fuel_out`` [s].
+
+    A model whose fuel is gone earlier than measured would leap to cold gas, and no slope leads out of that. So the end
+    of the fuel is that of the measurement, where anything after it is compared; what web is left then is an observation
+    of its own.
+    """
+    return replace(engine, spare_web=engine.outer_radius, fuel_end=inf if fuel_out is None else fuel_out)
+
+
+def _all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> Array:
+    """Slopes with all parameters [SI]: the engine's, and those of the sensors' sources."""
+    names, out = hypothesis.of_engine, np.zeros((of_engine.shape[0], hypothesis.size))
+    column = {name: i for i, name in enumerate(hypothesis.names)}
+    out[:, [column[name] for name in names]] = of_engine
+    for block, place in hypothesis.places():
+        if block.sensor is not None:
+            out[:, place] = sensor_slopes(observed, block.sensor, block.splines)
+    if hypothesis.slack is not None:
+        white = -observed.whiten(hypothesis.slack)
+        out[: white.shape[0], -hypothesis.slack_size :] = white
+    return out
+
+
+def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
+    """Slopes of the residuals with the coefficients of what is added to a sensor's reading."""
+    rows = [np.zeros((c.time.size, splines.count)) for c in observed.channels]
+    for i, channel in enumerate(observed.channels):
+        if channel.name == sensor:
+            rows[i] = splines.at(channel.time)
+    return np.concatenate(
+        [-observed.whiten(np.concatenate(rows)), np.zeros((len(observed.events) + len(observed.stated), splines.count))]
+    )
+
+
+def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn) -> Array:
+    """Whitened measured less model: the channels one after the other, then the events, then what was stated."""
+    read = readings(observed, burnt)
+    parts = []
+    for channel in observed.channels:
+        model = channel.averaged(read[channel.name]) + hypothesis.offset(channel.name, x, channel.time)
+        parts.append(channel.value - model)
+    raw = np.concatenate(parts)
+    if hypothesis.slack is not None:
+        raw = raw - hypothesis.slack @ x[-hypothesis.slack_size :]
+    scalars = []
+    for name, (at, deviation) in observed.events.items():
+        if name == "t_v":
+            gone = burnt.liquid_out if burnt.liquid_out is not None else 2.0 * observed.end
+            scalars.append((at - gone) / deviation)
+        else:
+            web = hypothesis.engine.outer_radius - float(burnt.steps.at(np.array([at]))[0][0, RADIUS])
+            scalars.append(web / (deviation * _typical_regression(hypothesis, at)))
+    for name, (value, deviation) in observed.stated.items():
+        scalars.append((value - _after(name, burnt, observed)) / deviation)
+    return np.concatenate([observed.whiten(raw), np.array(scalars)])
+
+
+def readings(observed: Observed, burnt: Burn) -> dict[str, Array]:
+    """What the sensors read on the common grid."""
+    times = aligned(observed, burnt, observed.grid)
+    channels = _resting(observed, true_channels(burnt, times))
+    return distorted(channels, observed.grid, burnt.steps.engine.effects)
+
+
+def _resting(observed: Observed, channels: Mapping[str, Array]) -> dict[str, Array]:
+    """The channels, with what is known of them before the opening and after the end of the flow."""
+    known = {"p_chamber": observed.ambient, "p_run": observed.ambient, "thrust": 0.0}
+    return {n: np.where(observed.resting, known[n], v) if n in known else v for n, v in channels.items()}
+
+
+def aligned(observed: Observed, burnt: Burn, times: Array) -> Array:
+    """Instants of the model that correspond to measured ones: stretched so that its liquid ends when the measured
+    does."""
+    seen, gone = observed.events.get("t_v"), burnt.liquid_out
+    moved = times
+    if seen is not None and gone is not None:
+        moved = model_times(times, seen[0], gone, observed.fuel_out)
+    return np.asarray(np.minimum(moved, burnt.steps.times[-1, 1]))
+
+
+def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Array:
+    """Derivatives (residuals, parameters) of :func:`residuals` with the parameters of ``found`` [SI]."""
+    read = _slopes_of_readings(observed, found)
+    white = -observed.whiten(np.concatenate([c.averaged(read[c.name]) for c in observed.channels]))
+    rows = []
+    for name, (at, deviation) in observed.events.items():
+        if name == "t_v":
+            rows.append(-np.nan_to_num(found.event(LIQUID_OUT)) / deviation)
+        else:
+            unit = deviation * _typical_regression(hypothesis, at)
+            rows.append(-found.output("port_radius", np.array([at]))[0] / unit)
+    for name, (_, deviation) in observed.stated.items():
+        rows.append(-_after_slopes(name, found, observed) / deviation)
+    return np.concatenate([white, *(row[np.newaxis] for row in rows)])
+
+
+def signatures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Array:
+    """What each effect's strengths add to the blocks of all channels, linear: (blocks, strengths)."""
+    engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
+    names = [
+        f"{a.effect.name}.{p.name}" for a in engine.effects for p in a.effect.parameters[: a.effect.strengths]
+        if f"{a.effect.name}.{p.name}" in hypothesis.of_engine
+    ]  # fmt: skip
+    found = run_with_tangents(engine, names, observed.longest + AFTER, ACCURACY, run_on=True)
+    read = _slopes_of_readings(observed, found)
+    values = hypothesis.values(x)
+    size = np.array([values[n] for n in names])
+    return np.asarray(np.concatenate([c.averaged(read[c.name]) for c in observed.channels]) * size)
+
+
+def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]:
+    """Slopes (grid, parameters) of what is read at aligned instants, which move with the end of the liquid."""
+    times = aligned(observed, found.burn, observed.grid)
+    slopes = true_tangents(found, times)
+    seen = observed.events.get("t_v")
+    if seen is not None and found.burn.liquid_out is not None:
+        last = found.burn.steps.times[-1, 1]
+        ahead, behind = (true_channels(found.burn, np.clip(times + s * TICK, 0.0, last)) for s in (1.0, -1.0))
+        moved = share(observed.grid, seen[0], found.burn.liquid_out, observed.fuel_out)
+        moment = np.nan_to_num(found.event(LIQUID_OUT))
+        for name in slopes:
+            speed = (ahead[name] - behind[name]) / (2.0 * TICK) * moved
+            slopes[name] = slopes[name] + speed[:, np.newaxis] * moment[np.newaxis]
+    for name in ("p_chamber", "p_run", "thrust"):
+        slopes[name] = np.where(observed.resting[:, np.newaxis], 0.0, slopes[name])
+    channels = _resting(observed, true_channels(found.burn, times))
+    effects = found.burn.steps.engine.effects
+    return distorted_tangents(channels, slopes, observed.grid, effects, found.parameters)
+
+
+def _typical_regression(hypothesis: Hypothesis, burn_time: float) -> float:
+    """The web over the burn time [m/s]: what turns an instant's deviation into one of the port's radius."""
+    return (hypothesis.engine.outer_radius - hypothesis.engine.port_radius) / burn_time
+
+
+def _after(name: str, burnt: Burn, observed: Observed) -> float:
+    """What the model says of something that was measured after the test [SI]; the fuel's end closes the comparison."""
+    states, _ = burnt.steps.at(np.array([min(observed.flow_end, burnt.steps.times[-1, 1])]))
+    engine = burnt.steps.engine
+    if name == "fuel_mass_after":
+        return float(pi * engine.fuel_density * engine.grain_length * (engine.outer_radius**2 - states[0, RADIUS] ** 2))
+    growth = _growth_row(burnt)
+    return sqrt(engine.throat_area / pi) + (float(states[0, growth]) if growth is not None else 0.0)
+
+
+def _growth_row(burnt: Burn) -> int | None:
+    """Where the states hold the throat's growth, if an effect brings one."""
+    names = [s.name for a in burnt.steps.composition.active for s in a.effect.states]
+    return len(STATES) + names.index(THROAT_GROWTH) if THROAT_GROWTH in names else None
+
+
+def _after_slopes(name: str, found: Tangents, observed: Observed) -> Array:
+    """Slopes of :func:`_after`."""
+    burnt = found.burn
+    at = np.array([min(observed.flow_end, burnt.steps.times[-1, 1])])
+    if name == "fuel_mass_after":
+        states, _ = burnt.steps.at(at)
+        engine = burnt.steps.engine
+        ring = 2.0 * pi * engine.fuel_density * engine.grain_length * states[0, RADIUS]
+        return np.asarray(-ring * found.output("port_radius", at)[0])
+    row = _growth_row(burnt)
+    if row is None:
+        return np.zeros(len(found.parameters))
+    return np.asarray(at_times(at, burnt.steps.times, found.states[:, :, row : row + 1])[0, 0])

@@ -1,0 +1,129 @@
+"""A candidate explanation: a set of effects, or an unknown source, with its fit at the model-form error it asks for.
+
+What no candidate explains is model-form error; how large it is, is part of the question. Each candidate is judged at
+the size that makes the data most probable, at a price per step: an explanation that leaves much open is tempered by it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.fit import Fit, fit
+from hfanalysis.diagnose.fitting.form import FINEST, Form
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.observations.observed import Observed
+
+Array = NDArray[np.float64]
+
+PRICE = 5.0
+"""Log of the odds against each step of the model-form error, on either side. Right explanations of simulated tests
+hardly ever ask for one: `make blind-calibrate` prints how many (of 98 none on the tank's side, 5 in the chamber)."""
+
+FURTHER = 5.0
+"""Log of the odds against each effect beyond the first: several at once are rarer than one."""
+
+SHORT, LONG = 12, 25
+"""Steps of a fit that looks around, and of one that is to converge."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A set of ``names``, the fit, and its log evidence; the ``form`` that it asks for."""
+
+    names: tuple[str, ...]
+    fit: Fit
+    log_evidence: float
+    form: Form = FINEST
+    unknown: bool = False
+
+    @property
+    def chi2(self) -> float:
+        """What is left, in squared standard deviations."""
+        return float(self.fit.residual @ self.fit.residual)
+
+    @property
+    def leftover(self) -> float:
+        """The same per observation."""
+        return self.chi2 / self.fit.residual.size
+
+
+class Bench:
+    """The data at every model-form error, each made once."""
+
+    def __init__(self, observed: Observed, tempering: bool = True) -> None:
+        self.observed = observed
+        self.tempering = tempering
+        self._at: dict[Form, Observed] = {FINEST: observed}
+
+    def at(self, form: Form) -> Observed:
+        """The data at a form."""
+        if form not in self._at:
+            self._at[form] = self.observed.with_errors(*form.errors)
+        return self._at[form]
+
+    def judged(self, found: Candidate) -> Candidate:
+        """A candidate at the form that makes the data most probable: finer or coarser as long as that helps.
+
+        Without tempering it is the finest one, whatever that leaves.
+        """
+        if not self.tempering:
+            return self.refitted(found, FINEST) or found
+        best = found
+        while (better := self.finer(best) or self.eased(best)) is not None:
+            best = better
+        return best
+
+    def finer(self, found: Candidate) -> Candidate | None:
+        """The candidate one step finer, on both sides or else on one; None where it has no more evidence."""
+        for forms in found.form.finer:
+            tried = [self.refitted(found, form) for form in forms]
+            better = [c for c in tried if c is not None and more_probable(c, found)]
+            if better:
+                return max(better, key=lambda c: c.log_evidence)
+        return None
+
+    def eased(self, found: Candidate) -> Candidate | None:
+        """The candidate one step coarser where it leaves much open; None where it has no more evidence."""
+        much = [left > CALM for left in self.at(found.form).left_open(found.fit.residual)]
+        form = found.form.coarser(*much)
+        coarser = None if form == found.form else self.refitted(found, form)
+        return coarser if coarser is not None and more_probable(coarser, found) else None
+
+    def refitted(self, found: Candidate, form: Form) -> Candidate | None:
+        """The candidate at another form, None where it cannot be run."""
+        again = attempted(found.fit.hypothesis, self.at(form), found.fit.x, SHORT)
+        return None if again is None else candidate(found.names, again, form, found.unknown)
+
+    def converged(self, found: Candidate) -> Candidate:
+        """The candidate, its fit brought to its end."""
+        if found.fit.converged:
+            return found
+        again = attempted(found.fit.hypothesis, self.at(found.form), found.fit.x, LONG)
+        better = None if again is None else candidate(found.names, again, found.form, found.unknown)
+        return better if better is not None and more_probable(better, found) else found
+
+
+def candidate(names: tuple[str, ...], found: Fit, form: Form, unknown: bool = False) -> Candidate:
+    """A fit at a form as a candidate, at the price of the form and of effects beyond the first."""
+    further = max(len(names) - unknown - 1, 0)
+    return Candidate(names, found, found.log_evidence - PRICE * form.total - FURTHER * further, form, unknown)
+
+
+def more_probable(one: Candidate, other: Candidate) -> bool:
+    """Whether one candidate has more evidence than another."""
+    return one.log_evidence > other.log_evidence
+
+
+CALM = 1.15
+"""Chi-square per observation, on a side, below which no larger model-form error is asked for there."""
+
+
+def attempted(hypothesis: Hypothesis, observed: Observed, start: Array, most: int = LONG) -> Fit | None:
+    """A fit, or None where its start cannot be run."""
+    try:
+        return fit(hypothesis, observed, start, most)
+    except (ValueError, ArithmeticError):
+        return None

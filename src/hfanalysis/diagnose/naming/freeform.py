@@ -1,0 +1,89 @@
+"""Unknown: a free-form source at a site of the model, or in a sensor, that competes with the names."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.form import FINEST
+from hfanalysis.diagnose.fitting.predict import predict
+from hfanalysis.diagnose.fitting.threads import each
+from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.naming.localise import Source, coordinates, linear_sources, with_source
+from hfanalysis.diagnose.observations.observed import Observed
+
+Array = NDArray[np.float64]
+
+REFITTED = 3
+"""Sites whose source is fitted with the full model, by their linear evidence."""
+
+LEAST = 4.0
+"""Log evidence, linear, from which on a source is fitted."""
+
+BESIDE = 6.0
+"""Log of the odds against an unknown source beside a named effect: what a closure gets wrong looks like one."""
+
+REST = 0.5
+"""Part of what the best names explain that a source beside them must add for the answer to be unknown."""
+
+STRIDES = (1.0, 0.5, 0.2)
+"""Parts of the way to the linear estimate from which a full fit may start: a large source is not linear."""
+
+
+def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
+    """Sources instead of any name, and beside the best name, where either is worth it; the best first."""
+    out = _with_sources(base, bench, REFITTED)
+    if named.names:
+        # no more can be gained than what is left; a source that cannot be the answer is fitted to show where that is
+        decides = 0.5 * named.chi2 > REST * (named.log_evidence - base.log_evidence)
+        out += _with_sources(named, bench, REFITTED if decides else 1)
+    return sorted(out, key=lambda c: -c.log_evidence)
+
+
+def _with_sources(parent: Candidate, bench: Bench, most: int) -> list[Candidate]:
+    """The parent with each of the few sources that are seen at its form, or else at the next finer one, to which the
+    parent does not fit: what is too weak for a coarse form may be plain there."""
+    start, sources = parent, _seen(parent, bench)
+    if not sources and parent.form != FINEST and (finer := bench.refitted(parent, parent.form.both_finer)):
+        start, sources = finer, _seen(finer, bench)
+    fitted = each(lambda source: with_fitted(start, source, bench), sources[:most])
+    return [found for found in fitted if found is not None]
+
+
+def _seen(parent: Candidate, bench: Bench) -> list[Source]:
+    """Sources that the linear search sees, the best first; none where the engine cannot be run with all sites open."""
+    try:
+        sources = linear_sources(parent.fit, bench.at(parent.form))
+    except (ValueError, ArithmeticError):
+        return []
+    return [source for source in sources if source.log_evidence >= LEAST]
+
+
+def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | None:
+    """The parent with a source more, fitted with the full model."""
+    made = with_source(parent.fit.hypothesis, source)
+    moved = np.concatenate([source.nuisances - parent.fit.x, coordinates(source)])
+    still = np.concatenate([parent.fit.x, np.zeros(source.splines.count)])
+    start = _nearest(made, bench.at(parent.form), [still + share * moved for share in STRIDES])
+    if start is None:
+        return None
+    found = attempted(made, bench.at(parent.form), start, SHORT)
+    if found is None:
+        return None
+    judged = bench.judged(candidate((*parent.names, source.site.name), found, parent.form, unknown=True))
+    return replace(judged, log_evidence=judged.log_evidence - (BESIDE if parent.names else 0.0))
+
+
+def _nearest(hypothesis, observed: Observed, starts: list[Array]) -> Array | None:  # type: ignore[no-untyped-def]
+    best: tuple[float, Array] | None = None
+    for x in starts:
+        try:
+            there = predict(hypothesis, observed, x, tangents=False)
+        except (ValueError, ArithmeticError):
+            continue
+        value = float(there.residual @ there.residual + x @ x)
+        if np.isfinite(value) and (best is None or value < best[0]):
+            best = (value, x)
+    return None if best is None else best[1]

@@ -1,0 +1,62 @@
+"""Naming: which effects of the library, alone or together, explain what the base model leaves open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate
+from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.naming.freeform import unknown_sources
+from hfanalysis.diagnose.naming.search import Search
+from hfanalysis.diagnose.naming.several import sets_of
+from hfanalysis.diagnose.naming.singles import base_and_singles, polished
+from hfanalysis.diagnose.naming.variants import Settings
+from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.stages.base import Progress, silent
+
+
+@dataclass(frozen=True)
+class Naming:
+    """The base model, every single effect, sets of effects, and unknown sources; each the best first.
+
+    ``names``: all effects that were thought of; those that a score test saw nothing of have no candidate.
+    """
+
+    base: Candidate
+    singles: tuple[Candidate, ...]
+    sets: tuple[Candidate, ...]
+    unknown: tuple[Candidate, ...]
+    bench: Bench
+    names: tuple[str, ...] = ()
+
+    @property
+    def named(self) -> Candidate:
+        """The most probable of what has names, none among them."""
+        return max((self.base, *self.singles, *self.sets), key=lambda c: c.log_evidence)
+
+    @property
+    def all(self) -> tuple[Candidate, ...]:
+        """Everything that was tried."""
+        return (self.base, *self.singles, *self.sets, *self.unknown)
+
+
+def name_effects(
+    hypothesis: Hypothesis,
+    observed: Observed,
+    catalogue: Catalogue,
+    progress: Progress = silent,
+    settings: Settings | None = None,
+) -> Naming:
+    """Try the base model, every effect of the catalogue, sets of them, and unknown sources."""
+    settings = settings or Settings()
+    bench = Bench(observed if settings.coloured else observed.with_white_noise(), settings.tempering)
+    search = Search(bench, catalogue, settings, progress)
+    base, singles = base_and_singles(hypothesis, search)
+    singles, sets = sets_of(base, singles, search)
+    named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
+    progress("trying unknown sources", 0.85)
+    unknown = unknown_sources(base, named, bench)
+    if settings.polishing:
+        base = polished(base, [*sets, *unknown], bench)
+    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, tuple(catalogue.effects))

@@ -1,0 +1,87 @@
+"""Score tests: how much an effect more would explain, from the slopes at a small strength of it.
+
+The calibrated constants are projected out: only what they cannot take over counts.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.fit import Fit, usable
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.predict import predict
+from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.naming.variants import Settings
+from hfanalysis.diagnose.observations.observed import Observed
+
+Array = NDArray[np.float64]
+
+STARTS = (-2.0, -1.0, 0.0, 1.0, 2.0)
+"""Standard deviations from its prior's center at which the parameter of an effect's shape may start, if it has one."""
+
+FEW_STARTS = (-1.2, 0.0, 1.2)
+"""The same of each parameter if there are more."""
+
+FIRST_STEP = 0.05
+"""Strength, in units of the typical one (as x), at which slopes of an effect are taken."""
+
+MOST_FIRST = 1.5
+"""The largest strength (as x) at which a fit starts."""
+
+
+def score_tests(
+    parent: Fit, slopes: Array, catalogue: Catalogue, name: str, observed: Observed, settings: Settings
+) -> tuple[Hypothesis, list[tuple[float, Array]]]:
+    """The parent with an effect more, and each start of its shape with the gain in log probability that it promises.
+
+    ``slopes`` (observations, parameters) of the parent, which hardly change by a small effect. The starts are those of
+    a fit, the strengths as the score test sees them; the best first.
+    """
+    made = catalogue.add(parent.hypothesis, name)
+    least, most = made.bounds
+    size = parent.x.size
+    own = slice(size, size + catalogue.effects[name].strengths)
+    shapes = [i for i in range(own.stop, made.size) if made.free[i].shape == "positive" and made.free[i].unsure]
+    found = []
+    for choice in product(STARTS if len(shapes) == 1 else FEW_STARTS, repeat=len(shapes)):
+        start = np.concatenate([parent.x, np.zeros(made.size - size)])
+        start[shapes] = choice
+        start[own] = FIRST_STEP
+        start = np.clip(start, least, most)
+        try:
+            there = predict(made, observed, start, tangents=True, only=own)
+        except (ValueError, ArithmeticError):
+            continue
+        if there.slopes is not None and usable(there) and np.isfinite(there.residual).all():
+            both = np.column_stack([slopes, there.slopes])
+            gain, strength = score(both, there.residual, start, own, (least, most), settings.projection)
+            start[own] = np.clip(strength, -MOST_FIRST, MOST_FIRST)
+            found.append((gain, start))
+    return made, sorted(found, key=lambda s: -s[0])
+
+
+def score(
+    slopes: Array, residual: Array, x: Array, own: slice, bounds: tuple[Array, Array], projection: bool = True
+) -> tuple[float, Array]:
+    """Gain in log probability by strengths ``own``, with the parameters before them projected out, and the strengths.
+
+    ``slopes`` (observations, parameters) of the residual at ``x``, whose prior is N(0, 1).
+    """
+    a, b = slopes[:, : own.start], slopes[:, own]
+    still = residual - b @ x[own]
+    still_x = x[: own.start]
+    if projection:
+        curvature = a.T @ a + np.eye(a.shape[1])
+        through = np.linalg.solve(curvature, a.T)
+        start = still - a @ still_x  # the parameters at their prior's center
+        clear = b - a @ (through @ b)
+        information, pull = b.T @ clear, -(clear.T @ start)
+    else:
+        information, pull = b.T @ b, -(b.T @ still)
+    strength = np.linalg.solve(information + np.eye(pull.size), pull)
+    strength = np.clip(strength, bounds[0][own], bounds[1][own])
+    gain = float(pull @ strength - 0.5 * strength @ (information + np.eye(pull.size)) @ strength)
+    return gain, strength

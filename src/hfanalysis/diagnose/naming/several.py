@@ -1,0 +1,145 @@
+"""Sets of several effects: forward from the best few, by score tests, dropping what is no longer needed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.predict import predict
+from hfanalysis.diagnose.fitting.threads import each
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.naming.score import score_tests
+from hfanalysis.diagnose.naming.search import Search
+from hfanalysis.diagnose.naming.singles import HOPELESS
+from hfanalysis.diagnose.naming.slack import slacked
+from hfanalysis.diagnose.observations.observed import Observed
+
+Array = NDArray[np.float64]
+
+SEEN = 5.0
+"""Log evidence of a single effect from which on others are tried beside it."""
+
+ASKED = 2.5
+"""Gain in log probability that a score test must promise for a further effect to be fitted."""
+
+PARTNERS = 4
+"""Effects that are tried as a further one, by their score, on either side that can be finer."""
+
+MOST_EFFECTS = 4
+
+CERTAIN = 8.0
+"""Standard deviations from nothing, other constants free, from which on an effect is not tried to be left out."""
+
+
+def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[list[Candidate], list[Candidate]]:
+    """The singles and sets of several effects, with the evidence that they have with slack; each the best first.
+
+    Forward from the best two, dropping what is no longer needed. A further effect has to make the data more probable
+    where both have slack: what the closure of the first gets wrong is no second effect.
+    """
+    bench, tried = search.bench, set[frozenset[str]]()
+    front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + SEEN]
+    known = _loosened(singles, bench)
+    found: list[Candidate] = []
+    for size in range(2, MOST_EFFECTS + 1):
+        search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
+        grown = sorted((c for parent in front for c in _partners(parent, search, tried)), key=lambda c: -c.log_evidence)
+        best = [c for c in (_dropped(c, bench) for c in grown[:2]) if len(c.names) > 1]
+        loose = _loosened([*best, *grown], bench)
+        front = [c for c, free in zip(best, loose, strict=False) if free.log_evidence > _of_subsets(c, known)][:1]
+        if not front:
+            break
+        found += loose
+        known += loose
+    return known[: len(singles)], sorted(_best_each(found), key=lambda c: -c.log_evidence)
+
+
+def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
+    """Candidates of one kind, all as much more probable as slack makes the first of them.
+
+    Among themselves they are compared without slack, which would make neighbours alike.
+    """
+    if not candidates:
+        return []
+    gain = slacked(candidates[0], bench).log_evidence - candidates[0].log_evidence
+    return [replace(c, log_evidence=c.log_evidence + gain) for c in candidates]
+
+
+def _of_subsets(candidate: Candidate, known: list[Candidate]) -> float:
+    """The best evidence among subsets of a set."""
+    names = set(candidate.names)
+    return max((c.log_evidence for c in known if set(c.names) < names), default=-np.inf)
+
+
+def _best_each(candidates: list[Candidate]) -> list[Candidate]:
+    """Of every set of names the candidate with most evidence."""
+    best: dict[frozenset[str], Candidate] = {}
+    for c in candidates:
+        names = frozenset(c.names)
+        if names not in best or more_probable(c, best[names]):
+            best[names] = c
+    return list(best.values())
+
+
+def _partners(parent: Candidate, search: Search, tried: set[frozenset[str]]) -> list[Candidate]:
+    """The parent with each of the few effects that a score test asks for, at the form that suits them."""
+    bench = search.bench
+    names = [
+        n for n in search.catalogue.effects if frozenset((*parent.names, n)) not in tried and n not in parent.names
+    ]
+    asked: dict[str, tuple[Hypothesis, Array]] = {}
+    for form in parent.form.either_finer or [parent.form]:
+        asked = _asked(parent, bench.at(form), search, names) | asked
+    tried |= {frozenset((*parent.names, name)) for name in asked}
+    fits = each(lambda start: attempted(start[0], bench.at(parent.form), start[1]), list(asked.values()))
+    out = [
+        candidate((*parent.names, name), found, parent.form)
+        for name, found in zip(asked, fits, strict=True)
+        if found is not None
+    ]
+    top = max((c.log_evidence for c in out), default=0.0)
+    return each(bench.judged, [c for c in out if c.log_evidence > top - HOPELESS])
+
+
+def _asked(
+    parent: Candidate, observed: Observed, search: Search, names: list[str]
+) -> dict[str, tuple[Hypothesis, Array]]:
+    """The few effects with most to gain, with where their fit starts, by score tests.
+
+    At a form that is finer on one side than the parent fits to: what it lacks there shows.
+    """
+    slopes = predict(parent.fit.hypothesis, observed, parent.fit.x, tangents=True).slopes
+    assert slopes is not None
+    tests = each(lambda n: score_tests(parent.fit, slopes, search.catalogue, n, observed, search.settings), names)
+    scores = {name: (made, found[0]) for name, (made, found) in zip(names, tests, strict=True) if found}
+    best = sorted(scores, key=lambda name: -scores[name][1][0])[:PARTNERS]
+    return {name: (scores[name][0], scores[name][1][1]) for name in best if scores[name][1][0] >= ASKED}
+
+
+def _dropped(found: Candidate, bench: Bench) -> Candidate:
+    """The set without the effects whose loss makes the data no less probable."""
+    for name in found.names[:-1]:
+        if len(found.names) < 2:
+            break
+        if _certain(found, name):
+            continue
+        hypothesis = found.fit.hypothesis.without(name)
+        kept = [i for i, f in enumerate(found.fit.hypothesis.free) if f.name.partition(".")[0] != name]
+        again = attempted(hypothesis, bench.at(found.form), found.fit.x[kept])
+        if again is None:
+            continue
+        less = bench.judged(candidate(tuple(n for n in found.names if n != name), again, found.form))
+        if less.log_evidence > found.log_evidence:
+            found = less
+    return found
+
+
+def _certain(found: Candidate, name: str) -> bool:
+    """Whether a strength of an effect is so far from nothing that the set cannot do without it."""
+    active = next(a for a in found.fit.burnt.steps.engine.effects if a.effect.name == name)
+    strengths = [f"{name}.{p.name}" for p in active.effect.parameters[: active.effect.strengths]]
+    values, stds = found.fit.values, found.fit.stds
+    return any(abs(values[s]) > CERTAIN * stds[s] for s in strengths)

@@ -1,0 +1,205 @@
+"""The base model, and every effect of the library alone.
+
+The base model comes down from the coarsest model-form error as long as that makes the data more probable. There every
+effect is fitted with all calibrated constants free, from the start at which a score test with the constants projected
+out sees most of it. From there all go down together: at each finer form those that have fallen far behind are left
+out, and each stays at the form at which it has most evidence. The base model is fitted again from its children's
+constants, for an unconverged base poses as evidence for a wrong effect.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from itertools import count
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.fit import Fit
+from hfanalysis.diagnose.fitting.form import COARSEST, FINEST, Form
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.threads import each
+from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.naming.score import score_tests
+from hfanalysis.diagnose.naming.search import Search
+
+Array = NDArray[np.float64]
+
+HOPELESS = 30.0
+"""Log evidence behind the best at the same form from which on an effect is not fitted any finer."""
+
+FAR = 3.0
+"""Units of log evidence that a base gains from a child's constants before all are fitted again."""
+
+SEEN = 0.7
+"""Gain in log probability below which a score test has seen nothing."""
+
+MODERATE = 0.6
+"""Strength (as x) from which a fit starts that a score test does not lead: a large effect is not linear."""
+
+STARTS = 2
+"""Starts of an effect's fit."""
+
+FROM_EXPONENTS = (0.0, -1.5, 1.5)
+"""Where the base model's fit starts in n, in standard deviations of its prior."""
+
+SAME = 0.1
+"""Standard deviations of a prior within which two fits are one."""
+
+POLISHING = 3
+"""Children whose constants a parent is fitted again from."""
+
+
+def base_and_singles(hypothesis: Hypothesis, search: Search) -> tuple[Candidate, list[Candidate]]:
+    """The base model and every effect that is seen at all, the best first.
+
+    Raises ArithmeticError where the base model cannot be run.
+    """
+    bench, names = search.bench, list(search.catalogue.effects)
+    search.progress("fitting the base model", 0.0)
+    base = _descended(hypothesis, bench)
+    best: dict[str, Candidate] = {}
+    _keep(best, _raced(_first_children(base, search, names), bench))
+    if search.settings.polishing and best:
+        base = _second_turn(base, best, search)
+    return base, sorted(each(bench.converged, list(best.values())), key=lambda c: -c.log_evidence)
+
+
+def _second_turn(base: Candidate, best: dict[str, Candidate], search: Search) -> Candidate:
+    """The base model, polished; if that moved it, or the best effect asks for a finer form than it, effects are fitted
+    anew from there: all of them, or those that stayed at a coarser form than the best."""
+    bench = search.bench
+    better = polished(base, list(best.values()), bench)
+    winner = max(best.values(), key=lambda c: c.log_evidence)
+    moved = better.log_evidence > base.log_evidence + FAR
+    if winner.form.total < base.form.total or moved:
+        names = [
+            n for n in search.catalogue.effects if moved or n not in best or best[n].form.total > winner.form.total
+        ]
+        parent = bench.refitted(better, winner.form) or better
+        _keep(best, _raced(_further_children(parent, search, names), bench))
+        better = polished(better, list(best.values()), bench)
+    return better
+
+
+def _keep(best: dict[str, Candidate], found: list[Candidate]) -> None:
+    """Of every effect the candidate with most evidence."""
+    for one in found:
+        name = one.names[0]
+        if name not in best or more_probable(one, best[name]):
+            best[name] = one
+
+
+def polished(parent: Candidate, children: list[Candidate], bench: Bench) -> Candidate:
+    """The parent, fitted again from the constants of its best children."""
+    best = parent
+    for child in sorted(children, key=lambda c: -c.log_evidence)[:POLISHING]:
+        start = child.fit.x[: parent.fit.hypothesis.nuisances]
+        found = attempted(parent.fit.hypothesis, bench.at(parent.form), start)
+        if found is not None:
+            best = max(best, candidate(parent.names, found, parent.form), key=lambda c: c.log_evidence)
+    return bench.judged(best) if best is not parent else parent
+
+
+def _descended(hypothesis: Hypothesis, bench: Bench) -> Candidate:
+    """The base model at the form that suits it, from the coarsest on, and there from other exponents of regression.
+
+    Where no instant tells when the fuel is gone a and n have more than one valley; coarse forms do not tell them apart.
+    """
+    coarse = attempted(hypothesis, bench.at(COARSEST), np.zeros(hypothesis.size), SHORT)
+    if coarse is None:
+        raise ArithmeticError("the base model cannot be fitted to this test")
+    best = bench.converged(bench.judged(candidate((), coarse, COARSEST)))
+    place, found = [f.name for f in hypothesis.free].index("n"), best
+    for exponent in FROM_EXPONENTS:
+        start = found.fit.x.copy()
+        start[place] = exponent
+        other = attempted(hypothesis, bench.at(found.form), start, SHORT)
+        if other is None or other.log_evidence < found.fit.log_evidence - FAR or _same(other, found.fit):
+            continue
+        best = max(best, bench.converged(bench.judged(candidate((), other, found.form))), key=lambda c: c.log_evidence)
+    return best
+
+
+def _same(one: Fit, other: Fit) -> bool:
+    """Whether two fits are in the same valley."""
+    return bool(np.abs(one.x - other.x).max() < SAME)
+
+
+def _first_children(base: Candidate, search: Search, names: list[str]) -> list[Candidate]:
+    """Each of the effects with what makes the base model's data most probable, at its form.
+
+    From the starts that score tests promise most of. Where the base model is far from the data those see little of an
+    effect; what they do not lead to anything starts from a moderate size.
+    """
+    observed, done = search.bench.at(base.form), count()
+
+    def child(name: str) -> Candidate | None:
+        search.progress(f"fitting {name}", 0.3 * next(done) / len(names))
+        made, starts = _promising(base, search, name)
+        fits = [attempted(made, observed, x, SHORT) for x in starts[:STARTS]]
+        seen = any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
+        if base.form != FINEST and not seen:
+            start = _moderate(base, search.catalogue.effects[name].strengths, made.size)
+            fits.append(attempted(made, observed, start, SHORT))
+        return _best((name,), fits, base.form)
+
+    return [c for c in each(child, names) if c is not None]
+
+
+def _further_children(parent: Candidate, search: Search, names: list[str]) -> list[Candidate]:
+    """Those of the effects that a score test sees, each from its best start, at the parent's form."""
+    observed, done = search.bench.at(parent.form), count()
+
+    def child(name: str) -> Candidate | None:
+        search.progress(f"fitting {name}", 0.3 + 0.3 * next(done) / len(names))
+        made, starts = _promising(parent, search, name)
+        return _best((name,), [attempted(made, observed, x, SHORT) for x in starts[:1]], parent.form)
+
+    return [c for c in each(child, names) if c is not None]
+
+
+def _promising(parent: Candidate, search: Search, name: str) -> tuple[Hypothesis, list[Array]]:
+    """The parent with an effect more, and the starts of which a score test sees something, the best first."""
+    observed = search.bench.at(parent.form)
+    made, tests = score_tests(parent.fit, parent.fit.slopes, search.catalogue, name, observed, search.settings)
+    return made, [x for gain, x in tests if gain > SEEN]
+
+
+def _best(names: tuple[str, ...], fits: list[Fit | None], form: Form) -> Candidate | None:
+    """The most probable of the fits that could be had."""
+    found = max((f for f in fits if f is not None), key=lambda f: f.log_evidence, default=None)
+    return None if found is None else candidate(names, found, form)
+
+
+def _moderate(base: Candidate, strengths: int, size: int) -> Array:
+    """The base's constants with an effect of moderate size."""
+    start = np.zeros(size)
+    start[: base.fit.x.size] = base.fit.x
+    start[base.fit.x.size : base.fit.x.size + strengths] = MODERATE
+    return start
+
+
+def _raced(started: list[Candidate], bench: Bench) -> list[Candidate]:
+    """Each at the form with most evidence for it, going down together; who falls far behind goes no further."""
+    out, running = [], started
+    while running:
+        least = max(c.log_evidence for c in running) - HOPELESS
+        finer = each(partial(_finer, bench=bench, least=least), running)
+        out += [c for c, further in zip(running, finer, strict=True) if further is None]
+        running = [further for further in finer if further is not None]
+    least = max((c.log_evidence for c in out), default=0.0) - HOPELESS
+    return each(lambda c: _settled(c, bench) if bench.tempering and c.log_evidence > least else c, out)
+
+
+def _settled(found: Candidate, bench: Bench) -> Candidate:
+    """The candidate after a step back where going down on both sides left one of them too fine."""
+    eased = bench.eased(found)
+    return found if eased is None else bench.judged(eased)
+
+
+def _finer(found: Candidate, bench: Bench, least: float) -> Candidate | None:
+    """The candidate at the next finer form, if it is above the ``least`` evidence here and has more there."""
+    if found.form == FINEST or found.log_evidence <= least:
+        return None
+    return bench.finer(found) if bench.tempering else bench.refitted(found, found.form.both_finer)

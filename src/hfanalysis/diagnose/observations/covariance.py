@@ -1,0 +1,170 @@
+"""What the noise of a channel's blocks is made of.
+
+Wander and white noise of the sensor; the oscillation of the burn, which chamber and thrust share, and the shaking of
+the tank's cell; offset and gain within the stated accuracy; an end of the liquid that was seen too early or too late;
+and, while the line fills, the model's own error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.observations.alignment import share
+from hfanalysis.diagnose.observations.blocks import AT_REST, Blocks
+from hfanalysis.diagnose.observations.frame import BLOCK, EVENT_STD, Frame
+from hfanalysis.diagnose.observations.observed import SHARE, TOGETHER, Channel, averaged
+from hfanalysis.diagnose.observations.oscillation import oscillation
+from hfanalysis.diagnose.observations.recorded import LONGEST, accuracy_of
+from hfanalysis.diagnose.observations.wander import roughness, wander_of
+from hfanalysis.segment.signals import sample_noise
+from hfanalysis.testdata.definition import TestDefinition
+
+Array = NDArray[np.float64]
+
+FILLING_ERROR, FILLING_TIME = 0.1, 0.1
+"""Model-form error while the line fills, as part of a channel's range, and the seconds over which it is coherent."""
+
+UNSTEADY_ZERO = 0.03
+"""Part of its accuracy by which the zero of a sensor may move within a test, beside the wander that its quiet time
+shows. A zero that moves further is an effect, and has to be found as one."""
+
+SPEED_ORDER = 3
+"""Order of the polynomials whose slope is a channel's speed on either side of the knee."""
+
+
+def channel_of(
+    blocks: Blocks, definition: TestDefinition, frame: Frame, shaken: Array | None, zero_std: float | None
+) -> Channel:
+    """The channel of these blocks with the covariance of their noise.
+
+    ``shaken`` (grid, grid): covariance of an oscillation that it shows; ``zero_std`` [SI]: standard deviation of its
+    zero, where one was taken before the opening.
+    """
+    name, resting = blocks.signal.name, frame.resting[blocks.first]
+    accuracy = accuracy_of(definition, name, blocks.value)
+    own = _own(blocks, frame, shaken)
+    offset, gain = _offset_and_gain(blocks, resting & (name in AT_REST), accuracy, zero_std)
+    moved = _moved_by_knee(blocks, frame)
+    covariance = own + offset + gain + np.outer(moved, moved) + _filling(blocks, frame, resting)
+    for cold in _without_fire(blocks, frame):
+        covariance = covariance + np.outer(cold, cold)
+    std = np.sqrt(own.diagonal())
+    return Channel(name, blocks.time, blocks.value, blocks.first, blocks.count, resting, std, accuracy, covariance)
+
+
+def _own(blocks: Blocks, frame: Frame, shaken: Array | None) -> Array:
+    """By the wander of the sensor, its white noise, and the oscillation."""
+    signal = blocks.signal
+    noise = wander_of(signal, BLOCK)
+    own, white = noise.covariance(frame.grid), noise.white
+    if shaken is not None:
+        own = own + shaken
+    else:
+        fine = signal.between(frame.start, frame.end(signal.name)).reduced(BLOCK)
+        rough = float(sample_noise(fine.value)) ** 2 - roughness(noise, BLOCK)
+        white = max(white, max(rough, 0.0) ** 0.5)
+    own[np.diag_indices_from(own)] += max(white, 1e-9 * float(np.abs(blocks.value).max())) ** 2
+    return averaged(averaged(own, blocks.first, blocks.count).T, blocks.first, blocks.count)
+
+
+def _offset_and_gain(
+    blocks: Blocks, known: NDArray[np.bool_], accuracy: float, zero_std: float | None
+) -> tuple[Array, Array]:
+    """By an error of the zero, and by one of the span; neither where the true value is ``known`` (blocks,)."""
+    burning = np.where(known, 0.0, 1.0)
+    gain = blocks.value * burning / float(np.abs(blocks.value).max())
+    # a zero that was taken before the opening leaves of the accuracy mostly the gain's error
+    offset = SHARE * accuracy if zero_std is None else float(np.hypot(zero_std, UNSTEADY_ZERO * accuracy))
+    return offset**2 * np.outer(burning, burning), (SHARE * accuracy) ** 2 * np.outer(gain, gain)
+
+
+def _filling(blocks: Blocks, frame: Frame, resting: NDArray[np.bool_]) -> Array:
+    """By what the model gets wrong while the line fills."""
+    filling = np.where((blocks.time < frame.filled) & ~resting, FILLING_ERROR * float(np.ptp(blocks.value)), 0.0)
+    lag = np.abs(blocks.time[:, None] - blocks.time[None, :])
+    return np.asarray(np.exp(-lag / FILLING_TIME) * np.outer(filling, filling))
+
+
+def _moved_by_knee(blocks: Blocks, frame: Frame) -> Array:
+    """What a channel differs by if the end of the liquid was seen one standard deviation late.
+
+    The model is laid over the measurement from knee to knee: an error of t_v stretches all that comes before and shifts
+    all that comes after.
+    """
+    if "t_v" not in frame.changes:
+        return np.zeros(blocks.time.size)
+    instant, deviation = frame.changes["t_v"]
+    out = np.zeros(blocks.time.size)
+    burning = ~frame.resting[blocks.first]
+    for side in (blocks.time < instant, blocks.time >= instant):
+        part = side & burning
+        if part.sum() > SPEED_ORDER + 2:
+            t = blocks.time[part] - instant
+            speed = np.polyval(np.polyder(np.polyfit(t, blocks.value[part], SPEED_ORDER)), t)
+            out[part] = speed * share(blocks.time[part], instant, instant, frame.fuel_out)
+    return np.asarray(out * max(deviation, EVENT_STD))
+
+
+def _without_fire(blocks: Blocks, frame: Frame) -> tuple[Array, ...]:
+    """What a channel differs by if the flow into the chamber without fire is WITHOUT_FIRE larger than the model's.
+
+    Nobody knows how hot the chamber's walls keep what still enters: its pressure there, and with it the flow, is the
+    model's weakest point. The tank is then empty sooner, and the run line loses more.
+    """
+    if frame.fuel_out is None:
+        return ()
+    after = (blocks.time > frame.fuel_out) & ~frame.resting[blocks.first]
+    if after.sum() <= SPEED_ORDER + 2:
+        return ()
+    passed = blocks.time[after] - frame.fuel_out
+    speed = np.polyval(np.polyder(np.polyfit(passed, blocks.value[after], SPEED_ORDER)), passed)
+    sooner = np.zeros(blocks.time.size)
+    sooner[after] = WITHOUT_FIRE * speed * passed
+    if blocks.signal.name != "p_run":
+        return (sooner,)
+    return sooner, np.where(after, 2.0 * WITHOUT_FIRE * LOST * blocks.value, 0.0)
+
+
+WITHOUT_FIRE = 0.1
+
+LOST = 0.25
+"""Of the run line's pressure, about what is lost before it."""
+
+
+def oscillations(blocks: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, str], Array]:
+    """Covariance (grid, grid) of the burn's oscillation, and of the shaking of the tank's cell, by pair of channels."""
+    found: dict[tuple[str, str], Array] = {}
+    for group in (TOGETHER, ("m_tank",)):
+        shaken = {name: r for name, r in blocks.items() if name in group}
+        if shaken:
+            found |= _shaken(shaken, frame)
+    return found
+
+
+def common_of(blocks: Mapping[str, Blocks], shaken: Mapping[tuple[str, str], Array]) -> Array | None:
+    """Covariance of the blocks of the first of TOGETHER with those of the second; None where one of them is missing."""
+    found = shaken.get(TOGETHER)
+    if found is None:
+        return None
+    one, two = (blocks[name] for name in TOGETHER)
+    half = averaged(found, one.first, one.count)
+    return averaged(half.T, two.first, two.count).T
+
+
+def _shaken(shaken: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, str], Array]:
+    usable = np.logical_and.reduce([r.good for r in shaken.values()])
+    guide = next(iter(shaken.values()))
+    if guide.signal.name in TOGETHER:
+        level = np.interp(frame.grid[~frame.resting], guide.time, guide.value)
+        quiet = guide.signal.between(-LONGEST, -0.05).value
+        zero = float(quiet.mean()) if quiet.size else float(guide.value.min())
+        level = np.maximum(level - zero, 0.0) / max(float(guide.value.max()) - zero, 1e-300)
+    else:
+        level = np.ones(usable.size)
+    stds = {name: wander_of(r.signal, BLOCK).white for name, r in shaken.items()}
+    found = oscillation({name: r.fine for name, r in shaken.items()}, level, usable, stds)
+    still = int(frame.resting.sum())
+    return {pair: np.pad(matrix, (1, still - 1)) for pair, matrix in found.items()}

@@ -1,0 +1,60 @@
+"""The reduction of a log to what is compared: block means with their covariance, events, what was weighed."""
+
+from __future__ import annotations
+
+from hfanalysis.diagnose.observations.blocks import blocks_of
+from hfanalysis.diagnose.observations.covariance import channel_of, common_of, oscillations
+from hfanalysis.diagnose.observations.flow_end import noted_flow_end
+from hfanalysis.diagnose.observations.frame import events_of, frame_of, phases_of
+from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.observations.recorded import recorded
+from hfanalysis.errors import AbsentError
+from hfanalysis.segment.phases import Segments
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import TestLog
+
+
+def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -> Observed:
+    """Reduce a test to what is compared. Raises AbsentError where neither tank, chamber nor thrust is left."""
+    origin = segments.t_open.value
+    if origin is None:
+        raise AbsentError("no opening was found: there is nothing to compare")
+    frame = frame_of(log, segments, definition, origin)
+    signals = recorded(log, definition, origin)
+    blocks = {name: found for name, signal in signals.items() if (found := blocks_of(signal, frame)) is not None}
+    if not {"p_tank", "p_chamber", "thrust"} & set(blocks):
+        raise AbsentError("neither tank, chamber nor thrust was recorded: the model cannot be compared")
+    shaken = oscillations(blocks, frame)
+    channels = tuple(
+        channel_of(means, definition, frame, shaken.get((name, name)), log[name].zero_std)
+        for name, means in blocks.items()
+    )
+    end = frame.ends["chamber"]
+    return Observed(
+        channels,
+        frame.grid,
+        frame.resting,
+        events_of(segments, frame.ends["tank"]),
+        _stated(definition, segments),
+        phases_of(segments, end),
+        end,
+        max(frame.ends["tank"], noted_flow_end(definition, end)),
+        definition.ambient_pressure.value,
+        common_of(blocks, shaken),
+        fuel_out=frame.fuel_out,
+    )
+
+
+def _stated(definition: TestDefinition, segments: Segments) -> dict[str, tuple[float, float]]:
+    """What was seen or weighed after the test [SI], with its standard deviation."""
+    seen = definition.observed
+    if seen is None:
+        return {}
+    out = {}
+    for name, least in (("throat_radius_after", 2e-5), ("fuel_mass_after", 5e-3)):
+        value = getattr(seen, name)
+        if name == "fuel_mass_after" and (segments.time("t_fuel_out") is not None or seen.burn_time is None):
+            continue  # there is none left, or nobody knows until when it burnt
+        if value is not None:
+            out[name] = (float(value.value), max(float(value.std or 0.0), least))
+    return out

@@ -1,0 +1,1 @@
+"""What each governing equation lacks, from the channels alone, without running the model."""

@@ -1,0 +1,119 @@
+"""Chamber and nozzle of the base model as balances between what channels measure (report, sections 3.1.3 and 3.1.4).
+
+The port is integrated from r = a G^n with the oxidizer's flow that is handed in: with G = mdot / (pi r^2) the equation
+separates. The gas is in equilibrium at the measured pressure and at the O/F that enters; what is stored at another O/F
+is gone within milliseconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.compiled import compiled
+from hfanalysis.diagnose.weak_form.cells import Cells, Piece, by_phase
+from hfanalysis.diagnose.weak_form.linear import History, integral, through, through_all
+from hfanalysis.engine.model import flux_power
+from hfanalysis.engine.nozzle import expand
+from hfanalysis.engine.unsteady import Engine
+from hfanalysis.thermo.combustion_table import Grid, gas_at
+
+Array = NDArray[np.float64]
+
+LEAST_PRESSURE = 1e3
+"""Chamber pressure [Pa] below which the gas is that at this one."""
+
+LEAST_FLOW = 1e-9
+"""Flow [kg/s] of oxidizer or fuel below which their ratio is no longer asked for."""
+
+
+@dataclass(frozen=True)
+class ChamberBalance:
+    """Balances behind the injector: ``flow`` of oxidizer [kg/s] and its ``enthalpy`` on the formation scale [J/kg].
+
+    ``channels`` on cells; ``constants``: the engine's numbers by name, each a single value.
+    """
+
+    engine: Engine
+    cells: Cells
+    channels: Mapping[str, History]
+    constants: Mapping[str, History]
+    flow: History
+    enthalpy: Array
+
+    def _constant(self, name: str) -> History:
+        return self.constants[name].spread(self.cells.time.size)
+
+    @cached_property
+    def _regression(self) -> tuple[History, History]:
+        """Port radius [m] and fuel flow [kg/s]: r^(2n+1) = r_0^(2n+1) + (2n+1) a int (mdot/pi)^n dt."""
+        e, n = self.engine, self._constant("n")
+        pace = integral(through(lambda m, n: _powers(m / pi, n), self.flow, n), self.cells.width)
+        start, dense = e.port_radius, 2.0 * pi * e.grain_length * e.fuel_density
+
+        def port(a: Array, n: Array, x: Array) -> Array:
+            power = 2.0 * n + 1.0
+            return np.asarray((start**power + power * a * x) ** (1.0 / power))
+
+        radius = through(port, self._constant("a"), n, pace)
+        fuel = through(
+            lambda a, n, m, r: dense * r * a * _powers(m / (pi * r * r), n), self._constant("a"), n, self.flow, radius
+        )
+        return radius, fuel
+
+    @cached_property
+    def _expansion(self) -> tuple[History, History, History]:
+        """Stored gas [kg], flow [kg/s] and thrust [N] of the nozzle at the measured chamber pressure."""
+        e, enthalpy, (radius, fuel) = self.engine, self.enthalpy, self._regression
+
+        def expanded(p: Array, oxidizer: Array, fuel: Array, r: Array, throat: Array) -> tuple[Array, ...]:
+            volume = e.dead_volume + pi * r * r * e.grain_length
+            ratio = np.maximum(oxidizer, LEAST_FLOW) / np.maximum(fuel, LEAST_FLOW)
+            return _expand(e.combustion.kernel, p, ratio, enthalpy, volume, throat, e.exit_area, e.ambient)
+
+        stored, flow, thrust = through_all(
+            expanded, self.channels["p_chamber"], self.flow, fuel, radius, self._constant("throat_area")
+        )
+        return stored, flow, thrust
+
+    def chamber_mass(self) -> list[Piece]:
+        """Gas [kg/s] that the chamber stores and ejects at its pressure, less oxidizer and fuel that enter it."""
+        stored, ejected, _ = self._expansion
+        return by_phase(self.cells, ejected - self.flow - self._regression[1], stored)
+
+    def nozzle(self) -> list[Piece]:
+        """Measured thrust less that of the nozzle at the measured chamber pressure [N]."""
+        return by_phase(self.cells, self.channels["thrust"] - self._expansion[2])
+
+
+@compiled
+def _powers(flux: Array, n: Array) -> Array:
+    out = np.empty_like(flux)
+    for i in range(flux.size):
+        out[i] = flux_power(flux[i], n[i])
+    return out
+
+
+@compiled
+def _expand(
+    table: Grid,
+    pressure: Array,
+    ratio: Array,
+    enthalpy: Array,
+    volume: Array,
+    throat: Array,
+    exit_area: float,
+    ambient: float,
+) -> tuple[Array, Array, Array]:
+    stored, flow, thrust = np.empty_like(pressure), np.empty_like(pressure), np.empty_like(pressure)
+    for i in range(pressure.size):
+        p = max(pressure[i], LEAST_PRESSURE)
+        rt, gamma = gas_at(table, np.log(p), np.log(ratio[i]), enthalpy[i], 0.0)
+        stored[i] = p * volume[i] / rt
+        flow[i], thrust[i], _, _, _ = expand(gamma, rt, p, ambient, throat[i], exit_area)
+    return stored, flow, thrust

@@ -1,0 +1,167 @@
+"""Tank, injector and feed line of the base model, as balances between what channels measure.
+
+Each equation is a rate and something stored whose change adds to it; the sum is zero where the base model holds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.compiled import compiled
+from hfanalysis.diagnose.weak_form.cells import Piece, by_phase
+from hfanalysis.diagnose.weak_form.linear import History, integral, through
+from hfanalysis.diagnose.weak_form.tank_flow import TankFlow
+from hfanalysis.engine.model import COLDEST_VAPOR, WARMEST_VAPOR
+from hfanalysis.engine.tank import energy_derivatives
+from hfanalysis.thermo.saturation import Property
+
+Array = NDArray[np.float64]
+
+BAR, LITRE = 1e5, 1e-3
+
+
+@dataclass(frozen=True)
+class TankBalance(TankFlow):
+    """The balances of an engine upstream of its chamber."""
+
+    def tank_energy(self) -> list[Piece]:
+        """Heat that the tank's content receives [W], the injector's flow taken as right.
+
+        Liquid: dU/dt + mdot h_l. Vapour: c_v (V/(Z R) dp/dt + k mdot T), the heat beside a polytropic exponent k.
+        """
+        source = self.engine.saturation
+        energy = through(self._energy, self.constant("volume", self.wet), self.wet_mass, self.temperature)
+        pieces = [Piece(self.wet, self._carried(), energy)]
+        if self.dry is not None:
+            mass, temperature = (h.spread(self.dry_mass.value.size) for h in self.vapor_start)
+            stored = through(
+                lambda p, p0, m, t: m * t * p / p0, self.channels["p_tank"][self.dry], self.dry_edge, mass,
+                temperature,
+            )  # fmt: skip
+            inside = np.clip(self.dry_temperature.value, COLDEST_VAPOR, WARMEST_VAPOR)
+            pieces.append(
+                Piece(
+                    self.dry,
+                    self.exponent * self.dry_flow * self.dry_temperature,
+                    stored,
+                    source.heat_capacities(inside)[0],
+                )
+            )
+        return pieces
+
+    def _carried(self) -> History:
+        """Enthalpy flow [W] of the liquid that leaves."""
+        source = self.engine.saturation
+        return through(
+            lambda flow, t: flow * source.energy(Property.LIQUID_ENTHALPY, t)[0], self.wet_flow, self.temperature
+        )
+
+    def _energy(self, volume: Array, mass: Array, temperature: Array) -> Array:
+        """Internal energy [J] of a saturated tank."""
+        v_l, v_v, u_l, u_v = self._phases(temperature)
+        liquid = (mass * v_v - volume) / (v_v - v_l)
+        return liquid * u_l + (mass - liquid) * u_v
+
+    def _phases(self, temperature: Array) -> tuple[Array, Array, Array, Array]:
+        """v_l, v_v [m^3/kg], u_l, u_v [J/kg]."""
+        s = self.engine.saturation
+        return (
+            s.liquid_volume(temperature)[0],
+            s.vapor_volume(temperature)[0],
+            s.energy(Property.LIQUID_ENERGY, temperature)[0],
+            s.energy(Property.VAPOR_ENERGY, temperature)[0],
+        )
+
+    def tank_volume(self) -> list[Piece]:
+        """Volume of the tank that its content does not fill [L], mass and energy taken from the injector's flow.
+
+        Liquid: m_l + m_v = M and m_l u_l + m_v u_v = U give V - m_l v_l - m_v v_v. Vapour: V (1 - p_k / p) with the
+        polytropic p_k = p_v (M/M_v)^k.
+        """
+        start = through(
+            self._energy, *(self.constants[name] for name in ("volume", "oxidizer_mass", "temperature"))
+        ).spread(self.cells.wet)
+        held = start - integral(self._carried(), self.cells.width[self.wet])
+
+        def unfilled(volume: Array, mass: Array, energy: Array, temperature: Array) -> Array:
+            v_l, v_v, u_l, u_v = self._phases(temperature)
+            vapor = (energy - mass * u_l) / (u_v - u_l)
+            return (volume - (mass - vapor) * v_l - vapor * v_v) / LITRE
+
+        wet = through(unfilled, self.constant("volume", self.wet), self.wet_mass, held, self.temperature)
+        pieces = [Piece(self.wet, wet)]
+        if self.dry is not None:
+            start_mass = self.vapor_start[0].spread(self.dry_mass.value.size)
+            empty = through(
+                lambda v, k, p, p0, m, m0: v * (1.0 - p0 / p * (m / m0) ** k) / LITRE,
+                self.constant("volume", self.dry), self.exponent,
+                self.channels["p_tank"][self.dry], self.dry_edge, self.dry_mass, start_mass,
+            )  # fmt: skip
+            pieces.append(Piece(self.dry, empty))
+        return pieces
+
+    def injector(self) -> list[Piece]:
+        """Flow [kg/s] that the tank loses, by its pressure alone and without heat, less what the injector passes."""
+        table = self.engine.saturation.kernel_table
+
+        def held(volume: Array, start: Array, warm: Array, t: Array) -> Array:
+            return _mass_at(table, volume[0], start[0], warm[0], t)
+
+        names = ("volume", "oxidizer_mass", "temperature")
+        mass = through(held, *(self.constant(name, self.wet) for name in names), self.temperature)
+        pieces = [Piece(self.wet, self.wet_flow.times(-1.0), mass.times(-1.0))]
+        if self.dry is not None:
+            start_mass = self.vapor_start[0].spread(self.dry_mass.value.size)
+            left = through(
+                lambda k, p, p0, m0: m0 * (np.maximum(p, 1.0) / p0) ** (1.0 / k),
+                self.exponent, self.channels["p_tank"][self.dry], self.dry_edge,
+                start_mass,
+            )  # fmt: skip
+            pieces.append(Piece(self.dry, self.dry_flow.times(-1.0), left.times(-1.0)))
+        return pieces
+
+    def feed(self) -> list[Piece]:
+        """p_tank - p_run less the line's loss K mdot^2 / rho = 2 K (C_i N_i A_i)^2 (p_run - p_c) [bar]."""
+        constant = self.constant_loss
+
+        def unexplained(tank: Array, run: Array, chamber: Array, area: Array, factor: Array) -> Array:
+            loss = 2.0 * factor * area**2 * np.maximum(run - chamber, 0.0)
+            if self.engine.feed.constant_losses is not None:
+                return (tank - run - constant) / BAR
+            return (tank - run - loss) / BAR
+
+        pressures = (self.channels[name] for name in ("p_tank", "p_run", "p_chamber"))
+        return by_phase(
+            self.cells, through(unexplained, *pressures, self.constant("area"), self.constant("loss_factor"))
+        )
+
+
+@compiled
+def _mass_at(
+    table: tuple[Array, float, float, float], volume: float, start: float, warm: float, temperatures: Array
+) -> Array:
+    """Mass [kg] of an adiabatic saturated tank at temperatures [K], from ``start`` at ``warm``: dM/dT = U_T/(h_l-U_M)
+    does not ask how fast it cools."""
+    out = np.empty_like(temperatures)
+    mass, t = start, warm
+    for i in range(temperatures.size):
+        steps = max(int(np.ceil(abs(temperatures[i] - t) / 0.5)), 1)
+        h = (temperatures[i] - t) / steps
+        for _ in range(steps):
+            k1 = _slope(table, volume, mass, t)
+            k2 = _slope(table, volume, mass + 0.5 * h * k1, t + 0.5 * h)
+            k3 = _slope(table, volume, mass + 0.5 * h * k2, t + 0.5 * h)
+            k4 = _slope(table, volume, mass + h * k3, t + h)
+            mass += h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
+            t += h
+        out[i] = mass
+    return out
+
+
+@compiled
+def _slope(table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float) -> float:
+    by_mass, by_temperature, h_l = energy_derivatives(table, volume, mass, temperature)
+    return by_temperature / (h_l - by_mass)

@@ -1,0 +1,199 @@
+"""What the tank holds and what passes the injector, from measured pressures and the injector's constants.
+
+The flow (report, eq. 3.2) is C_i N_i A_i sqrt(2 rho (p_run - p_c)); without p_run the feed line's quadratic loss is
+added to the injector's. The tank's mass is not measured: it is integrated from the flow. With the vapour's density M/V
+that gives sqrt(M) = sqrt(M_v) - C_i N_i A_i / sqrt(2 V) int sqrt(dp) dt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.compiled import compiled
+from hfanalysis.diagnose.weak_form.cells import Cells
+from hfanalysis.diagnose.weak_form.linear import History, integral, joined, through, total
+from hfanalysis.engine.injector import root
+from hfanalysis.engine.model import COLDEST_VAPOR, WARMEST_VAPOR
+from hfanalysis.engine.unsteady import Engine
+from hfanalysis.thermo.combustion import FORMATION_OFFSET
+from hfanalysis.thermo.saturation import Property
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TankFlow:
+    """What an engine's tank holds and passes, from ``channels`` on cells.
+
+    ``constants``: the engine's numbers by name, each a single value; ``edge``: the tank's pressure at the end of the
+    liquid, where there is one.
+    """
+
+    engine: Engine
+    cells: Cells
+    channels: Mapping[str, History]
+    constants: Mapping[str, History]
+    edge: History | None
+
+    @property
+    def wet(self) -> slice:
+        """Cells before the end of the liquid."""
+        return self.cells.phases[0]
+
+    @property
+    def dry(self) -> slice | None:
+        """Cells behind it."""
+        return self.cells.phases[1] if len(self.cells.phases) > 1 else None
+
+    def constant(self, name: str, part: slice | None = None) -> History:
+        """One of the constants, held over a phase (default: all cells)."""
+        part = part or slice(0, self.cells.time.size)
+        return self.constants[name].spread(part.stop - part.start)
+
+    @cached_property
+    def _resistance(self) -> History:
+        """Effective area [m^2] of what lies between the two pressures that are measured."""
+        feed = self.engine.feed
+        if "p_run" in self.channels or feed.constant_losses is not None:
+            return self.constants["area"]
+        return through(lambda a, k: (2.0 * k + a**-2.0) ** -0.5, self.constants["area"], self.constants["loss_factor"])
+
+    @cached_property
+    def _root_drop(self) -> History:
+        """sqrt of the pressure drop across it [Pa^0.5]."""
+        upstream = self.channels.get("p_run", self.channels["p_tank"])
+        lost = self.constant_loss if "p_run" not in self.channels else 0.0
+        return through(lambda p, c: _roots(p - c - lost), upstream, self.channels["p_chamber"])
+
+    @property
+    def constant_loss(self) -> Array | float:
+        """The report's constant feed losses by phase [Pa]; 0 where the loss is quadratic."""
+        losses = self.engine.feed.constant_losses
+        if losses is None:
+            return 0.0
+        return np.where(np.arange(self.cells.time.size) < self.cells.wet, *losses)
+
+    @cached_property
+    def temperature(self) -> History:
+        """Of the saturated tank [K], while there is liquid."""
+        return through(self.engine.saturation.temperature, self.channels["p_tank"][self.wet])
+
+    @cached_property
+    def wet_flow(self) -> History:
+        """Oxidizer flow [kg/s] while there is liquid."""
+        area = self._resistance.spread(self.cells.wet)
+        density = self.engine.saturation.liquid_density
+        return through(
+            lambda a, t, x: a * np.sqrt(2.0 * density(t)) * x, area, self.temperature, self._root_drop[self.wet]
+        )
+
+    @cached_property
+    def wet_mass(self) -> History:
+        """What the tank holds [kg] while there is liquid."""
+        return self.constant("oxidizer_mass", self.wet) - integral(self.wet_flow, self.cells.width[self.wet])
+
+    @cached_property
+    def vapor_start(self) -> tuple[History, History]:
+        """Mass [kg] and temperature [K] of the vapour that is left at the end of the liquid."""
+        assert self.edge is not None
+        source = self.engine.saturation
+        temperature = through(source.temperature, self.edge)
+        return through(lambda v, t: v * source.vapor_density(t), self.constants["volume"], temperature), temperature
+
+    @cached_property
+    def dry_mass(self) -> History:
+        """What the tank holds [kg] after the end of the liquid."""
+        assert self.dry is not None
+        count = self.dry.stop - self.dry.start
+        passed = integral(self._root_drop[self.dry], self.cells.width[self.dry])
+
+        def left(start: Array, area: Array, volume: Array, x: Array) -> Array:
+            return np.asarray(np.maximum(np.sqrt(start) - area * x / np.sqrt(2.0 * volume), 1e-3) ** 2)
+
+        start, area = self.vapor_start[0].spread(count), self._resistance.spread(count)
+        return through(left, start, area, self.constant("volume", self.dry), passed)
+
+    @cached_property
+    def exponent(self) -> History:
+        """Polytropic exponent of the vapour; c_p/c_v at the end of the liquid where the engine states none."""
+        count = self.dry_mass.value.size
+        if self.engine.polytropic_exponent is not None:
+            return self.constants["polytropic_exponent"].spread(count)
+
+        def ratio(temperature: Array) -> Array:
+            cv, cp = self.engine.saturation.heat_capacities(temperature)
+            return np.asarray(cp / cv)
+
+        return through(ratio, self.vapor_start[1]).spread(count)
+
+    @cached_property
+    def dry_flow(self) -> History:
+        """Oxidizer flow [kg/s] after the end of the liquid."""
+        assert self.dry is not None
+        area = self._resistance.spread(self.dry_mass.value.size)
+        return through(
+            lambda a, m, v, x: a * np.sqrt(2.0 * m / v) * x,
+            area,
+            self.dry_mass,
+            self.constant("volume", self.dry),
+            self._root_drop[self.dry],
+        )
+
+    @cached_property
+    def flow(self) -> History:
+        """Oxidizer flow through the injector [kg/s]."""
+        return joined([self.wet_flow, self.dry_flow]) if self.dry is not None else self.wet_flow
+
+    @cached_property
+    def dry_temperature(self) -> History:
+        """Of the vapour [K], from pressure and mass."""
+        assert self.dry is not None
+        count = self.dry_mass.value.size
+        mass, temperature = (h.spread(count) for h in self.vapor_start)
+        return through(
+            lambda p, m, p0, m0, t0: t0 * p * m0 / (p0 * m),
+            self.channels["p_tank"][self.dry],
+            self.dry_mass,
+            self.dry_edge,
+            mass,
+            temperature,
+        )
+
+    @property
+    def dry_edge(self) -> History:
+        """The tank's pressure at the end of the liquid [Pa], held over the cells behind it."""
+        assert self.edge is not None
+        return self.edge.spread(self.dry_mass.value.size)
+
+    def closing_mass(self) -> History | None:
+        """What the injector's flow leaves in the tank at the end of the liquid, less the vapour that fits it [kg]."""
+        if self.dry is None:
+            return None
+        passed = total(self.wet_flow, self.cells.width[self.wet])
+        return self.constants["oxidizer_mass"] - passed - self.vapor_start[0]
+
+    @cached_property
+    def enthalpy(self) -> Array:
+        """Of the oxidizer entering [J/kg], on the formation scale."""
+        e = self.engine
+        if e.oxidizer_enthalpy is not None:
+            return np.full(self.cells.time.size, e.oxidizer_enthalpy)
+        liquid = e.saturation.energy(Property.LIQUID_ENTHALPY, self.temperature.value)[0]
+        if self.dry is None:
+            return FORMATION_OFFSET + liquid
+        inside = np.clip(self.dry_temperature.value, COLDEST_VAPOR, WARMEST_VAPOR)
+        vapor = e.saturation.energy(Property.VAPOR_ENTHALPY, inside)[0]
+        return FORMATION_OFFSET + np.concatenate([liquid, vapor])
+
+
+@compiled
+def _roots(drop: Array) -> Array:
+    out = np.empty_like(drop)
+    for i in range(drop.size):
+        out[i] = root(drop[i])
+    return out

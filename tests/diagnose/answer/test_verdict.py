@@ -1,0 +1,333 @@
+"""Probabilities, plausible sizes, the proof, and what is said of them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as some
+from tests.diagnose import made
+from tests.diagnose.naming.test_naming import catalogue
+from tests.engine.stand import engine_on_stand
+
+from hfanalysis.diagnose.answer import gap, posterior
+from hfanalysis.diagnose.answer import verdict as verdict_module
+from hfanalysis.diagnose.answer.acting import acting
+from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judged, lost
+from hfanalysis.diagnose.answer.posterior import BEFORE, SET, UNSEEN, Scale, evidences_of, kind, scale, smallest_set
+from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
+from hfanalysis.diagnose.answer.verdict import effects_product, verdict_of
+from hfanalysis.diagnose.fitting.fit import fit
+from hfanalysis.diagnose.naming.candidate import Candidate
+from hfanalysis.diagnose.naming.naming import Naming, name_effects
+from hfanalysis.diagnose.naming.variants import VARIANTS, settings_of
+from hfanalysis.effects import effect, library
+from hfanalysis.errors import InputError
+
+labels = some.dictionaries(
+    some.sampled_from(("none", "unknown", "tank_heat", "load_cell_drift", "n2_purge")),
+    some.floats(-500.0, 500.0),
+    min_size=1,
+)
+EROSION = effect("nozzle_throat_erosion").at(rate=2e-4)
+
+
+@cache
+def eroded() -> Naming:
+    tried = catalogue(("load_cell_drift", "nozzle_throat_erosion"))
+    return name_effects(made.hypothesis(), made.observed(EROSION), tried)
+
+
+@given(labels, some.floats(0.5, 20.0), some.floats(0.0, 5.0), some.floats(0.0, 10.0))
+def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: float, leftover: float) -> None:
+    found = Scale(t, more).probabilities(evidences, leftover)
+    assert set(found) == set(evidences)
+    assert sum(found.values()) == pytest.approx(1.0)
+    order = sorted(evidences, key=lambda k: evidences[k])
+    assert all(found[a] <= found[b] for a, b in pairwise(order))
+
+
+@given(labels)
+def test_the_set_is_the_smallest_that_holds_nine_tenths(evidences: dict[str, float]) -> None:
+    found = Scale().probabilities(evidences, 1.0)
+    names = smallest_set(found)
+    assert sum(found[n] for n in names) >= SET - 1e-12
+    assert sum(found[n] for n in names[:-1]) < SET
+    assert min(found[n] for n in names) >= max((p for n, p in found.items() if n not in names), default=0.0)
+
+
+def test_a_temperature_takes_evidences_less_seriously() -> None:
+    evidences = {"none": 0.0, "tank_heat": 10.0}
+    cold, warm = (Scale(t).probabilities(evidences, 1.0) for t in (1.0, 5.0))
+    assert cold["tank_heat"] == pytest.approx(1.0 / (1.0 + np.exp(-10.0)))
+    assert warm["tank_heat"] == pytest.approx(1.0 / (1.0 + np.exp(-2.0)))
+    left = Scale(1.0, 1.0)
+    assert left.probabilities(evidences, 0.8) == cold
+    assert left.probabilities(evidences, 5.0) == warm
+
+
+def test_where_evidence_misleads_nothing_is_certain() -> None:
+    evidences = {"none": 0.0, "tank_heat": 400.0, "n2_purge": 3.0, "unknown": -5.0}
+    found = Scale(misled=0.1).probabilities(evidences, 1.0)
+    assert sum(found.values()) == pytest.approx(1.0)
+    assert found["none"] == pytest.approx(0.1 * BEFORE["none"])
+    assert found["n2_purge"] == pytest.approx(0.1 * BEFORE["named"] / 2.0)
+    assert found["tank_heat"] == pytest.approx(0.9 + 0.1 * BEFORE["named"] / 2.0)
+
+
+def test_effects_that_were_not_tried_are_less_probable_than_those_that_were() -> None:
+    found = eroded()
+    evidences = evidences_of(replace(found, names=(*found.names, "tank_heat"), unknown=()))
+    assert evidences["tank_heat"] == evidences["unknown"]
+    assert evidences["tank_heat"] <= min(UNSEEN, min(evidences.values()))
+
+
+def test_an_offset_of_a_kind_shifts_its_odds() -> None:
+    shifted = Scale(offsets={"none": 2.0, "named": 0.0, "unknown": 0.0}).probabilities(
+        {"none": 0.0, "n2_purge": 2.0}, 1
+    )
+    assert shifted["none"] == pytest.approx(0.5)
+    assert [kind(label) for label in ("none", "unknown", "n2_purge")] == ["none", "unknown", "named"]
+
+
+def test_what_was_not_seen_is_as_good_as_none_but_for_its_own_offset() -> None:
+    offsets = {"none": 0.0, "named": 1.0, "unknown": 0.0, "unseen named": -3.0}
+    seen = {"none": 0.0, "n2_purge": 4.0, "tank_heat": UNSEEN, "fuel_sliver": UNSEEN - 20.0}
+    found = Scale(temperature=2.0, offsets=offsets).probabilities(seen, 1.0)
+    assert found["tank_heat"] == found["fuel_sliver"] == pytest.approx(found["none"] * np.exp(-3.0))
+    assert found["n2_purge"] == pytest.approx(found["none"] * np.exp(1.0 + 4.0 / 2.0))
+    without = Scale(temperature=2.0, offsets={"none": 0.0, "named": 1.0, "unknown": 0.0}).probabilities(seen, 1.0)
+    assert without["fuel_sliver"] < without["tank_heat"]
+
+
+@pytest.fixture
+def stored(monkeypatch: pytest.MonkeyPatch, tmp_path):  # type: ignore[no-untyped-def]
+    """A folder in place of the package's, whose probabilities.json a test may write."""
+    monkeypatch.setattr(posterior, "files", lambda name: tmp_path)
+    scale.cache_clear()
+    yield tmp_path
+    scale.cache_clear()
+
+
+def test_without_constants_evidences_are_taken_as_they_are(stored) -> None:  # type: ignore[no-untyped-def]
+    assert scale() == Scale()
+
+
+def test_constants_are_read_from_their_file(stored) -> None:  # type: ignore[no-untyped-def]
+    offsets = {"none": 1.0, "named": 0.0, "unknown": -1.0}
+    text = json.dumps({"temperature": 3.0, "temperature_per_leftover": 0.2, "offsets": offsets, "cases": 9})
+    (stored / "probabilities.json").write_text(text, encoding="utf-8")
+    assert scale() == Scale(3.0, 0.2, offsets)
+
+
+def test_none_is_the_zero_of_evidence_and_a_set_counts_for_its_first_name() -> None:
+    found = eroded()
+    evidences = evidences_of(found)
+    assert evidences["none"] == 0.0
+    single = found.singles[0]
+    pair = replace(single, names=("nozzle_throat_erosion", "tank_heat"), log_evidence=single.log_evidence + 7.0)
+    with_set = evidences_of(replace(found, sets=(pair,)))
+    assert with_set["nozzle_throat_erosion"] == pytest.approx(evidences["nozzle_throat_erosion"] + 7.0)
+    assert "tank_heat" not in with_set
+
+
+def test_a_size_beyond_belief_costs_evidence() -> None:
+    for name, limit in LIMITS.items():
+        # only the parameter that a limit is of, or all transducers
+        typical, huge = ({limit.parameter: share * limit.most} for share in (0.9, 5.0))
+        assert lost(name, typical) == 0.0, name
+        assert 1.0 < lost(name, huge) <= MOST_LOST, name
+        assert lost(name, {limit.parameter: -5.0 * limit.most}) == lost(name, huge), name
+        assert judged(name, huge)["plausible"] is False, name
+        assert judged(name, typical)["plausible"] is True, name
+    assert lost("tank_heat", {"power": 1e9}) == MOST_LOST
+    assert excess("an_effect_of_a_team", {"x": 1e9}) == 0.0
+    assert judged("an_effect_of_a_team", {"x": 1e9})["plausible"] is None
+
+
+def test_every_limit_is_of_a_strength_that_the_library_has() -> None:
+    assert set(LIMITS) == set(library())
+    for name, limit in LIMITS.items():
+        known = library()[name]
+        assert limit.parameter in [p.name for p in known.parameters[: known.strengths]], name
+
+
+def test_an_impossible_size_makes_a_name_less_probable() -> None:
+    """Throat erosion of a millimetre a second, and the same evidence."""
+    found = eroded()
+    single = found.singles[0]
+    engine = single.fit.burnt.steps.engine
+    worn = replace(engine, effects=(effect("nozzle_throat_erosion").at(rate=1.2e-3),))
+    burnt = replace(single.fit.burnt, steps=replace(single.fit.burnt.steps, engine=worn))
+    large = replace(single, fit=replace(single.fit, burnt=burnt))
+    odds = [verdict_of(replace(found, singles=(c,))).evidences["nozzle_throat_erosion"] for c in (single, large)]
+    assert odds[0] - odds[1] == pytest.approx(lost("nozzle_throat_erosion", {"rate": 1.2e-3}))
+
+
+def probable(*gains: tuple[str, float]) -> Naming:
+    """A naming in which these names have such log evidences beyond none."""
+    found, single = eroded(), eroded().singles[0]
+    base = found.base.log_evidence
+    singles = tuple(replace(single, names=(n,), log_evidence=base + g) for n, g in gains if n != "unknown")
+    strange = tuple(Candidate(("tank_leak",), single.fit, base + g, unknown=True) for n, g in gains if n == "unknown")
+    return replace(found, singles=singles, sets=(), unknown=strange)
+
+
+@pytest.mark.parametrize(
+    ("gains", "label"),
+    [
+        ((("tank_heat", 20.0), ("n2_purge", 3.0)), "named"),
+        ((("tank_heat", 20.0), ("n2_purge", 19.5)), "ambiguous"),
+        ((("tank_heat", -20.0),), "none"),
+        ((("tank_heat", 20.0), ("unknown", 30.0)), "unknown"),
+        ((("tank_heat", 6.2),), "named"),
+        ((("tank_heat", 5.8),), "none"),
+        ((("unknown", 11.8),), "none"),
+    ],
+)
+def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(verdict_module, "scale", Scale)  # evidences as they are
+    verdict = verdict_of(probable(*gains))
+    assert verdict.label == label
+    assert sum(verdict.posterior.values()) == pytest.approx(1.0)
+    if label == "none":
+        assert verdict.chosen.names == ()
+    if label == "named":
+        assert verdict.chosen.names == (verdict.top,)
+
+
+def with_set(gain: float, further: str = "load_cell_drift") -> Naming:
+    """Throat erosion, which explains 20 units, and a set with another effect, which explains so much more."""
+    found = probable(("nozzle_throat_erosion", 20.0))
+    names = ("nozzle_throat_erosion", further)
+    return replace(found, sets=(replace(found.singles[0], names=names, log_evidence=found.named.log_evidence + gain),))
+
+
+@pytest.mark.parametrize(("gain", "claimed"), [(0.5, 1), (0.8, 1), (0.9, 2), (10.0, 2)])
+def test_a_second_effect_is_claimed_where_one_does_not_explain_as_much(gain: float, claimed: int, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    """One alone has the probability 1 / (1 + e^gain), and 0.3 is enough."""
+    monkeypatch.setattr(verdict_module, "scale", Scale)
+    monkeypatch.setattr(posterior, "scale", Scale)
+    verdict = verdict_of(with_set(gain))
+    assert len(verdict.chosen.names) == claimed
+    assert verdict.partners["load_cell_drift"] == pytest.approx(1.0 / (1.0 + np.exp(-gain)), abs=1e-6)
+    if claimed == 2:
+        assert verdict.label == ("named" if gain > 3.0 else "ambiguous")
+
+
+def test_partners_that_explain_as_much_share_the_probability(monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(verdict_module, "scale", Scale)
+    monkeypatch.setattr(posterior, "scale", Scale)
+    found = replace(with_set(12.0), sets=(*with_set(12.0).sets, *with_set(12.0, "chamber_tap_lag").sets))
+    verdict = verdict_of(found)
+    assert verdict.label == "ambiguous"
+    assert verdict.partners == pytest.approx({"load_cell_drift": 0.5, "chamber_tap_lag": 0.5}, abs=1e-4)
+
+
+def test_the_effect_is_given_with_its_size() -> None:
+    row = effects_product(verdict_of(eroded()))[0]
+    assert row["name"] == "nozzle_throat_erosion"
+    rate = row["parameters"]["rate"]
+    assert abs(rate.value - 2e-4) < 3.5 * rate.std
+    assert rate.unit == "m/s"
+    assert row["plausibility"]["plausible"] is True
+
+
+@cache
+def sibling(*effects) -> OtherTest:  # type: ignore[no-untyped-def]
+    """Another test of the stand: less oxidizer, warmer."""
+    engine = engine_on_stand(effects=effects, oxidizer_mass=7.6, temperature=296.0)
+    mass = next(f for f in made.hypothesis().free if f.name == "oxidizer_mass")
+    free = tuple(replace(f, center=7.62) if f is mass else f for f in made.hypothesis().free)
+    free = tuple(replace(f, center=296.0) if f.name == "temperature" else f for f in free)
+    return OtherTest("T2", replace(made.hypothesis(), free=free), made.observed(seed=5, engine=engine))
+
+
+@cache
+def proof(eroding: bool) -> Proof:
+    return prove(eroded(), verdict_of(eroded()).chosen, sibling(EROSION) if eroding else sibling())
+
+
+def test_the_gap_closes_on_all_arms_and_hardly_with_a_wrong_effect() -> None:
+    fractions = proof(eroding=True).fractions
+    assert set(fractions) >= {"same", "held_out", "other_test", "placebo"}
+    for arm in ("same", "held_out", "other_test"):
+        assert fractions[arm] is not None, arm
+        assert 0.8 < fractions[arm] <= 1.0, arm
+    assert fractions["placebo"] is not None
+    assert fractions["placebo"] < 0.5
+
+
+def test_an_effect_that_another_test_lacks_does_not_close_its_gap() -> None:
+    found = proof(eroding=False)
+    assert found.other is not None
+    fraction = found.fractions["other_test"]
+    assert fraction is None or fraction < 0.0
+    assert found.other["after"]["p_chamber"] > found.other["before"]["p_chamber"]
+
+
+def test_the_other_test_keeps_the_constants_that_were_found_here() -> None:
+    chosen = verdict_of(eroded()).chosen
+    kept = gap.frozen(sibling(EROSION).hypothesis, chosen.fit)
+    assert kept.names == made.hypothesis().names
+    assert kept.engine.effects[0].named["rate"] == pytest.approx(chosen.fit.values["nozzle_throat_erosion.rate"])
+
+
+def test_without_another_test_the_proof_says_so() -> None:
+    alone = prove(eroded(), verdict_of(eroded()).chosen, None)
+    assert alone.fractions["other_test"] is None
+    assert any("no other test" in note for note in alone.notes)
+
+
+def test_the_gap_of_the_truth_is_the_noise() -> None:
+    test = made.observed()
+    found = fit(made.hypothesis(), test)
+    rms, noise = gap.root_mean_square(found, test), gap.noise_of(test)
+    for name, value in rms.items():
+        assert value == pytest.approx(noise[name], rel=0.2), name
+    assert gap.total_gap(found, test) < 0.8
+    assert gap.closed(0.1, 0.0) is None
+    assert gap.closed(10.0, 1.0) == pytest.approx(0.9)
+
+
+def test_offset_and_gain_of_a_sensor_are_no_gap() -> None:
+    test = made.observed()
+    found = fit(made.hypothesis(), test)
+    shifted = tuple(replace(c, value=1.002 * c.value + 4e3) if c.name == "p_run" else c for c in test.channels)
+    biased = gap.root_mean_square(found, replace(test, channels=shifted))
+    assert biased["p_run"] < 1.3 * gap.root_mean_square(found, test)["p_run"]
+
+
+def test_what_an_effect_does_is_given_over_time() -> None:
+    found = eroded()
+    source = acting(verdict_of(found).chosen.fit, "nozzle_throat_erosion", found.bench.observed)
+    assert source.equation == "nozzle"
+    assert source.unit == "N"
+    assert (source.std > 0.0).all()
+    assert abs(source.mean[-1]) > 5.0 * abs(source.mean[2])
+
+
+def test_the_band_of_a_source_holds_what_its_other_constants_leave_open() -> None:
+    """Pressure against a reference that nobody knows: how much of the regression is the effect's is a convention."""
+    hidden = effect("grain_pressure_regression").at(exponent=0.5)
+    test = made.observed(hidden)
+    found = fit(made.hypothesis().with_effect(effect("grain_pressure_regression")), test)
+    source = acting(found, "grain_pressure_regression", test)
+    burning = source.time < 0.9 * test.end
+    size = np.abs(source.mean[burning])
+    there = int(np.argmin(size))
+    assert size[there] < 0.1 * size.max()  # the pressure is the reference there, if that is what was assumed
+    assert source.std[burning][there] > 0.1 * size.max()
+
+
+def test_variants_are_known_by_name() -> None:
+    assert settings_of("") == VARIANTS[""]
+    assert settings_of("white_noise").coloured is False
+    assert sum(settings_of(name) == settings_of("") for name in VARIANTS) == 1
+    with pytest.raises(InputError, match="expected one of no_tempering"):
+        settings_of("no_such")

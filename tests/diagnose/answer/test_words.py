@@ -1,0 +1,96 @@
+"""What a diagnosis says in sentences."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from tests.diagnose import made
+from tests.diagnose.answer.test_verdict import eroded, probable
+
+from hfanalysis.diagnose.answer.plausible import judged
+from hfanalysis.diagnose.answer.verdict import effects_product, places, verdict_of
+from hfanalysis.diagnose.answer.words import (
+    effect_sentence,
+    gap_line,
+    headline,
+    place_sentence,
+    proof_sentences,
+    shown,
+    story,
+)
+from hfanalysis.quantity import Quantity
+
+
+def product(label: str, **more: Any) -> dict[str, Any]:
+    """A small product of a verdict."""
+    gains = {
+        "none": (("nozzle_throat_erosion", -20.0),),
+        "named": (("nozzle_throat_erosion", 20.0),),
+        "ambiguous": (("nozzle_throat_erosion", 20.0), ("load_cell_drift", 19.8)),
+    }
+    found = eroded() if label == "unknown" else probable(*gains[label])
+    verdict = verdict_of(found)
+    fractions = {"same": 0.98, "held_out": 0.9, "other_test": None, "placebo": 0.1}
+    rms = {name: 2.0 * size for name, size in made.NOISE.items()}
+    return {
+        "verdict": label,
+        "partners": {},
+        "posterior": {"unknown": 0.97, "none": 0.03} if label == "unknown" else verdict.posterior,
+        "set90": ["unknown"] if label == "unknown" else verdict.set90,
+        "effects": effects_product(verdict) if label in ("named", "ambiguous") else [],
+        "localisation": places(verdict, found) if label != "none" else [],
+        "gap": {"before": rms, "after": made.NOISE, "noise": made.NOISE, "closed_fraction": fractions},
+        "not_it": ["tank_heat"],
+        "decisive_measurements": [] if label == "none" else ["nozzle_throat_erosion: the throat's diameter"],
+        **more,
+    }
+
+
+@pytest.mark.parametrize("label", ["none", "named", "ambiguous", "unknown"])
+def test_every_verdict_is_said_in_sentences(label: str) -> None:
+    given = product(label)
+    said, probability = story(given), given["posterior"].get("nozzle_throat_erosion", 0.0)
+    assert all(line.endswith(".") and "None" not in line and "nan" not in line for line in said)
+    expected = {
+        "none": "Nothing is missing",
+        "named": f"The model lacks nozzle_throat_erosion ({probability:.2f})",
+        "ambiguous": "cannot be excluded",
+        "unknown": "Something is missing that is not in the library (unknown 0.97)",
+    }
+    assert expected[label] in said[0]
+    assert (len(said) == 1) == (label == "none")
+    if label == "unknown":
+        assert "It is none of these: tank_heat." in said
+
+
+def test_what_is_likelier_than_none_is_said_where_nothing_is_claimed() -> None:
+    odds = {"none": 0.1, "unknown": 0.7, "tank_heat": 0.2}
+    assert headline(product("none", posterior=odds)).startswith("Nothing is claimed to be missing: unknown (0.70)")
+    assert headline(product("none", posterior={**odds, "none": 0.6})).startswith("Nothing is missing from the model")
+
+
+def test_sentences_give_sizes_in_the_units_of_engineers() -> None:
+    row = places(verdict_of(eroded()), eroded())[0]
+    assert " N on average" in place_sentence(row)
+    heat = {**row, "equation": "tank_energy", "source": Quantity(900.0, "W", 150.0)}
+    assert "the tank's energy differs by 0.9 ± 0.15 kW" in place_sentence(heat)
+    assert "(thrust)" in place_sentence({**row, "channel": "thrust"})
+    assert place_sentence({**row, "beside": True}).endswith("still open.")
+    assert shown(Quantity(2.5e5, "Pa", 1e4)) == "2.5 ± 0.1 bar"
+    assert shown(Quantity.absent("not recorded")) == "not known"
+    assert gap_line("thrust", product("named")["gap"]) == "thrust: rms 10 N without, 5 N with it; noise 5 N."
+    assert proof_sentences(product("named"))[0].startswith("98 % of the gap closes")
+    assert proof_sentences({"gap": {"closed_fraction": {}}}) == []
+
+
+def test_an_impossible_size_is_said() -> None:
+    row = effects_product(verdict_of(eroded()))[0]
+    assert "hard to believe" not in effect_sentence(row)
+    unlikely = {**row, "plausibility": judged("nozzle_throat_erosion", {"rate": 2e-3})}
+    assert "hard to believe" in effect_sentence(unlikely)
+    assert "2 mm/s is beyond 0.4 mm/s" in effect_sentence(unlikely)
+
+
+def test_the_headline_is_of_the_most_probable() -> None:
+    assert "nozzle_throat_erosion" in headline(product("named"))
