@@ -1,6 +1,6 @@
 """Where simulation and measurement disagree, which effect the model lacks, and the proof.
 
-``observations`` reduce a log to what is compared, ``fitting`` fits the engine to it, ``naming`` tries effects and unknown
-sources, ``answer`` says what is likely, how large and how well proved; ``weak_form`` asks the equations without a model.
-``of_test`` leads through all of it.
+``observations`` reduce a log to what is compared, ``fitting`` fits the engine to it, ``naming`` tries effects and
+unknown sources, ``answer`` says what is likely, how large and how well proved; ``weak_form`` asks the equations without
+a model. ``of_test`` leads through all of it.
 """
