@@ -5,6 +5,7 @@ The calibrated constants are projected out: only what they cannot take over coun
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -32,35 +33,45 @@ MOST_FIRST = 1.5
 """The largest strength (as x) at which a fit starts."""
 
 
-def score_tests(
-    parent: Fit, slopes: Array, catalogue: Catalogue, name: str, observed: Observed, settings: Settings
-) -> tuple[Hypothesis, list[tuple[float, Array]]]:
-    """The parent with an effect more, and each start of its shape with the gain in log probability that it promises.
+Test = tuple[float, Array]
+"""The gain in log probability that a start promises, and that start."""
 
-    ``slopes`` (observations, parameters) of the parent, which hardly change by a small effect. The starts are those of
-    a fit, the strengths as the score test sees them; the best first.
+
+def score_tests(
+    parent: Fit, slopes: Sequence[Array], catalogue: Catalogue, name: str, forms: Sequence[Observed], settings: Settings
+) -> tuple[Hypothesis, list[list[Test]]]:
+    """The parent with an effect more, and for each form the starts with the gain that they promise, the best first.
+
+    ``slopes`` (observations, parameters) of the parent at each form, which hardly change by a small effect. The starts
+    are those of the shape, the strengths as the score test sees them.
     """
     made = catalogue.add(parent.hypothesis, name)
     least, most = made.bounds
     size = parent.x.size
     own = slice(size, size + catalogue.effects[name].strengths)
     shapes = [i for i in range(own.stop, made.size) if made.free[i].shape == "positive" and made.free[i].unsure]
-    found = []
+    found: list[list[Test]] = [[] for _ in forms]
     for choice in product(STARTS if len(shapes) == 1 else FEW_STARTS, repeat=len(shapes)):
         start = np.concatenate([parent.x, np.zeros(made.size - size)])
         start[shapes] = choice
         start[own] = FIRST_STEP
         start = np.clip(start, least, most)
         try:
-            there = predict(made, observed, start, tangents=True, only=own)
+            there = predict(made, forms[0], start, tangents=True, only=own)
         except (ValueError, ArithmeticError):
             continue
-        if there.slopes is not None and usable(there) and np.isfinite(there.residual).all():
-            both = np.column_stack([slopes, there.slopes])
-            gain, strength = score(both, there.residual, start, own, (least, most), settings.projection)
-            start[own] = np.clip(strength, -MOST_FIRST, MOST_FIRST)
-            found.append((gain, start))
-    return made, sorted(found, key=lambda s: -s[0])
+        if there.slopes is None or not usable(there) or not np.isfinite(there.residual).all():
+            continue
+        for tests, observed, of_parent in zip(found, forms, slopes, strict=True):
+            residual, by_strength = there.residual, there.slopes
+            if observed is not forms[0]:
+                residual, by_strength = (observed.rewhitened(rows, forms[0]) for rows in (residual, by_strength))
+            both = np.column_stack([of_parent, by_strength])
+            gain, strength = score(both, residual, start, own, (least, most), settings.projection)
+            promising = start.copy()
+            promising[own] = np.clip(strength, -MOST_FIRST, MOST_FIRST)
+            tests.append((gain, promising))
+    return made, [sorted(tests, key=lambda test: -test[0]) for tests in found]
 
 
 def score(

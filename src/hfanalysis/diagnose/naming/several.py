@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.singles import HOPELESS
@@ -47,13 +48,16 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[
     for size in range(2, MOST_EFFECTS + 1):
         search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
         grown = sorted((c for parent in front for c in _partners(parent, search, tried)), key=lambda c: -c.log_evidence)
-        best = [c for c in (_dropped(c, bench) for c in grown[:2]) if len(c.names) > 1]
+        best = [c for c in each(lambda c: _dropped(c, bench), grown[:2]) if len(c.names) > 1]
         loose = _loosened([*best, *grown], bench)
         front = [c for c, free in zip(best, loose, strict=False) if free.log_evidence > _of_subsets(c, known)][:1]
         if not front:
             break
         found += loose
         known += loose
+        last = front[0]
+    if found and (swapped := _swapped(last, search)) is not last:
+        found += _loosened([swapped], bench)
     return known[: len(singles)], sorted(_best_each(found), key=lambda c: -c.log_evidence)
 
 
@@ -90,9 +94,7 @@ def _partners(parent: Candidate, search: Search, tried: set[frozenset[str]]) -> 
     names = [
         n for n in search.catalogue.effects if frozenset((*parent.names, n)) not in tried and n not in parent.names
     ]
-    asked: dict[str, tuple[Hypothesis, Array]] = {}
-    for form in parent.form.either_finer or [parent.form]:
-        asked = _asked(parent, bench.at(form), search, names) | asked
+    asked = _asked(parent, [bench.at(form) for form in parent.form.either_finer or [parent.form]], search, names)
     tried |= {frozenset((*parent.names, name)) for name in asked}
     fits = each(lambda start: attempted(start[0], bench.at(parent.form), start[1]), list(asked.values()))
     out = [
@@ -105,18 +107,55 @@ def _partners(parent: Candidate, search: Search, tried: set[frozenset[str]]) -> 
 
 
 def _asked(
-    parent: Candidate, observed: Observed, search: Search, names: list[str]
+    parent: Candidate, forms: list[Observed], search: Search, names: list[str]
 ) -> dict[str, tuple[Hypothesis, Array]]:
-    """The few effects with most to gain, with where their fit starts, by score tests.
+    """The few effects with most to gain at each form, with where their fit starts, by score tests.
 
-    At a form that is finer on one side than the parent fits to: what it lacks there shows.
+    The forms are finer on one side than the parent fits to: what it lacks shows there.
     """
-    slopes = predict(parent.fit.hypothesis, observed, parent.fit.x, tangents=True).slopes
-    assert slopes is not None
-    tests = each(lambda n: score_tests(parent.fit, slopes, search.catalogue, n, observed, search.settings), names)
-    scores = {name: (made, found[0]) for name, (made, found) in zip(names, tests, strict=True) if found}
-    best = sorted(scores, key=lambda name: -scores[name][1][0])[:PARTNERS]
-    return {name: (scores[name][0], scores[name][1][1]) for name in best if scores[name][1][0] >= ASKED}
+    first = predict(parent.fit.hypothesis, forms[0], parent.fit.x, tangents=True).slopes
+    assert first is not None
+    slopes = [first, *(observed.rewhitened(first, forms[0]) for observed in forms[1:])]
+    tests = each(lambda n: score_tests(parent.fit, slopes, search.catalogue, n, forms, search.settings), names)
+    asked: dict[str, tuple[Hypothesis, Array]] = {}
+    for k in range(len(forms)):
+        seen = {
+            n: (made, of[k][0]) for n, (made, of) in zip(names, tests, strict=True) if of[k] and of[k][0][0] >= ASKED
+        }
+        for name in sorted(seen, key=lambda n: -seen[n][1][0])[:PARTNERS]:
+            made, (_, start) = seen[name]
+            asked.setdefault(name, (made, start))
+    return asked
+
+
+def _swapped(found: Candidate, search: Search) -> Candidate:
+    """The set with declared twins in the place of its effects, where that makes the data more probable."""
+    for name in found.names:
+        for twin in search.catalogue.effects[name].twins:
+            if twin in search.catalogue.effects and twin not in found.names:
+                other = _in_place(found, name, twin, search)
+                found = other if other is not None and more_probable(other, found) else found
+    return found
+
+
+def _in_place(found: Candidate, name: str, twin: str, search: Search) -> Candidate | None:
+    """The set with another effect in the place of one; None where it cannot be run."""
+    observed = search.bench.at(found.form)
+    rest = _without(found, name, observed)
+    if rest is None:
+        return None
+    made, (tests,) = score_tests(rest, [rest.slopes], search.catalogue, twin, [observed], search.settings)
+    again = attempted(made, observed, tests[0][1]) if tests else None
+    if again is None:
+        return None
+    return search.bench.judged(candidate(tuple(twin if n == name else n for n in found.names), again, found.form))
+
+
+def _without(found: Candidate, name: str, observed: Observed) -> Fit | None:
+    """The fit of a set without one of its effects."""
+    hypothesis = found.fit.hypothesis.without(name)
+    kept = [i for i, f in enumerate(found.fit.hypothesis.free) if f.name.partition(".")[0] != name]
+    return attempted(hypothesis, observed, found.fit.x[kept], SHORT)
 
 
 def _dropped(found: Candidate, bench: Bench) -> Candidate:
@@ -126,9 +165,7 @@ def _dropped(found: Candidate, bench: Bench) -> Candidate:
             break
         if _certain(found, name):
             continue
-        hypothesis = found.fit.hypothesis.without(name)
-        kept = [i for i, f in enumerate(found.fit.hypothesis.free) if f.name.partition(".")[0] != name]
-        again = attempted(hypothesis, bench.at(found.form), found.fit.x[kept])
+        again = _without(found, name, bench.at(found.form))
         if again is None:
             continue
         less = bench.judged(candidate(tuple(n for n in found.names if n != name), again, found.form))

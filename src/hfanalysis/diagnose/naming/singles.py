@@ -92,12 +92,11 @@ def _keep(best: dict[str, Candidate], found: list[Candidate]) -> None:
 
 def polished(parent: Candidate, children: list[Candidate], bench: Bench) -> Candidate:
     """The parent, fitted again from the constants of its best children."""
-    best = parent
-    for child in sorted(children, key=lambda c: -c.log_evidence)[:POLISHING]:
-        start = child.fit.x[: parent.fit.hypothesis.nuisances]
-        found = attempted(parent.fit.hypothesis, bench.at(parent.form), start)
-        if found is not None:
-            best = max(best, candidate(parent.names, found, parent.form), key=lambda c: c.log_evidence)
+    starts = [c.fit.x for c in sorted(children, key=lambda c: -c.log_evidence)[:POLISHING]]
+    hypothesis, observed = parent.fit.hypothesis, bench.at(parent.form)
+    fits = each(lambda x: attempted(hypothesis, observed, x[: hypothesis.nuisances]), starts)
+    found = [candidate(parent.names, f, parent.form) for f in fits if f is not None]
+    best = max([parent, *found], key=lambda c: c.log_evidence)
     return bench.judged(best) if best is not parent else parent
 
 
@@ -162,7 +161,7 @@ def _further_children(parent: Candidate, search: Search, names: list[str]) -> li
 def _promising(parent: Candidate, search: Search, name: str) -> tuple[Hypothesis, list[Array]]:
     """The parent with an effect more, and the starts of which a score test sees something, the best first."""
     observed = search.bench.at(parent.form)
-    made, tests = score_tests(parent.fit, parent.fit.slopes, search.catalogue, name, observed, search.settings)
+    made, (tests,) = score_tests(parent.fit, [parent.fit.slopes], search.catalogue, name, [observed], search.settings)
     return made, [x for gain, x in tests if gain > SEEN]
 
 

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cholesky
+from scipy.linalg import cholesky, solve_triangular
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -160,6 +160,16 @@ class Observed:
         """Rows (blocks of all channels one after the other, ...) in units in which the noise is white and of size
         one."""
         return np.concatenate([factor @ rows[place] for place, factor in self._factors])
+
+    def rewhitened(self, rows: Array, other: Observed) -> Array:
+        """Rows that ``other`` has whitened, which differs in its model-form error only, as this one does.
+
+        Rows beyond the blocks, of events and of what was stated, stay as they are.
+        """
+        out = rows.copy()
+        for (place, factor), (_, before) in zip(self._factors, other._factors, strict=True):
+            out[place] = factor @ solve_triangular(before, rows[place], lower=True)
+        return out
 
     def left_open(self, residual: Array) -> tuple[float, float]:
         """Mean square of a whitened residual over the tank's channels, and over chamber and thrust; 0 without any."""
