@@ -141,9 +141,14 @@ def baselines(result: dict[str, Any]) -> list[str]:
 
 
 def variants(full: Results, split: str) -> Iterable[tuple[str, list[str]]]:
-    """What becomes of the figures without a part of the method, on the cases that both have."""
+    """What becomes of the figures without a part of the method, on the cases that both have, by the same code."""
     for name in full.folder.variants():
         other = results(Folder(full.folder.root, name), split)
+        codes, full_codes = ({code for code, _ in found.codes} for found in (other, full))
+        if codes != full_codes:
+            said = ", ".join(f"`{code[:12]}`" for code in sorted(codes)) or "no code"
+            yield name, [f"Diagnosed by {said}, which the full method was not: they are not compared."]
+            continue
         settings = ", ".join(f"{k} = {v}" for k, v in other.plan.get("settings", {}).items()) or "-"
         yield name, [f"Settings: {settings}.", "", *comparison(full.cases, other.cases, full.groups)]
 

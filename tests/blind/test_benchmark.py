@@ -186,6 +186,16 @@ def test_a_variant_stands_beside_the_full_method_on_the_same_cases(made: Callabl
     assert (cells[2], cells[3], cells[4], cells[6]) == ("1.000", "0.250", "+0.750", "8")
 
 
+def test_a_variant_of_another_version_of_the_code_is_not_compared(made: Callable[..., Folder]) -> None:
+    full = made([("tank_heat", product("tank_heat"))] * 8)
+    other = made([("tank_heat", product("n2_purge"))] * 8, variant="blind")
+    for i, note in other.notes().items():
+        other.write_note(replace(note, id=i, code="older"))
+    text, _ = document(results(full, "calibration"), "calibration", None)
+    assert "Diagnosed by `older`, which the full method was not" in text
+    assert "full less variant" not in text
+
+
 LABELS = ("none", "unknown", "tank_heat", "n2_purge", "fuel_sliver", "nozzle_divergence")
 
 

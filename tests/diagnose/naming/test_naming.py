@@ -16,13 +16,14 @@ from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import mid_flux
 from hfanalysis.diagnose.fitting.probe import Splines, probe
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted
+from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import LEAST, unknown_sources
 from hfanalysis.diagnose.naming.localise import linear_sources, source_of
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
+from hfanalysis.diagnose.naming.several import swapped
 from hfanalysis.diagnose.naming.singles import base_and_singles
 from hfanalysis.diagnose.naming.slack import slacked
 from hfanalysis.diagnose.observations.observed import Observed
@@ -246,6 +247,22 @@ def test_hiding_the_effect_from_the_library_does_not_make_another_certain(weight
     test = made.observed(effect("injector_choked_vapor").at(weight=weight))
     verdict = verdict_of(name_effects(made.hypothesis(), test, catalogue(("load_cell_drift", "tank_heat"))))
     assert verdict.label == "unknown", verdict.posterior
+
+
+def test_a_twin_takes_the_place_of_an_effect_that_explains_less() -> None:
+    bench = Bench(made.observed(effect("tank_stratification").at(excess=3.0)))
+    library = catalogue(("tank_stratification", "tank_nonequilibrium"))
+    wrong = attempted(
+        made.hypothesis().with_effect(library.effects["tank_nonequilibrium"]),
+        bench.observed,
+        np.zeros(made.hypothesis().with_effect(library.effects["tank_nonequilibrium"]).size),
+    )
+    assert wrong is not None
+    late = bench.judged(candidate(("tank_nonequilibrium",), wrong, FINEST))
+    found = swapped(late, Search(bench, library))
+    assert found.names == ("tank_stratification",)
+    assert found.log_evidence > late.log_evidence + 3.0
+    assert swapped(found, Search(bench, library)) is found
 
 
 def test_observations_of_the_truth_are_calm() -> None:

@@ -217,6 +217,17 @@ def test_a_larger_model_form_error_is_a_smaller_residual() -> None:
     assert test.with_errors(0.1, 0.1).log_size > test.log_size
 
 
+def test_rows_are_whitened_anew_for_another_form() -> None:
+    test, rng = made.observed(), np.random.default_rng(3)
+    coarse = test.with_errors(0.01, 0.002)
+    blocks = sum(c.time.size for c in test.channels)
+    raw, scalars = rng.standard_normal((blocks, 2)), rng.standard_normal((3, 2))
+    fine = np.concatenate([test.whiten(raw), scalars])
+    expected = np.concatenate([coarse.whiten(raw), scalars])
+    assert coarse.rewhitened(fine, test) == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    assert test.rewhitened(fine, test) == pytest.approx(fine, rel=1e-6, abs=1e-9)
+
+
 def test_what_cannot_be_compared_is_left_out() -> None:
     log = logged.log()
     dead = replace(log["p_run"], values=np.full_like(log["p_run"].values, 1e5))

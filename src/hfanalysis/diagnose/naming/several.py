@@ -56,8 +56,8 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[
         found += loose
         known += loose
         last = front[0]
-    if found and (swapped := _swapped(last, search)) is not last:
-        found += _loosened([swapped], bench)
+    if found and (other := swapped(last, search)) is not last:
+        found += _loosened([other], bench)
     return known[: len(singles)], sorted(_best_each(found), key=lambda c: -c.log_evidence)
 
 
@@ -128,7 +128,7 @@ def _asked(
     return asked
 
 
-def _swapped(found: Candidate, search: Search) -> Candidate:
+def swapped(found: Candidate, search: Search) -> Candidate:
     """The set with declared twins in the place of its effects, where that makes the data more probable."""
     for name in found.names:
         for twin in search.catalogue.effects[name].twins:
