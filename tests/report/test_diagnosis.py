@@ -185,7 +185,7 @@ ALONE: dict[str, Any] = {
     "upper_limits": {},
     "not_it": [],
     "compared": {"channels": ["thrust"]},
-    "sentences": ["the thrust cell does not return to zero: 190 N", "No more can be said without an engine to run."],
+    "sentences": ["the thrust cell does not return to zero: 190 N", "No more can be said without a model to compare with."],
     "notes": ["only what the sensors show by themselves was judged"],
     "warnings": [],
 }
@@ -198,7 +198,7 @@ def test_without_an_engine_the_section_tells_the_sensors_and_claims_no_numbers(t
     found = told(laid)
     assert not laid.charts
     assert "<table>" not in found
-    assert "No more can be said without an engine to run." in found
+    assert "No more can be said without a model to compare with." in found
     assert "Compared" not in found
     assert "Only what the sensors show by themselves was judged." in found
     assert "calibrated on" not in found

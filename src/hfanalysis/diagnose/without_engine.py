@@ -45,7 +45,7 @@ def sensors_alone(subject: Subject, why: str) -> dict[str, Any]:
         "decisive_measurements": [] if not effects else [f"{DRIFT}: {effect(DRIFT).decisive}"],
         "plausibility": {row["name"]: row["plausibility"] for row in effects},
         "compared": {"channels": sorted({c for f in found for c in f.channels})},
-        "sentences": [*(f.text for f in found), f"No more can be said without an engine to run: {why}."],
+        "sentences": [*(f.text for f in found), f"No more can be said without a model to compare with: {why}."],
         "notes": [
             "only what the sensors show by themselves was judged; no probability of other effects was formed; "
             "what is stated is as sure as any evidence was on simulated tests"

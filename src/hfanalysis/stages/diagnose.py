@@ -1,8 +1,9 @@
 """diagnose: where model and measurement disagree, which effect is missing, and the proof that it is.
 
 Reads ``ingest.h5``, ``segments.json`` and ``base_calibration.json`` (the base model is what is diagnosed, whatever has
-been adopted), and those of another test of the same stand, to prove it there with frozen constants. A test whose engine
-cannot be run gets what its sensors show by themselves. Writes ``diagnosis.json`` and ``diagnosis.h5``.
+been adopted), and those of another test of the same stand, to prove it there with frozen constants. A test that cannot
+be calibrated, or whose engine cannot be run, gets what its sensors show by themselves. Writes ``diagnosis.json`` and
+``diagnosis.h5``.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ def run(context: Context) -> None:
     subject = subject_of(context)
     _check_proof_test(context)
     try:
+        if "calibrate" in context.absent:
+            raise AbsentError(context.absent["calibrate"])
         found = diagnose(subject, effects, lambda: _other(context), context.progress, settings)
     except AbsentError as missing:
         write_empty(context.scratch("diagnosis.h5"), context.provenance())
@@ -49,7 +52,7 @@ def subject_of(context: Context) -> Subject:
     return Subject(
         read_log(context.product("ingest.h5")),
         Segments.from_json(context.read_json("segments.json")),
-        context.read_json("base_calibration.json"),
+        {} if "calibrate" in context.absent else context.read_json("base_calibration.json"),
         context.definition,
     )
 
@@ -113,7 +116,8 @@ def _definitions(root: Path) -> list[Path]:
 
 STAGE = Stage(
     name="diagnose",
-    needs=("ingest", "segment", "calibrate"),
+    needs=("ingest", "segment"),
+    wants=("calibrate",),
     products=("diagnosis.json", "diagnosis.h5"),
     run=run,
     adopts=False,

@@ -12,7 +12,7 @@ from tests.diagnose.made import covariance_of
 from hfanalysis.diagnose.observations.blocks import MERGED, NEAR
 from hfanalysis.diagnose.observations.covariance import UNSTEADY_ZERO
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BLOCK, FIRST, REST_BLOCKS
-from hfanalysis.diagnose.observations.observed import FORM_ERROR, SHARE, Channel, Observed
+from hfanalysis.diagnose.observations.observed import FORM_ERROR, SHARE, TOGETHER, Channel, Observed
 from hfanalysis.diagnose.observations.recorded import as_read
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError
@@ -217,8 +217,13 @@ def test_a_larger_model_form_error_is_a_smaller_residual() -> None:
     assert test.with_errors(0.1, 0.1).log_size > test.log_size
 
 
-def test_rows_are_whitened_anew_for_another_form() -> None:
-    test, rng = made.observed(), np.random.default_rng(3)
+@pytest.mark.parametrize("excess", [1.0, 60.0], ids=["as estimated", "not positive"])
+def test_rows_are_whitened_anew_for_another_form(excess: float) -> None:
+    """Also where the common oscillation was estimated so large that no covariance could be like that."""
+    test, rng = logged.reduced(), np.random.default_rng(3)
+    assert test.common is not None
+    own = [np.sqrt(channel(test, name).covariance.diagonal()) for name in TOGETHER]
+    test = replace(test, common=test.common if excess == 1.0 else excess * np.outer(*own))
     coarse = test.with_errors(0.01, 0.002)
     blocks = sum(c.time.size for c in test.channels)
     raw, scalars = rng.standard_normal((blocks, 2)), rng.standard_normal((3, 2))

@@ -127,7 +127,7 @@ def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
     for name in verdict.chosen.names:
         active = next(a for a in found.burnt.steps.engine.effects if a.effect.name == name)
         parameters = {
-            p.name: Quantity(values[full], p.unit.replace("-", "") if p.unit == "-" else p.unit, stds[full])
+            p.name: Quantity(values[full], "" if p.unit == "-" else p.unit, stds[full])
             for p in active.effect.parameters
             if (full := f"{name}.{p.name}") in values
         }

@@ -28,27 +28,41 @@ BESIDE = 6.0
 REST = 0.5
 """Part of what the best names explain that a source beside them must add for the answer to be unknown."""
 
+NEAR = 0.3
+"""Part of that which the likeliest source beside the names must add for others to be tried."""
+
 STRIDES = (1.0, 0.5, 0.2)
 """Parts of the way to the linear estimate from which a full fit may start: a large source is not linear."""
 
 
 def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
-    """Sources instead of any name, and beside the best name, where either is worth it; the best first."""
-    out = _with_sources(base, bench, REFITTED)
+    """Sources instead of any name, and beside the best name, where either is worth it; the best first.
+
+    Beside a name the likeliest shows what is left; others are tried where it comes near to being the answer.
+    """
+    start, sources = _worth_it(base, bench)
+    out = _fitted(start, sources, bench)
     if named.names:
-        # no more can be gained than what is left; a source that cannot be the answer is fitted to show where that is
-        decides = 0.5 * named.chi2 > REST * (named.log_evidence - base.log_evidence)
-        out += _with_sources(named, bench, REFITTED if decides else 1)
+        start, sources = _worth_it(named, bench)
+        needed = REST * (named.log_evidence - base.log_evidence)
+        first = _fitted(start, sources[:1], bench)
+        near = any(c.log_evidence - named.log_evidence > NEAR * needed for c in first)
+        out += first + (_fitted(start, sources[1:], bench) if near else [])
     return sorted(out, key=lambda c: -c.log_evidence)
 
 
-def _with_sources(parent: Candidate, bench: Bench, most: int) -> list[Candidate]:
-    """The parent with each of the few sources that are seen at its form, or else at the next finer one, to which the
-    parent does not fit: what is too weak for a coarse form may be plain there."""
-    start, sources = parent, _seen(parent, bench)
+def _worth_it(parent: Candidate, bench: Bench) -> tuple[Candidate, list[Source]]:
+    """The few sources that are seen at the parent's form, or else at the next finer one, to which it does not fit, and
+    the parent there: what is too weak for a coarse form may be plain at a finer one."""
+    sources = _seen(parent, bench)
     if not sources and parent.form != FINEST and (finer := bench.refitted(parent, parent.form.both_finer)):
-        start, sources = finer, _seen(finer, bench)
-    fitted = each(lambda source: with_fitted(start, source, bench), sources[:most])
+        parent, sources = finer, _seen(finer, bench)
+    return parent, sources[:REFITTED]
+
+
+def _fitted(start: Candidate, sources: list[Source], bench: Bench) -> list[Candidate]:
+    """The parent with each of these sources."""
+    fitted = each(lambda source: with_fitted(start, source, bench), sources)
     return [found for found in fitted if found is not None]
 
 

@@ -20,7 +20,7 @@ from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
 
-SEEN = 5.0
+PLAIN = 5.0
 """Log evidence of a single effect from which on others are tried beside it."""
 
 ASKED = 2.5
@@ -42,7 +42,7 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[
     where both have slack: what the closure of the first gets wrong is no second effect.
     """
     bench, tried = search.bench, set[frozenset[str]]()
-    front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + SEEN]
+    front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + PLAIN]
     known = _loosened(singles, bench)
     found: list[Candidate] = []
     for size in range(2, MOST_EFFECTS + 1):

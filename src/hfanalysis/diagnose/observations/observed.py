@@ -192,11 +192,15 @@ class Observed:
 
 
 def _whitening(covariance: Array) -> Array:
-    """W with W C W^T = 1. An estimated covariance need not be positive: what is smaller than LEAST_VARIANCE is
-    raised."""
+    """W, lower triangular, with W C W^T = 1.
+
+    An estimated covariance need not be positive: what is smaller than LEAST_VARIANCE is raised.
+    """
     try:
-        return np.tril(np.linalg.inv(cholesky(covariance, lower=True, check_finite=False)))
+        root = cholesky(covariance, lower=True, check_finite=False)
     except np.linalg.LinAlgError:
         size = np.sqrt(covariance.diagonal())
         values, vectors = np.linalg.eigh(covariance / np.outer(size, size))
-        return np.asarray((vectors / np.sqrt(np.maximum(values, LEAST_VARIANCE))).T / size)
+        raised = (vectors * np.maximum(values, LEAST_VARIANCE)) @ vectors.T
+        root = cholesky(raised * np.outer(size, size), lower=True)
+    return np.tril(np.linalg.inv(root))
