@@ -185,7 +185,10 @@ ALONE: dict[str, Any] = {
     "upper_limits": {},
     "not_it": [],
     "compared": {"channels": ["thrust"]},
-    "sentences": ["the thrust cell does not return to zero: 190 N", "No more can be said without a model to compare with."],
+    "sentences": [
+        "the thrust cell does not return to zero: 190 N",
+        "No more can be said without a model to compare with.",
+    ],
     "notes": ["only what the sensors show by themselves was judged"],
     "warnings": [],
 }

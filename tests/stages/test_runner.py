@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from fake_way import FAULTS, RUNS, STAGES, AbsentError, InputError, ran
 
-from hfanalysis.stages import freshness
+from hfanalysis.stages import freshness, runner
 
 
 def products(root: Path) -> dict[str, bytes]:
@@ -173,6 +173,18 @@ def test_an_absence_is_told_to_what_only_wants_it(root: Path) -> None:
     assert ran(root, "third") == ["first", "second", "third"]
     assert (root / "processed/T1/third.html").read_text() == "no liquid phase"
     assert ran(root, "third") == []
+
+
+def test_what_stands_aside_is_taken_as_it_was_last_asked_for(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "ASIDE", ("second",))
+    page = root / "processed" / "T1" / "third.html"
+    ran(root, "third")
+    assert "hfa second T1" in page.read_text()
+    ran(root, "second", second__factor=3)
+    assert ran(root, "third") == ["third"]
+    assert page.read_text() == "all there"
+    assert ran(root, "third", second__factor=4) == ["third"]
+    assert "hfa second T1" in page.read_text()
 
 
 def test_products_that_no_longer_follow_from_the_input_are_removed(root: Path) -> None:

@@ -11,7 +11,7 @@ ORDER = ("ingest", "segment", "calibrate", "validate", "diagnose", "flight", "re
 
 ASIDE = ("diagnose",)
 """Stages that take longer than a page may: `hfa run` makes them and who asks for them by name; the page takes their
-products as they are, if they are up to date."""
+products as they are, if they are up to date, with the parameters that they were last asked for with."""
 
 
 def way_to(name: str) -> tuple[str, ...]:

@@ -105,6 +105,8 @@ class _Run:
 
     def _bring_upstream(self, stage: Stage, needed: bool) -> None:
         try:
+            if stage.name in ASIDE:
+                self.context = self._as_last_asked(stage)
             if stage.name in ASIDE and not needed and not self.whole:
                 self._take(stage)
             else:
@@ -113,6 +115,12 @@ class _Run:
             if needed:
                 raise
             self.context = replace(self.context, absent={**self.context.absent, stage.name: str(error)})
+
+    def _as_last_asked(self, stage: Stage) -> Context:
+        """The context with the parameters that a stage was last made with, where this run sets no others."""
+        last = freshness.recorded(self.context, stage).get("parameters", {})
+        kept = {f"{stage.name}.{name}": value for name, value in last.items() if name in stage.parameters}
+        return replace(self.context, settings={**kept, **self.context.settings})
 
     def _take(self, stage: Stage) -> None:
         """A stage that stands aside, as it was left. Raises AbsentError where it is not there or out of date."""
@@ -146,10 +154,10 @@ class _Run:
         except AnalysisError as error:
             self._withdraw(stage)
             if isinstance(error, AbsentError):
-                self._note(stage, {"key": key, "absent": str(error)})
+                self._note(stage, {"key": key, "absent": str(error), "parameters": record["parameters"]})
             self._log(stage, started, f"exit {error.exit_status}: {error}")
             raise
-        self._note(stage, {"key": key, "products": made})
+        self._note(stage, {"key": key, "products": made, "parameters": record["parameters"]})
         self._log(stage, started, "done")
 
     def _check_untouched(self, record: dict[str, Any]) -> None:

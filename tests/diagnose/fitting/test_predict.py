@@ -15,7 +15,8 @@ from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.hypothesis import FARTHEST, M_RANGE, Free, Hypothesis, free_parameters
 from hfanalysis.diagnose.fitting.predict import predict, signatures
 from hfanalysis.diagnose.fitting.probe import Splines, probe
-from hfanalysis.diagnose.naming.localise import linear_sources, with_source
+from hfanalysis.diagnose.fitting.pulse import Pulse, with_pulse
+from hfanalysis.diagnose.naming.localise import Smooth, linear_sources
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.effects import effect, library
 from hfanalysis.engine.unsteady import burn
@@ -39,23 +40,30 @@ def with_slack() -> Hypothesis:
 
 
 def with_unknown_heat() -> Hypothesis:
-    return with_source(plain(), _source("tank_heat"))
+    return _source("tank_heat").added_to(plain())[0]
 
 
 def with_unknown_offset() -> Hypothesis:
-    return with_source(plain(), _source("offset of thrust"))
+    return _source("offset of thrust").added_to(plain())[0]
 
 
-def _source(site: str):  # type: ignore[no-untyped-def]
+def with_unknown_pulse() -> Hypothesis:
+    return with_pulse(plain(), "regression_factor", Pulse(0.05, 2.03, 1.4, 0.1), 8.0)[0]
+
+
+def _source(site: str) -> Smooth:
     test = made.observed()
-    return next(s for s in linear_sources(fit(plain(), test, made.truth()), test) if s.site.name == site)
+    found = linear_sources(fit(plain(), test, made.truth()), test)
+    return next(s for s in found if s.site.name == site and isinstance(s, Smooth))
 
 
 def blocks(test: Observed) -> int:
     return sum(c.time.size for c in test.channels)
 
 
-@pytest.mark.parametrize("of", [plain, eroding, with_bad_sensors, with_slack, with_unknown_heat, with_unknown_offset])
+@pytest.mark.parametrize(
+    "of", [plain, eroding, with_bad_sensors, with_slack, with_unknown_heat, with_unknown_offset, with_unknown_pulse]
+)
 def test_slopes_are_differences_of_predictions(of) -> None:  # type: ignore[no-untyped-def]
     hypothesis, test = of(), made.observed(common=True)
     x = np.concatenate([made.truth(), np.full(hypothesis.size - made.truth().size, 0.4)])

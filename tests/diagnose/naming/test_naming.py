@@ -11,7 +11,7 @@ from tests.diagnose import made
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.diagnose.answer.limits import inserted, limits
-from hfanalysis.diagnose.answer.verdict import of_source, places, verdict_of
+from hfanalysis.diagnose.answer.verdict import of_unknown, places, verdict_of
 from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import mid_flux
@@ -19,7 +19,7 @@ from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import LEAST, unknown_sources
-from hfanalysis.diagnose.naming.localise import linear_sources, source_of
+from hfanalysis.diagnose.naming.localise import course_of, linear_sources
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
@@ -169,7 +169,7 @@ def test_the_leak_is_seen_when_it_is_there() -> None:
     found = leaking()
     candidate = next(c for c in found.unknown if c.names == ("tank_leak",))
     observed = found.bench.observed
-    row = of_source(source_of(candidate.fit, "tank_leak", observed), 1.0, observed.phases)
+    row = of_unknown(course_of(candidate.fit, "tank_leak", observed), 1.0, observed.phases)
     time, mean = (np.array(row["history"][n]) for n in ("time", "mean"))
     inside = (time > 2.5) & (time < 3.5)
     outside = (time < 1.0) | (time > 5.0)

@@ -24,7 +24,7 @@ from hfanalysis.diagnose.answer.posterior import (
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
-from hfanalysis.diagnose.naming.localise import Source, source_of
+from hfanalysis.diagnose.naming.localise import Course, course_of
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.quantity import Quantity
 
@@ -152,22 +152,22 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     gain = chosen.log_evidence - found.base.log_evidence
     out = []
     if chosen.unknown:
-        out.append(of_source(source_of(chosen.fit, chosen.names[-1], observed), gain, observed.phases))
+        out.append(of_unknown(course_of(chosen.fit, chosen.names[-1], observed), gain, observed.phases))
     for name in chosen.names[: -1 if chosen.unknown else None]:
         source = acting(chosen.fit, name, observed)
         out.append(of_acting(name, source, gain / (len(out) + 1), observed.phases))
     beside = next((c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]), None)
     if beside is not None and (rest := beside.log_evidence - chosen.log_evidence) > 0.0:
-        row = of_source(source_of(beside.fit, beside.names[-1], observed), rest, observed.phases)
+        row = of_unknown(course_of(beside.fit, beside.names[-1], observed), rest, observed.phases)
         out.append({**row, "beside": True, "significance": min(rest, 0.5 * out[-1]["significance"])})
     return out
 
 
-def of_source(source: Source, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:
+def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:
     """A row for an unknown source."""
-    site = source.site
-    made = Acting(site.equation, site.unit, source.time, source.mean, source.std, site.sensor)
-    return of_acting(site.name, made, gain, phases, source.splines.spacing / 2.0)
+    site = course.site
+    made = Acting(site.equation, site.unit, course.time, course.mean, course.std, site.sensor)
+    return of_acting(site.name, made, gain, phases, course.blur)
 
 
 SEEN = 0.05

@@ -7,17 +7,23 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.form import FINEST
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
-from hfanalysis.diagnose.naming.localise import Source, coordinates, linear_sources, with_source
+from hfanalysis.diagnose.naming.localise import Source, linear_sources
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
 
 REFITTED = 3
 """Sites whose source is fitted with the full model, by their linear evidence."""
+
+ALIKE = 5.0
+"""Linear evidence behind the best kind of source at a site from which on the other is not fitted: an edge that the
+linear search blurs has more than it seems."""
 
 LEAST = 4.0
 """Log evidence, linear, from which on a source is fitted."""
@@ -57,7 +63,14 @@ def _worth_it(parent: Candidate, bench: Bench) -> tuple[Candidate, list[Source]]
     sources = _seen(parent, bench)
     if not sources and parent.form != FINEST and (finer := bench.refitted(parent, parent.form.both_finer)):
         parent, sources = finer, _seen(finer, bench)
-    return parent, sources[:REFITTED]
+    return parent, _few(sources)
+
+
+def _few(sources: list[Source]) -> list[Source]:
+    """Of the best few sites, the best kind of source and what is nearly as good, the best first."""
+    sites = list(dict.fromkeys(s.site.name for s in sources))[:REFITTED]
+    best = {name: max(s.log_evidence for s in sources if s.site.name == name) for name in sites}
+    return [s for s in sources if s.site.name in best and s.log_evidence > best[s.site.name] - ALIKE]
 
 
 def _fitted(start: Candidate, sources: list[Source], bench: Bench) -> list[Candidate]:
@@ -77,10 +90,8 @@ def _seen(parent: Candidate, bench: Bench) -> list[Source]:
 
 def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | None:
     """The parent with a source more, fitted with the full model."""
-    made = with_source(parent.fit.hypothesis, source)
-    moved = np.concatenate([source.nuisances - parent.fit.x, coordinates(source)])
-    still = np.concatenate([parent.fit.x, np.zeros(source.splines.count)])
-    start = _nearest(made, bench.at(parent.form), [still + share * moved for share in STRIDES])
+    made, _ = source.added_to(parent.fit.hypothesis)
+    start = _nearest(made, bench.at(parent.form), [_towards(parent.fit, source, share) for share in STRIDES])
     if start is None:
         return None
     found = attempted(made, bench.at(parent.form), start, SHORT)
@@ -90,7 +101,14 @@ def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | 
     return replace(judged, log_evidence=judged.log_evidence - (BESIDE if parent.names else 0.0))
 
 
-def _nearest(hypothesis, observed: Observed, starts: list[Array]) -> Array | None:  # type: ignore[no-untyped-def]
+def _towards(fitted: Fit, source: Source, share: float) -> Array:
+    """A share of the way from a fit to where the linear search sees its constants and a source beside them."""
+    return np.concatenate(
+        [fitted.x + share * (source.nuisances - fitted.x), source.added_to(fitted.hypothesis, share)[1]]
+    )
+
+
+def _nearest(hypothesis: Hypothesis, observed: Observed, starts: list[Array]) -> Array | None:
     best: tuple[float, Array] | None = None
     for x in starts:
         try:

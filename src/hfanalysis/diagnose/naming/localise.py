@@ -1,8 +1,9 @@
 """Localisation: at which equation, from when to when and how much, before any effect is named.
 
 At every site of the model an unknown source over time is tried, with all calibrated parameters free: splines with a
-Gaussian prior, linear in the tangents of the base fit. The evidence of each says where the source is; the best few are
-fitted again with the full model, since a large source is not linear. Sensors are sites too: an offset over time.
+Gaussian prior, linear in the tangents of the base fit, or a pulse, which comes and goes at once. The evidence of each
+says where the source is; the best few are fitted again with the full model, since a large source is not linear.
+Sensors are sites too: an offset over time.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Block, Hypothesis
 from hfanalysis.diagnose.fitting.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.fitting.probe import Splines, probe
+from hfanalysis.diagnose.fitting.pulse import OWN, Pulse, has_pulse, pulse_in, with_pulse
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.sensitivity import run_with_tangents
 
@@ -62,18 +64,61 @@ CORRELATION = 1.5
 
 
 @dataclass(frozen=True)
-class Source:
-    """A source over time at a site: ``mean`` and ``std`` at ``time`` [s], in the site's unit, and its log evidence."""
+class Smooth:
+    """A smooth source as the linear search sees it: coefficients of splines, their ``scale``, and the log evidence.
+
+    ``nuisances``: where the calibrated constants then are (x).
+    """
 
     site: Site
-    time: Array
-    mean: Array
-    std: Array
     log_evidence: float
     scale: float
     coefficients: Array
     splines: Splines
     nuisances: Array
+
+    def added_to(self, hypothesis: Hypothesis, share: float = 1.0) -> tuple[Hypothesis, Array]:
+        """The hypothesis with this source, and the x of its parameters at a ``share`` of its size."""
+        matrix = np.asarray(self.scale * np.linalg.cholesky(smooth_prior(self.splines.count)))
+        start = np.asarray(share * np.linalg.solve(matrix, self.coefficients))
+        if self.site.sensor is not None:
+            names = tuple(f"offset_{self.site.sensor}.c{i}" for i in range(self.splines.count))
+            return hypothesis.with_block(Block(names, matrix, self.splines, self.site.sensor)), start
+        effect = probe(self.site.name, self.splines, self.site.typical)
+        names = tuple(f"{effect.name}.c{i}" for i in range(self.splines.count))
+        return hypothesis.with_block(Block(names, matrix, self.splines), effect.at(on=1.0)), start
+
+
+@dataclass(frozen=True)
+class Sudden:
+    """A source that comes and goes at once, as the linear search sees it; ``end``: of what is compared [s]."""
+
+    site: Site
+    log_evidence: float
+    pulse: Pulse
+    end: float
+    nuisances: Array
+
+    def added_to(self, hypothesis: Hypothesis, share: float = 1.0) -> tuple[Hypothesis, Array]:
+        """The hypothesis with this pulse, and the x of its parameters at a ``share`` of its size."""
+        return with_pulse(hypothesis, self.site.name, replace(self.pulse, size=share * self.pulse.size), self.end)
+
+
+Source = Smooth | Sudden
+
+
+@dataclass(frozen=True)
+class Course:
+    """A source over time as a fit has it: ``mean`` and ``std`` at ``time`` [s] in the site's unit.
+
+    ``blur``: the standard deviation of the instants at which it begins and ends [s].
+    """
+
+    site: Site
+    time: Array
+    mean: Array
+    std: Array
+    blur: float
 
 
 def smooth_prior(count: int) -> Array:
@@ -102,9 +147,9 @@ def _project(fitted: Fit, columns: Array) -> _Projected:
     return _Projected(columns.T @ clear, -(clear.T @ r), -(through @ r), -(through @ columns))
 
 
-def _best_scale(projected: _Projected, typical: float) -> tuple[float, float, Array, Array]:
-    """Scale, log evidence against no source, coefficients and their covariance."""
-    best: tuple[float, float, Array, Array] | None = None
+def _best_scale(projected: _Projected, typical: float) -> tuple[float, float, Array]:
+    """Scale, log evidence against no source, and coefficients."""
+    best: tuple[float, float, Array] | None = None
     count = projected.pull.size
     prior = smooth_prior(count)
     root = np.linalg.cholesky(prior)
@@ -114,15 +159,15 @@ def _best_scale(projected: _Projected, typical: float) -> tuple[float, float, Ar
         solved = np.linalg.solve(inner, scale**2 * pull)
         gain = 0.5 * float(pull @ solved) - 0.5 * float(np.linalg.slogdet(inner)[1])
         if best is None or gain > best[1]:
-            covariance = scale**2 * root @ np.linalg.inv(inner) @ root.T
-            best = (float(scale), gain, np.asarray(root @ solved), np.asarray(covariance))
+            best = (float(scale), gain, np.asarray(root @ solved))
     assert best is not None
     return best
 
 
 def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
-    """The source at every site, linear about the fit, the best first."""
-    splines = Splines.over(0.0, float(observed.grid[~observed.resting][-1]), SPACING)
+    """The smooth source and the sudden one at every site, linear about the fit, the best first."""
+    end = float(observed.grid[~observed.resting][-1])
+    splines = Splines.over(0.0, end, SPACING)
     engine, names = fitted.hypothesis.at(fitted.x), []
     active = []
     taken = {a.effect.name for a in engine.effects}
@@ -136,21 +181,16 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
     spared = with_spare_fuel(probed, observed.fuel_out)
     tangents = run_with_tangents(spared, flat, observed.longest + AFTER, run_on=True)
     slopes = slopes_of(fitted.hypothesis, observed, tangents)
-    time = np.linspace(0.0, observed.end, 200)
-    found = []
+    found: list[Source] = []
     for k, site in enumerate(sites):
-        columns = slopes[:, k * splines.count : (k + 1) * splines.count]
-        found.append(_source(site, _project(fitted, columns), splines, time))
+        projected = _project(fitted, slopes[:, k * splines.count : (k + 1) * splines.count])
+        found += [_smooth(site, projected, splines), _sudden(site, projected, splines, end)]
     found += [
-        _source(*_sensor(observed, name, splines, fitted), splines, time)
+        _smooth(sensor_site(observed, name), _project(fitted, sensor_slopes(observed, name, splines)), splines)
         for name in observed.names
         if name not in _sensors(fitted)
     ]
     return sorted(found, key=lambda s: -s.log_evidence)
-
-
-def _sensor(observed: Observed, name: str, splines: Splines, fitted: Fit) -> tuple[Site, _Projected]:
-    return sensor_site(observed, name), _project(fitted, sensor_slopes(observed, name, splines))
 
 
 def sensor_site(observed: Observed, name: str) -> Site:
@@ -161,48 +201,71 @@ def sensor_site(observed: Observed, name: str) -> Site:
     return Site(f"offset of {name}", "sensor", unit, typical, sensor=name)
 
 
-def _source(site: Site, projected: _Projected, splines: Splines, time: Array) -> Source:
-    scale, gain, mean, covariance = _best_scale(projected, site.typical)
-    basis = splines.at(time)
-    std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, covariance, basis), 0.0))
-    nuisances = projected.start + projected.follow @ mean
-    return Source(site, time, basis @ mean, std, gain, scale, mean, splines, nuisances)
+def _smooth(site: Site, projected: _Projected, splines: Splines) -> Smooth:
+    scale, gain, mean = _best_scale(projected, site.typical)
+    return Smooth(site, gain, scale, mean, splines, projected.start + projected.follow @ mean)
+
+
+def _sudden(site: Site, projected: _Projected, splines: Splines, end: float) -> Sudden:
+    """The best pulse among those that begin and end on a grid of half the splines' spacing.
+
+    The price of each is that it is one of many.
+    """
+    grid = np.arange(0.0, end + splines.spacing, 0.5 * splines.spacing)
+    first, last = (grid[i] for i in np.triu_indices(grid.size, 1))
+    peaks = splines.first + splines.spacing * np.arange(splines.count)
+    low, high = peaks - 0.5 * splines.spacing, peaks + 0.5 * splines.spacing
+    covered = np.minimum(high, last[:, None]) - np.maximum(low, first[:, None])
+    boxes = np.clip(covered / splines.spacing, 0.0, 1.0)
+    information = np.einsum("ij,jk,ik->i", boxes, projected.information, boxes)
+    pull = boxes @ projected.pull
+    scales = SCALES[:, None] * site.typical
+    gains = 0.5 * pull**2 / (information + scales**-2) - 0.5 * np.log1p(scales**2 * information)
+    k, i = np.unravel_index(int(np.argmax(gains)), gains.shape)
+    scale = float(scales[k, 0])
+    size = float(pull[i] / (information[i] + scale**-2))
+    pulse = Pulse(size, float(first[i]), float(last[i] - first[i]), scale)
+    nuisances = projected.start + projected.follow @ (size * boxes[i])
+    return Sudden(site, float(gains[k, i]) - float(np.log(first.size)), pulse, end, nuisances)
 
 
 def _sensors(fitted: Fit) -> set[str]:
     return {b.sensor for b in fitted.hypothesis.blocks if b.sensor is not None}
 
 
-def with_source(hypothesis: Hypothesis, source: Source) -> Hypothesis:
-    """The hypothesis with an unknown source at a site, of the size that the linear search found."""
-    splines, site = source.splines, source.site
-    matrix = np.asarray(source.scale * np.linalg.cholesky(smooth_prior(splines.count)))
-    if site.sensor is not None:
-        names = tuple(f"offset_{site.sensor}.c{i}" for i in range(splines.count))
-        return hypothesis.with_block(Block(names, matrix, splines, site.sensor))
-    effect = probe(site.name, splines, site.typical)
-    names = tuple(f"{effect.name}.c{i}" for i in range(splines.count))
-    return hypothesis.with_block(Block(names, matrix, splines), effect.at(on=1.0))
-
-
-def coordinates(source: Source) -> Array:
-    """A source's coefficients in units of its prior."""
-    root = np.linalg.cholesky(smooth_prior(source.splines.count)) * source.scale
-    return np.asarray(np.linalg.solve(root, source.coefficients))
-
-
-def source_of(found: Fit, name: str, observed: Observed) -> Source:
+def course_of(found: Fit, name: str, observed: Observed) -> Course:
     """An unknown source as a fit has it; ``name`` is that of its site."""
+    site, time = _site(name, observed), np.linspace(0.0, float(observed.grid[~observed.resting][-1]), POINTS)
+    if site.sensor is None and has_pulse(found.hypothesis, name):
+        return _course_of_pulse(found, site, time)
     for block, place in found.hypothesis.places():
-        site = _site(name, observed)
         if block.names[0].startswith(_prefix(site)):
-            time = np.linspace(0.0, float(observed.grid[~observed.resting][-1]), 200)
             basis = block.splines.at(time) @ block.matrix
             covariance = found.covariance[place, place]
             std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, covariance, basis), 0.0))
-            mean = basis @ found.x[place]
-            return Source(site, time, mean, std, 0.0, 1.0, found.x[place], block.splines, found.x)
+            return Course(site, time, basis @ found.x[place], std, 0.5 * block.splines.spacing)
     raise ValueError(f"the fit has no source at {name}")
+
+
+def _course_of_pulse(found: Fit, site: Site, time: Array) -> Course:
+    names = [f.name for f in found.hypothesis.free]
+    own = [names.index(f"probe_{site.name}.{parameter}") for parameter in OWN]
+    mean = pulse_in(found.hypothesis, found.x, site.name, time)
+    slopes = np.empty((time.size, len(own)))
+    for column, k in enumerate(own):
+        moved = found.x.copy()
+        moved[k] += STEP
+        slopes[:, column] = (pulse_in(found.hypothesis, moved, site.name, time) - mean) / STEP
+    covariance = found.covariance[np.ix_(own, own)]
+    std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", slopes, covariance, slopes), 0.0))
+    return Course(site, time, mean, std, found.stds[f"probe_{site.name}.start"])
+
+
+POINTS = 200
+"""Instants at which a source is given."""
+
+STEP = 1e-3
+"""Of x, for the slopes of a pulse."""
 
 
 def _prefix(site: Site) -> str:
