@@ -16,10 +16,11 @@ from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import mid_flux
 from hfanalysis.diagnose.fitting.probe import Splines, probe
+from hfanalysis.diagnose.fitting.pulse import pulse_effect
 from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import LEAST, unknown_sources
-from hfanalysis.diagnose.naming.localise import course_of, linear_sources
+from hfanalysis.diagnose.naming.localise import Smooth, Sudden, course_of, linear_sources
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
@@ -175,6 +176,43 @@ def test_the_leak_is_seen_when_it_is_there() -> None:
     outside = (time < 1.0) | (time > 5.0)
     assert np.abs(mean[inside]).mean() > 3.0 * np.abs(mean[outside]).mean()
     assert row["t_start"].value == pytest.approx(1.9, abs=0.7)
+
+
+FALLEN = {"size": -0.03, "start": 1.87, "duration": 0.8, "edge": 0.04}
+"""An injector that for a while lets 3 % less through: no effect of the library."""
+
+
+@cache
+def partly_blocked() -> Naming:
+    return name_effects(made.hypothesis(), made.observed(pulse_effect("injector_factor").at(**FALLEN)), catalogue())
+
+
+def test_what_comes_and_goes_at_once_is_unknown_with_its_instants() -> None:
+    found = partly_blocked()
+    verdict = verdict_of(found)
+    assert verdict.label == "unknown", verdict.posterior
+    row = places(verdict, found)[0]
+    assert row["equation"] == "injector"
+    assert row["phase"] == "liquid"
+    for end, instant in (("t_start", FALLEN["start"]), ("t_end", FALLEN["start"] + FALLEN["duration"])):
+        # it is there from where its edge has risen to a twentieth
+        assert row[end].value == pytest.approx(instant, abs=0.12)
+    assert row["source"].value == pytest.approx(FALLEN["size"], abs=0.006)
+    inside = course_of(verdict.chosen.fit, "injector_factor", found.bench.observed)
+    middle = np.abs(inside.time - (FALLEN["start"] + 0.5 * FALLEN["duration"])) < 0.2
+    assert (np.abs(inside.mean[middle] - FALLEN["size"]) < 3.0 * inside.std[middle]).all()
+
+
+def test_the_linear_search_sees_a_pulse_where_it_is() -> None:
+    test = made.observed(pulse_effect("injector_factor").at(**FALLEN))
+    found = linear_sources(fit(made.hypothesis(), test), test)
+    sudden = next(s for s in found if s.site.name == "injector_factor" and isinstance(s, Sudden))
+    smooth = next(s for s in found if s.site.name == "injector_factor" and isinstance(s, Smooth))
+    # the search blurs its edges, which splines then fit a little better; the full fit does not
+    assert sudden.log_evidence > 0.9 * smooth.log_evidence
+    assert sudden.pulse.start == pytest.approx(FALLEN["start"], abs=0.3)
+    assert sudden.pulse.duration == pytest.approx(FALLEN["duration"], abs=0.3)
+    assert sudden.pulse.size < 0.0
 
 
 def test_without_a_source_no_site_is_blamed() -> None:

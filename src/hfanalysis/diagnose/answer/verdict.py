@@ -181,7 +181,9 @@ def of_acting(
 ) -> dict[str, Any]:
     """A row of the localisation: equation, phase, from when to when, how much, with bands."""
     size = np.abs(source.mean)
-    there = size > SEEN * size.max() if blur is None else size > 2.0 * source.std
+    there = size > SEEN * size.max()
+    if blur is not None:
+        there &= size > 2.0 * source.std
     if not there.any():
         there = size >= size.max()
     step = float(source.time[1] - source.time[0])

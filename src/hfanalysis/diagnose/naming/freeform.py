@@ -21,9 +21,9 @@ Array = NDArray[np.float64]
 REFITTED = 3
 """Sites whose source is fitted with the full model, by their linear evidence."""
 
-ALIKE = 5.0
-"""Linear evidence behind the best kind of source at a site from which on the other is not fitted: an edge that the
-linear search blurs has more than it seems."""
+ALIKE = 5.0, 0.2
+"""Linear evidence behind the best kind of source at a site from which on the other is not fitted, and the same as part
+of the best: an edge that the linear search blurs has more than it seems."""
 
 LEAST = 4.0
 """Log evidence, linear, from which on a source is fitted."""
@@ -70,7 +70,8 @@ def _few(sources: list[Source]) -> list[Source]:
     """Of the best few sites, the best kind of source and what is nearly as good, the best first."""
     sites = list(dict.fromkeys(s.site.name for s in sources))[:REFITTED]
     best = {name: max(s.log_evidence for s in sources if s.site.name == name) for name in sites}
-    return [s for s in sources if s.site.name in best and s.log_evidence > best[s.site.name] - ALIKE]
+    least = {name: evidence - max(ALIKE[0], ALIKE[1] * evidence) for name, evidence in best.items()}
+    return [s for s in sources if s.site.name in best and s.log_evidence > least[s.site.name]]
 
 
 def _fitted(start: Candidate, sources: list[Source], bench: Bench) -> list[Candidate]:

@@ -213,10 +213,9 @@ def _sudden(site: Site, projected: _Projected, splines: Splines, end: float) -> 
     """
     grid = np.arange(0.0, end + splines.spacing, 0.5 * splines.spacing)
     first, last = (grid[i] for i in np.triu_indices(grid.size, 1))
-    peaks = splines.first + splines.spacing * np.arange(splines.count)
-    low, high = peaks - 0.5 * splines.spacing, peaks + 0.5 * splines.spacing
-    covered = np.minimum(high, last[:, None]) - np.maximum(low, first[:, None])
-    boxes = np.clip(covered / splines.spacing, 0.0, 1.0)
+    time = np.linspace(0.0, end, POINTS)
+    inside = (time >= first[:, None]) & (time < last[:, None])
+    boxes = inside @ np.linalg.pinv(splines.at(time)).T  # the splines that come nearest to each
     information = np.einsum("ij,jk,ik->i", boxes, projected.information, boxes)
     pull = boxes @ projected.pull
     scales = SCALES[:, None] * site.typical
