@@ -34,12 +34,16 @@ from hfanalysis.validate.full import run_full
 
 @dataclass(frozen=True)
 class Subject:
-    """What a diagnosis is made from: a test's log, its segments and base calibration, and what was stated."""
+    """What a diagnosis is made from: a test's log, its segments and base calibration, and what was stated.
+
+    The calibration is empty where none could be had; ``notes`` say what stands for a missing channel.
+    """
 
     log: TestLog
     segments: Segments
     calibration: Mapping[str, Any]
     definition: TestDefinition
+    notes: tuple[str, ...] = ()
 
     def observed(self) -> Observed:
         """What is compared."""
@@ -82,6 +86,7 @@ def diagnose(
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
     product = _product(found, verdict, proof, catalogue)
+    product["notes"] = [*subject.notes, *product["notes"]]
     product["sentences"] = story(product)
     return Diagnosis(found, verdict, product)
 

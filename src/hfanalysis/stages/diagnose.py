@@ -1,13 +1,14 @@
 """diagnose: where model and measurement disagree, which effect is missing, and the proof that it is.
 
 Reads ``ingest.h5``, ``segments.json`` and ``base_calibration.json`` (the base model is what is diagnosed, whatever has
-been adopted), and those of another test of the same stand, to prove it there with frozen constants. A test that cannot
-be calibrated, or whose engine cannot be run, gets what its sensors show by themselves. Writes ``diagnosis.json`` and
-``diagnosis.h5``.
+been adopted), and those of another test of the same stand, to prove it there with frozen constants. A test whose run
+line was not recorded starts from a calibration of injector and line as one; one that cannot be calibrated at all, or
+whose engine cannot be run, gets what its sensors show by themselves. Writes ``diagnosis.json`` and ``diagnosis.h5``.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,7 +33,7 @@ def run(context: Context) -> None:
     subject = subject_of(context)
     _check_proof_test(context)
     try:
-        if "calibrate" in context.absent:
+        if not subject.calibration:
             raise AbsentError(context.absent["calibrate"])
         found = diagnose(subject, effects, lambda: _other(context), context.progress, settings)
     except AbsentError as missing:
@@ -44,17 +45,21 @@ def run(context: Context) -> None:
 
 
 def subject_of(context: Context) -> Subject:
-    """What the products of a test give a diagnosis to work on."""
+    """What the products of a test give a diagnosis to work on; without a calibration where none can be had."""
     from hfanalysis.diagnose.of_test import Subject
+    from hfanalysis.diagnose.without_run_line import NOTE, lumped_calibration
     from hfanalysis.segment.phases import Segments
     from hfanalysis.testdata.log import read_log
 
-    return Subject(
-        read_log(context.product("ingest.h5")),
-        Segments.from_json(context.read_json("segments.json")),
-        {} if "calibrate" in context.absent else context.read_json("base_calibration.json"),
-        context.definition,
-    )
+    log = read_log(context.product("ingest.h5"))
+    segments = Segments.from_json(context.read_json("segments.json"))
+    if "calibrate" not in context.absent:
+        return Subject(log, segments, context.read_json("base_calibration.json"), context.definition)
+    if "p_tank" in log and "p_run" not in log:
+        with suppress(AbsentError):
+            found = lumped_calibration(log, segments, context.definition)
+            return Subject(log, segments, found, context.definition, (NOTE,))
+    return Subject(log, segments, {}, context.definition)
 
 
 def _check_proof_test(context: Context) -> None:

@@ -1,0 +1,36 @@
+"""A base calibration where the pressure ahead of the injector was not recorded: injector and feed line as one orifice.
+
+Both lose pressure with the square of the flow over the density, so that together they pass what one smaller orifice at
+the tank's pressure does. Such an area is no C_i, and is reported as none; a diagnosis can start from it.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+from hfanalysis.calibrate.of_test import regress
+from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.segment.phases import Segments
+from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.testdata.log import TestLog
+from hfanalysis.testdata.products import to_json
+
+SAMPLES = 50
+"""Repetitions of the calibration with drawn inputs: a diagnosis takes the load's deviation from them, and no more."""
+
+NOTE = (
+    "p_run was not recorded: injector and feed line were taken for one orifice, and what happens in one of them "
+    "cannot be told from the other"
+)
+
+
+def lumped_calibration(log: TestLog, segments: Segments, definition: TestDefinition) -> dict[str, Any]:
+    """What calibration.json would hold if the feed line lost nothing. Raises AbsentError as a calibration does."""
+    channels = {**log.channels, "p_run": replace(log["p_tank"], name="p_run")}
+    lossless = replace(log, channels=channels)
+    tank = calibrate(lossless, segments, definition, SAMPLES)
+    regression = regress(lossless, segments, definition, tank)
+    found: dict[str, Any] = json.loads(to_json({**regression.quantities, **tank.to_json()}))
+    return found
