@@ -66,7 +66,7 @@ def calibrate(
     # t1 is kept where it pays beyond its own noise on cases that it was not fitted to
     gain = scores[True] - scores[False]
     grows = bool(gain.mean() > gain.std(ddof=1) / sqrt(len(gain)))
-    lines = [*_report(cases, samples, fits, held_out, grows, without), "", *forms(cases)]
+    lines = [*_report(cases, samples, fits, held_out, grows, without), "", *forms(cases), "", *alarms(cases)]
     return lines, to_json(fits[grows], len(samples), split, codes)
 
 
@@ -98,6 +98,17 @@ def forms(cases: Sequence[Case]) -> list[str]:
         asked = Counter(e[side] for e in errors)
         each = ", ".join(f"{100.0 * error:.2g} %: {number}" for error, number in sorted(asked.items()))
         lines.append(f"  {side}: {each}")
+    return lines
+
+
+def alarms(cases: Sequence[Case], most: int = 4) -> list[str]:
+    """The largest log evidences where there is nothing to find: the least that a claim needs goes by them."""
+    nothing = [c.product.get("evidences", {}) for c in cases if c.truth == "none"]
+    named = sorted(max((v for k, v in e.items() if k not in ("none", "unknown")), default=0.0) for e in nothing)
+    unknown = sorted(e.get("unknown", 0.0) for e in nothing)
+    lines = [f"largest log evidences of the {len(nothing)} cases without an effect"]
+    for name, found in (("names", named), ("unknown", unknown)):
+        lines.append(f"  {name}: " + ", ".join(f"{v:.1f}" for v in found[::-1][:most]))
     return lines
 
 

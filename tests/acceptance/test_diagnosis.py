@@ -127,7 +127,7 @@ def test_without_thrust_the_pressures_are_compared(root: Path, tmp_path: Path) -
 @pytest.mark.parametrize(
     ("missing", "reason"),
     [
-        (("p_run",), "no p_run"),
+        (("p_chamber",), "no p_chamber"),
         (("p_tank",), "no p_tank"),
         (("p_tank", "p_run", "p_chamber"), "no p_tank"),
         (("p_run", "p_chamber", "thrust"), "no firing and no flow: nothing in p_tank responds"),
@@ -141,6 +141,48 @@ def test_what_cannot_be_calibrated_is_refused_with_its_reason(
     assert re.search(reason, done.stderr), done.stderr
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "processed" / "T1" / "diagnosis.json").exists()
+
+
+def test_without_the_run_line_injector_and_line_are_one(root: Path, tmp_path: Path) -> None:
+    made = without(root, ("p_run",), tmp_path)
+    assert hfa(made, "calibrate", "T1").returncode == 3
+    done = hfa(made, "diagnose", "T1")
+    assert done.returncode == 0, done.stderr
+    found = json.loads((made / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert found["compared"]["channels"] == ["p_tank", "p_chamber", "thrust"]
+    assert found["verdict"] == "named"
+    assert found["set90"] == ["nozzle_throat_erosion"]
+    rate = found["effects"][0]["parameters"]["rate"]
+    assert abs(rate["value"] - RATE) < 3.5 * rate["std"]
+    assert "taken for one orifice" in found["notes"][0]
+    assert "loss_factor" not in found["constants"]["with"]
+
+
+def drifted(root: Path, to: Path) -> Path:
+    """The test as if nothing but thrust and p_chamber had been recorded, by a cell whose zero drifts by 300 N."""
+    made = without(root, ("p_tank", "p_run"), to)
+    folder = made / "raw_tests" / "T1"
+    text = (folder / "test.toml").read_text(encoding="utf-8")
+    text = text.replace('tare = "none"', 'tare = "before"').replace(
+        '"p_chamber", unit', '"p_chamber", zero = "ambient", unit'
+    )
+    (folder / "test.toml").write_text(text, encoding="utf-8")
+    table = np.genfromtxt(folder / "log.csv", delimiter=",", names=True)
+    table["thrust"] += 300.0 * (1.0 - np.exp(-np.maximum(table["time"] - 100.0, 0.0) / 2.0))
+    header = ",".join(table.dtype.names)
+    np.savetxt(folder / "log.csv", table, fmt="%.9g", delimiter=",", header=header, comments="")
+    return made
+
+
+def test_what_cannot_be_calibrated_still_has_its_sensors_judged(root: Path, tmp_path: Path) -> None:
+    made = drifted(root, tmp_path)
+    done = hfa(made, "diagnose", "T1")
+    assert done.returncode == 0, done.stderr
+    found = json.loads((made / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert set(found) >= KEYS
+    assert [row["name"] for row in found["effects"]] == ["load_cell_drift"]
+    assert found["effects"][0]["parameters"]["drift"]["value"] == pytest.approx(300.0, rel=0.1)
+    assert "no p_tank" in found["sentences"][-1]
 
 
 def cut(root: Path, to: Path, end: float) -> Path:

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.blind import folder as fo
-from benchmarks.blind.calibrate import Unfit, calibrate, forms, save
+from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, save
 from benchmarks.blind.document import document, write
 from benchmarks.blind.fit import Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
@@ -270,6 +270,16 @@ def test_calibration_counts_the_forms_of_what_is_right(made: Callable[..., Folde
     assert "the 3 cases" in first
     assert tank.split() == ["tank:", "0.02", "%:", "2,", "0.06", "%:", "1"]
     assert chamber.split() == ["chamber:", "0.08", "%:", "3"]
+
+
+def test_calibration_tells_the_largest_evidences_of_nothing(made: Callable[..., Folder]) -> None:
+    found = [{"none": 0.0, "n2_purge": 2.5, "unknown": -3.0}, {"none": 0.0, "n2_purge": -1.0, "unknown": 8.9}]
+    cases = [(None, {"posterior": {"none": 0.9}, "evidences": evidences}) for evidences in found]
+    cases += [("tank_heat", {"posterior": {"none": 0.9}, "evidences": {"none": 0.0, "tank_heat": 40.0}})]
+    first, names, unknown = alarms(list(results(made(cases), "calibration").cases.values()))
+    assert "the 2 cases" in first
+    assert names.split() == ["names:", "2.5,", "-1.0"]
+    assert unknown.split() == ["unknown:", "8.9,", "-3.0"]
 
 
 def test_the_scored_split_is_not_fitted_to_under_any_name(made: Callable[..., Folder], tmp_path: Path) -> None:

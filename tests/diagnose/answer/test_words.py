@@ -40,6 +40,7 @@ def product(label: str, **more: Any) -> dict[str, Any]:
         "set90": ["unknown"] if label == "unknown" else verdict.set90,
         "effects": effects_product(verdict) if label in ("named", "ambiguous") else [],
         "localisation": places(verdict, found) if label != "none" else [],
+        "compared": {"chi_square": 0.9},
         "gap": {"before": rms, "after": made.NOISE, "noise": made.NOISE, "closed_fraction": fractions},
         "not_it": ["tank_heat"],
         "decisive_measurements": [] if label == "none" else ["nozzle_throat_erosion: the throat's diameter"],
@@ -68,6 +69,15 @@ def test_what_is_likelier_than_none_is_said_where_nothing_is_claimed() -> None:
     odds = {"none": 0.1, "unknown": 0.7, "tank_heat": 0.2}
     assert headline(product("none", posterior=odds)).startswith("Nothing is claimed to be missing: unknown (0.70)")
     assert headline(product("none", posterior={**odds, "none": 0.6})).startswith("Nothing is missing from the model")
+
+
+def test_more_than_noise_is_told_where_nothing_explains_it() -> None:
+    restless = product("none", compared={"chi_square": 2.2})
+    restless["gap"]["before"] = {**restless["gap"]["before"], "thrust": 9.0 * made.NOISE["thrust"]}
+    said = story(restless)
+    assert len(said) == 2
+    assert "chi-square 2.2 per observation, most of it in thrust" in said[1]
+    assert all("chi-square" not in line for line in story(product("named", compared={"chi_square": 2.2})))
 
 
 def test_sentences_give_sizes_in_the_units_of_engineers() -> None:

@@ -25,6 +25,9 @@ LIKELY = 0.1
 LIKELIER = 1.5
 """How much more probable than none a label has to be to be mentioned where nothing is claimed."""
 
+MUCH = 1.3
+"""Chi-square per observation from which on more is left than noise that was estimated a little too small."""
+
 _UNITS = {"Pa": ("bar", 1e-5), "W": ("kW", 1e-3), "kg/s": ("g/s", 1e3), "1": ("%", 100.0)}
 _CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
 _UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
@@ -35,7 +38,9 @@ def story(product: Mapping[str, Any]) -> list[str]:
     out = [headline(product)]
     out += [place_sentence(row) for row in product["localisation"]]
     out += [effect_sentence(row) for row in product["effects"]]
-    if product["verdict"] != "none":
+    if product["verdict"] == "none":
+        out += left_over(product)
+    else:
         out += [line for channel in product["gap"]["before"] if (line := gap_line(channel, product["gap"]))]
         out += proof_sentences(product)
     if product["verdict"] == "unknown" and product["not_it"]:
@@ -66,6 +71,18 @@ def headline(product: Mapping[str, Any]) -> str:
     doubt = f"; {', '.join(others)} cannot be excluded" if others else ""
     either = f"; in place of what is beside it: {', '.join(beside)}" if beside else ""
     return f"The model lacks {names}{doubt}{either}."
+
+
+def left_over(product: Mapping[str, Any]) -> list[str]:
+    """That more is left than the noise, where nothing was found that could be it."""
+    chi_square, gap = product["compared"]["chi_square"], product["gap"]
+    if chi_square <= MUCH:
+        return []
+    worst = max(gap["before"], key=lambda channel: gap["before"][channel] / gap["noise"][channel])
+    return [
+        f"More is left than the noise, though: chi-square {chi_square:.1f} per observation, most of it in {worst}. "
+        "Neither a listed effect nor a source that is steady, or comes and goes, explains it; an oscillation might."
+    ]
 
 
 def place_sentence(row: Mapping[str, Any]) -> str:
