@@ -25,6 +25,9 @@ hardly ever ask for one: `make blind-calibrate` prints how many (of 98 none on t
 FURTHER = 5.0
 """Log of the odds against each effect beyond the first: several at once are rarer than one."""
 
+HOPELESS = 30.0
+"""Log evidence behind the best at the same form from which on a candidate is not fitted any finer."""
+
 SHORT, LONG = 12, 25
 """Steps of a fit that looks around, and of one that is to converge."""
 

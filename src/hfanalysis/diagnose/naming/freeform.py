@@ -12,7 +12,7 @@ from hfanalysis.diagnose.fitting.form import FINEST
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.localise import Source, linear_sources
 from hfanalysis.diagnose.observations.observed import Observed
 
@@ -47,7 +47,8 @@ def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Can
     Beside a name the likeliest shows what is left; others are tried where it comes near to being the answer.
     """
     start, sources = _worth_it(base, bench)
-    out = _fitted(start, sources, bench)
+    rival = bench.refitted(named, start.form) if sources and named.names and named.form != start.form else named
+    out = _fitted(start, sources, bench, rival)
     if named.names:
         start, sources = _worth_it(named, bench)
         needed = REST * (named.log_evidence - base.log_evidence)
@@ -74,10 +75,18 @@ def _few(sources: list[Source]) -> list[Source]:
     return [s for s in sources if s.site.name in best and s.log_evidence > least[s.site.name]]
 
 
-def _fitted(start: Candidate, sources: list[Source], bench: Bench) -> list[Candidate]:
-    """The parent with each of these sources."""
-    fitted = each(lambda source: with_fitted(start, source, bench), sources)
-    return [found for found in fitted if found is not None]
+def _fitted(start: Candidate, sources: list[Source], bench: Bench, rival: Candidate | None = None) -> list[Candidate]:
+    """The parent with each of these sources, at the form that it asks for.
+
+    Those far behind the best of them, or behind a ``rival``, stay at the form of the parent; but for the best.
+    """
+    tried = each(lambda source: with_fitted(start, source, bench), sources)
+    found = sorted((c for c in tried if c is not None), key=lambda c: -c.log_evidence)
+    least = max((c.log_evidence for c in (*found[:1], *([rival] if rival else []))), default=0.0) - HOPELESS
+    racing = [c for i, c in enumerate(found) if i == 0 or c.log_evidence > least]
+    price = BESIDE if start.names else 0.0
+    settled = [*each(bench.judged, racing), *found[len(racing) :]]
+    return [replace(c, log_evidence=c.log_evidence - price) for c in settled]
 
 
 def _seen(parent: Candidate, bench: Bench) -> list[Source]:
@@ -90,16 +99,13 @@ def _seen(parent: Candidate, bench: Bench) -> list[Source]:
 
 
 def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | None:
-    """The parent with a source more, fitted with the full model."""
+    """The parent with a source more, fitted with the full model at the parent's form."""
     made, _ = source.added_to(parent.fit.hypothesis)
     start = _nearest(made, bench.at(parent.form), [_towards(parent.fit, source, share) for share in STRIDES])
     if start is None:
         return None
     found = attempted(made, bench.at(parent.form), start, SHORT)
-    if found is None:
-        return None
-    judged = bench.judged(candidate((*parent.names, source.site.name), found, parent.form, unknown=True))
-    return replace(judged, log_evidence=judged.log_evidence - (BESIDE if parent.names else 0.0))
+    return None if found is None else candidate((*parent.names, source.site.name), found, parent.form, unknown=True)
 
 
 def _towards(fitted: Fit, source: Source, share: float) -> Array:

@@ -11,10 +11,9 @@ from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.naming.singles import HOPELESS
 from hfanalysis.diagnose.naming.slack import slacked
 from hfanalysis.diagnose.observations.observed import Observed
 

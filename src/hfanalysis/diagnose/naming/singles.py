@@ -19,14 +19,11 @@ from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 
 Array = NDArray[np.float64]
-
-HOPELESS = 30.0
-"""Log evidence behind the best at the same form from which on an effect is not fitted any finer."""
 
 FAR = 3.0
 """Units of log evidence that a base gains from a child's constants before all are fitted again."""

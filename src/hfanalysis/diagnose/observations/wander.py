@@ -30,6 +30,9 @@ CAREFUL = 0.15
 """Log of the variances by which all are raised at last, in their posterior standard deviations: a quiet time that is
 too short misleads only where it shows too little."""
 
+FARTHEST = 40.0
+"""By how much the log of a variance may differ from that of the whole reading's."""
+
 LEAST = 60
 """Blocks of quiet time from which on it is analysed."""
 
@@ -86,7 +89,8 @@ def _fitted(values: Array, step: float, white: float, flicker: float) -> Wander:
         return float(np.sum(np.log(model) + power / model)) + 0.5 * prior
 
     start = np.log(np.r_[np.full(TIMES.size, max(flicker, 1e-3 * level)), max(white**2, 1e-3 * level)])
-    best = minimize(cost, start, method="L-BFGS-B", options={"maxiter": 60}).x
+    bounds = [(np.log(level) - FARTHEST, np.log(level) + FARTHEST)] * start.size
+    best = minimize(cost, start, method="L-BFGS-B", bounds=bounds, options={"maxiter": 60}).x
     return Wander(
         np.exp(best[:-1]) * np.exp(CAREFUL / np.sqrt(1.0 + frequency.size / 40.0)), float(np.exp(0.5 * best[-1]))
     )
