@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 PRICE = 5.0
 """Log of the odds against each step of the model-form error, on either side. Right explanations of simulated tests
-hardly ever ask for one: `make blind-calibrate` prints how many (of 98 none on the tank's side, 5 in the chamber)."""
+hardly ever ask for one: `make blind-calibrate` prints how many (of 97 none on the tank's side, 4 in the chamber)."""
 
 FURTHER = 5.0
 """Log of the odds against each effect beyond the first: several at once are rarer than one."""
