@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -12,9 +13,11 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.diagnose.answer.limits import inserted, limits
 from hfanalysis.diagnose.answer.verdict import of_unknown, places, verdict_of
+from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import mid_flux
+from hfanalysis.diagnose.fitting.late import late
 from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.diagnose.fitting.pulse import pulse_effect
 from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
@@ -27,6 +30,7 @@ from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
 from hfanalysis.diagnose.naming.singles import base_and_singles
 from hfanalysis.diagnose.naming.slack import slacked
+from hfanalysis.diagnose.observations.clocks import Delay
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
@@ -201,6 +205,27 @@ def test_what_comes_and_goes_at_once_is_unknown_with_its_instants() -> None:
     inside = course_of(verdict.chosen.fit, "injector_factor", found.bench.observed)
     middle = np.abs(inside.time - (FALLEN["start"] + 0.5 * FALLEN["duration"])) < 0.2
     assert (np.abs(inside.mean[middle] - FALLEN["size"]) < 3.0 * inside.std[middle]).all()
+
+
+@cache
+def late_thrust() -> Naming:
+    test = made.observed(late("thrust").at(delay=0.1))
+    return name_effects(made.hypothesis(), replace(test, thrust_delay=Delay(0.102, 40.0)), catalogue())
+
+
+def test_a_thrust_of_another_clock_is_unknown_with_its_delay() -> None:
+    found = late_thrust()
+    verdict = verdict_of(found)
+    assert verdict.label == "unknown", verdict.posterior
+    row = places(verdict, found)[0]
+    assert (row["equation"], row["channel"], row["source"].unit) == ("sensor", "thrust", "s")
+    assert abs(row["source"].value - 0.1) < 3.0 * row["source"].std
+    assert row["source"].std < 0.01
+    assert re.fullmatch(r"A sensor \(thrust\) is read \d+(\.\d)? ± [\d.]+ ms late\.", place_sentence(row))
+
+
+def test_a_delay_is_not_thought_of_where_the_start_shows_none() -> None:
+    assert not [c for c in named("tank_heat").unknown if "clock of thrust" in c.names]
 
 
 def test_the_linear_search_sees_a_pulse_where_it_is() -> None:

@@ -91,6 +91,8 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     value, std = factor * (row["source"].value or 0.0), factor * (row["source"].std or 0.0)
     where = EQUATIONS[row["equation"]] + (f" ({row['channel']})" if row.get("channel") else "")
     left = " Beside what is named, this is still open." if row.get("beside") else ""
+    if unit == "s":
+        return f"{where[0].upper()}{where[1:]} is read {1e3 * value:.3g} ± {1e3 * std:.2g} ms late.{left}"
     return (
         f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s {where} differs by "
         f"{value:.3g} ± {std:.2g} {unit} on average (mostly in the {row['phase']} phase).{left}"

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.form import FINEST
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.late import with_delay
 from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
-from hfanalysis.diagnose.naming.localise import Source, linear_sources
+from hfanalysis.diagnose.naming.localise import Source, clock_site, linear_sources
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
@@ -48,14 +49,37 @@ def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Can
     """
     start, sources = _worth_it(base, bench)
     rival = bench.refitted(named, start.form) if sources and named.names and named.form != start.form else named
-    out = _fitted(start, sources, bench, rival)
+    out = _fitted(start, sources, bench, rival) + _late(base, bench)
     if named.names:
+        out += _late(named, bench)
         start, sources = _worth_it(named, bench)
         needed = REST * (named.log_evidence - base.log_evidence)
         first = _fitted(start, sources[:1], bench)
         near = any(c.log_evidence - named.log_evidence > NEAR * needed for c in first)
         out += first + (_fitted(start, sources[1:], bench) if near else [])
     return sorted(out, key=lambda c: -c.log_evidence)
+
+
+def _late(parent: Candidate, bench: Bench) -> list[Candidate]:
+    """The parent with a thrust that is read late, where that is plain without a model.
+
+    What the raw samples of the start tell counts besides: most of it lies where no blocks are compared.
+    """
+    delay = bench.observed.thrust_delay
+    if delay is None:
+        return []
+    made, own = with_delay(parent.fit.hypothesis, "thrust", delay.seconds)
+    found = attempted(made, bench.at(parent.form), np.concatenate([parent.fit.x, own]), SHORT)
+    if found is None:
+        return []
+    names = (*parent.names, clock_site("thrust").name)
+    judged = bench.judged(candidate(names, found, parent.form, unknown=True))
+    return [_priced(replace(judged, log_evidence=judged.log_evidence + delay.log_evidence))]
+
+
+def _priced(source: Candidate) -> Candidate:
+    """A source at the price of those beside names."""
+    return replace(source, log_evidence=source.log_evidence - (BESIDE if len(source.names) > 1 else 0.0))
 
 
 def _worth_it(parent: Candidate, bench: Bench) -> tuple[Candidate, list[Source]]:
@@ -84,9 +108,7 @@ def _fitted(start: Candidate, sources: list[Source], bench: Bench, rival: Candid
     found = sorted((c for c in tried if c is not None), key=lambda c: -c.log_evidence)
     least = max((c.log_evidence for c in (*found[:1], *([rival] if rival else []))), default=0.0) - HOPELESS
     racing = [c for i, c in enumerate(found) if i == 0 or c.log_evidence > least]
-    price = BESIDE if start.names else 0.0
-    settled = [*each(bench.judged, racing), *found[len(racing) :]]
-    return [replace(c, log_evidence=c.log_evidence - price) for c in settled]
+    return [_priced(c) for c in (*each(bench.judged, racing), *found[len(racing) :])]
 
 
 def _seen(parent: Candidate, bench: Bench) -> list[Source]:

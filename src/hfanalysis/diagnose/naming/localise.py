@@ -3,7 +3,7 @@
 At every site of the model an unknown source over time is tried, with all calibrated parameters free: splines with a
 Gaussian prior, linear in the tangents of the base fit, or a pulse, which comes and goes at once. The evidence of each
 says where the source is; the best few are fitted again with the full model, since a large source is not linear.
-Sensors are sites too: an offset over time.
+Sensors are sites too: an offset over time, and a clock that is late.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Block, Hypothesis
+from hfanalysis.diagnose.fitting.late import TYPICAL, delay_name
 from hfanalysis.diagnose.fitting.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.diagnose.fitting.pulse import OWN, Pulse, has_pulse, pulse_in, with_pulse
@@ -201,6 +202,11 @@ def sensor_site(observed: Observed, name: str) -> Site:
     return Site(f"offset of {name}", "sensor", unit, typical, sensor=name)
 
 
+def clock_site(channel: str) -> Site:
+    """A sensor's clock as a site."""
+    return Site(f"clock of {channel}", "sensor", "s", TYPICAL, sensor=channel)
+
+
 def _smooth(site: Site, projected: _Projected, splines: Splines) -> Smooth:
     scale, gain, mean = _best_scale(projected, site.typical)
     return Smooth(site, gain, scale, mean, splines, projected.start + projected.follow @ mean)
@@ -235,6 +241,8 @@ def _sensors(fitted: Fit) -> set[str]:
 def course_of(found: Fit, name: str, observed: Observed) -> Course:
     """An unknown source as a fit has it; ``name`` is that of its site."""
     site, time = _site(name, observed), np.linspace(0.0, float(observed.grid[~observed.resting][-1]), POINTS)
+    if site.unit == "s":
+        return _course_of_delay(found, site, time)
     if site.sensor is None and has_pulse(found.hypothesis, name):
         return _course_of_pulse(found, site, time)
     for block, place in found.hypothesis.places():
@@ -244,6 +252,12 @@ def course_of(found: Fit, name: str, observed: Observed) -> Course:
             std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, covariance, basis), 0.0))
             return Course(site, time, basis @ found.x[place], std, 0.5 * block.splines.spacing)
     raise ValueError(f"the fit has no source at {name}")
+
+
+def _course_of_delay(found: Fit, site: Site, time: Array) -> Course:
+    assert site.sensor is not None
+    name = delay_name(site.sensor)
+    return Course(site, time, np.full_like(time, found.values[name]), np.full_like(time, found.stds[name]), 0.0)
 
 
 def _course_of_pulse(found: Fit, site: Site, time: Array) -> Course:
@@ -274,4 +288,6 @@ def _prefix(site: Site) -> str:
 def _site(name: str, observed: Observed) -> Site:
     if name.startswith("offset of "):
         return sensor_site(observed, name.removeprefix("offset of "))
+    if name.startswith("clock of "):
+        return clock_site(name.removeprefix("clock of "))
     return next(s for s in SITES if s.name == name)

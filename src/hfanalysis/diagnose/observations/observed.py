@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 
+from hfanalysis.diagnose.observations.clocks import Delay
+
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -95,7 +97,8 @@ class Observed:
     first, too, stands for the time before). ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its
     measured end, at which that of every model ends. ``stated``: what was measured outside the log (SI), with standard
     deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there. ``errors``:
-    model-form error, as part of the range of the tank's channels, and of chamber and thrust.
+    model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``thrust_delay``: by which
+    thrust is read later than the chamber's pressure, where that is plain without a model.
     """
 
     channels: tuple[Channel, ...]
@@ -110,6 +113,7 @@ class Observed:
     common: Array | None = None
     errors: tuple[float, float] = (FORM_ERROR, CHAMBER_FORM * FORM_ERROR)
     fuel_out: float | None = None
+    thrust_delay: Delay | None = None
 
     def with_errors(self, tank: float, chamber: float) -> Observed:
         """The same with another model-form error."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hfanalysis.diagnose.observations.blocks import blocks_of
+from hfanalysis.diagnose.observations.clocks import thrust_delay
 from hfanalysis.diagnose.observations.covariance import channel_of, common_of, oscillations
 from hfanalysis.diagnose.observations.flow_end import noted_flow_end
 from hfanalysis.diagnose.observations.frame import events_of, frame_of, phases_of
@@ -42,6 +43,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         definition.ambient_pressure.value,
         common_of(blocks, shaken),
         fuel_out=frame.fuel_out,
+        thrust_delay=thrust_delay(signals),
     )
 
 
