@@ -15,7 +15,7 @@ STEP = 1e-3
 
 
 def start(delay: float = 0.0, lag: float = 0.0, step: float = STEP, noise: float = 0.01) -> dict[str, Signal]:
-    """Chamber pressure and thrust of an engine that starts within 60 ms; thrust is ``delay`` late, the pressure lags."""
+    """Pressure and thrust of an engine that starts within 60 ms; thrust is ``delay`` late, the pressure lags."""
     rng, time = np.random.default_rng(2), np.arange(-2.0, 3.0, step)
 
     def risen(at: np.ndarray) -> np.ndarray:

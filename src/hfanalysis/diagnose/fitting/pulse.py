@@ -43,11 +43,15 @@ def _edges(t, env, c, p, x):  # type: ignore[no-untyped-def]
     return (t - begins) * (t - begins - p[DURATION])
 
 
+def _name(site: str) -> str:
+    return f"probe_{site}"
+
+
 @lru_cache(maxsize=64)
 def pulse_effect(site: str) -> Effect:
     """An effect that adds a pulse to a site."""
     return Effect(
-        name=f"probe_{site}",
+        name=_name(site),
         equation="tank_energy",
         meaning=f"an unknown source at {site} that comes and goes",
         reference="free form",
@@ -107,10 +111,10 @@ def _between(free: Free, least: float, most: float) -> Free:
 
 def pulse_in(fitted: Hypothesis, x: Array, site: str, times: Array) -> Array:
     """The pulse that a hypothesis has at a site."""
-    values, name = fitted.values(x), pulse_effect(site).name
-    return pulse_at(times, *(values[f"{name}.{own}"] for own in OWN))
+    values = fitted.values(x)
+    return pulse_at(times, *(values[f"{_name(site)}.{own}"] for own in OWN))
 
 
 def has_pulse(hypothesis: Hypothesis, site: str) -> bool:
     """Whether a hypothesis has a pulse at a site."""
-    return f"{pulse_effect(site).name}.size" in hypothesis.names
+    return f"{_name(site)}.size" in hypothesis.names

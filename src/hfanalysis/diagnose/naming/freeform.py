@@ -12,9 +12,10 @@ from hfanalysis.diagnose.fitting.form import FINEST
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.late import with_delay
 from hfanalysis.diagnose.fitting.predict import predict
+from hfanalysis.diagnose.fitting.pulse import has_pulse
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
-from hfanalysis.diagnose.naming.localise import Source, clock_site, linear_sources
+from hfanalysis.diagnose.naming.localise import SCALES, SITES, Source, clock_site, linear_sources
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
@@ -31,6 +32,10 @@ LEAST = 4.0
 
 BESIDE = 6.0
 """Log of the odds against an unknown source beside a named effect: what a closure gets wrong looks like one."""
+
+ANYWHERE = float(np.log(len(SITES) * SCALES.size))
+"""Log of the odds against a pulse: it is the best of all sites and scales, and fits whatever else comes and goes, an
+ignition for one. (Smooth sources are as much chosen; their odds are fitted to simulated tests.)"""
 
 REST = 0.5
 """Part of what the best names explain that a source beside them must add for the answer to be unknown."""
@@ -78,8 +83,10 @@ def _late(parent: Candidate, bench: Bench) -> list[Candidate]:
 
 
 def _priced(source: Candidate) -> Candidate:
-    """A source at the price of those beside names."""
-    return replace(source, log_evidence=source.log_evidence - (BESIDE if len(source.names) > 1 else 0.0))
+    """A source at the price of its kind."""
+    beside = BESIDE if len(source.names) > 1 else 0.0
+    sudden = ANYWHERE if has_pulse(source.fit.hypothesis, source.names[-1]) else 0.0
+    return replace(source, log_evidence=source.log_evidence - beside - sudden)
 
 
 def _worth_it(parent: Candidate, bench: Bench) -> tuple[Candidate, list[Source]]:
