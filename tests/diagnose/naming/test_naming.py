@@ -22,8 +22,9 @@ from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.diagnose.fitting.pulse import pulse_effect
 from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.naming.course import course_of
 from hfanalysis.diagnose.naming.freeform import LEAST, unknown_sources
-from hfanalysis.diagnose.naming.localise import Smooth, Sudden, course_of, linear_sources
+from hfanalysis.diagnose.naming.localise import Smooth, Sudden, linear_sources
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search

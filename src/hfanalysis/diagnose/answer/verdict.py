@@ -24,7 +24,7 @@ from hfanalysis.diagnose.answer.posterior import (
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
-from hfanalysis.diagnose.naming.localise import Course, course_of
+from hfanalysis.diagnose.naming.course import Course, course_of
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.quantity import Quantity
 

@@ -109,12 +109,17 @@ def _between(free: Free, least: float, most: float) -> Free:
     return replace(free, least=free.place(least), most=free.place(most))
 
 
+def parameters_of(site: str) -> tuple[str, ...]:
+    """The names of OWN in a hypothesis."""
+    return tuple(f"{_name(site)}.{own}" for own in OWN)
+
+
 def pulse_in(fitted: Hypothesis, x: Array, site: str, times: Array) -> Array:
     """The pulse that a hypothesis has at a site."""
     values = fitted.values(x)
-    return pulse_at(times, *(values[f"{_name(site)}.{own}"] for own in OWN))
+    return pulse_at(times, *(values[name] for name in parameters_of(site)))
 
 
 def has_pulse(hypothesis: Hypothesis, site: str) -> bool:
     """Whether a hypothesis has a pulse at a site."""
-    return f"{_name(site)}.size" in hypothesis.names
+    return parameters_of(site)[SIZE] in hypothesis.names

@@ -15,7 +15,8 @@ from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.pulse import has_pulse
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
-from hfanalysis.diagnose.naming.localise import SCALES, SITES, Source, clock_site, linear_sources
+from hfanalysis.diagnose.naming.localise import SCALES, Source, linear_sources
+from hfanalysis.diagnose.naming.sites import SITES, clock_site
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]

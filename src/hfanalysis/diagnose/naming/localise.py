@@ -3,7 +3,7 @@
 At every site of the model an unknown source over time is tried, with all calibrated parameters free: splines with a
 Gaussian prior, linear in the tangents of the base fit, or a pulse, which comes and goes at once. The evidence of each
 says where the source is; the best few are fitted again with the full model, since a large source is not linear.
-Sensors are sites too: an offset over time, and a clock that is late.
+Sensors are sites too: an offset over time.
 """
 
 from __future__ import annotations
@@ -15,50 +15,23 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Block, Hypothesis
-from hfanalysis.diagnose.fitting.late import TYPICAL, delay_name
 from hfanalysis.diagnose.fitting.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.fitting.probe import Splines, probe
-from hfanalysis.diagnose.fitting.pulse import OWN, Pulse, has_pulse, pulse_in, with_pulse
+from hfanalysis.diagnose.fitting.pulse import Pulse, with_pulse
+from hfanalysis.diagnose.naming.sites import SITES, Site, sensor_site
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.sensitivity import run_with_tangents
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Site:
-    """Where a source can be: the model's site or a sensor's channel, its equation, unit, and physical scale."""
-
-    name: str
-    equation: str
-    unit: str
-    typical: float
-    sensor: str | None = None
-
-
-SITES = (
-    Site("tank_heat", "tank_energy", "W", 2000.0),
-    Site("nitrogen_inflow", "tank_volume", "kg/s", 0.02),
-    Site("tank_leak", "tank_volume", "kg/s", 0.05),
-    Site("tank_pressure", "tank_energy", "Pa", 1e5),
-    Site("injector_factor", "injector", "1", 0.1),
-    Site("feed_loss", "feed", "Pa", 1e5),
-    Site("regression_factor", "grain", "1", 0.2),
-    Site("temperature_factor", "chamber_energy", "1", 0.1),
-    Site("throat_factor", "nozzle", "1", 0.05),
-    Site("thrust_factor", "nozzle", "1", 0.05),
-)
-BEYOND_ACCURACY = 5.0
-"""Error of a pressure transducer that is typical of one that errs, in units of its stated accuracy."""
-
-LOAD_CELL_DRIFT = 200.0
-"""Typical drift of a thrust cell in the heat of a firing [N]."""
 
 SCALES = np.geomspace(0.02, 4.0, 9)
 """Sizes of a source that are tried, in units of what is typical of its site."""
 
 SPACING = 0.6
 """Seconds between the splines of a source."""
+
+FINE = 200
+"""Instants at which pulses are laid over the splines."""
 
 CORRELATION = 1.5
 """Splines over which a source is coherent."""
@@ -106,20 +79,6 @@ class Sudden:
 
 
 Source = Smooth | Sudden
-
-
-@dataclass(frozen=True)
-class Course:
-    """A source over time as a fit has it: ``mean`` and ``std`` at ``time`` [s] in the site's unit.
-
-    ``blur``: the standard deviation of the instants at which it begins and ends [s].
-    """
-
-    site: Site
-    time: Array
-    mean: Array
-    std: Array
-    blur: float
 
 
 def smooth_prior(count: int) -> Array:
@@ -194,19 +153,6 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
     return sorted(found, key=lambda s: -s.log_evidence)
 
 
-def sensor_site(observed: Observed, name: str) -> Site:
-    """A sensor as a site: an offset over time."""
-    accuracy = next(c.accuracy for c in observed.channels if c.name == name)
-    unit = "N" if name == "thrust" else "kg" if name == "m_tank" else "Pa"
-    typical = LOAD_CELL_DRIFT if name == "thrust" else BEYOND_ACCURACY * accuracy
-    return Site(f"offset of {name}", "sensor", unit, typical, sensor=name)
-
-
-def clock_site(channel: str) -> Site:
-    """A sensor's clock as a site."""
-    return Site(f"clock of {channel}", "sensor", "s", TYPICAL, sensor=channel)
-
-
 def _smooth(site: Site, projected: _Projected, splines: Splines) -> Smooth:
     scale, gain, mean = _best_scale(projected, site.typical)
     return Smooth(site, gain, scale, mean, splines, projected.start + projected.follow @ mean)
@@ -219,7 +165,7 @@ def _sudden(site: Site, projected: _Projected, splines: Splines, end: float) -> 
     """
     grid = np.arange(0.0, end + splines.spacing, 0.5 * splines.spacing)
     first, last = (grid[i] for i in np.triu_indices(grid.size, 1))
-    time = np.linspace(0.0, end, POINTS)
+    time = np.linspace(0.0, end, FINE)
     inside = (time >= first[:, None]) & (time < last[:, None])
     boxes = inside @ np.linalg.pinv(splines.at(time)).T  # the splines that come nearest to each
     information = np.einsum("ij,jk,ik->i", boxes, projected.information, boxes)
@@ -236,58 +182,3 @@ def _sudden(site: Site, projected: _Projected, splines: Splines, end: float) -> 
 
 def _sensors(fitted: Fit) -> set[str]:
     return {b.sensor for b in fitted.hypothesis.blocks if b.sensor is not None}
-
-
-def course_of(found: Fit, name: str, observed: Observed) -> Course:
-    """An unknown source as a fit has it; ``name`` is that of its site."""
-    site, time = _site(name, observed), np.linspace(0.0, float(observed.grid[~observed.resting][-1]), POINTS)
-    if site.unit == "s":
-        return _course_of_delay(found, site, time)
-    if site.sensor is None and has_pulse(found.hypothesis, name):
-        return _course_of_pulse(found, site, time)
-    for block, place in found.hypothesis.places():
-        if block.names[0].startswith(_prefix(site)):
-            basis = block.splines.at(time) @ block.matrix
-            covariance = found.covariance[place, place]
-            std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, covariance, basis), 0.0))
-            return Course(site, time, basis @ found.x[place], std, 0.5 * block.splines.spacing)
-    raise ValueError(f"the fit has no source at {name}")
-
-
-def _course_of_delay(found: Fit, site: Site, time: Array) -> Course:
-    assert site.sensor is not None
-    name = delay_name(site.sensor)
-    return Course(site, time, np.full_like(time, found.values[name]), np.full_like(time, found.stds[name]), 0.0)
-
-
-def _course_of_pulse(found: Fit, site: Site, time: Array) -> Course:
-    names = [f.name for f in found.hypothesis.free]
-    own = [names.index(f"probe_{site.name}.{parameter}") for parameter in OWN]
-    mean = pulse_in(found.hypothesis, found.x, site.name, time)
-    slopes = np.empty((time.size, len(own)))
-    for column, k in enumerate(own):
-        moved = found.x.copy()
-        moved[k] += STEP
-        slopes[:, column] = (pulse_in(found.hypothesis, moved, site.name, time) - mean) / STEP
-    covariance = found.covariance[np.ix_(own, own)]
-    std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", slopes, covariance, slopes), 0.0))
-    return Course(site, time, mean, std, found.stds[f"probe_{site.name}.start"])
-
-
-POINTS = 200
-"""Instants at which a source is given."""
-
-STEP = 1e-3
-"""Of x, for the slopes of a pulse."""
-
-
-def _prefix(site: Site) -> str:
-    return f"offset_{site.sensor}." if site.sensor is not None else f"probe_{site.name}."
-
-
-def _site(name: str, observed: Observed) -> Site:
-    if name.startswith("offset of "):
-        return sensor_site(observed, name.removeprefix("offset of "))
-    if name.startswith("clock of "):
-        return clock_site(name.removeprefix("clock of "))
-    return next(s for s in SITES if s.name == name)
