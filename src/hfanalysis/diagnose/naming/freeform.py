@@ -15,6 +15,7 @@ from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.pulse import has_pulse
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.naming.dropping import dropped
 from hfanalysis.diagnose.naming.localise import SCALES, Source, linear_sources
 from hfanalysis.diagnose.naming.sites import SITES, clock_site
 from hfanalysis.diagnose.observations.observed import Observed
@@ -51,7 +52,8 @@ STRIDES = (1.0, 0.5, 0.2)
 def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
     """Sources instead of any name, and beside the best name, where either is worth it; the best first.
 
-    Beside a name the likeliest shows what is left; others are tried where it comes near to being the answer.
+    Beside a name the likeliest shows what is left; others are tried where it comes near to being the answer. Then the
+    names that the best of them can do without are left out.
     """
     start, sources = _worth_it(base, bench)
     rival = bench.refitted(named, start.form) if sources and named.names and named.form != start.form else named
@@ -60,10 +62,13 @@ def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Can
         out += _late(named, bench)
         start, sources = _worth_it(named, bench)
         needed = REST * (named.log_evidence - base.log_evidence)
-        first = _fitted(start, sources[:1], bench)
-        near = any(c.log_evidence - named.log_evidence > NEAR * needed for c in first)
-        out += first + (_fitted(start, sources[1:], bench) if near else [])
-    return sorted(out, key=lambda c: -c.log_evidence)
+        beside = _fitted(start, sources[:1], bench)
+        if any(_priced(c).log_evidence - named.log_evidence > NEAR * needed for c in beside):
+            beside += _fitted(start, sources[1:], bench)
+            best = max(beside, key=lambda c: c.log_evidence)
+            beside += [less for less in [dropped(best, bench)] if less is not best]
+        out += beside
+    return sorted(map(_priced, out), key=lambda c: -c.log_evidence)
 
 
 def _late(parent: Candidate, bench: Bench) -> list[Candidate]:
@@ -80,7 +85,7 @@ def _late(parent: Candidate, bench: Bench) -> list[Candidate]:
         return []
     names = (*parent.names, clock_site("thrust").name)
     judged = bench.judged(candidate(names, found, parent.form, unknown=True))
-    return [_priced(replace(judged, log_evidence=judged.log_evidence + delay.log_evidence))]
+    return [replace(judged, log_evidence=judged.log_evidence + delay.log_evidence)]
 
 
 def _priced(source: Candidate) -> Candidate:
@@ -116,7 +121,7 @@ def _fitted(start: Candidate, sources: list[Source], bench: Bench, rival: Candid
     found = sorted((c for c in tried if c is not None), key=lambda c: -c.log_evidence)
     least = max((c.log_evidence for c in (*found[:1], *([rival] if rival else []))), default=0.0) - HOPELESS
     racing = [c for i, c in enumerate(found) if i == 0 or c.log_evidence > least]
-    return [_priced(c) for c in (*each(bench.judged, racing), *found[len(racing) :])]
+    return [*each(bench.judged, racing), *found[len(racing) :]]
 
 
 def _seen(parent: Candidate, bench: Bench) -> list[Source]:

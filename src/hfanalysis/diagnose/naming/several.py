@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.naming.candidate import HOPELESS, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.naming.dropping import dropped, without
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.slack import slacked
@@ -30,9 +30,6 @@ PARTNERS = 4
 
 MOST_EFFECTS = 4
 
-CERTAIN = 8.0
-"""Standard deviations from nothing, other constants free, from which on an effect is not tried to be left out."""
-
 
 def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[list[Candidate], list[Candidate]]:
     """The singles and sets of several effects, with the evidence that they have with slack; each the best first.
@@ -47,7 +44,7 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[
     for size in range(2, MOST_EFFECTS + 1):
         search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
         grown = sorted((c for parent in front for c in _partners(parent, search, tried)), key=lambda c: -c.log_evidence)
-        best = [c for c in each(lambda c: _dropped(c, bench), grown[:2]) if len(c.names) > 1]
+        best = [c for c in each(lambda c: dropped(c, bench), grown[:2]) if len(c.names) > 1]
         loose = _loosened([*best, *grown], bench)
         front = [c for c, free in zip(best, loose, strict=False) if free.log_evidence > _of_subsets(c, known)][:1]
         if not front:
@@ -140,7 +137,7 @@ def swapped(found: Candidate, search: Search) -> Candidate:
 def _in_place(found: Candidate, name: str, twin: str, search: Search) -> Candidate | None:
     """The set with another effect in the place of one; None where it cannot be run."""
     observed = search.bench.at(found.form)
-    rest = _without(found, name, observed)
+    rest = without(found, name, observed)
     if rest is None:
         return None
     made, (tests,) = score_tests(rest, [rest.slopes], search.catalogue, twin, [observed], search.settings)
@@ -148,34 +145,3 @@ def _in_place(found: Candidate, name: str, twin: str, search: Search) -> Candida
     if again is None:
         return None
     return search.bench.judged(candidate(tuple(twin if n == name else n for n in found.names), again, found.form))
-
-
-def _without(found: Candidate, name: str, observed: Observed) -> Fit | None:
-    """The fit of a set without one of its effects."""
-    hypothesis = found.fit.hypothesis.without(name)
-    kept = [i for i, f in enumerate(found.fit.hypothesis.free) if f.name.partition(".")[0] != name]
-    return attempted(hypothesis, observed, found.fit.x[kept], SHORT)
-
-
-def _dropped(found: Candidate, bench: Bench) -> Candidate:
-    """The set without the effects whose loss makes the data no less probable."""
-    for name in found.names[:-1]:
-        if len(found.names) < 2:
-            break
-        if _certain(found, name):
-            continue
-        again = _without(found, name, bench.at(found.form))
-        if again is None:
-            continue
-        less = bench.judged(candidate(tuple(n for n in found.names if n != name), again, found.form))
-        if less.log_evidence > found.log_evidence:
-            found = less
-    return found
-
-
-def _certain(found: Candidate, name: str) -> bool:
-    """Whether a strength of an effect is so far from nothing that the set cannot do without it."""
-    active = next(a for a in found.fit.burnt.steps.engine.effects if a.effect.name == name)
-    strengths = [f"{name}.{p.name}" for p in active.effect.parameters[: active.effect.strengths]]
-    values, stds = found.fit.values, found.fit.stds
-    return any(abs(values[s]) > CERTAIN * stds[s] for s in strengths)

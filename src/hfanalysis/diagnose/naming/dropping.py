@@ -1,0 +1,42 @@
+"""Backward: effects that an explanation can do without."""
+
+from __future__ import annotations
+
+from hfanalysis.diagnose.fitting.fit import Fit
+from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.observations.observed import Observed
+
+CERTAIN = 8.0
+"""Standard deviations from nothing, other constants free, from which on an effect is not tried to be left out."""
+
+
+def dropped(found: Candidate, bench: Bench) -> Candidate:
+    """The set without the effects whose loss makes the data no less probable; what it is named for last stays."""
+    for name in found.names[:-1]:
+        if len(found.names) < 2:
+            break
+        if _certain(found, name):
+            continue
+        again = without(found, name, bench.at(found.form))
+        if again is None:
+            continue
+        names = tuple(n for n in found.names if n != name)
+        less = bench.judged(candidate(names, again, found.form, found.unknown))
+        if less.log_evidence > found.log_evidence:
+            found = less
+    return found
+
+
+def _certain(found: Candidate, name: str) -> bool:
+    """Whether a strength of an effect is so far from nothing that the set cannot do without it."""
+    active = next(a for a in found.fit.burnt.steps.engine.effects if a.effect.name == name)
+    strengths = [f"{name}.{p.name}" for p in active.effect.parameters[: active.effect.strengths]]
+    values, stds = found.fit.values, found.fit.stds
+    return any(abs(values[s]) > CERTAIN * stds[s] for s in strengths)
+
+
+def without(found: Candidate, name: str, observed: Observed) -> Fit | None:
+    """The fit of a set without one of its effects."""
+    hypothesis = found.fit.hypothesis.without(name)
+    kept = [i for i, full in enumerate(found.fit.hypothesis.names) if full.partition(".")[0] != name]
+    return attempted(hypothesis, observed, found.fit.x[kept], SHORT)
