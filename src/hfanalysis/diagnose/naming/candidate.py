@@ -6,7 +6,9 @@ the size that makes the data most probable, at a price per step: an explanation 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.fit import Fit, fit
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
@@ -75,25 +78,46 @@ class Bench:
         if not self.tempering:
             return self.refitted(found, FINEST) or found
         best = found
-        while (better := self.finer(best) or self.eased(best)) is not None:
+        while (better := self._better(best)) is not None:
             best = better
         return best
+
+    def _better(self, found: Candidate) -> Candidate | None:
+        """As :meth:`finer`, or else as :meth:`eased`; what may all be needed is fitted side by side."""
+        if not found.form.finer:
+            return self.eased(found)
+        both, either = found.form.finer
+        if (finer := self._best_of(found, self._refitted(found, both))) is not None:
+            return finer
+        coarser = self._coarser(found)
+        tried = self._refitted(found, [*either, *coarser])
+        finer = self._best_of(found, tried[: len(either)])
+        return finer if finer is not None else self._best_of(found, tried[len(either) :])
 
     def finer(self, found: Candidate) -> Candidate | None:
         """The candidate one step finer, on both sides or else on one; None where it has no more evidence."""
         for forms in found.form.finer:
-            tried = [self.refitted(found, form) for form in forms]
-            better = [c for c in tried if c is not None and more_probable(c, found)]
-            if better:
-                return max(better, key=lambda c: c.log_evidence)
+            if (better := self._best_of(found, self._refitted(found, forms))) is not None:
+                return better
         return None
 
     def eased(self, found: Candidate) -> Candidate | None:
         """The candidate one step coarser where it leaves much open; None where it has no more evidence."""
-        much = [left > CALM for left in self.at(found.form).left_open(found.fit.residual)]
-        form = found.form.coarser(*much)
-        coarser = None if form == found.form else self.refitted(found, form)
-        return coarser if coarser is not None and more_probable(coarser, found) else None
+        return self._best_of(found, self._refitted(found, self._coarser(found)))
+
+    def _coarser(self, found: Candidate) -> list[Form]:
+        """The form one step coarser where a candidate leaves much open; none where it does not."""
+        form = found.form.coarser(*(left > CALM for left in self.at(found.form).left_open(found.fit.residual)))
+        return [] if form == found.form else [form]
+
+    def _refitted(self, found: Candidate, forms: Sequence[Form]) -> list[Candidate | None]:
+        return each(partial(self.refitted, found), forms)
+
+    @staticmethod
+    def _best_of(found: Candidate, tried: Sequence[Candidate | None]) -> Candidate | None:
+        """The best of those that are more probable than the candidate."""
+        better = [c for c in tried if c is not None and more_probable(c, found)]
+        return max(better, key=lambda c: c.log_evidence, default=None)
 
     def refitted(self, found: Candidate, form: Form) -> Candidate | None:
         """The candidate at another form, None where it cannot be run."""

@@ -52,8 +52,8 @@ STRIDES = (1.0, 0.5, 0.2)
 def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
     """Sources instead of any name, and beside the best name, where either is worth it; the best first.
 
-    Beside a name the likeliest shows what is left; others are tried where it comes near to being the answer. Then the
-    names that the best of them can do without are left out.
+    Beside a name the likeliest shows what is left. Where it comes near to being the answer, all are tried at the form
+    that they ask for, and names that the best of them can do without are left out.
     """
     start, sources = _worth_it(base, bench)
     rival = bench.refitted(named, start.form) if sources and named.names and named.form != start.form else named
@@ -62,9 +62,9 @@ def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Can
         out += _late(named, bench)
         start, sources = _worth_it(named, bench)
         needed = REST * (named.log_evidence - base.log_evidence)
-        beside = _fitted(start, sources[:1], bench)
+        beside = [c for source in sources[:1] if (c := with_fitted(start, source, bench)) is not None]
         if any(_priced(c).log_evidence - named.log_evidence > NEAR * needed for c in beside):
-            beside += _fitted(start, sources[1:], bench)
+            beside = _fitted(start, sources, bench)
             best = max(beside, key=lambda c: c.log_evidence)
             beside += [less for less in [dropped(best, bench)] if less is not best]
         out += beside
