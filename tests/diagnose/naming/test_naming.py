@@ -19,11 +19,12 @@ from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import mid_flux
 from hfanalysis.diagnose.fitting.late import late
 from hfanalysis.diagnose.fitting.probe import Splines, probe
-from hfanalysis.diagnose.fitting.pulse import pulse_effect
+from hfanalysis.diagnose.fitting.pulse import OWN, pulse_effect
 from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.course import course_of
-from hfanalysis.diagnose.naming.freeform import LEAST, unknown_sources
+from hfanalysis.diagnose.naming.dropping import dropped
+from hfanalysis.diagnose.naming.freeform import ANYWHERE, LEAST, unknown_sources
 from hfanalysis.diagnose.naming.localise import Smooth, Sudden, linear_sources
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
@@ -197,6 +198,7 @@ def test_what_comes_and_goes_at_once_is_unknown_with_its_instants() -> None:
     verdict = verdict_of(found)
     assert verdict.label == "unknown", verdict.posterior
     row = places(verdict, found)[0]
+    assert verdict.chosen.names == ("injector_factor",)
     assert row["equation"] == "injector"
     assert row["phase"] == "liquid"
     for end, instant in (("t_start", FALLEN["start"]), ("t_end", FALLEN["start"] + FALLEN["duration"])):
@@ -223,6 +225,25 @@ def test_a_thrust_of_another_clock_is_unknown_with_its_delay() -> None:
     assert abs(row["source"].value - 0.1) < 3.0 * row["source"].std
     assert row["source"].std < 0.01
     assert re.fullmatch(r"A sensor \(thrust\) is read \d+(\.\d)? ± [\d.]+ ms late\.", place_sentence(row))
+
+
+def test_a_name_that_a_source_can_do_without_is_left_out() -> None:
+    """Beside an effect that is not there the blocked injector is as blocked, and the effect goes."""
+    found = partly_blocked()
+    base, best = found.base, verdict_of(found).chosen
+    idle = catalogue().add(best.fit.hypothesis, "nozzle_throat_erosion")
+    at = best.fit.x.size - len(OWN)
+    start = np.concatenate([best.fit.x, np.full(idle.size - best.fit.x.size, 0.05)])
+    again = attempted(idle, found.bench.at(best.form), start)
+    assert again is not None
+    both = candidate(("nozzle_throat_erosion", "injector_factor"), again, best.form, unknown=True)
+    assert both.log_evidence < best.log_evidence + ANYWHERE
+    less = dropped(both, found.bench)
+    assert less.names == ("injector_factor",)
+    assert less.unknown
+    assert less.log_evidence == pytest.approx(best.log_evidence + ANYWHERE, abs=0.5)
+    assert less.fit.x[at:] == pytest.approx(best.fit.x[at:], abs=0.1)
+    assert less.log_evidence > base.log_evidence
 
 
 def test_a_delay_is_not_thought_of_where_the_start_shows_none() -> None:
