@@ -213,7 +213,7 @@ def test_what_comes_and_goes_at_once_is_unknown_with_its_instants() -> None:
 @cache
 def late_thrust() -> Naming:
     test = made.observed(late("thrust").at(delay=0.1))
-    return name_effects(made.hypothesis(), replace(test, thrust_delay=Delay(0.102, 40.0)), catalogue())
+    return name_effects(made.hypothesis(), replace(test, plain=(Delay(0.102, 40.0),)), catalogue())
 
 
 def test_a_thrust_of_another_clock_is_unknown_with_its_delay() -> None:

@@ -167,7 +167,7 @@ def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> dict
     """A row for an unknown source."""
     site = course.site
     made = Acting(site.equation, site.unit, course.time, course.mean, course.std, site.sensor)
-    return of_acting(site.name, made, gain, phases, course.blur)
+    return {**of_acting(site.name, made, gain, phases, course.blur), **course.sizes}
 
 
 SEEN = 0.05

@@ -91,6 +91,17 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     value, std = factor * (row["source"].value or 0.0), factor * (row["source"].std or 0.0)
     where = EQUATIONS[row["equation"]] + (f" ({row['channel']})" if row.get("channel") else "")
     left = " Beside what is named, this is still open." if row.get("beside") else ""
+    if "opens_in" in row:
+        opens = row["opens_in"]
+        return (
+            f"The valve takes {1e3 * opens.value:.3g} ± {1e3 * opens.std:.2g} ms to open, by the run line's pressure; "
+            f"the model's opens at once.{left}"
+        )
+    if "frequency" in row:
+        return (
+            f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s the flow swings by {value:.2g} ± {std:.1g} "
+            f"{unit} at {row['frequency'].value:.2g} Hz: run line and chamber show it in opposite directions.{left}"
+        )
     if unit == "s":
         return f"{where[0].upper()}{where[1:]} is read {1e3 * value:.3g} ± {1e3 * std:.2g} ms late.{left}"
     return (

@@ -214,7 +214,11 @@ class Hypothesis:
             else f
             for f in free_parameters(effect)
         )
-        engine = replace(self.engine, effects=(*self.engine.effects, effect.at(**stated)))
+        return self.with_active(effect.at(**stated), free)
+
+    def with_active(self, active: Active, free: tuple[Free, ...]) -> Hypothesis:
+        """The same with an effect more, and what may move in it."""
+        engine = replace(self.engine, effects=(*self.engine.effects, active))
         return Hypothesis(engine, (*self.free, *free), self.blocks)  # slack belongs to a fit and is made anew
 
     def without(self, name: str) -> Hypothesis:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -44,6 +43,5 @@ def delay_name(channel: str) -> str:
 
 def with_delay(hypothesis: Hypothesis, channel: str, delay: float) -> tuple[Hypothesis, Array]:
     """The hypothesis with a delay [s] of a channel, and its x."""
-    engine = replace(hypothesis.engine, effects=(*hypothesis.engine.effects, late(channel).at(delay=delay)))
     free = Free(delay_name(channel), 0.0, TYPICAL)
-    return Hypothesis(engine, (*hypothesis.free, free), hypothesis.blocks), np.array([free.place(delay)])
+    return hypothesis.with_active(late(channel).at(delay=delay), (free,)), np.array([free.place(delay)])

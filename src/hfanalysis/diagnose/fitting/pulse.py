@@ -87,9 +87,7 @@ def with_pulse(hypothesis: Hypothesis, site: str, pulse: Pulse, end: float) -> t
     effect = pulse_effect(site)
     free = _free(effect.name, pulse.scale, end)
     values = (pulse.size, pulse.start, pulse.duration, TYPICAL_EDGE)
-    active = effect.at(**dict(zip(OWN, values, strict=True)))
-    engine = replace(hypothesis.engine, effects=(*hypothesis.engine.effects, active))
-    made = Hypothesis(engine, (*hypothesis.free, *free), hypothesis.blocks)
+    made = hypothesis.with_active(effect.at(**dict(zip(OWN, values, strict=True))), free)
     start = np.array([f.place(v) for f, v in zip(free, values, strict=True)])
     return made, np.clip(start, [f.least for f in free], [f.most for f in free])
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +11,21 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.late import delay_name
 from hfanalysis.diagnose.fitting.pulse import START, has_pulse, parameters_of, pulse_in
-from hfanalysis.diagnose.naming.sites import CLOCK, Site, site_of
+from hfanalysis.diagnose.fitting.swing import EDGE, PHASE_OF_SWING, SHARE_OF_SWING, SURE, swing_at
+from hfanalysis.diagnose.fitting.valve import SECONDS_OF_VALVE, loss_share
+from hfanalysis.diagnose.naming.sites import CLOCK, SWING, VALVE, Site, site_of
 from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.observations.swinging import Swing
+from hfanalysis.engine.model import O_TANK_PRESSURE, OUTPUTS
+from hfanalysis.quantity import Quantity
 
 Array = NDArray[np.float64]
 
-POINTS = 200
-"""Instants at which a source is given."""
+POINTS, POINTS_A_TURN = 200, 12
+"""Instants at which a source is given, and those in a turn of one that swings."""
+
+FORM = 0.3
+"""By how much, relative to itself, the loss of an opening valve may be wrong: each has a characteristic of its own."""
 
 STEP = 1e-3
 """Of x, for the slopes of a pulse."""
@@ -26,7 +35,8 @@ STEP = 1e-3
 class Course:
     """A source over time as a fit has it: ``mean`` and ``std`` at ``time`` [s] in the site's unit.
 
-    ``blur``: the standard deviation of the instants at which it begins and ends [s].
+    ``blur``: the standard deviation of the instants at which it begins and ends [s]. ``sizes``: what else it is known
+    by.
     """
 
     site: Site
@@ -34,6 +44,7 @@ class Course:
     mean: Array
     std: Array
     blur: float
+    sizes: Mapping[str, Quantity] = field(default_factory=dict)
 
 
 def course_of(found: Fit, name: str, observed: Observed) -> Course:
@@ -41,6 +52,10 @@ def course_of(found: Fit, name: str, observed: Observed) -> Course:
     site, time = site_of(name, observed), np.linspace(0.0, float(observed.grid[~observed.resting][-1]), POINTS)
     if name.startswith(CLOCK):
         return _course_of_delay(found, site, time)
+    if site == VALVE:
+        return _course_of_valve(found, float(time[-1]))
+    if site == SWING:
+        return _course_of_swing(found, float(time[-1]), observed)
     if has_pulse(found.hypothesis, name):
         return _course_of_pulse(found, site, time)
     for block, place in found.hypothesis.places():
@@ -56,6 +71,31 @@ def _course_of_delay(found: Fit, site: Site, time: Array) -> Course:
     assert site.sensor is not None
     name = delay_name(site.sensor)
     return Course(site, time, np.full_like(time, found.values[name]), np.full_like(time, found.stds[name]), 0.0)
+
+
+def _course_of_valve(found: Fit, end: float) -> Course:
+    """What the valve takes of the pressure while it opens."""
+    seconds, std = found.values[SECONDS_OF_VALVE], found.stds[SECONDS_OF_VALVE]
+    time = np.unique(np.r_[np.linspace(0.0, 1.5 * seconds, POINTS // 2), np.linspace(0.0, end, POINTS // 2)])
+    outputs = found.burnt.steps.at(time)[1]
+    loss = outputs[:, O_TANK_PRESSURE] - outputs[:, OUTPUTS.index("run_pressure")]
+    mean = loss * loss_share(time, seconds)
+    moved = 0.5 * loss * (loss_share(time, seconds + std) - loss_share(time, max(seconds - std, 0.1 * seconds)))
+    return Course(
+        VALVE, time, mean, np.abs(moved) + FORM * np.abs(mean), std, {"opens_in": Quantity(seconds, "s", std)}
+    )
+
+
+def _course_of_swing(found: Fit, end: float, observed: Observed) -> Course:
+    """What the flow swings by, with points enough for its frequency."""
+    given = next(plain for plain in observed.plain if isinstance(plain, Swing))
+    time = np.linspace(0.0, end, max(POINTS, round(POINTS_A_TURN * given.frequency * end)))
+    mean = swing_at(time, found.values, given)
+    std = SURE * np.abs(
+        swing_at(time, {**found.values, PHASE_OF_SWING: found.values[PHASE_OF_SWING] + 0.5 * np.pi}, given)
+    )
+    share = Quantity(found.values[SHARE_OF_SWING], SWING.unit, found.stds[SHARE_OF_SWING])
+    return Course(SWING, time, mean, std, EDGE, {"source": share, "frequency": Quantity(given.frequency, "Hz")})
 
 
 def _course_of_pulse(found: Fit, site: Site, time: Array) -> Course:

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.form import FINEST
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.late import with_delay
 from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.pulse import has_pulse
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.dropping import dropped
 from hfanalysis.diagnose.naming.localise import SCALES, Source, linear_sources
-from hfanalysis.diagnose.naming.sites import SITES, clock_site
+from hfanalysis.diagnose.naming.plain import plain_sources
+from hfanalysis.diagnose.naming.sites import SITES
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
@@ -57,9 +57,9 @@ def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Can
     """
     start, sources = _worth_it(base, bench)
     rival = bench.refitted(named, start.form) if sources and named.names and named.form != start.form else named
-    out = _fitted(start, sources, bench, rival) + _late(base, bench)
+    out = _fitted(start, sources, bench, rival) + plain_sources(base, named, bench)
     if named.names:
-        out += _late(named, bench)
+        out += plain_sources(named, named, bench)
         start, sources = _worth_it(named, bench)
         needed = REST * (named.log_evidence - base.log_evidence)
         beside = [c for source in sources[:1] if (c := with_fitted(start, source, bench)) is not None]
@@ -69,23 +69,6 @@ def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Can
             beside += [less for less in [dropped(best, bench)] if less is not best]
         out += beside
     return sorted(map(_priced, out), key=lambda c: -c.log_evidence)
-
-
-def _late(parent: Candidate, bench: Bench) -> list[Candidate]:
-    """The parent with a thrust that is read late, where that is plain without a model.
-
-    What the raw samples of the start tell counts besides: most of it lies where no blocks are compared.
-    """
-    delay = bench.observed.thrust_delay
-    if delay is None:
-        return []
-    made, own = with_delay(parent.fit.hypothesis, "thrust", delay.seconds)
-    found = attempted(made, bench.at(parent.form), np.concatenate([parent.fit.x, own]), SHORT)
-    if found is None:
-        return []
-    names = (*parent.names, clock_site("thrust").name)
-    judged = bench.judged(candidate(names, found, parent.form, unknown=True))
-    return [replace(judged, log_evidence=judged.log_evidence + delay.log_evidence)]
 
 
 def _priced(source: Candidate) -> Candidate:

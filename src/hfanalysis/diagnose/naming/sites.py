@@ -33,6 +33,10 @@ SITES = (
 )
 """Of the model."""
 
+VALVE = Site("valve", "feed", "Pa", 1e5)
+SWING = Site("swing of the flow", "injector", "1", 0.01)
+"""Of the model, where what is plain without it acts."""
+
 OFFSET, CLOCK = "offset of ", "clock of "
 """How the names of a sensor's sites begin."""
 
@@ -62,4 +66,4 @@ def site_of(name: str, observed: Observed) -> Site:
         return sensor_site(observed, name.removeprefix(OFFSET))
     if name.startswith(CLOCK):
         return clock_site(name.removeprefix(CLOCK))
-    return next(s for s in SITES if s.name == name)
+    return next(s for s in (*SITES, VALVE, SWING) if s.name == name)

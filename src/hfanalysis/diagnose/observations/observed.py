@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 
 from hfanalysis.diagnose.observations.clocks import Delay
+from hfanalysis.diagnose.observations.opening import SlowOpening
+from hfanalysis.diagnose.observations.swinging import Swing
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -89,6 +91,10 @@ def averaged(rows: Array, first: Integers, count: Integers) -> Array:
     return np.asarray((total[first + count] - total[first]) / count.reshape(shape))
 
 
+Plain = Delay | SlowOpening | Swing
+"""What is plain in the samples without any model."""
+
+
 @dataclass(frozen=True)
 class Observed:
     """The channels of a test, the instants of its phase changes with their deviations [s], and when it ends [s].
@@ -97,8 +103,8 @@ class Observed:
     first, too, stands for the time before). ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its
     measured end, at which that of every model ends. ``stated``: what was measured outside the log (SI), with standard
     deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there. ``errors``:
-    model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``thrust_delay``: by which
-    thrust is read later than the chamber's pressure, where that is plain without a model.
+    model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``plain``: what is
+    plain in the samples without a model, and is in no model.
     """
 
     channels: tuple[Channel, ...]
@@ -113,7 +119,7 @@ class Observed:
     common: Array | None = None
     errors: tuple[float, float] = (FORM_ERROR, CHAMBER_FORM * FORM_ERROR)
     fuel_out: float | None = None
-    thrust_delay: Delay | None = None
+    plain: tuple[Plain, ...] = ()
 
     def with_errors(self, tank: float, chamber: float) -> Observed:
         """The same with another model-form error."""

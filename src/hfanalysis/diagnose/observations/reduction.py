@@ -6,11 +6,14 @@ from hfanalysis.diagnose.observations.blocks import blocks_of
 from hfanalysis.diagnose.observations.clocks import thrust_delay
 from hfanalysis.diagnose.observations.covariance import channel_of, common_of, oscillations
 from hfanalysis.diagnose.observations.flow_end import noted_flow_end
-from hfanalysis.diagnose.observations.frame import events_of, frame_of, phases_of
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, Frame, events_of, frame_of, phases_of
+from hfanalysis.diagnose.observations.observed import Observed, Plain
+from hfanalysis.diagnose.observations.opening import slow_opening
 from hfanalysis.diagnose.observations.recorded import recorded
+from hfanalysis.diagnose.observations.swinging import swing_of
 from hfanalysis.errors import AbsentError
 from hfanalysis.segment.phases import Segments
+from hfanalysis.segment.signals import Signal
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
 
@@ -43,8 +46,15 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         definition.ambient_pressure.value,
         common_of(blocks, shaken),
         fuel_out=frame.fuel_out,
-        thrust_delay=thrust_delay(signals),
+        plain=_plain(signals, frame),
     )
+
+
+def _plain(signals: dict[str, Signal], frame: Frame) -> tuple[Plain, ...]:
+    """What is plain without a model; a flow that swings is looked for until the first change of phase."""
+    steady = min([frame.ends["chamber"], *(instant for instant, _ in frame.changes.values())])
+    found = (thrust_delay(signals), slow_opening(signals), swing_of(signals, steady - AROUND_CHANGE))
+    return tuple(plain for plain in found if plain is not None)
 
 
 def _stated(definition: TestDefinition, segments: Segments) -> dict[str, tuple[float, float]]:

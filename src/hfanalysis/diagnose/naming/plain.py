@@ -1,0 +1,54 @@
+"""What is plain in the samples without a model, as an unknown of the model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.late import with_delay
+from hfanalysis.diagnose.fitting.swing import with_swing
+from hfanalysis.diagnose.fitting.valve import with_valve
+from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.naming.sites import SWING, VALVE, clock_site
+from hfanalysis.diagnose.observations.clocks import Delay
+from hfanalysis.diagnose.observations.observed import Plain
+from hfanalysis.diagnose.observations.opening import SlowOpening
+
+Array = NDArray[np.float64]
+
+FILLING = "feed_line_fill"
+"""The effect that brings the run line's pressure up gradually as well: beside it no slow valve is thought of."""
+
+
+def plain_sources(parent: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
+    """The parent with each of what is plain; ``named`` is the best that has names.
+
+    What the raw samples tell counts besides, for most of it lies where no blocks are compared; but not where it speaks
+    for a name as well.
+    """
+    tried = [_with(parent, named, plain, bench) for plain in bench.observed.plain]
+    return [found for found in tried if found is not None]
+
+
+def _with(parent: Candidate, named: Candidate, plain: Plain, bench: Bench) -> Candidate | None:
+    either = isinstance(plain, SlowOpening) and FILLING in named.names
+    if either and FILLING in parent.names:
+        return None
+    name, made, own = _added(parent.fit.hypothesis, plain)
+    found = attempted(made, bench.at(parent.form), np.concatenate([parent.fit.x, own]), SHORT)
+    if found is None:
+        return None
+    judged = bench.judged(candidate((*parent.names, name), found, parent.form, unknown=True))
+    return judged if either else replace(judged, log_evidence=judged.log_evidence + plain.log_evidence)
+
+
+def _added(hypothesis: Hypothesis, plain: Plain) -> tuple[str, Hypothesis, Array]:
+    """The name of its site, the hypothesis with it, and its own x."""
+    if isinstance(plain, Delay):
+        return clock_site("thrust").name, *with_delay(hypothesis, "thrust", plain.seconds)
+    if isinstance(plain, SlowOpening):
+        return VALVE.name, *with_valve(hypothesis, plain)
+    return SWING.name, *with_swing(hypothesis, plain)

@@ -1,0 +1,73 @@
+"""What is plain without a model, as a source in the model."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from tests.diagnose import made
+
+from hfanalysis.diagnose.answer.verdict import of_unknown
+from hfanalysis.diagnose.answer.words import place_sentence
+from hfanalysis.diagnose.fitting.fit import fit
+from hfanalysis.diagnose.fitting.form import FINEST
+from hfanalysis.diagnose.fitting.swing import swinging
+from hfanalysis.diagnose.fitting.valve import slow_valve
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
+from hfanalysis.diagnose.naming.course import course_of
+from hfanalysis.diagnose.naming.plain import FILLING, plain_sources
+from hfanalysis.diagnose.observations.observed import Plain
+from hfanalysis.diagnose.observations.opening import SlowOpening
+from hfanalysis.diagnose.observations.swinging import Swing
+from hfanalysis.engine.effect import Active
+
+
+def with_plain(plain: Plain, *hidden: Active) -> tuple[Candidate, Candidate, Bench]:
+    """The base model of a test in which something is plain, with and without it."""
+    test = replace(made.observed(*hidden), plain=(plain,))
+    bench = Bench(test)
+    base = candidate((), fit(made.hypothesis(), test), FINEST)
+    return base, plain_sources(base, base, bench)[0], bench
+
+
+def row_of(found: Candidate, bench: Bench) -> dict[str, Any]:
+    return of_unknown(course_of(found.fit, found.names[-1], bench.observed), 1.0, bench.observed.phases)
+
+
+def test_a_valve_that_opens_slowly_is_a_source_in_the_feed_with_its_time() -> None:
+    plain = SlowOpening(0.35, 40.0)
+    base, found, bench = with_plain(plain, slow_valve().at(seconds=0.3))
+    assert found.unknown
+    assert found.log_evidence - base.log_evidence > plain.log_evidence + 50.0  # 0.3 s are seen in the blocks as well
+    row = row_of(found, bench)
+    assert (row["equation"], row["phase"], row["source"].unit) == ("feed", "liquid", "Pa")
+    assert abs(row["opens_in"].value - 0.3) < 3.0 * row["opens_in"].std
+    assert row["t_start"].value < 0.02
+    assert row["t_end"].value == pytest.approx(0.3, abs=0.05)
+    assert re.fullmatch(
+        r"The valve takes 30\d ± [\d.]+ ms to open, by the run line's pressure; .*", place_sentence(row)
+    )
+
+
+def test_what_a_filling_line_shows_as_well_is_no_evidence_for_a_slow_valve() -> None:
+    plain = SlowOpening(0.3, 40.0)
+    base, alone, bench = with_plain(plain, slow_valve().at(seconds=0.3))
+    filling = replace(base, names=(FILLING,))
+    assert plain_sources(filling, filling, bench) == []
+    beside = plain_sources(base, filling, bench)[0]
+    assert alone.log_evidence - beside.log_evidence == pytest.approx(plain.log_evidence)
+
+
+def test_a_flow_that_swings_is_a_source_in_the_injector_with_its_frequency() -> None:
+    swing = Swing(0.03, 4.0, 1.0, 0.8, 2.6, 60.0)
+    given = {name: getattr(swing, name) for name in ("share", "frequency", "phase", "start", "end")}
+    base, found, bench = with_plain(replace(swing, share=0.025, phase=1.2), swinging().at(**given))
+    assert found.log_evidence - base.log_evidence > swing.log_evidence + 50.0  # slower than the blocks
+    row = row_of(found, bench)
+    assert row["equation"] == "injector"
+    assert abs(row["source"].value - 0.03) < 3.0 * row["source"].std
+    assert row["source"].std < 0.003
+    assert (row["t_start"].value, row["t_end"].value) == (pytest.approx(0.8, abs=0.2), pytest.approx(2.6, abs=0.2))
+    assert re.search(r"swings by (2.9|3|3.1) ± 0.\d+ % at 4 Hz", place_sentence(row))
