@@ -196,6 +196,7 @@ def of_acting(
         "t_start": Quantity(first, "s", max(blur or 0.0, step)),
         "t_end": Quantity(last, "s", max(blur or 0.0, step)),
         "source": Quantity(float(source.mean[inside].mean()), source.unit, float(source.std[inside].mean())),
+        "rms": Quantity(float(np.sqrt(np.mean(source.mean[inside] ** 2))), source.unit),
         "channel": source.channel,
         "significance": gain,
         "history": {

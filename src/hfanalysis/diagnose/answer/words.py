@@ -28,6 +28,9 @@ LIKELIER = 1.5
 MUCH = 1.3
 """Chi-square per observation from which on more is left than noise that was estimated a little too small."""
 
+UNEVEN = 0.5
+"""Part of its root mean square below which a source's mean says little of it."""
+
 _UNITS = {"Pa": ("bar", 1e-5), "W": ("kW", 1e-3), "kg/s": ("g/s", 1e3), "1": ("%", 100.0)}
 _CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
 _UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
@@ -104,10 +107,11 @@ def place_sentence(row: Mapping[str, Any]) -> str:
         )
     if unit == "s":
         return f"{where[0].upper()}{where[1:]} is read {1e3 * value:.3g} ± {1e3 * std:.2g} ms late.{left}"
-    return (
-        f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s {where} differs by "
-        f"{value:.3g} ± {std:.2g} {unit} on average (mostly in the {row['phase']} phase).{left}"
-    )
+    span = f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s {where}"
+    if "rms" in row and abs(value) < UNEVEN * factor * row["rms"].value:
+        swing = factor * row["rms"].value
+        return f"{span} goes up and down by {swing:.3g} {unit} (rms; mostly in the {row['phase']} phase).{left}"
+    return f"{span} differs by {value:.3g} ± {std:.2g} {unit} on average (mostly in the {row['phase']} phase).{left}"
 
 
 def effect_sentence(row: Mapping[str, Any]) -> str:

@@ -5,7 +5,7 @@ The result is the most probable set of parameters, their covariance, and the evi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,16 +90,15 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, 
         if moved is None:
             done = True
             break
-        small = before - _objective(moved, x + step) < CONVERGED
+        if before - _objective(moved, x + step) < CONVERGED:
+            x, here, done = x + step, replace(moved, slopes=here.slopes), True  # so near by, slopes are the same
+            break
         there = predict(hypothesis, observed, x + step, tangents=True)
         if not usable(there):
             damping = max(100.0 * damping, 1.0)  # a point without slopes leads nowhere: a shorter step
             continue
         x, here = x + step, there
         damping = max(0.1 * damping, 1e-9)
-        if small:
-            done = True
-            break
     assert here.slopes is not None
     curvature = here.slopes.T @ here.slopes + np.eye(x.size)
     evidence = -_objective(here, x) - 0.5 * float(np.linalg.slogdet(curvature)[1]) - observed.log_size

@@ -64,6 +64,11 @@ class Splines:
         near, far = (4.0 - 6.0 * u**2 + 3.0 * u**3) / 6.0, (2.0 - u) ** 3 / 6.0
         return np.where(u < 1.0, near, np.where(u < 2.0, far, 0.0))
 
+    def held(self, times: Array) -> Array:
+        """The same, beyond their ends as at these: what a sensor reads too much does not go with the flow."""
+        last = self.first + (self.count - 2) * self.spacing
+        return self.at(np.clip(times, self.first + self.spacing, last))
+
 
 @lru_cache(maxsize=64)
 def probe(site: str, splines: Splines, typical: float) -> Effect:

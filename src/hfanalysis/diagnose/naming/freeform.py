@@ -57,7 +57,8 @@ def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Can
     """
     start, sources = _worth_it(base, bench)
     rival = bench.refitted(named, start.form) if sources and named.names and named.form != start.form else named
-    out = _fitted(start, sources, bench, rival) + plain_sources(base, named, bench)
+    out = _fitted(start, sources, bench, rival)
+    out += _at_finest(base, out, bench) + plain_sources(base, named, bench)
     if named.names:
         out += plain_sources(named, named, bench)
         start, sources = _worth_it(named, bench)
@@ -85,6 +86,18 @@ def _worth_it(parent: Candidate, bench: Bench) -> tuple[Candidate, list[Source]]
     if not sources and parent.form != FINEST and (finer := bench.refitted(parent, parent.form.both_finer)):
         parent, sources = finer, _seen(finer, bench)
     return parent, _few(sources)
+
+
+def _at_finest(base: Candidate, tried: list[Candidate], bench: Bench) -> list[Candidate]:
+    """The likeliest source at the finest form, where the base model asks for a coarser one.
+
+    A model-form error in chamber and thrust takes up what only one of them shows: at a form that lets the base model
+    fit, such a source is not seen.
+    """
+    if base.form == FINEST or (finest := bench.refitted(base, FINEST)) is None:
+        return []
+    done = {c.names for c in tried if c.form == FINEST}
+    return _fitted(finest, [s for s in _seen(finest, bench)[:1] if (s.site.name,) not in done], bench)
 
 
 def _few(sources: list[Source]) -> list[Source]:

@@ -30,6 +30,9 @@ SCALES = np.geomspace(0.02, 4.0, 9)
 SPACING = 0.6
 """Seconds between the splines of a source."""
 
+SENSOR_SPACING = 0.25
+"""The same of what a sensor may read too much besides: wind on a stand, say, is faster than what an engine does."""
+
 FINE = 200
 """Instants at which pulses are laid over the splines."""
 
@@ -145,11 +148,12 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
     for k, site in enumerate(sites):
         projected = _project(fitted, slopes[:, k * splines.count : (k + 1) * splines.count])
         found += [_smooth(site, projected, splines), _sudden(site, projected, splines, end)]
-    found += [
-        _smooth(sensor_site(observed, name), _project(fitted, sensor_slopes(observed, name, splines)), splines)
-        for name in observed.names
-        if name not in _sensors(fitted)
-    ]
+    for own in (splines, Splines.over(0.0, end, SENSOR_SPACING)):
+        found += [
+            _smooth(sensor_site(observed, name), _project(fitted, sensor_slopes(observed, name, own)), own)
+            for name in observed.names
+            if name not in _sensors(fitted)
+        ]
     return sorted(found, key=lambda s: -s.log_evidence)
 
 
