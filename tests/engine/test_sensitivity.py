@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from tests.engine.stand import engine_on_stand
 
+from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.effects import effect
 from hfanalysis.engine import sensitivity
 from hfanalysis.engine.course import FUEL_OUT, LIQUID_OUT
@@ -113,6 +114,23 @@ def test_an_effect_of_strength_zero_has_a_tangent() -> None:
     before = wet - 0.05 > GRID
     expected = warmer.output("tank_pressure") - base.output("tank_pressure")
     assert found.output("tank_pressure", GRID)[before, 0] == pytest.approx(expected[before], rel=2e-3, abs=1e-3)
+
+
+def test_slopes_of_what_acts_for_a_while_are_the_same_where_it_is_asked_for_all_the_time() -> None:
+    """A coefficient of a spline out of its reach, and what only says where a run begins, cost nothing and are exact."""
+    source = probe("tank_heat", Splines.over(0.0, SECONDS, 1.0), 2000.0)
+    everywhere = replace(source, parameters=tuple(replace(p, acting=(-np.inf, np.inf)) for p in source.parameters))
+    names = ("oxidizer_mass", "a", *(f"probe_tank_heat.c{i}" for i in range(12)))
+    sparing, whole = (
+        run_with_tangents(engine_on_stand(effects=(e.at(on=1.0, c3=900.0),)), names, SECONDS, run_on=True)
+        for e in (source, everywhere)
+    )
+    assert np.array_equal(sparing.states, whole.states)
+    assert np.array_equal(sparing.outputs, whole.outputs)
+    assert np.array_equal(sparing.moments, whole.moments)
+    assert np.abs(whole.states[..., names.index("probe_tank_heat.c5")]).max() > 0.0
+    reach = {p.name: p.acting for p in source.parameters}["c5"]
+    assert 0.0 < reach[0] < reach[1] < SECONDS
 
 
 def test_an_unknown_parameter_is_refused_with_those_there_are() -> None:

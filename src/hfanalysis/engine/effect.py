@@ -32,7 +32,8 @@ class Parameter:
     """A number of an effect, in SI: its name, unit, what it says, and its prior.
 
     ``typical`` is the physical scale: the prior's standard deviation about ``center`` (a strength's center is 0),
-    ``low`` and ``high`` bound it. A ``given`` parameter is stated by the test and not estimated.
+    ``low`` and ``high`` bound it. A ``given`` parameter is stated by the test and not estimated. ``acting``: from when
+    to when [s after the opening] it makes a difference at all, whatever its value; slopes cost nothing elsewhere.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Parameter:
     low: float = -np.inf
     high: float = np.inf
     given: bool = False
+    acting: tuple[float, float] = (-np.inf, np.inf)
 
 
 @dataclass(frozen=True)

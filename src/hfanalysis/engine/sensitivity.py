@@ -101,6 +101,19 @@ def _shifted_effect(engine: Engine, effect: str, parameter: str) -> tuple[Engine
     return replace(engine, effects=tuple(moved)), step
 
 
+NEVER = (np.inf, -np.inf)
+"""When a parameter acts that only says where a run begins."""
+
+
+def _acting(engine: Engine, name: str) -> tuple[float, float]:
+    """From when to when a parameter changes anything [s]."""
+    if "." not in name:
+        return -np.inf, np.inf
+    effect, parameter = name.split(".", 1)
+    active = next(a for a in engine.effects if a.effect.name == effect)
+    return next(p.acting for p in active.effect.parameters if p.name == parameter)
+
+
 def run_with_tangents(
     engine: Engine,
     parameters: Sequence[str],
@@ -116,15 +129,25 @@ def run_with_tangents(
     done = burn(engine, longest, rtol, run_on, times, keep_idle=True)
     composition = done.steps.composition
     y = done.steps.begin[0]
-    constant_rows, steps, start = [], [], []
+    constant_rows, steps, acting, start = [], [], [], []
     for name in parameters:
         moved, step = shifted(engine, name)
         other = compose(moved.effects, constants(moved), len(STATES), idle=True)
         constant_rows.append(other.constants)
         steps.append(step)
+        same = np.array_equal(other.constants, composition.constants, equal_nan=True)
+        acting.append(NEVER if same else _acting(engine, name))
         start.append((initial(moved, other) - y) / step)
     scales = np.concatenate([SCALES, composition.scales])
     shifted_constants = np.array(constant_rows).reshape(len(steps), composition.constants.size)
     equations, moved_start = engine.equations(composition), np.ascontiguousarray(np.array(start).T)
-    found = tangents.propagate(done.steps.history, equations, shifted_constants, np.array(steps), scales, moved_start)
+    found = tangents.propagate(
+        done.steps.history,
+        equations,
+        shifted_constants,
+        np.array(steps),
+        np.array(acting, dtype=np.float64).reshape(len(steps), 2),
+        scales,
+        moved_start,
+    )
     return Tangents(done, tuple(parameters), *found)

@@ -40,10 +40,12 @@ RADAU = np.array(
 
 
 class Parameters(NamedTuple):
-    """``shifted`` (parameters, constants) are the constants with each parameter moved by ``steps``."""
+    """``shifted`` (parameters, constants) are the constants with each parameter moved by ``steps``; ``acting``
+    (parameters, 2) from when to when [s] that changes any rate or output at all."""
 
     shifted: Array
     steps: Array
+    acting: Array
     scales: Array
     used: Integers
 
@@ -97,9 +99,13 @@ def linearize(
         y[j] = kept
         quotient(spare, step, slopes.f_y[:, column], slopes.out_y[:, column])
     for k in range(p.steps.size):
-        other = address_of(with_constants(m, p.shifted[k]))
-        rates_at(t, y, liquid, burning, other, spare.moved, spare.moved_out)
-        quotient(spare, p.steps[k], slopes.f_p[:, k], slopes.out_p[:, k])
+        if p.acting[k, 0] <= t <= p.acting[k, 1]:
+            other = address_of(with_constants(m, p.shifted[k]))
+            rates_at(t, y, liquid, burning, other, spare.moved, spare.moved_out)
+            quotient(spare, p.steps[k], slopes.f_p[:, k], slopes.out_p[:, k])
+        else:
+            slopes.f_p[:, k] = 0.0
+            slopes.out_p[:, k] = 0.0
 
 
 @inner
@@ -202,12 +208,13 @@ def linearize_step(n: int, run: History, y: Array, m: Equations, p: Parameters, 
 
 
 @compiled(nogil=True)
-def propagate(run: History, m: Equations, shifted: Array, steps: Array, scales: Array, start: Array) -> tuple[
-    Array, Array, Array
-]:  # fmt: skip
+def propagate(
+    run: History, m: Equations, shifted: Array, steps: Array, acting: Array, scales: Array, start: Array
+) -> tuple[Array, Array, Array]:
     """Sensitivities at four nodes of every step (its start and NODES) and of the event times.
 
-    ``shifted`` and ``steps`` as in Parameters, ``start`` (states, parameters) the sensitivities of the initial state.
+    ``shifted``, ``steps`` and ``acting`` as in Parameters, ``start`` (states, parameters) the sensitivities of the
+    initial state.
     Returns those of the states (n, 4, states, parameters), of the outputs (n, 4, outputs, parameters), and of the time
     of the event at each step's end (n, parameters; 0 without one).
     """
@@ -215,7 +222,7 @@ def propagate(run: History, m: Equations, shifted: Array, steps: Array, scales: 
     states, outputs = np.zeros((count, 4, size, number)), np.zeros((count, 4, outs, number))
     moments = np.zeros((count, number))
     used = used_states(size, m.c[FLIES] > 0.0)
-    p, slopes = Parameters(shifted, steps, scales, used), empty_slopes(size, used.size, number)
+    p, slopes = Parameters(shifted, steps, acting, scales, used), empty_slopes(size, used.size, number)
     spare = Spare(np.zeros(size), np.zeros(outs), np.zeros(size), np.zeros(outs))
     matrix, pivots = np.zeros((3 * used.size, 3 * used.size)), np.zeros(3 * used.size, dtype=np.int64)
     s, y, stage = start.copy(), np.zeros(size), np.zeros(3 * used.size)

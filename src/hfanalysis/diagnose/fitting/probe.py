@@ -58,6 +58,10 @@ class Splines:
         width = (end - start) / pieces
         return cls(start - width, width, pieces + 3)
 
+    def reach(self, peak: float) -> tuple[float, float]:
+        """From when to when [s] the spline that peaks there is not 0."""
+        return peak - 2.0 * self.spacing, peak + 2.0 * self.spacing
+
     def at(self, times: Array) -> Array:
         """Values (times, count) of the splines."""
         u = np.abs((times[:, None] - self.first) / self.spacing - np.arange(self.count)[None, :])
@@ -85,8 +89,8 @@ def probe(site: str, splines: Splines, typical: float) -> Effect:
         for name, v in zip(GIVEN, given, strict=True)
     ]
     coefficients = [
-        Parameter(f"c{i}", "", f"source about {splines.first + i * splines.spacing:.2f} s", typical)
-        for i in range(splines.count)
+        Parameter(f"c{i}", "", f"source about {at:.2f} s", typical, acting=splines.reach(at))
+        for i, at in enumerate(splines.first + splines.spacing * np.arange(splines.count))
     ]
     return Effect(
         name=f"probe_{site}",
