@@ -34,11 +34,6 @@ def with_bad_sensors() -> Hypothesis:
     return made.hypothesis().with_effect(effect("load_cell_drift")).with_effect(effect("chamber_tap_lag"))
 
 
-def with_slack() -> Hypothesis:
-    columns = np.random.default_rng(3).standard_normal((blocks(made.observed()), 3)) * 1e4
-    return replace(eroding(), slack=columns)
-
-
 def with_unknown_heat() -> Hypothesis:
     return _source("tank_heat").added_to(plain())[0]
 
@@ -62,7 +57,7 @@ def blocks(test: Observed) -> int:
 
 
 @pytest.mark.parametrize(
-    "of", [plain, eroding, with_bad_sensors, with_slack, with_unknown_heat, with_unknown_offset, with_unknown_pulse]
+    "of", [plain, eroding, with_bad_sensors, with_unknown_heat, with_unknown_offset, with_unknown_pulse]
 )
 def test_slopes_are_differences_of_predictions(of) -> None:  # type: ignore[no-untyped-def]
     hypothesis, test = of(), made.observed(common=True)

@@ -14,13 +14,13 @@ from tests.engine.stand import engine_on_stand
 from hfanalysis.diagnose.answer.limits import inserted, limits
 from hfanalysis.diagnose.answer.verdict import of_unknown, places, verdict_of
 from hfanalysis.diagnose.answer.words import place_sentence
-from hfanalysis.diagnose.fitting.fit import fit
+from hfanalysis.diagnose.fitting.fit import fit, promised
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import mid_flux
 from hfanalysis.diagnose.fitting.late import late
 from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.diagnose.fitting.pulse import OWN, pulse_effect
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.course import course_of
 from hfanalysis.diagnose.naming.dropping import dropped
@@ -31,7 +31,7 @@ from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
 from hfanalysis.diagnose.naming.singles import base_and_singles
-from hfanalysis.diagnose.naming.slack import slacked
+from hfanalysis.diagnose.naming.slack import slack_gain
 from hfanalysis.diagnose.observations.clocks import Delay
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.effects import effect
@@ -306,11 +306,35 @@ def test_upper_limits_hold_the_truth() -> None:
 
 
 def test_slack_takes_what_a_closure_gets_wrong() -> None:
-    """An effect that is a fifth stronger in the middle of the burn than its closure says."""
+    """An effect that is as its closure says has no use for slack; one that is larger and smaller by turns has."""
     found = named("tank_heat")
     chosen = verdict_of(found).chosen
-    plain = replace(chosen, fit=fit(chosen.fit.hypothesis, found.bench.at(chosen.form), chosen.fit.x, SHORT))
-    assert slacked(plain, found.bench).log_evidence <= chosen.log_evidence + 3.0
+    assert slack_gain(chosen, found.bench) < 3.0
+    uneven = made.observed(*HIDDEN["tank_heat"], heat_by_turns())
+    bench = Bench(uneven)
+    again = attempted(chosen.fit.hypothesis, uneven, chosen.fit.x)
+    assert again is not None
+    assert slack_gain(candidate(("tank_heat",), again, FINEST), bench) > 10.0
+
+
+def heat_by_turns() -> Active:
+    """More heat than tank_heat has, and less, every second and a half."""
+    splines = Splines.over(0.0, 6.0, 1.5)
+    return probe("tank_heat", splines, 2000.0).at(
+        on=1.0, **{f"c{i}": 2000.0 * (-1.0) ** i for i in range(splines.count)}
+    )
+
+
+def test_what_another_form_promises_is_what_a_fit_finds_there() -> None:
+    found = named("nozzle_throat_erosion")
+    chosen = verdict_of(found).chosen
+    here = found.bench.at(chosen.form)
+    assert promised(chosen.fit, here, here) == pytest.approx(chosen.fit.log_evidence, abs=0.05)
+    other = found.bench.at(Form(1, 1))
+    again = attempted(chosen.fit.hypothesis, other, chosen.fit.x)
+    assert again is not None
+    assert promised(chosen.fit, here, other) == pytest.approx(again.log_evidence, abs=0.5)
+    assert abs(again.log_evidence - chosen.fit.log_evidence) > 5.0
 
 
 def test_what_no_candidate_explains_is_model_form_error() -> None:

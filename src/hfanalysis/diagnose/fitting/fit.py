@@ -100,10 +100,33 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, 
         x, here = x + step, there
         damping = max(0.1 * damping, 1e-9)
     assert here.slopes is not None
-    curvature = here.slopes.T @ here.slopes + np.eye(x.size)
-    evidence = -_objective(here, x) - 0.5 * float(np.linalg.slogdet(curvature)[1]) - observed.log_size
-    covariance = np.asarray(np.linalg.inv(curvature))
+    evidence = log_evidence(here.residual, here.slopes, x, observed)
+    covariance = np.asarray(np.linalg.inv(here.slopes.T @ here.slopes + np.eye(x.size)))
     return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, done)
+
+
+def log_evidence(residual: Array, slopes: Array, x: Array, observed: Observed) -> float:
+    """Log of the probability of the data, by Laplace's approximation about the most probable ``x``."""
+    curvature = slopes.T @ slopes + np.eye(x.size)
+    objective = 0.5 * float(residual @ residual + x @ x)
+    return -objective - 0.5 * float(np.linalg.slogdet(curvature)[1]) - observed.log_size
+
+
+def promised(found: Fit, observed: Observed, other: Observed, slack: Array | None = None) -> float:
+    """The log evidence that a fit to ``observed`` has at the model-form error of ``other``, if its slopes hold.
+
+    ``slack`` (blocks of all channels, columns): what may be added to what the sensors read besides, each column times
+    an N(0, 1) number.
+    """
+    residual, slopes = (other.rewhitened(rows, observed) for rows in (found.residual, found.slopes))
+    x = found.x
+    if slack is not None:
+        columns = np.zeros((residual.size, slack.shape[1]))
+        white = other.whiten(slack)
+        columns[: white.shape[0]] = -white
+        slopes, x = np.hstack([slopes, columns]), np.concatenate([x, np.zeros(slack.shape[1])])
+    step = -np.linalg.solve(slopes.T @ slopes + np.eye(x.size), slopes.T @ residual + x)
+    return log_evidence(residual + slopes @ step, slopes, x + step, other)
 
 
 def _step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, damping: float) -> Array:

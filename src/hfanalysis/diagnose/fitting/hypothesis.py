@@ -113,32 +113,21 @@ class Block:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """An engine and what may move in it; ``x`` below counts prior standard deviations, so that its prior is N(0, 1).
-
-    ``slack`` (blocks of all channels, columns) is added to what the sensors read, each column times an N(0, 1) number:
-    what the form of an effect may get wrong.
-    """
+    """An engine and what may move in it; ``x`` below counts prior standard deviations, so that its prior is N(0, 1)."""
 
     engine: Engine
     free: tuple[Free, ...]
     blocks: tuple[Block, ...] = ()
-    slack: Array | None = None
 
     @property
     def size(self) -> int:
         """Number of parameters."""
-        return len(self.free) + sum(len(b.names) for b in self.blocks) + self.slack_size
-
-    @property
-    def slack_size(self) -> int:
-        """Number of columns of slack."""
-        return 0 if self.slack is None else int(self.slack.shape[1])
+        return len(self.free) + sum(len(b.names) for b in self.blocks)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Of all parameters."""
-        slack = (f"slack.{i}" for i in range(self.slack_size))
-        return (*(f.name for f in self.free), *(n for b in self.blocks for n in b.names), *slack)
+        return (*(f.name for f in self.free), *(n for b in self.blocks for n in b.names))
 
     @property
     def of_engine(self) -> tuple[str, ...]:
@@ -177,8 +166,6 @@ class Hypothesis:
         out[:k, :k] = np.diag([f.slope(float(v)) for f, v in zip(self.free, x, strict=False)])
         for block, place in self.places():
             out[place, place] = block.matrix
-        last = self.size - self.slack_size
-        out[last:, last:] = np.eye(self.slack_size)
         return out
 
     def offset(self, channel: str, x: Array, times: Array) -> Array:
@@ -219,7 +206,7 @@ class Hypothesis:
     def with_active(self, active: Active, free: tuple[Free, ...]) -> Hypothesis:
         """The same with an effect more, and what may move in it."""
         engine = replace(self.engine, effects=(*self.engine.effects, active))
-        return Hypothesis(engine, (*self.free, *free), self.blocks)  # slack belongs to a fit and is made anew
+        return Hypothesis(engine, (*self.free, *free), self.blocks)
 
     def without(self, name: str) -> Hypothesis:
         """The same without an effect."""

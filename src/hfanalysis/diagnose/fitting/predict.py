@@ -85,9 +85,6 @@ def _all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) ->
     for block, place in hypothesis.places():
         if block.sensor is not None:
             out[:, place] = sensor_slopes(observed, block.sensor, block.splines)
-    if hypothesis.slack is not None:
-        white = -observed.whiten(hypothesis.slack)
-        out[: white.shape[0], -hypothesis.slack_size :] = white
     return out
 
 
@@ -110,8 +107,6 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
         model = channel.averaged(read[channel.name]) + hypothesis.offset(channel.name, x, channel.time)
         parts.append(channel.value - model)
     raw = np.concatenate(parts)
-    if hypothesis.slack is not None:
-        raw = raw - hypothesis.slack @ x[-hypothesis.slack_size :]
     scalars = []
     for name, (at, deviation) in observed.events.items():
         if name == "t_v":

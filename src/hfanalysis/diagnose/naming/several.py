@@ -14,7 +14,7 @@ from hfanalysis.diagnose.naming.candidate import HOPELESS, Bench, Candidate, att
 from hfanalysis.diagnose.naming.dropping import dropped, without
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.naming.slack import slacked
+from hfanalysis.diagnose.naming.slack import slack_gain
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
     """
     if not candidates:
         return []
-    gain = slacked(candidates[0], bench).log_evidence - candidates[0].log_evidence
+    gain = slack_gain(candidates[0], bench)
     return [replace(c, log_evidence=c.log_evidence + gain) for c in candidates]
 
 

@@ -7,14 +7,15 @@ or an unknown one, the data have to be more probable than that.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.fitting.fit import promised
+from hfanalysis.diagnose.fitting.form import STEPS, Form
 from hfanalysis.diagnose.fitting.predict import signatures
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.naming.candidate import PRICE, Bench, Candidate
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
@@ -26,20 +27,30 @@ SHAPE_TIME = 1.5
 """Seconds between the knots of that error."""
 
 
-def slacked(found: Candidate, bench: Bench) -> Candidate:
-    """The candidate with slack in its effects, where that makes the data more probable."""
+def slack_gain(found: Candidate, bench: Bench) -> float:
+    """By how much slack in its effects makes the data more probable for a candidate, at the form that suits it then.
+
+    Slack is linear, and moves the other constants little: no run is needed.
+    """
     plain, observed = found.fit, bench.at(found.form)
     try:
         signature = signatures(plain.hypothesis, observed, plain.x)
     except (ValueError, ArithmeticError):
-        return found
+        return 0.0
     columns = SHAPE_ERROR * _over_time(signature, observed)
-    made = replace(plain.hypothesis, slack=columns)
-    loose = attempted(made, observed, np.concatenate([plain.x, np.zeros(columns.shape[1])]), SHORT)
-    if loose is None:
-        return found
-    judged = bench.judged(candidate(found.names, loose, found.form))
-    return max(found, judged, key=lambda c: c.log_evidence)
+
+    def gain(form: Form) -> float:
+        price = PRICE * (form.total - found.form.total)
+        return promised(plain, observed, bench.at(form), columns) - price - plain.log_evidence
+
+    form, best = found.form, gain(found.form)
+    for _ in range(2 * STEPS):
+        finer = {other: gain(other) for forms in form.finer for other in forms}
+        if not finer or max(finer.values()) <= best:
+            break
+        form = max(finer, key=lambda f: finer[f])
+        best = finer[form]
+    return max(best, 0.0)
 
 
 def _over_time(signature: Array, observed: Observed) -> Array:
