@@ -81,9 +81,9 @@ def test_wind_on_the_stand_is_seen_behind_a_coarse_form() -> None:
     assert "goes up and down by 4" in place_sentence(row)
 
 
-def test_splines_are_held_beyond_their_ends() -> None:
-    splines = Splines.over(0.0, 6.0, 0.5)
-    beyond = splines.held(np.array([-3.0, 0.0, 2.2, 6.0, 40.0]))
-    assert beyond[[0, 2, 4]] == pytest.approx(splines.at(np.array([0.0, 2.2, 6.0])))
-    assert beyond[1] == pytest.approx(beyond[0])
-    assert beyond[3] == pytest.approx(beyond[4])
+def test_splines_are_held_beyond_their_ends_or_fade() -> None:
+    at = np.array([-3.0, 0.0, 2.2, 6.0, 40.0])
+    fading, held = (Splines.over(0.0, 6.0, 0.5, held).at(at) for held in (False, True))
+    assert np.array_equal(held[1:4], fading[1:4])
+    assert np.array_equal(held[[0, 4]], fading[[1, 3]])
+    assert not fading[[0, 4]].any()

@@ -173,7 +173,7 @@ class Hypothesis:
         total = np.zeros(times.size)
         for block, place in self.places():
             if block.sensor == channel:
-                total += block.splines.held(times) @ (block.matrix @ x[place])
+                total += block.splines.at(times) @ (block.matrix @ x[place])
         return total
 
     @property

@@ -93,7 +93,7 @@ def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
     rows = [np.zeros((c.time.size, splines.count)) for c in observed.channels]
     for i, channel in enumerate(observed.channels):
         if channel.name == sensor:
-            rows[i] = splines.held(channel.time)
+            rows[i] = splines.at(channel.time)
     return np.concatenate(
         [-observed.whiten(np.concatenate(rows)), np.zeros((len(observed.events) + len(observed.stated), splines.count))]
     )

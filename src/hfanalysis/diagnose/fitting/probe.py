@@ -45,18 +45,22 @@ def _source(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True)
 class Splines:
-    """Cubic B-splines with ``count`` coefficients; the i-th peaks at ``first`` + i ``spacing`` [s]."""
+    """Cubic B-splines with ``count`` coefficients; the i-th peaks at ``first`` + i ``spacing`` [s].
+
+    Beyond their ends they fade, or stay as they are at these if they are ``held``.
+    """
 
     first: float
     spacing: float
     count: int
+    held: bool = False
 
     @classmethod
-    def over(cls, start: float, end: float, spacing: float) -> Splines:
+    def over(cls, start: float, end: float, spacing: float, held: bool = False) -> Splines:
         """Splines that reach over an interval."""
         pieces = max(int(np.ceil((end - start) / spacing)), 1)
         width = (end - start) / pieces
-        return cls(start - width, width, pieces + 3)
+        return cls(start - width, width, pieces + 3, held)
 
     def reach(self, peak: float) -> tuple[float, float]:
         """From when to when [s] the spline that peaks there is not 0."""
@@ -64,14 +68,12 @@ class Splines:
 
     def at(self, times: Array) -> Array:
         """Values (times, count) of the splines."""
+        if self.held:
+            last = self.first + (self.count - 2) * self.spacing
+            times = np.clip(times, self.first + self.spacing, last)
         u = np.abs((times[:, None] - self.first) / self.spacing - np.arange(self.count)[None, :])
         near, far = (4.0 - 6.0 * u**2 + 3.0 * u**3) / 6.0, (2.0 - u) ** 3 / 6.0
         return np.where(u < 1.0, near, np.where(u < 2.0, far, 0.0))
-
-    def held(self, times: Array) -> Array:
-        """The same, beyond their ends as at these: what a sensor reads too much does not go with the flow."""
-        last = self.first + (self.count - 2) * self.spacing
-        return self.at(np.clip(times, self.first + self.spacing, last))
 
 
 @lru_cache(maxsize=64)

@@ -31,7 +31,8 @@ SPACING = 0.6
 """Seconds between the splines of a source."""
 
 SENSOR_SPACING = 0.25
-"""The same of what a sensor may read too much besides: wind on a stand, say, is faster than what an engine does."""
+"""The same of what a sensor may read too much besides: wind on a stand, say, is faster than what an engine does. What
+is slow does not go with the flow: a sensor that has drifted reads as much too much at rest."""
 
 FINE = 200
 """Instants at which pulses are laid over the splines."""
@@ -148,7 +149,7 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
     for k, site in enumerate(sites):
         projected = _project(fitted, slopes[:, k * splines.count : (k + 1) * splines.count])
         found += [_smooth(site, projected, splines), _sudden(site, projected, splines, end)]
-    for own in (splines, Splines.over(0.0, end, SENSOR_SPACING)):
+    for own in (replace(splines, held=True), Splines.over(0.0, end, SENSOR_SPACING)):
         found += [
             _smooth(sensor_site(observed, name), _project(fitted, sensor_slopes(observed, name, own)), own)
             for name in observed.names
