@@ -318,10 +318,10 @@ def test_slack_takes_what_a_closure_gets_wrong() -> None:
 
 
 def heat_by_turns() -> Active:
-    """More heat than tank_heat has, and less, every second and a half."""
+    """Some three kilowatts more heat than tank_heat has, and less, every second and a half."""
     splines = Splines.over(0.0, 6.0, 1.5)
     return probe("tank_heat", splines, 2000.0).at(
-        on=1.0, **{f"c{i}": 2000.0 * (-1.0) ** i for i in range(splines.count)}
+        on=1.0, **{f"c{i}": 5000.0 * (-1.0) ** i for i in range(splines.count)}
     )
 
 
