@@ -38,12 +38,19 @@ Test = tuple[float, Array]
 
 
 def score_tests(
-    parent: Fit, slopes: Sequence[Array], catalogue: Catalogue, name: str, forms: Sequence[Observed], settings: Settings
+    parent: Fit,
+    slopes: Sequence[Array],
+    catalogue: Catalogue,
+    name: str,
+    forms: Sequence[Observed],
+    settings: Settings,
+    shape_starts: Sequence[float] = (),
 ) -> tuple[Hypothesis, list[list[Test]]]:
     """The parent with an effect more, and for each form the starts with the gain that they promise, the best first.
 
     ``slopes`` (observations, parameters) of the parent at each form, which hardly change by a small effect. The starts
-    are those of the shape, the strengths as the score test sees them.
+    are those of the shape (each of its parameters at ``shape_starts``, in standard deviations of its prior, where they
+    are given), the strengths as the score test sees them.
     """
     made = catalogue.add(parent.hypothesis, name)
     least, most = made.bounds
@@ -51,7 +58,7 @@ def score_tests(
     own = slice(size, size + catalogue.effects[name].strengths)
     shapes = [i for i in range(own.stop, made.size) if made.free[i].shape == "positive" and made.free[i].unsure]
     found: list[list[Test]] = [[] for _ in forms]
-    for choice in product(STARTS if len(shapes) == 1 else FEW_STARTS, repeat=len(shapes)):
+    for choice in product(shape_starts or (STARTS if len(shapes) == 1 else FEW_STARTS), repeat=len(shapes)):
         start = np.concatenate([parent.x, np.zeros(made.size - size)])
         start[shapes] = choice
         start[own] = FIRST_STEP

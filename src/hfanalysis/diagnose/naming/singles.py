@@ -9,6 +9,7 @@ constants, for an unconverged base poses as evidence for a wrong effect.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from itertools import count
 
@@ -22,6 +23,8 @@ from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
+from hfanalysis.diagnose.observations.observed import TOGETHER, Observed
+from hfanalysis.engine.effect import Effect
 
 Array = NDArray[np.float64]
 
@@ -40,6 +43,15 @@ STARTS = 2
 FROM_EXPONENTS = (0.0, -1.5, 1.5)
 """Where the base model's fit starts in n, in standard deviations of its prior."""
 
+ELSEWHERE = (-1.0, 1.0)
+"""How far from the base model's n effects are looked for besides, in standard deviations of its prior."""
+
+FAR_BEHIND = 100.0
+"""Log evidence behind the base model from which on it is not looked there: the data say what n is, whatever else."""
+
+CHAMBER_SIDE = ("grain", "chamber_mass", "chamber_energy", "nozzle")
+"""Equations whose effects a and n may be bent to."""
+
 SAME = 0.1
 """Standard deviations of a prior within which two fits are one."""
 
@@ -56,7 +68,7 @@ def base_and_singles(hypothesis: Hypothesis, search: Search) -> tuple[Candidate,
     search.progress("fitting the base model", 0.0)
     base = _descended(hypothesis, bench)
     best: dict[str, Candidate] = {}
-    _keep(best, _raced(_first_children(base, search, names), bench))
+    _keep(best, _raced([*_first_children(base, search, names), *_from_other_exponents(base, search, names)], bench))
     if search.settings.polishing and best:
         base = _second_turn(base, best, search)
     return base, sorted(each(bench.converged, list(best.values())), key=lambda c: -c.log_evidence)
@@ -141,6 +153,51 @@ def _first_children(base: Candidate, search: Search, names: list[str]) -> list[C
         return _best((name,), fits, base.form)
 
     return [c for c in each(child, names) if c is not None]
+
+
+def _from_other_exponents(base: Candidate, search: Search, names: list[str]) -> list[Candidate]:
+    """Effects on the chamber's side, from the base model with n held elsewhere.
+
+    Where the base model has bent a and n to what an effect does, that effect explains little from there, and most of it
+    in another valley.
+    """
+    observed, place = search.bench.at(base.form), [f.name for f in base.fit.hypothesis.free].index("n")
+    parents = [
+        parent
+        for away in ELSEWHERE
+        if (parent := _with_exponent(base, place, base.fit.x[place] + away, observed)) is not None
+        and parent.log_evidence > base.fit.log_evidence - FAR_BEHIND
+    ]
+    effects = search.catalogue.effects
+    tried = [(name, parent) for parent in parents for name in names if _on_chamber_side(effects[name])]
+
+    def child(one: tuple[str, Fit]) -> Candidate | None:
+        name, parent = one
+        made, (tests,) = score_tests(
+            parent, [parent.slopes], search.catalogue, name, [observed], search.settings, (0.0,)
+        )
+        return _best((name,), [attempted(made, observed, x, SHORT) for _, x in tests[:1]], base.form)
+
+    return [c for c in each(child, tried) if c is not None]
+
+
+def _with_exponent(base: Candidate, place: int, x: float, observed: Observed) -> Fit | None:
+    """The base model with n held at ``x``, as a fit in which it is free; None where it cannot be there."""
+    hypothesis = base.fit.hypothesis
+    free = hypothesis.free[place]
+    if not free.least < x < free.most:
+        return None
+    held = replace(free, least=x, most=x)
+    start = base.fit.x.copy()
+    start[place] = x
+    fixed = replace(hypothesis, free=(*hypothesis.free[:place], held, *hypothesis.free[place + 1 :]))
+    found = attempted(fixed, observed, start, SHORT)
+    return None if found is None else replace(found, hypothesis=hypothesis)
+
+
+def _on_chamber_side(effect: Effect) -> bool:
+    """Whether what an effect does is seen in chamber and thrust first."""
+    return effect.equation in CHAMBER_SIDE or (effect.equation == "sensor" and bool(set(effect.sites) & set(TOGETHER)))
 
 
 def _further_children(parent: Candidate, search: Search, names: list[str]) -> list[Candidate]:
