@@ -30,9 +30,9 @@ SCALES = np.geomspace(0.02, 4.0, 9)
 SPACING = 0.6
 """Seconds between the splines of a source."""
 
-SENSOR_SPACING = 0.25
-"""The same of what a sensor may read too much besides: wind on a stand, say, is faster than what an engine does. What
-is slow does not go with the flow: a sensor that has drifted reads as much too much at rest."""
+WINDY, WIND_SPACING = ("thrust",), 0.25
+"""Channels in which wind on the stand may be read, and the spacing of its splines [s]: it is faster than what an engine
+does. What is slow in a sensor does not go with the flow: one that has drifted reads as much too much at rest."""
 
 FINE = 200
 """Instants at which pulses are laid over the splines."""
@@ -149,12 +149,11 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
     for k, site in enumerate(sites):
         projected = _project(fitted, slopes[:, k * splines.count : (k + 1) * splines.count])
         found += [_smooth(site, projected, splines), _sudden(site, projected, splines, end)]
-    for own in (replace(splines, held=True), Splines.over(0.0, end, SENSOR_SPACING)):
-        found += [
-            _smooth(sensor_site(observed, name), _project(fitted, sensor_slopes(observed, name, own)), own)
-            for name in observed.names
-            if name not in _sensors(fitted)
-        ]
+    slow, fast = replace(splines, held=True), Splines.over(0.0, end, WIND_SPACING)
+    for name, own in [*((name, slow) for name in observed.names), *((name, fast) for name in WINDY)]:
+        if name in observed.names and name not in _sensors(fitted):
+            slopes_of_sensor = sensor_slopes(observed, name, own)
+            found.append(_smooth(sensor_site(observed, name), _project(fitted, slopes_of_sensor), own))
     return sorted(found, key=lambda s: -s.log_evidence)
 
 
