@@ -34,15 +34,15 @@ def plain_sources(parent: Candidate, named: Candidate, bench: Bench) -> list[Can
 
 
 def _with(parent: Candidate, named: Candidate, plain: Plain, bench: Bench) -> Candidate | None:
-    either = isinstance(plain, SlowOpening) and FILLING in named.names
-    if either and FILLING in parent.names:
+    spoken_for = isinstance(plain, SlowOpening) and FILLING in named.names
+    if spoken_for and FILLING in parent.names:
         return None
     name, made, own = _added(parent.fit.hypothesis, plain)
     found = attempted(made, bench.at(parent.form), np.concatenate([parent.fit.x, own]), SHORT)
     if found is None:
         return None
     judged = bench.judged(candidate((*parent.names, name), found, parent.form, unknown=True))
-    return judged if either else replace(judged, log_evidence=judged.log_evidence + plain.log_evidence)
+    return judged if spoken_for else replace(judged, log_evidence=judged.log_evidence + plain.log_evidence)
 
 
 def _added(hypothesis: Hypothesis, plain: Plain) -> tuple[str, Hypothesis, Array]:

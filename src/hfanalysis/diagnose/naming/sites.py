@@ -33,8 +33,7 @@ SITES = (
 )
 """Of the model."""
 
-VALVE = Site("valve", "feed", "Pa", 1e5)
-SWING = Site("swing of the flow", "injector", "1", 0.01)
+VALVE, SWING = Site("valve", "feed", "Pa", 1e5), Site("swing of the flow", "injector", "1", 0.01)
 """Of the model, where what is plain without it acts."""
 
 OFFSET, CLOCK = "offset of ", "clock of "
