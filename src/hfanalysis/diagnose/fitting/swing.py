@@ -36,7 +36,7 @@ def _begins(t, env, c, p, x):  # type: ignore[no-untyped-def]
 
 @lru_cache(maxsize=1)
 def swinging() -> Effect:
-    """A flow through the injector that swings by ``share`` of itself."""
+    """An injector that passes more and less by ``share``, and with it a flow that swings."""
     return Effect(
         name="probe_swing",
         equation="injector",
@@ -77,7 +77,7 @@ def with_swing(hypothesis: Hypothesis, found: Swing) -> tuple[Hypothesis, Array]
 
 
 def swing_at(times: Array, values: Mapping[str, float], given: Swing) -> Array:
-    """The swing at ``times`` [s], as part of the flow."""
+    """What the injector passes more at ``times`` [s], as part of what it passes."""
     there = 0.5 * (np.tanh((times - given.start) / EDGE) - np.tanh((times - given.end) / EDGE))
     angle = 2.0 * np.pi * given.frequency * times + values[PHASE_OF_SWING]
     return np.asarray(values[SHARE_OF_SWING] * there * np.sin(angle))

@@ -37,6 +37,9 @@ NOISE = 0.01
 SLOW_LOG = 5e-3
 """Seconds between samples above which nothing can be told."""
 
+AROUND = 0.02
+"""Seconds before and after the rise that are compared with a leap and with a gradual one."""
+
 BLOCK = 2e-3
 """Seconds of samples that count as one observation."""
 
@@ -71,11 +74,11 @@ def slow_opening(signals: Mapping[str, Signal]) -> SlowOpening | None:
     if second - first < (GRADUAL - 0.5) * step:
         return None
     begins = first - EARLY[0] / (EARLY[1] - EARLY[0]) * (second - first)
-    near = (time > begins - 0.02) & (time < last + 0.02)
+    near = (time > begins - AROUND) & (time < last + AROUND)
     at_once = min(_misfit(risen[near], time[near] >= instant) for instant in time[near])
     gradually = _misfit(risen[near], np.clip((time[near] - begins) / max(last - begins, step), 0.0, 1.0))
     closer = np.log(at_once / max(gradually, 1e-12 * at_once))
-    return SlowOpening(last - begins, 0.5 * float(closer) * (last - begins + 0.04) / BLOCK)
+    return SlowOpening(last - begins, 0.5 * float(closer) * (last - begins + 2.0 * AROUND) / BLOCK)
 
 
 def _misfit(one: Array, other: Array) -> float:
