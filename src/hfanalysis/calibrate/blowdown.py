@@ -27,6 +27,14 @@ Array = NDArray[np.float64]
 EXPONENTS = np.geomspace(0.05, 6.0, 49)
 """Grid on which the root in m is bracketed; no gas expands outside it."""
 
+COARSE = 4
+"""Points of that grid that a first scan steps over."""
+
+ROOT = 1e-10
+"""To what m is found."""
+
+Phase = tuple[Array, Array, Array, float, float, float, float, float, float]
+"""What :func:`_vapor_end` takes, but for m."""
 
 SETTLING = 2.0
 """K_loss is taken from this many t_feed on: at t_feed itself the line still fills by the last 2 %."""
@@ -236,25 +244,48 @@ def _shoot(
             total += loss[i]
             count += 1
     mean_loss = total / count if count > 0 else np.nan
-    low = high = np.nan
-    last = np.nan
-    for k in range(exponents.size):
-        left = _vapor_end(time, loss, chamber, t_v, t_end, p_v, mass, volume, area, exponents[k])
-        error = p_v * (left / mass) ** exponents[k] - p_end
-        if k > 0 and last > 0.0 >= error:
-            low, high = exponents[k - 1], exponents[k]
-            break
-        last = error
-    if np.isnan(low):
+    args = time, loss, chamber, t_v, t_end, p_v, mass, volume, area
+    low, high = _bracket(args, p_end, exponents, 0, exponents.size - 1, COARSE)
+    if low < 0:
+        low, high = 0, exponents.size - 1  # a root that the coarse scan stepped over
+    low, high = _bracket(args, p_end, exponents, low, high, 1)
+    if low < 0:
         return np.nan, np.nan, mean_loss
-    left = np.nan
+    m = _root(args, p_end, exponents[low], exponents[high])
+    return m, _vapor_end(*args, m), mean_loss
+
+
+@njit(cache=True)
+def _excess(args: Phase, p_end: float, m: float) -> float:
+    """Pressure at t_end over the measured [Pa]."""
+    return float(args[5] * (_vapor_end(*args, m) / args[6]) ** m - p_end)
+
+
+@njit(cache=True)
+def _bracket(args: Phase, p_end: float, exponents: Array, first: int, last: int, stride: int) -> tuple[int, int]:
+    """The first interval of so many points of the grid across which the excess turns negative; -1: none."""
+    k, before = first, _excess(args, p_end, exponents[first])
+    while k < last:
+        following = min(k + stride, last)
+        excess = _excess(args, p_end, exponents[following])
+        if before > 0.0 >= excess:
+            return k, following
+        k, before = following, excess
+    return -1, -1
+
+
+@njit(cache=True)
+def _root(args: Phase, p_end: float, low: float, high: float) -> float:
+    """Root of the excess in a bracket: false position, the end that stays halved in weight (Illinois)."""
+    at_low, at_high = _excess(args, p_end, low), _excess(args, p_end, high)
     for _ in range(60):
-        middle = 0.5 * (low + high)
-        left = _vapor_end(time, loss, chamber, t_v, t_end, p_v, mass, volume, area, middle)
-        if p_v * (left / mass) ** middle > p_end:
-            low = middle
+        m = high - at_high * (high - low) / (at_high - at_low)
+        moved, excess = abs(m - high), _excess(args, p_end, m)
+        if excess * at_high < 0.0:
+            low, at_low = high, at_high
         else:
-            high = middle
-        if high - low < 1e-10:
+            at_low *= 0.5
+        high, at_high = m, excess
+        if moved < ROOT or excess == 0.0:
             break
-    return 0.5 * (low + high), left, mean_loss
+    return high

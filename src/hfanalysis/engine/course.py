@@ -26,6 +26,7 @@ from hfanalysis.engine.model import (
     FLIES,
     FUEL_END,
     IMPULSE,
+    KEEPS,
     LAUNCH_ALTITUDE,
     NITROGEN,
     O_AMBIENT,
@@ -240,7 +241,12 @@ def enter(t: float, y: Array, liquid: bool, burning: bool, model: int) -> Scratc
 
 @inner
 def linearize(t: float, y: Array, liquid: bool, burning: bool, scales: Array, model: int, s: Scratch) -> None:
-    """Jacobian of the active states and slope in time, by forward differences; the impulse moves nothing."""
+    """Jacobian of the active states and slope in time, by forward differences; the impulse moves nothing.
+
+    What the evaluation at ``y`` itself found, which comes before, is kept throughout.
+    """
+    kept_parts = equations_at(model).kept
+    kept_parts[KEEPS] = 0.0
     for column in range(s.active.size):
         j = s.active[column]
         if j != IMPULSE:
@@ -255,6 +261,7 @@ def linearize(t: float, y: Array, liquid: bool, burning: bool, scales: Array, mo
         rates_at(t + TICK, y, liquid, burning, model, s.moved, s.out)
         for i in range(y.size):
             s.slope[i] = (s.moved[i] - s.f[i]) / TICK
+    kept_parts[KEEPS] = 1.0
 
 
 @inner

@@ -85,7 +85,7 @@ class Equations(NamedTuple):
 
     Addresses of :func:`rates` and of the events' function; saturated nitrous oxide, burnt gas and the drag coefficient
     over Mach number as tables; CONSTANTS and the effects' parameters; the active terms; ENVIRONMENT and SITES, which
-    every evaluation writes anew.
+    every evaluation writes anew; the KEPT parts of an evaluation.
     """
 
     rates: int
@@ -97,6 +97,7 @@ class Equations(NamedTuple):
     terms: Integers
     env: Array
     site: Array
+    kept: Array
 
 
 _VECTOR, _REAL, _FLAG = types.float64[::1], types.float64, types.boolean
@@ -104,7 +105,7 @@ _TUPLE: Any = types.Tuple
 _TABLE = _TUPLE((types.float64[:, :, ::1], _REAL, _REAL, _REAL))
 _GRID = _TUPLE((types.float64[:, ::1], types.float64[:, ::1], types.float64[:, :, :, ::1]))
 EQUATIONS = types.NamedTuple(  # type: ignore[no-untyped-call]
-    (types.int64, types.int64, _TABLE, _GRID, types.float64[:, ::1], _VECTOR, types.int64[:, ::1], _VECTOR, _VECTOR),
+    (types.int64, types.int64, _TABLE, _GRID, types.float64[:, ::1], _VECTOR, types.int64[:, ::1], *[_VECTOR] * 3),
     Equations,
 )
 EVALUATION = types.none(_REAL, _VECTOR, _FLAG, _FLAG, types.int64, _VECTOR, _VECTOR)
@@ -147,6 +148,19 @@ infinite fuel_end [s] for the end of the web; parameters of effects follow."""
  DEAD_VOLUME, FUEL_DENSITY, THROAT_AREA, EXIT_AREA, OUTER_RADIUS, OXIDIZER_ENTHALPY, DRY_MASS, DRAG_AREA, CLIMB,
  LAUNCH_ALTITUDE, AMBIENT_PRESSURE, FLIES, FUEL_MASS, OXIDIZER_MASS, INITIAL_TEMPERATURE,
  SPARE_WEB, FUEL_END) = range(26)  # fmt: skip
+
+KEEPS, KEPT_TANK, KEPT_CHAMBER, KEPT_NOZZLE, KEPT = 0, 1, 10, 22, 30
+"""Where in :attr:`Equations.kept` stands whether evaluations leave their parts there, where those of tank, chamber and
+nozzle begin (what was asked, then what was answered), and how many numbers there are. The same question gets the same
+answer without work: most columns of a Jacobian leave two of the three alone."""
+
+
+def nothing_kept() -> Array:
+    """:attr:`Equations.kept` before the first evaluation."""
+    kept = np.full(KEPT, np.nan)
+    kept[KEEPS] = 1.0
+    return kept
+
 
 PAD = 1e-3
 """Height [m] above which a rocket has left its pad."""
@@ -241,6 +255,25 @@ def rates(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array
 
 
 @inlined
+def asked(kept: Array, at: int, question: tuple[float, ...]) -> bool:
+    """Whether the kept answer is to this very question, to the bit."""
+    same = True
+    for i in range(len(question)):
+        same = same and kept[at + i] == question[i]
+    return same
+
+
+@inlined
+def keep(kept: Array, at: int, question: tuple[float, ...], answer: tuple[float, ...]) -> None:
+    """Keep question and answer, if this evaluation is one to keep."""
+    if kept[KEEPS] > 0.0:
+        for i in range(len(question)):
+            kept[at + i] = question[i]
+        for i in range(len(answer)):
+            kept[at + len(question) + i] = answer[i]
+
+
+@inlined
 def surroundings(y: Array, liquid: bool, burning: bool, m: Equations) -> None:
     """Phase, ambient pressure, and what of the state terms may read."""
     env = m.env
@@ -262,11 +295,22 @@ def tank_pressure(y: Array, liquid: bool, m: Equations) -> None:
 def saturated(y: Array, m: Equations) -> None:
     """Liquid under its vapour, with nitrogen in the ullage."""
     env, volume = m.env, m.c[VOLUME]
-    p, density, liquid, by_mass, by_temperature, h = saturated_tank(m.saturation, volume, y[TANK], y[TEMPERATURE])
+    p, density, liquid, by_mass, by_temperature, h = tank_of(m, volume, y[TANK], y[TEMPERATURE])
     if y[NITROGEN] > 0.0:
         p += y[NITROGEN] * SPECIFIC_NITROGEN * y[TEMPERATURE] / max(volume - liquid / density, LEAST_ULLAGE)
     env[P_TANK], env[RHO_FEED], env[M_LIQUID], env[H_LEAVING], env[NITROGEN_SHARE] = p, density, liquid, h, 0.0
     env[U_BY_MASS], env[U_BY_TEMPERATURE] = by_mass, by_temperature
+
+
+@inlined
+def tank_of(m: Equations, *question: float) -> tuple[float, float, float, float, float, float]:
+    """:func:`saturated_tank` of volume, mass and temperature, or what is kept of it."""
+    kept, at = m.kept, KEPT_TANK + 3
+    if asked(kept, KEPT_TANK, question):
+        return kept[at], kept[at + 1], kept[at + 2], kept[at + 3], kept[at + 4], kept[at + 5]
+    answer = saturated_tank(m.saturation, *question)
+    keep(kept, KEPT_TANK, question, answer)
+    return answer
 
 
 @inlined
@@ -293,27 +337,42 @@ def chamber(y: Array, m: Equations) -> None:
     """Pressure and gas of the chamber."""
     env = m.env
     volume = m.c[DEAD_VOLUME] + pi * y[RADIUS] * y[RADIUS] * m.c[GRAIN_LENGTH]
-    p, rt, gamma, mass, ratio, h = chamber_gas(m.gas, m.c[OXIDIZER_ENTHALPY], y, volume)
+    h = m.c[OXIDIZER_ENTHALPY]
+    if np.isnan(h):
+        h = y[ENTHALPY] / max(y[OXIDIZER], LEAST_GAS)
+    p, rt, gamma, mass, ratio = gas_of(m, y[OXIDIZER], y[FUEL], y[CHAMBER_NITROGEN], y[COLD], y[COLD_ENERGY], h, volume)
     env[P_CHAMBER], env[RT_CHAMBER], env[GAMMA_CHAMBER], env[OF_RATIO] = p, rt, gamma, ratio
     env[M_CHAMBER], env[H_CHAMBER], env[HOT_SHARE] = mass, h, 1.0 - max(y[COLD], 0.0) / mass
 
 
 @inlined
-def chamber_gas(gas: Grid, enthalpy: float, y: Array, volume: float) -> tuple[float, float, float, float, float, float]:
-    """p, R T, gamma, mass, O/F and oxidizer enthalpy of what the chamber holds: burnt gas, later cold gas too."""
-    entered = y[OXIDIZER] + y[CHAMBER_NITROGEN]
-    hot = max(entered + y[FUEL], LEAST_GAS)
-    ratio = min(max(entered, LEAST_GAS) / max(y[FUEL], LEAST_GAS), 1e4)
-    share = y[CHAMBER_NITROGEN] / max(entered, LEAST_GAS) if y[CHAMBER_NITROGEN] > 0.0 else 0.0
-    h = y[ENTHALPY] / max(y[OXIDIZER], LEAST_GAS) if np.isnan(enthalpy) else enthalpy
+def gas_of(m: Equations, *question: float) -> tuple[float, float, float, float, float]:
+    """:func:`chamber_gas`, or what is kept of it."""
+    kept, at = m.kept, KEPT_CHAMBER + 7
+    if asked(kept, KEPT_CHAMBER, question):
+        return kept[at], kept[at + 1], kept[at + 2], kept[at + 3], kept[at + 4]
+    answer = chamber_gas(m.gas, *question)
+    keep(kept, KEPT_CHAMBER, question, answer)
+    return answer
+
+
+@inlined
+def chamber_gas(
+    gas: Grid, oxidizer: float, fuel: float, nitrogen: float, cold: float, cold_energy: float, h: float, volume: float
+) -> tuple[float, float, float, float, float]:
+    """p, R T, gamma, mass and O/F of what the chamber holds: burnt gas, later cold gas too."""
+    entered = oxidizer + nitrogen
+    hot = max(entered + fuel, LEAST_GAS)
+    ratio = min(max(entered, LEAST_GAS) / max(fuel, LEAST_GAS), 1e4)
+    share = nitrogen / max(entered, LEAST_GAS) if nitrogen > 0.0 else 0.0
     guess = hot * TYPICAL_RT / volume
     p, rt, gamma = chamber_pressure(gas, hot, volume, np.log(ratio), h, min(share, 1.0), guess)
-    cold = max(y[COLD], 0.0)
-    mass = hot + cold
-    if cold > 0.0:
-        p += max(y[COLD_ENERGY], 0.0) / volume
-        rt, gamma = p * volume / mass, (hot * gamma + cold * COLD_GAMMA) / mass
-    return p, rt, gamma, mass, ratio, h
+    unburnt = max(cold, 0.0)
+    mass = hot + unburnt
+    if unburnt > 0.0:
+        p += max(cold_energy, 0.0) / volume
+        rt, gamma = p * volume / mass, (hot * gamma + unburnt * COLD_GAMMA) / mass
+    return p, rt, gamma, mass, ratio
 
 
 @inlined
@@ -346,10 +405,21 @@ def grain(y: Array, burning: bool, m: Equations) -> tuple[float, float]:
 def nozzle(m: Equations) -> tuple[float, float]:
     """Mass flow [kg/s] and thrust [N]."""
     env, throat = m.env, m.c[THROAT_AREA] * m.site[THROAT_FACTOR]
-    flow, thrust, _, _, _ = expand(
-        env[GAMMA_CHAMBER], env[RT_CHAMBER], env[P_CHAMBER], env[P_AMBIENT], throat, m.c[EXIT_AREA]
+    flow, thrust = expanded(
+        m, env[GAMMA_CHAMBER], env[RT_CHAMBER], env[P_CHAMBER], env[P_AMBIENT], throat, m.c[EXIT_AREA]
     )
     return flow, thrust * m.site[THRUST_FACTOR]
+
+
+@inlined
+def expanded(m: Equations, *question: float) -> tuple[float, float]:
+    """Flow and thrust of :func:`expand`, or what is kept of them."""
+    kept, at = m.kept, KEPT_NOZZLE + 6
+    if asked(kept, KEPT_NOZZLE, question):
+        return kept[at], kept[at + 1]
+    answer = expand(*question)[:2]
+    keep(kept, KEPT_NOZZLE, question, answer)
+    return answer
 
 
 @inlined

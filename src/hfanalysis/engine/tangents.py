@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.compiled import compiled, inner
 from hfanalysis.engine.course import INCREMENT, LIQUID_OUT, OWN_EVENTS, TICK, History, change, events_at
-from hfanalysis.engine.model import ALTITUDE, FLIES, IMPULSE, OUTPUTS, SPEED, Equations, address_of, rates_at
+from hfanalysis.engine.model import IMPULSE, KEEPS, OUTPUTS, Equations, address_of, rates_at
 from hfanalysis.engine.rosenbrock import copy, factorize, interpolate, substitute
 
 Array = NDArray[np.float64]
@@ -47,11 +47,10 @@ class Parameters(NamedTuple):
     steps: Array
     acting: Array
     scales: Array
-    used: Integers
 
 
 class Slopes(NamedTuple):
-    """Derivatives of the rates and of the outputs by the used states and by the parameters, at one point."""
+    """Derivatives of the rates and of the outputs by the states and by the parameters, at one point."""
 
     f_y: Array
     f_p: Array
@@ -71,7 +70,7 @@ class Spare(NamedTuple):
 @inner
 def with_constants(m: Equations, c: Array) -> Equations:
     """The equations of an engine with other constants."""
-    return Equations(m.rates, m.events, m.saturation, m.gas, m.drag, c, m.terms, m.env, m.site)
+    return Equations(m.rates, m.events, m.saturation, m.gas, m.drag, c, m.terms, m.env, m.site, m.kept)
 
 
 @inner
@@ -85,19 +84,20 @@ def quotient(spare: Spare, step: float, f_column: Array, out_column: Array) -> N
 
 @inner
 def linearize(
-    t: float, y: Array, liquid: bool, burning: bool, m: Equations, p: Parameters, slopes: Slopes, spare: Spare
-) -> None:
-    """All the slopes at one point, by forward differences."""
+    t: float, y: Array, liquid: bool, burning: bool, m: Equations, p: Parameters, moving: Integers, slopes: Slopes,
+    spare: Spare,
+) -> None:  # fmt: skip
+    """All the slopes at one point, by forward differences; those with the ``moving`` states only."""
     model = address_of(m)
     rates_at(t, y, liquid, burning, model, spare.f, spare.out)
-    for column in range(p.used.size):
-        j = p.used[column]
-        kept = y[j]
-        y[j] = kept + INCREMENT * max(abs(kept), p.scales[j])
-        step = y[j] - kept
+    m.kept[KEEPS] = 0.0
+    for j in moving:
+        before = y[j]
+        y[j] = before + INCREMENT * max(abs(before), p.scales[j])
+        step = y[j] - before
         rates_at(t, y, liquid, burning, model, spare.moved, spare.moved_out)
-        y[j] = kept
-        quotient(spare, step, slopes.f_y[:, column], slopes.out_y[:, column])
+        y[j] = before
+        quotient(spare, step, slopes.f_y[:, j], slopes.out_y[:, j])
     for k in range(p.steps.size):
         if p.acting[k, 0] <= t <= p.acting[k, 1]:
             other = address_of(with_constants(m, p.shifted[k]))
@@ -106,66 +106,106 @@ def linearize(
         else:
             slopes.f_p[:, k] = 0.0
             slopes.out_p[:, k] = 0.0
+    m.kept[KEEPS] = 1.0
 
 
 @inner
-def used_states(size: int, flies: bool) -> Integers:
-    """All states but the impulse, on which nothing depends, and on a stand the rocket's."""
-    used = [i for i in range(size) if i != IMPULSE and (flies or i not in (ALTITUDE, SPEED))]
-    return np.array(used)
+def moving_states(s: Array) -> Integers:
+    """States that any parameter moves; not the impulse, on which nothing depends."""
+    found, n = np.empty(s.shape[0], dtype=np.int64), 0
+    for i in range(s.shape[0]):
+        if i != IMPULSE and not_zero(s[i]):
+            found[n] = i
+            n += 1
+    return found[:n].copy()
 
 
 @inner
-def radau_matrix(h: float, f_y: Array, used: Integers, matrix: Array) -> None:
-    """1 - h (RADAU x f_y) of the used states."""
-    m = used.size
+def not_zero(row: Array) -> bool:
+    """Whether any of the numbers is other than 0."""
+    found = False
+    for value in row:
+        found = found or value != 0.0
+    return found
+
+
+@inner
+def joined(moving: Integers, slopes: Slopes) -> Integers:
+    """``moving``, and the states that parameters or moving states begin to move at one of the nodes of a step."""
+    size = slopes.f_y.shape[1]
+    known = np.zeros(size, dtype=np.bool_)
+    known[IMPULSE] = True
+    for j in moving:
+        known[j] = True
+    found, n = np.empty(size, dtype=np.int64), 0
+    for i in range(size):
+        begins = False
+        for b in range(3):
+            if not known[i] and not begins:
+                begins = not_zero(slopes.f_p[b, i])
+                for j in moving:
+                    begins = begins or slopes.f_y[b, i, j] != 0.0
+        if begins or (known[i] and i != IMPULSE):
+            found[n] = i
+            n += 1
+    return found[:n].copy()
+
+
+@inner
+def radau_matrix(h: float, f_y: Array, moving: Integers, matrix: Array) -> None:
+    """1 - h (RADAU x f_y) of the moving states."""
+    m = moving.size
     for a in range(3):
         for b in range(3):
             for i in range(m):
                 for j in range(m):
-                    matrix[a * m + i, b * m + j] = -h * RADAU[a, b] * f_y[b, used[i], j]
+                    matrix[a * m + i, b * m + j] = -h * RADAU[a, b] * f_y[b, moving[i], moving[j]]
     for i in range(3 * m):
         matrix[i, i] += 1.0
 
 
 @inner
-def radau_stages(h: float, k: int, s: Array, f_p: Array, used: Integers, lu: Array, pivots: Integers, u: Array) -> None:
-    """Sensitivities ``u`` of the used states at the three nodes to parameter ``k``."""
-    m = used.size
+def radau_stages(
+    h: float, k: int, s: Array, f_p: Array, moving: Integers, lu: Array, pivots: Integers, u: Array
+) -> None:
+    """Sensitivities ``u`` of the moving states at the three nodes to parameter ``k``."""
+    m = moving.size
     for a in range(3):
         for i in range(m):
-            total = s[used[i], k]
+            total = s[moving[i], k]
             for b in range(3):
-                total += h * RADAU[a, b] * f_p[b, used[i], k]
+                total += h * RADAU[a, b] * f_p[b, moving[i], k]
             u[a * m + i] = total
     substitute(lu, pivots, u)
 
 
 @inner
-def spread(h: float, k: int, s: Array, slopes: Slopes, used: Integers, u: Array, states: Array) -> None:
+def spread(h: float, k: int, s: Array, slopes: Slopes, moving: Integers, u: Array, states: Array) -> None:
     """The stages of parameter ``k`` into ``states`` (nodes, states, parameters); the impulse is a quadrature."""
-    m = used.size
+    m = moving.size
     for a in range(3):
         for i in range(s.shape[0]):
             states[a + 1, i, k] = s[i, k]
         for i in range(m):
-            states[a + 1, used[i], k] = u[a * m + i]
+            states[a + 1, moving[i], k] = u[a * m + i]
     for b in range(3):
         rate = slopes.f_p[b, IMPULSE, k]
         for j in range(m):
-            rate += slopes.f_y[b, IMPULSE, j] * u[b * m + j]
+            rate += slopes.f_y[b, IMPULSE, moving[j]] * u[b * m + j]
         for a in range(3):
             states[a + 1, IMPULSE, k] += h * RADAU[a, b] * rate
 
 
 @inner
-def outputs_of(s: Array, used: Integers, out_y: Array, out_p: Array, result: Array) -> None:
+def outputs_of(s: Array, moving: Integers, out_y: Array, out_p: Array, result: Array) -> None:
     """Sensitivities of the outputs: out_y S + out_p."""
     copy(out_p, result, out_p.size)
     for o in range(out_y.shape[0]):
-        for j in range(used.size):
-            for p in range(s.shape[1]):
-                result[o, p] += out_y[o, j] * s[used[j], p]
+        for j in moving:
+            slope = out_y[o, j]
+            if slope != 0.0:
+                for p in range(s.shape[1]):
+                    result[o, p] += slope * s[j, p]
 
 
 @inner
@@ -175,11 +215,11 @@ def at_node(slopes: Slopes, node: int) -> Slopes:
 
 
 @inner
-def empty_slopes(size: int, used: int, number: int) -> Slopes:
+def empty_slopes(size: int, number: int) -> Slopes:
     """Room for the slopes at four points: NODES, and the start of a step."""
     outs = len(OUTPUTS)
     return Slopes(
-        np.zeros((4, size, used)), np.zeros((4, size, number)), np.zeros((4, outs, used)), np.zeros((4, outs, number))
+        np.zeros((4, size, size)), np.zeros((4, size, number)), np.zeros((4, outs, size)), np.zeros((4, outs, number))
     )
 
 
@@ -193,18 +233,18 @@ def copy_slopes(slopes: Slopes, source: int, target: int) -> None:
 
 
 @inner
-def linearize_step(n: int, run: History, y: Array, m: Equations, p: Parameters, slopes: Slopes, spare: Spare) -> None:
+def linearize_step(
+    n: int, run: History, y: Array, m: Equations, p: Parameters, moving: Integers, slopes: Slopes, spare: Spare
+) -> None:
     """Slopes at the nodes of a step, and at its start where an event comes before it."""
     t, h = run.times[n, 0], run.times[n, 1] - run.times[n, 0]
     liquid, burning = run.phases[n, 0] == 1, run.phases[n, 1] == 1
-    if n > 0 and run.events[n - 1] < 0:
-        copy_slopes(slopes, 2, 3)
-    else:
+    if n == 0 or run.events[n - 1] >= 0:
         copy(run.begin[n], y, y.size)
-        linearize(t, y, liquid, burning, m, p, at_node(slopes, 3), spare)
+        linearize(t, y, liquid, burning, m, p, moving, at_node(slopes, 3), spare)
     for k in range(3):
         interpolate(NODES[k], run.begin[n], run.end[n], run.dense[n], y)
-        linearize(t + NODES[k] * h, y, liquid, burning, m, p, at_node(slopes, k), spare)
+        linearize(t + NODES[k] * h, y, liquid, burning, m, p, moving, at_node(slopes, k), spare)
 
 
 @compiled(nogil=True)
@@ -214,30 +254,41 @@ def propagate(
     """Sensitivities at four nodes of every step (its start and NODES) and of the event times.
 
     ``shifted``, ``steps`` and ``acting`` as in Parameters, ``start`` (states, parameters) the sensitivities of the
-    initial state.
+    initial state. States that no parameter moves (no nitrogen, no cold gas yet) take no part; one that begins to move
+    within a step is found by its slopes, and the step is taken anew with it.
     Returns those of the states (n, 4, states, parameters), of the outputs (n, 4, outputs, parameters), and of the time
     of the event at each step's end (n, parameters; 0 without one).
     """
     count, size, number, outs = run.times.shape[0], run.begin.shape[1], steps.size, len(OUTPUTS)
     states, outputs = np.zeros((count, 4, size, number)), np.zeros((count, 4, outs, number))
     moments = np.zeros((count, number))
-    used = used_states(size, m.c[FLIES] > 0.0)
-    p, slopes = Parameters(shifted, steps, acting, scales, used), empty_slopes(size, used.size, number)
+    p, slopes = Parameters(shifted, steps, acting, scales), empty_slopes(size, number)
     spare = Spare(np.zeros(size), np.zeros(outs), np.zeros(size), np.zeros(outs))
-    matrix, pivots = np.zeros((3 * used.size, 3 * used.size)), np.zeros(3 * used.size, dtype=np.int64)
-    s, y, stage = start.copy(), np.zeros(size), np.zeros(3 * used.size)
+    s, y, old = start.copy(), np.zeros(size), -1
     for n in range(count):
         h = run.times[n, 1] - run.times[n, 0]
-        linearize_step(n, run, y, m, p, slopes, spare)
-        radau_matrix(h, slopes.f_y, used, matrix)
+        if n > 0:
+            copy_slopes(slopes, 2, 3)
+        moving = moving_states(s)
+        linearize_step(n, run, y, m, p, moving, slopes, spare)
+        more = joined(moving, slopes)
+        while more.size > moving.size:
+            moving = more
+            linearize_step(n, run, y, m, p, moving, slopes, spare)
+            more = joined(moving, slopes)
+        if moving.size != old:
+            old = moving.size
+            matrix, pivots = np.zeros((3 * old, 3 * old)), np.zeros(3 * old, dtype=np.int64)
+            stage = np.zeros(3 * old)
+        radau_matrix(h, slopes.f_y, moving, matrix)
         factorize(matrix, pivots)
         copy(s, states[n, 0], s.size)
-        outputs_of(s, used, slopes.out_y[3], slopes.out_p[3], outputs[n, 0])
+        outputs_of(s, moving, slopes.out_y[3], slopes.out_p[3], outputs[n, 0])
         for k in range(number):
-            radau_stages(h, k, s, slopes.f_p, used, matrix, pivots, stage)
-            spread(h, k, s, slopes, used, stage, states[n])
+            radau_stages(h, k, s, slopes.f_p, moving, matrix, pivots, stage)
+            spread(h, k, s, slopes, moving, stage, states[n])
         for a in range(3):
-            outputs_of(states[n, a + 1], used, slopes.out_y[a], slopes.out_p[a], outputs[n, a + 1])
+            outputs_of(states[n, a + 1], moving, slopes.out_y[a], slopes.out_p[a], outputs[n, a + 1])
         copy(states[n, 3], s, s.size)
         if run.events[n] >= 0:
             through_event(n, run, m, p, spare, s, moments[n])

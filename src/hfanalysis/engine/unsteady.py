@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import inf, pi, sqrt
 
 import numpy as np
@@ -22,11 +23,14 @@ from hfanalysis.engine.model import (
     COMPRESSIBILITY,
     CONSTANTS,
     LEAST_GAS,
+    O_AMBIENT,
+    O_CHAMBER_PRESSURE,
     OUTPUTS,
     PAD,
     STATES,
     Equations,
     flux_power,
+    nothing_kept,
     rates,
 )
 from hfanalysis.engine.sites import ENVIRONMENT, SITES
@@ -102,16 +106,21 @@ class Engine:
         return Equations(
             rates.address, course.event_values.address, self.saturation.kernel_table, self.combustion.kernel, drag,
             composition.constants, composition.terms, np.zeros(len(ENVIRONMENT)), np.zeros(len(SITES)),
+            nothing_kept(),
         )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Steps:
-    """The solver's steps as :func:`hfanalysis.engine.course.integrate` returns them, and what they were made with."""
+    """The solver's steps as :func:`hfanalysis.engine.course.integrate` returns them, and what they were made with.
+
+    ``last`` keeps what was asked for last and before that: residuals and their slopes ask at the same instants.
+    """
 
     history: History
     engine: Engine
     composition: Composition
+    last: list[tuple[Array, Array, Array]] = field(default_factory=list, compare=False, repr=False)
 
     @property
     def times(self) -> Array:
@@ -136,25 +145,43 @@ class Steps:
     def at(self, times: ArrayLike) -> tuple[Array, Array]:
         """States and outputs at increasing ``times`` [s]; the ends are held."""
         where = np.ascontiguousarray(times, dtype=np.float64)
-        return course.sample(where, self.history, self.engine.equations(self.composition))
+        for asked, states, outputs in self.last:
+            if np.array_equal(asked, where):
+                return states, outputs
+        states, outputs = course.sample(where, self.history, self.engine.equations(self.composition))
+        states.flags.writeable = outputs.flags.writeable = False
+        self.last[:] = [(where.copy(), states, outputs), *self.last[:1]]
+        return states, outputs
 
 
 @dataclass(frozen=True)
 class Burn:
-    """Histories: ``states`` (n, 15 and those of effects) as STATES, ``outputs`` (n, 16) as OUTPUTS; events in seconds.
+    """A run: its ``steps``, histories at ``time``, and events in seconds.
 
     ``burn_time`` is where the fuel was gone if ``fuel_out``, else where the run ended. ``unchoked``: when the nozzle
     last unchoked (None: it did not).
     """
 
     time: Array
-    states: Array
-    outputs: Array
     liquid_out: float | None
     burn_time: float
     steps: Steps
     fuel_out: bool = True
     unchoked: float | None = None
+
+    @property
+    def states(self) -> Array:
+        """(n, 15 and those of effects) as STATES, found when they are first asked for."""
+        return self._histories[0]
+
+    @property
+    def outputs(self) -> Array:
+        """(n, 16) as OUTPUTS, found when they are first asked for."""
+        return self._histories[1]
+
+    @cached_property
+    def _histories(self) -> tuple[Array, Array]:
+        return self.steps.at(self.time)
 
     def output(self, name: str) -> Array:
         """One of OUTPUTS over time."""
@@ -280,12 +307,12 @@ def burn(
         raise ArithmeticError(f"the engine cannot be integrated beyond {reached:.4f} s: the solver hardly advances")
     steps = Steps(history, engine, composition)
     time = _refined(steps.times) if times is None else np.ascontiguousarray(times, dtype=np.float64)
-    states, outputs = steps.at(time)
+    outputs = history.outputs[-1, 1]
     out, fuel = happened[course.LIQUID_OUT], happened[course.FUEL_OUT]
     end = float(steps.times[-1, 1])
-    unchoked = happened[course.CHOKING] if outputs[-1, 1] < 2.0 * outputs[-1, 13] else np.nan
+    unchoked = happened[course.CHOKING] if outputs[O_CHAMBER_PRESSURE] < 2.0 * outputs[O_AMBIENT] else np.nan
     return Burn(
-        time, states, outputs, _or_none(out), float(fuel) if np.isfinite(fuel) else end, steps,
+        time, _or_none(out), float(fuel) if np.isfinite(fuel) else end, steps,
         bool(np.isfinite(fuel)), _or_none(unchoked),
     )  # fmt: skip
 

@@ -176,19 +176,18 @@ def signatures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Array:
 def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]:
     """Slopes (grid, parameters) of what is read at aligned instants, which move with the end of the liquid."""
     times = aligned(observed, found.burn, observed.grid)
-    slopes = true_tangents(found, times)
+    channels, slopes = true_channels(found.burn, times), true_tangents(found, times)
     seen = observed.events.get("t_v")
     if seen is not None and found.burn.liquid_out is not None:
-        last = found.burn.steps.times[-1, 1]
-        ahead, behind = (true_channels(found.burn, np.clip(times + s * TICK, 0.0, last)) for s in (1.0, -1.0))
+        ahead = true_channels(found.burn, np.minimum(times + TICK, found.burn.steps.times[-1, 1]))
         moved = share(observed.grid, seen[0], found.burn.liquid_out, observed.fuel_out)
         moment = np.nan_to_num(found.event(LIQUID_OUT))
         for name in slopes:
-            speed = (ahead[name] - behind[name]) / (2.0 * TICK) * moved
+            speed = (ahead[name] - channels[name]) / TICK * moved
             slopes[name] = slopes[name] + speed[:, np.newaxis] * moment[np.newaxis]
     for name in ("p_chamber", "p_run", "thrust"):
         slopes[name] = np.where(observed.resting[:, np.newaxis], 0.0, slopes[name])
-    channels = _resting(observed, true_channels(found.burn, times))
+    channels = _resting(observed, channels)
     effects = found.burn.steps.engine.effects
     return distorted_tangents(channels, slopes, observed.grid, effects, found.parameters)
 

@@ -39,6 +39,9 @@ ANYWHERE = float(np.log(len(SITES) * SCALES.size))
 """Log of the odds against a pulse: it is the best of all sites and scales, and fits whatever else comes and goes, an
 ignition for one. (Smooth sources are as much chosen; their odds are fitted to simulated tests.)"""
 
+BEYOND = 100.0
+"""Log evidence behind the names, at one form, from which on the best source is not fitted at any other."""
+
 REST = 0.5
 """Part of what the best names explain that a source beside them must add for the answer to be unknown."""
 
@@ -50,26 +53,33 @@ STRIDES = (1.0, 0.5, 0.2)
 
 
 def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
-    """Sources instead of any name, and beside the best name, where either is worth it; the best first.
+    """Sources instead of any name, and beside the best name, where either is worth it; the best first."""
+    sides = [_instead, _beside] if named.names else [_instead]
+    found = each(lambda side: side(base, named, bench), sides)
+    return sorted((_priced(c) for side in found for c in side), key=lambda c: -c.log_evidence)
 
-    Beside a name the likeliest shows what is left. Where it comes near to being the answer, all are tried at the form
-    that they ask for, and names that the best of them can do without are left out.
-    """
+
+def _instead(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
+    """Sources instead of any name."""
     start, sources = _worth_it(base, bench)
-    rival = bench.refitted(named, start.form) if sources and named.names and named.form != start.form else named
-    out = _fitted(start, sources, bench, rival)
-    out += _at_finest(base, out, bench) + plain_sources(base, named, bench)
-    if named.names:
-        out += plain_sources(named, named, bench)
-        start, sources = _worth_it(named, bench)
-        needed = REST * (named.log_evidence - base.log_evidence)
-        beside = [c for source in sources[:1] if (c := with_fitted(start, source, bench)) is not None]
-        if any(_priced(c).log_evidence - named.log_evidence > NEAR * needed for c in beside):
-            beside = _fitted(start, sources, bench)
-            best = max(beside, key=lambda c: c.log_evidence)
-            beside += [less for less in [dropped(best, bench)] if less is not best]
-        out += beside
-    return sorted(map(_priced, out), key=lambda c: -c.log_evidence)
+    out = _fitted(start, sources, bench, named)
+    return out + _at_finest(base, out, bench, named) + plain_sources(base, named, bench)
+
+
+def _beside(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
+    """Sources beside the best name.
+
+    The likeliest shows what is left. Where it comes near to being the answer, all are tried at the form that they ask
+    for, and names that the best of them can do without are left out.
+    """
+    start, sources = _worth_it(named, bench)
+    needed = REST * (named.log_evidence - base.log_evidence)
+    found = [c for source in sources[:1] if (c := with_fitted(start, source, bench)) is not None]
+    if any(_priced(c).log_evidence - named.log_evidence > NEAR * needed for c in found):
+        found = _fitted(start, sources, bench)
+        best = max(found, key=lambda c: c.log_evidence)
+        found += [less for less in [dropped(best, bench)] if less is not best]
+    return plain_sources(named, named, bench) + found
 
 
 def _priced(source: Candidate) -> Candidate:
@@ -88,7 +98,7 @@ def _worth_it(parent: Candidate, bench: Bench) -> tuple[Candidate, list[Source]]
     return parent, _few(sources)
 
 
-def _at_finest(base: Candidate, tried: list[Candidate], bench: Bench) -> list[Candidate]:
+def _at_finest(base: Candidate, tried: list[Candidate], bench: Bench, named: Candidate) -> list[Candidate]:
     """The likeliest source at the finest form, where the base model asks for a coarser one.
 
     A model-form error in chamber and thrust takes up what only one of them shows: at a form that lets the base model
@@ -97,7 +107,7 @@ def _at_finest(base: Candidate, tried: list[Candidate], bench: Bench) -> list[Ca
     if base.form == FINEST or (finest := bench.refitted(base, FINEST)) is None:
         return []
     done = {c.names for c in tried if c.form == FINEST}
-    return _fitted(finest, [s for s in _seen(finest, bench)[:1] if (s.site.name,) not in done], bench)
+    return _fitted(finest, [s for s in _seen(finest, bench)[:1] if (s.site.name,) not in done], bench, named)
 
 
 def _few(sources: list[Source]) -> list[Source]:
@@ -108,15 +118,23 @@ def _few(sources: list[Source]) -> list[Source]:
     return [s for s in sources if s.site.name in best and s.log_evidence > least[s.site.name]]
 
 
-def _fitted(start: Candidate, sources: list[Source], bench: Bench, rival: Candidate | None = None) -> list[Candidate]:
+def _fitted(start: Candidate, sources: list[Source], bench: Bench, named: Candidate | None = None) -> list[Candidate]:
     """The parent with each of these sources, at the form that it asks for.
 
-    Those far behind the best of them, or behind a ``rival``, stay at the form of the parent; but for the best.
+    Those far behind the best of them, or behind what is ``named`` at the same form, stay at the form of the parent;
+    the best goes on unless it is out of the question.
     """
     tried = each(lambda source: with_fitted(start, source, bench), sources)
     found = sorted((c for c in tried if c is not None), key=lambda c: -c.log_evidence)
-    least = max((c.log_evidence for c in (*found[:1], *([rival] if rival else []))), default=0.0) - HOPELESS
-    racing = [c for i, c in enumerate(found) if i == 0 or c.log_evidence > least]
+    if not found:
+        return []
+    rival = found[0].log_evidence
+    if named is not None and named.names:
+        same = named if named.form == start.form else bench.refitted(named, start.form)
+        rival = max(rival, same.log_evidence if same else -np.inf)
+    racing = [c for c in found if c.log_evidence > rival - HOPELESS]
+    if not racing and found[0].log_evidence > rival - BEYOND:
+        racing = found[:1]
     return [*each(bench.judged, racing), *found[len(racing) :]]
 
 
