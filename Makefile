@@ -18,7 +18,7 @@ export TEST OTHER
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare all test lint format benchmark rocketpy recovery blind blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare all test lint format benchmark rocketpy recovery blind blind-none blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -98,6 +98,10 @@ BLIND := $(BIN)/python -m benchmarks.blind
 blind: $(STAMP) ## 1,500 tests with hidden effects diagnosed and scored: docs/blind-benchmark.md; goes on where stopped
 	$(BLIND) run --split scored --n 1500 --jobs 2 $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) table --split scored --write docs/blind-benchmark.md --json .cache/blind/cases/scored/figures.json
+
+blind-none: $(STAMP) ## the 330 of them in which nothing is hidden: docs/blind-none.md
+	$(BLIND) run --split scored --n 1500 --kind none --jobs 2 --out .cache/blind/none $(FLAGS) || [ $$? -eq 1 ]
+	$(BLIND) table --split scored --none --out .cache/blind/none --write docs/blind-none.md
 
 blind-smoke: $(STAMP) ## 24 of them from the development split, the figures on the screen
 	$(BLIND) run --split development --n 24 --jobs 2 --out .cache/blind/smoke $(FLAGS) || [ $$? -eq 1 ]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 SPLITS = ("development", "calibration", "scored")
+KINDS = ("single", "outside", "none", "pair", "stand")
 
 
 def _arguments(given: list[str] | None) -> argparse.Namespace:
@@ -22,6 +23,7 @@ def _arguments(given: list[str] | None) -> argparse.Namespace:
         p.add_argument("--out", type=Path, help="folder of the cases (.cache/blind/cases/SPLIT)")
     _run_arguments(parsers["run"])
     parsers["table"].add_argument("--write", type=Path, help="the page to write; a picture goes beside it")
+    parsers["table"].add_argument("--none", action="store_true", help="of tests without an effect: what was claimed")
     parsers["table"].add_argument("--json", type=Path, help="write all figures here as well")
     parsers["calibrate"].add_argument(
         "--write", type=Path, help="instead of src/hfanalysis/diagnose/answer/probabilities.json"
@@ -35,6 +37,7 @@ def _run_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument("--seed", type=int, default=0)
     p.add_argument("--jobs", type=int, default=1, help="processes")
     p.add_argument("--limit", type=int, help="only the first so many of the plan")
+    p.add_argument("--kind", choices=KINDS, help="only the tests of one kind")
     p.add_argument("--variant", help="write to processed-NAME/; the diagnosis gets its parameter variant, or --set")
     p.add_argument("--set", action="append", default=[], metavar="diagnose.NAME=VALUE", help="parameter of a variant")
     p.add_argument("--keep", action="store_true", help="keep what another version of the code found")
@@ -57,7 +60,9 @@ def _run(a: argparse.Namespace, folder: Any) -> int:
     from .run import REFUSED, Refused, Request, run
 
     settings = {key: _value(text) for key, _, text in (s.partition("=") for s in a.set)}
-    request = Request(a.split, a.n, folder, a.jobs, a.seed, a.limit, settings, a.keep, a.retry, a.seconds, a.every)
+    request = Request(
+        a.split, a.n, folder, a.jobs, a.seed, a.limit, settings, a.keep, a.retry, a.seconds, a.every, a.kind
+    )
     try:
         return run(request)
     except Refused as error:
@@ -66,7 +71,7 @@ def _run(a: argparse.Namespace, folder: Any) -> int:
 
 
 def _table(a: argparse.Namespace, folder: Any) -> int:
-    from .document import document, write
+    from .document import document, without_effect, write
     from .folder import write_json
     from .results import WrongSplit, results
 
@@ -75,7 +80,10 @@ def _table(a: argparse.Namespace, folder: Any) -> int:
     except WrongSplit as error:
         print(error, file=sys.stderr)
         return 2
-    if a.write:
+    if a.none:
+        text, result = without_effect(found, a.split)
+        print(text) if a.write is None else a.write.write_text(text, encoding="utf-8")
+    elif a.write:
         result = write(found, a.split, a.write)
         print(f"{a.write}: {len(found.cases)} cases")
     else:

@@ -9,7 +9,7 @@ from typing import Any
 
 from tests.blind import targets
 from tests.blind.figures import middle, quantile
-from tests.blind.judged import NAMES
+from tests.blind.judged import NAMES, Case
 from tests.blind.score import score
 
 from .effects_table import confusion_table, effects_table
@@ -17,7 +17,7 @@ from .folder import ABSENT, DONE, Folder, scoring_digest
 from .picture import reliability_svg
 from .results import Results, results
 from .variants import comparison
-from .words import BASELINE_FIGURES, FIGURES, INTRODUCTION, TIMES
+from .words import BASELINE_FIGURES, FIGURES, INTRODUCTION, TIMES, WITHOUT_EFFECT
 
 
 def document(full: Results, split: str, picture: str | None) -> tuple[str, dict[str, Any]]:
@@ -40,6 +40,34 @@ def document(full: Results, split: str, picture: str | None) -> tuple[str, dict[
     return "\n".join("\n".join([title, "", *lines, ""]) for title, lines in sections), result
 
 
+def without_effect(full: Results, split: str) -> tuple[str, dict[str, Any]]:
+    """A page on the tests without an effect alone, and the figures."""
+    cases = [case for case in full.cases.values() if case.kind == "none"]
+    result = score(cases, full.missing, full.groups)
+    sections = [
+        ("# Tests without an effect", [WITHOUT_EFFECT, "", *facts(full, split)]),
+        ("## Figures", rows(result, ("false_alarm", "no_source_on_none"))),
+        ("## By family of noise", counted(result["false_alarm_by_noise"], "noise")),
+        ("## What was claimed", claims(cases)),
+        ("## Without a diagnosis", failures(full)),
+    ]
+    return "\n".join("\n".join([title, "", *lines, ""]) for title, lines in sections), result
+
+
+def claims(cases: Iterable[Case]) -> list[str]:
+    """Every test without an effect in which one, or a source, was claimed."""
+    wrong = sorted((c for c in cases if c.claims or c.stated != "none"), key=lambda c: str(c.answer["id"]))
+    if not wrong:
+        return ["Nothing."]
+    lines = ["| case | noise | stated | probability | verdict |", "|---|---|---|---|---|"]
+    for c in wrong:
+        verdict = c.product.get("verdict", "-")
+        lines.append(
+            f"| {c.answer['id']} | {c.answer['noise']['family']} | {c.stated} | {c.probability:.2f} | {verdict} |"
+        )
+    return lines
+
+
 _EFFECTS = (
     "Single effects with d' >= 6, outsiders with d' >= 8 after the best of the library, all tests with two effects and "
     "with none, the worst first."
@@ -54,13 +82,15 @@ def facts(full: Results, split: str) -> list[str]:
     command = (
         f"python -m benchmarks.blind run --split {split} --n {planned} --jobs {plan['jobs']}" if planned else "unknown"
     )
+    if plan.get("kind"):
+        command += f" --kind {plan['kind']}"
     if plan.get("seed"):
         command += f" --seed {plan['seed']}"
     lines = ["| | |", "|---|---|", f"| command | `{command}` |", f"| split | {split} |",
              f"| cases planned | {planned or '-'} |",
              f"| diagnosed or failed | {len(full.cases)} |",
              f"| of these failed | {sum(c.failed for c in full.cases.values())} |"]  # fmt: skip
-    if planned and len(full.cases) < planned:
+    if planned and not plan.get("kind") and len(full.cases) < planned:
         lines.append(f"| **not the whole plan** | {planned - len(full.cases)} cases were not run |")
     for (code, constants), number in full.codes.most_common():
         fitted = "none" if constants == ABSENT else f"`{constants[:12]}`"

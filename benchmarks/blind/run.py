@@ -33,6 +33,7 @@ class Request:
         folder: where; its variant says under which name.
         jobs: processes.
         limit: of the plan, only the first so many.
+        kind: of these, only the tests of one kind.
         settings: parameters of stages by ``"stage.name"``.
         keep: keep products that another version of the code made.
         retry: try again what failed.
@@ -51,6 +52,7 @@ class Request:
     retry: bool = False
     seconds: float = 300.0
     every: int = 10
+    kind: str | None = None
 
 
 def variant_settings(variant: str | None, given: dict[str, Any], known: Iterable[str]) -> dict[str, Any]:
@@ -142,9 +144,12 @@ def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) ->
     folder = request.folder
     request = _checked(request)
     cases = plan(request.total, request.split, request.seed)[: request.limit]
+    if request.kind is not None:
+        cases = [case for case in cases if case.kind == request.kind]
     now = (code_digest(), probabilities_digest())
     there = written(cases, request, now)
     went_by = {"split": request.split, "n": request.total, "seed": request.seed, "limit": request.limit}
+    went_by |= {"kind": request.kind} if request.kind else {}
     write_json(folder.plan_file, {**went_by, "jobs": request.jobs, "settings": request.settings})
     todo = [c for c in there if not is_done(folder.note(c.id), folder.product(c.id), request, now)]
     print(f"{len(cases)} cases, {len(there) - len(todo)} done, {len(todo)} to diagnose", file=sys.stderr, flush=True)

@@ -40,6 +40,11 @@ limits, every median those of the order statistics; "aim" and "met" judge the va
 that failed counts as one that found nothing: wrong wherever something should have been found, and
 no claim."""
 
+WITHOUT_EFFECT = """\
+Written by `make blind-none`: every test of the plan in which nothing is hidden, more of them than a part of the whole
+benchmark holds. A claim is a verdict other than none; "stated" is the most probable label, which may be another than
+none where the verdict makes no claim of it."""
+
 TIMES = """\
 From the log to `diagnosis.json` (ingest, segment, calibrate, diagnose), one thread each, as many at a time as there
 were jobs; the first case of each process, which loads and compiles, is left out. A case that was
