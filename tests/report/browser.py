@@ -136,6 +136,10 @@ class Page:
         assert "exceptionDetails" not in found, found["exceptionDetails"]
         return found["result"].get("value")
 
+    def forget(self) -> None:
+        """Clear what pages have stored; all files share it, and the empty first page has none."""
+        self.ask("if (location.protocol === 'file:') localStorage.clear()")
+
     def mouse(self, kind: str, x: float, y: float, **more: Any) -> None:
         """An event of the mouse at a place of the window: mouseMoved, mousePressed, mouseReleased, mouseWheel."""
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)

@@ -46,8 +46,7 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def opened(tab: Page, path: Path) -> Page:
     """That page, opened anew, as the first reader finds it."""
-    tab.open(path)
-    tab.ask("localStorage.clear()")
+    tab.forget()
     tab.console.clear()
     tab.requests.clear()
     return tab.open(path)
