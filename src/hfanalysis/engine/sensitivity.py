@@ -126,8 +126,12 @@ def run_with_tangents(
 
     Parameters of effects at strength 0 are allowed: their terms act with that strength.
     """
-    done = burn(engine, longest, rtol, run_on, times, keep_idle=True)
-    composition = done.steps.composition
+    return tangents_of(burn(engine, longest, rtol, run_on, times, keep_idle=True), parameters)
+
+
+def tangents_of(done: Burn, parameters: Sequence[str]) -> Tangents:
+    """The sensitivities of a run, which has to have kept effects of strength 0, to ``parameters``."""
+    engine, composition = done.steps.engine, done.steps.composition
     y = done.steps.begin[0]
     constant_rows, steps, acting, start = [], [], [], []
     for name in parameters:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.predict import Prediction, predict
+from hfanalysis.diagnose.fitting.predict import Prediction, predict, with_slopes
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.unsteady import Burn
 
@@ -72,7 +72,23 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, 
     """
     least, highest = hypothesis.bounds
     x = np.clip(np.zeros(hypothesis.size) if start is None else np.asarray(start, dtype=np.float64), least, highest)
-    here = predict(hypothesis, observed, x, tangents=True)
+    return _fitted(hypothesis, observed, x, predict(hypothesis, observed, x, tangents=True), most)
+
+
+def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATIONS) -> Fit:
+    """A fit to ``before`` gone on with, to the same data with another model-form error if that is asked for.
+
+    Where it ended its slopes are known: no run is needed to begin with. Raises as :func:`fit`.
+    """
+    residual, slopes = found.residual, found.slopes
+    if observed is not before:
+        residual, slopes = (observed.rewhitened(rows, before) for rows in (residual, slopes))
+    return _fitted(found.hypothesis, observed, found.x, Prediction(residual, slopes, found.burnt), most)
+
+
+def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Prediction, most: int) -> Fit:
+    """From ``x``, where the prediction is ``here``."""
+    least, highest = hypothesis.bounds
     if not usable(here):
         raise ArithmeticError("the model has no slopes where its fit starts")
     damping, done = 1e-6, False
@@ -93,7 +109,7 @@ def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, 
         if before - _objective(moved, x + step) < CONVERGED:
             x, here, done = x + step, replace(moved, slopes=here.slopes), True  # so near by, slopes are the same
             break
-        there = predict(hypothesis, observed, x + step, tangents=True)
+        there = with_slopes(hypothesis, observed, x + step, moved)
         if not usable(there):
             damping = max(100.0 * damping, 1.0)  # a point without slopes leads nowhere: a shorter step
             continue

@@ -16,7 +16,7 @@ from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.course import LIQUID_OUT
 from hfanalysis.engine.model import RADIUS, STATES
 from hfanalysis.engine.observe import distorted, distorted_tangents, true_channels, true_tangents
-from hfanalysis.engine.sensitivity import Tangents, run_with_tangents
+from hfanalysis.engine.sensitivity import Tangents, run_with_tangents, tangents_of
 from hfanalysis.engine.tangents import at_times
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 
@@ -51,20 +51,24 @@ def predict(
 
     Raises ValueError or ArithmeticError for an engine that cannot be run.
     """
-    longest = observed.longest + AFTER
     engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
-    if not tangents:
-        burnt = burn(engine, longest, ACCURACY, run_on=True, keep_idle=True)
-        return Prediction(residuals(hypothesis, observed, x, burnt), None, burnt)
+    burnt = burn(engine, observed.longest + AFTER, ACCURACY, run_on=True, keep_idle=True)
+    there = Prediction(residuals(hypothesis, observed, x, burnt), None, burnt)
+    return with_slopes(hypothesis, observed, x, there, only) if tangents else there
+
+
+def with_slopes(
+    hypothesis: Hypothesis, observed: Observed, x: Array, there: Prediction, only: slice | None = None
+) -> Prediction:
+    """A prediction that was made at ``x`` with its slopes, all of them or ``only`` some: the run need not be anew."""
     if only is not None:
         free = hypothesis.free[only]
-        found = run_with_tangents(engine, [f.name for f in free], longest, ACCURACY, run_on=True)
+        found = tangents_of(there.burnt, [f.name for f in free])
         scales = np.array([f.slope(float(v)) for f, v in zip(free, x[only], strict=True)])
-        slopes = slopes_of(hypothesis, observed, found) * scales
-        return Prediction(residuals(hypothesis, observed, x, found.burn), slopes, found.burn)
-    found = run_with_tangents(engine, hypothesis.of_engine, longest, ACCURACY, run_on=True)
+        return replace(there, slopes=slopes_of(hypothesis, observed, found) * scales)
+    found = tangents_of(there.burnt, hypothesis.of_engine)
     slopes = _all_slopes(hypothesis, observed, slopes_of(hypothesis, observed, found)) @ hypothesis.jacobian(x)
-    return Prediction(residuals(hypothesis, observed, x, found.burn), slopes, found.burn)
+    return replace(there, slopes=slopes)
 
 
 def with_spare_fuel(engine: Engine, fuel_out: float | None = None) -> Engine:

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fit import Fit, fit, promised
+from hfanalysis.diagnose.fitting.fit import Fit, fit, fit_on, promised
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.threads import each
@@ -138,16 +138,23 @@ class Bench:
 
     def refitted(self, found: Candidate, form: Form) -> Candidate | None:
         """The candidate at another form, None where it cannot be run."""
-        again = attempted(found.fit.hypothesis, self.at(form), found.fit.x, SHORT)
+        again = self._gone_on(found, form, SHORT)
         return None if again is None else candidate(found.names, again, form, found.unknown)
 
     def converged(self, found: Candidate) -> Candidate:
         """The candidate, its fit brought to its end."""
         if found.fit.converged:
             return found
-        again = attempted(found.fit.hypothesis, self.at(found.form), found.fit.x, LONG)
+        again = self._gone_on(found, found.form, LONG)
         better = None if again is None else candidate(found.names, again, found.form, found.unknown)
         return better if better is not None and more_probable(better, found) else found
+
+    def _gone_on(self, found: Candidate, form: Form, most: int) -> Fit | None:
+        """The candidate's fit, gone on with at a form; None where that cannot be run."""
+        try:
+            return fit_on(found.fit, self.at(found.form), self.at(form), most)
+        except (ValueError, ArithmeticError):
+            return None
 
 
 def candidate(names: tuple[str, ...], found: Fit, form: Form, unknown: bool = False) -> Candidate:
