@@ -10,7 +10,7 @@ from tests.diagnose import logged, made
 from tests.diagnose.made import covariance_of
 
 from hfanalysis.diagnose.observations.blocks import MERGED, NEAR
-from hfanalysis.diagnose.observations.covariance import UNSTEADY_ZERO
+from hfanalysis.diagnose.observations.covariance import UNSTEADY_ZERO, coherence_of
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BLOCK, FIRST, REST_BLOCKS
 from hfanalysis.diagnose.observations.observed import FORM_ERROR, SHARE, TOGETHER, Channel, Observed
 from hfanalysis.diagnose.observations.recorded import as_read
@@ -269,3 +269,9 @@ def test_a_log_that_is_cut_short_is_compared_as_far_as_it_goes() -> None:
     assert test.end == pytest.approx(end, abs=0.01)
     assert test.grid[-1] < end
     assert test.longest < end
+
+
+def test_the_noise_of_a_wandering_sensor_is_coherent() -> None:
+    white, slow = np.eye(40), np.exp(-np.abs(np.subtract.outer(np.arange(40), np.arange(40))) / 5.0)
+    assert coherence_of(white) == pytest.approx(1.0)
+    assert coherence_of(slow) == pytest.approx(5.0, rel=0.15)

@@ -1,7 +1,8 @@
 """The gap between model and measurement, by channel and phase, and which part of it an explanation closes.
 
 Where a sensor's offset and gain are uncertain, what they explain is no gap of the model: it is taken off first. The gap
-is what is left beyond the noise: sqrt(max(0, rms^2 - noise^2)).
+is what is left beyond the noise: sqrt(max(0, rms^2 - noise^2)). The mean square of noise varies by chance, the more the
+slower it is: where fractions are taken, an excess that chance makes of no gap counts as none, before and after.
 """
 
 from __future__ import annotations
@@ -22,6 +23,10 @@ Array = NDArray[np.float64]
 
 FOLDS, FOLD_TIME = 2, 0.5
 """Interleaved parts of the data that are held out in turn, and the seconds that each stretch of them lasts."""
+
+CHANCE = 2.0
+"""Standard deviations of the mean square of noise beyond which an excess is no chance: one in nine tests of five
+channels has one all the same."""
 
 LEAST_GAP = 0.5
 """Gap, in units of the noise, below which there is no fraction of it to close."""
@@ -80,14 +85,15 @@ def by_phase(found: Fit, observed: Observed) -> dict[str, dict[str, float]]:
 
 
 def total_gap(found: Fit, observed: Observed, where: dict[str, NDArray[np.bool_]] | None = None) -> float:
-    """The gap of all channels together, each in units of its noise."""
+    """The gap of all channels together, each in units of its noise, as far as it is no chance."""
     left = residuals_of(found, observed)
     total = 0.0
     for c in observed.channels:
         mask = flowing(c, observed) if where is None else where[c.name] & flowing(c, observed)
         if mask.any():
             noise = float(np.mean(c.noise_std[mask] ** 2))
-            total += max(float(np.mean(left[c.name][mask] ** 2)) / noise - 1.0, 0.0)
+            excess = float(np.mean(left[c.name][mask] ** 2)) / noise - 1.0
+            total += excess if excess > CHANCE * float(np.sqrt(2.0 * c.coherence / mask.sum())) else 0.0
     return float(np.sqrt(total))
 
 

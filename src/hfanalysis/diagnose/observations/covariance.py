@@ -52,7 +52,15 @@ def channel_of(
     for cold in _without_fire(blocks, frame):
         covariance = covariance + np.outer(cold, cold)
     std = np.sqrt(own.diagonal())
-    return Channel(name, blocks.time, blocks.value, blocks.first, blocks.count, resting, std, accuracy, covariance)
+    return Channel(
+        name, blocks.time, blocks.value, blocks.first, blocks.count, resting, std, accuracy, covariance,
+        coherence_of(own),
+    )  # fmt: skip
+
+
+def coherence_of(own: Array) -> float:
+    """Blocks that are worth one independent value in the mean square of noise of this covariance (blocks, blocks)."""
+    return float(own.shape[0] * np.sum(own**2) / np.trace(own) ** 2)
 
 
 def _own(blocks: Blocks, frame: Frame, shaken: Array | None) -> Array:

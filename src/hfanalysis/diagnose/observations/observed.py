@@ -44,7 +44,8 @@ class Channel:
     """Block means of one channel: ``time`` [s after the opening], ``value`` and stated ``accuracy`` [SI].
 
     ``first`` and ``count`` say which points of the common grid are averaged into each block. ``covariance`` is that of
-    sensor noise, oscillation, bias and gain. ``resting`` blocks lie after the end of the flow.
+    sensor noise, oscillation, bias and gain. ``resting`` blocks lie after the end of the flow. ``coherence``: blocks
+    whose noise is worth one independent value.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Channel:
     noise_std: Array
     accuracy: float
     covariance: Array
+    coherence: float = 1.0
 
     def only(self, rows: Integers) -> Channel:
         """The same with some of its blocks."""
@@ -67,7 +69,7 @@ class Channel:
         burning = np.where(self.resting, 0.0, 1.0)
         gain = self.value * burning / float(np.abs(self.value).max())
         shared = (SHARE * self.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
-        return replace(self, covariance=shared + np.diag(self.noise_std**2))
+        return replace(self, covariance=shared + np.diag(self.noise_std**2), coherence=1.0)
 
     def form_covariance(self, errors: tuple[float, float]) -> Array:
         """Covariance of a model-form error, given as part of the range of tank channels, and of chamber and thrust.
