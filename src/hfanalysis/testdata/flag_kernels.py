@@ -1,4 +1,7 @@
-"""Compiled passes over a channel's samples, a few nanoseconds each."""
+"""Compiled passes over a channel's samples, a few nanoseconds each.
+
+They are written out number by number: what NumPy offers within compiled code takes seconds to compile.
+"""
 
 from __future__ import annotations
 
@@ -41,6 +44,27 @@ def nearest(readings: Floats, level: float, flags: Flags) -> float:
 
 
 @njit(cache=True, nogil=True)
+def _mark(flags: Flags, start: int, end: int, flag: np.uint8) -> None:
+    for i in range(start, end):
+        flags[i] |= flag
+
+
+@njit(cache=True, nogil=True)
+def _insert(value: float, ordered: Floats, count: int) -> None:
+    """Puts a value into its place among the first ``count``, which are in order."""
+    k = count
+    while k > 0 and ordered[k - 1] > value:
+        ordered[k] = ordered[k - 1]
+        k -= 1
+    ordered[k] = value
+
+
+@njit(cache=True, nogil=True)
+def _median(ordered: Floats, count: int) -> float:
+    return 0.5 * (ordered[(count - 1) // 2] + ordered[count // 2])
+
+
+@njit(cache=True, nogil=True)
 def detached(readings: Floats, level: float, gap: float, edges: bool, flags: Flags) -> int:
     """Flags runs of exactly ``level`` entered and left by jumps of more than ``gap``; returns how many samples.
 
@@ -61,7 +85,7 @@ def detached(readings: Floats, level: float, gap: float, edges: bool, flags: Fla
         if after and abs(readings[i] - level) <= gap:
             far = False
         if far:
-            flags[start:i] |= DROPOUT
+            _mark(flags, start, i, DROPOUT)
             count += i - start
     return count
 
@@ -99,10 +123,25 @@ def _repeats_at_length(values: Floats, low: float, high: float) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _usual_run(starts: NDArray[np.int64], first: int, last: int) -> float:
-    """The length that nine in ten of the runs first..last-1 do not exceed."""
-    lengths = np.sort(starts[first + 1 : last + 1] - starts[first:last])
-    return float(lengths[int(0.9 * (len(lengths) - 1))])
+def _usual_run(starts: NDArray[np.int64], first: int, last: int, ordered: Floats) -> float:
+    """The length that nine in ten of the runs first..last-1 do not exceed; ``ordered`` is overwritten."""
+    for k in range(first, last):
+        _insert(float(starts[k + 1] - starts[k]), ordered, k - first)
+    return float(ordered[int(0.9 * (last - first - 1))])
+
+
+@njit(cache=True, nogil=True)
+def _step(values: Floats, starts: NDArray[np.int64], k: int) -> float:
+    """From the level of run ``k`` to the next one's."""
+    return abs(values[starts[k + 1]] - values[starts[k]])
+
+
+@njit(cache=True, nogil=True)
+def _usual_step(values: Floats, starts: NDArray[np.int64], first: int, last: int, ordered: Floats) -> float:
+    """The median of the steps after the runs first..last-1; ``ordered`` is overwritten."""
+    for k in range(first, last):
+        _insert(_step(values, starts, k), ordered, k - first)
+    return _median(ordered, last - first)
 
 
 @njit(cache=True, nogil=True)
@@ -116,22 +155,25 @@ def repeats(values: Floats, low: float, high: float, flags: Flags) -> None:
         return
     starts = _runs(values)
     runs = len(starts) - 1
-    steps = np.abs(np.diff(values[starts[:runs]]))
-    resolution = steps.min() if runs > 1 else 0.0
+    resolution = np.inf if runs > 1 else 0.0
+    for k in range(runs - 1):
+        resolution = min(resolution, _step(values, starts, k))
+    ordered = np.empty(2 * CONTEXT)
     clipped_low = clipped_high = False
     for k in range(5, runs - 5):
         length = starts[k + 1] - starts[k]
         extreme = values[starts[k]] == low or values[starts[k]] == high
         if length < (CLIPPED_RUN if extreme else STUCK_RUN):
             continue
-        usual = max(_usual_run(starts, max(0, k - CONTEXT), k), _usual_run(starts, k + 1, min(runs, k + 1 + CONTEXT)))
-        if np.median(steps[max(0, k - CONTEXT) : k + CONTEXT]) < 2.0 * resolution:
+        before = _usual_run(starts, max(0, k - CONTEXT), k, ordered)
+        usual = max(before, _usual_run(starts, k + 1, min(runs, k + 1 + CONTEXT), ordered))
+        if _usual_step(values, starts, max(0, k - CONTEXT), min(runs - 1, k + CONTEXT), ordered) < 2.0 * resolution:
             continue
         if extreme and length >= CLIPPED_FACTOR * usual:
             clipped_low |= values[starts[k]] == low
             clipped_high |= values[starts[k]] == high
         elif length >= STUCK_FACTOR * usual:
-            flags[starts[k] : starts[k + 1]] |= STUCK
+            _mark(flags, starts[k], starts[k + 1], STUCK)
     if clipped_low or clipped_high:
         for i in range(len(values)):
             if (clipped_low and values[i] == low) or (clipped_high and values[i] == high):
@@ -154,22 +196,26 @@ def local_noise(values: Floats) -> Floats:
 
 
 @njit(cache=True, nogil=True)
-def _middle(values: Floats) -> tuple[float, float]:
-    """Median, and standard deviation from the median absolute deviation."""
-    middle = np.median(values)
-    return middle, 1.4826 * np.median(np.abs(values - middle))
+def _middle(values: Floats, start: int, end: int, ordered: Floats) -> tuple[float, float]:
+    """Median, and standard deviation from the median absolute deviation; ``ordered`` is overwritten."""
+    for i in range(start, end):
+        _insert(values[i], ordered, i - start)
+    middle = _median(ordered, end - start)
+    for i in range(start, end):
+        _insert(abs(values[i] - middle), ordered, i - start)
+    return middle, 1.4826 * _median(ordered, end - start)
 
 
 @njit(cache=True, nogil=True)
-def _spike_length(values: Floats, i: int, noise: float) -> int:
+def _spike_length(values: Floats, i: int, noise: float, ordered: Floats) -> int:
     """How many samples from ``i`` on stand out alone; 0 where they do not, or the level changes with them."""
     n = len(values)
-    left, left_noise = _middle(values[max(0, i - WINDOW) : i])
+    left, left_noise = _middle(values, max(0, i - WINDOW), i, ordered)
     for length in range(1, LONGEST_SPIKE + 1):
         after = i + length
         if after + 3 > n:
             return 0
-        right, right_noise = _middle(values[after : min(n, after + WINDOW)])
+        right, right_noise = _middle(values, after, min(n, after + WINDOW), ordered)
         base, usual = 0.5 * (left + right), max(noise, left_noise, right_noise)
         height = np.inf
         up = values[i] > base
@@ -187,6 +233,7 @@ def spikes(values: Floats, noise: Floats, quantum: float, flags: Flags) -> None:
     n = len(values)
     places = np.empty(64, np.int64)
     lengths = np.empty(64, np.int64)
+    ordered = np.empty(WINDOW)
     count, i = 0, 3
     while i < n:
         usual = max(noise[i // NOISE_BLOCK], quantum)
@@ -195,25 +242,37 @@ def spikes(values: Floats, noise: Floats, quantum: float, flags: Flags) -> None:
             i += 1
         if i == end:
             continue
-        length = _spike_length(values, i, usual)
+        length = _spike_length(values, i, usual, ordered)
         if length == 0:
             i += 1
             continue
         if count == len(places):
-            places, lengths = np.append(places, places), np.append(lengths, lengths)
+            places, lengths = _doubled(places), _doubled(lengths)
         places[count], lengths[count] = i, length
         count += 1
         i += length
-    _flag_lonely(places[:count], lengths[:count], flags)
+    _flag_lonely(places, lengths, count, flags)
 
 
 @njit(cache=True, nogil=True)
-def _flag_lonely(places: NDArray[np.int64], lengths: NDArray[np.int64], flags: Flags) -> None:
-    if lengths.sum() > COMMON * len(flags):
+def _doubled(numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The same numbers with room for as many again."""
+    made = np.empty(2 * len(numbers), np.int64)
+    for i in range(len(numbers)):
+        made[i] = numbers[i]
+    return made
+
+
+@njit(cache=True, nogil=True)
+def _flag_lonely(places: NDArray[np.int64], lengths: NDArray[np.int64], count: int, flags: Flags) -> None:
+    total = 0
+    for k in range(count):
+        total += lengths[k]
+    if total > COMMON * len(flags):
         return
-    for k in range(len(places)):
+    for k in range(count):
         others = 0
-        for j in range(max(0, k - 4), min(len(places), k + 5)):
+        for j in range(max(0, k - 4), min(count, k + 5)):
             others += j != k and abs(places[j] - places[k]) <= ALONE
         if others <= 2:
-            flags[places[k] : places[k] + lengths[k]] |= SPIKE
+            _mark(flags, places[k], places[k] + lengths[k], SPIKE)

@@ -2,6 +2,7 @@
 const charts = [];
 const views = {};
 const CLOSEST = 0.002;
+const AT_A_TIME = 30;  // [ms] of drawing before hands are listened to again
 let pending = false;
 
 function viewOf(chart) {
@@ -50,23 +51,33 @@ function schedule() {
   });
 }
 
-// What is on the screen is drawn at once, the others one by one while nothing else is to be done.
+// What is on the screen is drawn at once, the others a few at a time while nothing else is to be done.
 function drawAll() {
   for (const chart of charts) chart.stale = true;
   root.dataset.busy = "";
-  const seen = charts.filter((chart) => !isFolded(chart) && onScreen(chart));
-  for (const [chart, width] of seen.map((chart) => [chart, widthOf(chart)])) refresh(chart, width);
+  for (const [chart, width] of withWidths(charts.filter((chart) => !isFolded(chart) && onScreen(chart)))) {
+    refresh(chart, width);
+  }
   setTimeout(drawNext, 50);
   const reset = document.getElementById("reset-zoom");
   if (reset) reset.disabled = Object.values(views).every((view) => view.span === null);
 }
 
 function drawNext() {
-  const chart = charts.find((other) => other.stale && !isFolded(other));
-  if (!chart) { delete root.dataset.busy; return; }
+  const waiting = charts.filter((chart) => chart.stale && !isFolded(chart));
+  if (!waiting.length) { delete root.dataset.busy; return; }
   if (pending) return;
-  refresh(chart, widthOf(chart));
+  const until = performance.now() + AT_A_TIME;
+  for (const [chart, width] of withWidths(waiting)) {
+    refresh(chart, width);
+    if (performance.now() > until) break;
+  }
   setTimeout(drawNext, 0);
+}
+
+// All widths are asked for before anything is drawn: each question after a change has the page laid out anew.
+function withWidths(asked) {
+  return asked.map((chart) => [chart, widthOf(chart)]);
 }
 
 // What is folded away is drawn when it is opened.
