@@ -61,7 +61,7 @@ def _insert(value: float, ordered: Floats, count: int) -> None:
 
 @njit(cache=True, nogil=True)
 def _median(ordered: Floats, count: int) -> float:
-    return 0.5 * (ordered[(count - 1) // 2] + ordered[count // 2])
+    return float(0.5 * (ordered[(count - 1) // 2] + ordered[count // 2]))
 
 
 @njit(cache=True, nogil=True)
@@ -133,7 +133,7 @@ def _usual_run(starts: NDArray[np.int64], first: int, last: int, ordered: Floats
 @njit(cache=True, nogil=True)
 def _step(values: Floats, starts: NDArray[np.int64], k: int) -> float:
     """From the level of run ``k`` to the next one's."""
-    return abs(values[starts[k + 1]] - values[starts[k]])
+    return float(abs(values[starts[k + 1]] - values[starts[k]]))
 
 
 @njit(cache=True, nogil=True)
