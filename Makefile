@@ -32,6 +32,7 @@ setup: $(STAMP) ## make .venv/ with the locked packages and the command hfa
 
 $(STAMP): requirements.lock pyproject.toml
 	@sh pipeline/setup.sh '$(PYTHON)' $(VENV) requirements.lock --editable .
+	@$(BIN)/python pipeline/compile.py
 	@touch $@
 
 # The stages print what they found, so they always ask hfa, which redoes only what changed.

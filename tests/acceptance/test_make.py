@@ -51,6 +51,13 @@ def test_the_tests_get_rocketpy_and_an_analysis_does_not(checkout: Path) -> None
     assert "rocketpy" not in make(checkout, "-n", "calibrate", "TEST=HF5").stdout
 
 
+def test_what_setting_up_compiles_is_there_to_run() -> None:
+    """The process that says nothing when it is run beside the other."""
+    command = [VENV / "bin" / "python", REPOSITORY / "pipeline" / "compile.py", "engine"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stderr
+
+
 def test_a_missing_test_is_asked_for(checkout: Path) -> None:
     ended = make(checkout, "calibrate")
     assert ended.returncode == 2

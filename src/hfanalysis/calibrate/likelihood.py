@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 Array = NDArray[np.float64]
 Misfit = Callable[[Array], float]
@@ -106,7 +106,7 @@ def _weights(
         scatter = max(float(np.sqrt(pressures @ pressures / samples * lost)), least)
     precision = np.asarray(np.linalg.inv(common + _diagonal(samples, scatter, effective, scales)), dtype=np.float64)
     freedom = min(max(effective - 2.0, 1.0) + scales.size, known)
-    return Weights(precision, float(student.ppf(0.975, freedom)) ** 2, scatter, effective)
+    return Weights(precision, float(stdtrit(freedom, 0.975)) ** 2, scatter, effective)
 
 
 def _diagonal(samples: int, scatter: float, effective: float, scales: Array) -> Array:

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import chdtrc
 
 from hfanalysis.calibrate.engine_of_test import Regression
 from hfanalysis.calibrate.evidence import Evidence, burn_time_of
@@ -332,8 +333,6 @@ class Joint:
 
 def fit_together(tests: Sequence[Evidence], alone: Sequence[Fitted]) -> Joint:
     """Common a and n of several tests with the weights that each has alone; 2 (k - 1) constants fewer."""
-    from scipy.stats import chi2
-
     flux = middle_flux(tests[0])
     evidence = [f.evidence[0] for f in alone]
     weights = [f.weights[0] for f in alone]
@@ -341,4 +340,4 @@ def fit_together(tests: Sequence[Evidence], alone: Sequence[Fitted]) -> Joint:
     best = _minimum(evidence, weights, flux, start)
     together = _surveyed(evidence, weights, flux, best)
     rise = together.misfit - sum(f.misfit for f in alone)
-    return Joint(together, float(chi2.sf(max(rise, 0.0), 2 * (len(alone) - 1))))
+    return Joint(together, float(chdtrc(2 * (len(alone) - 1), max(rise, 0.0))))
