@@ -97,13 +97,6 @@ def test_histories_are_on_file(root: Path, product: dict) -> None:  # type: igno
             assert np.sqrt(np.mean(left["before"][:] ** 2)) == pytest.approx(product["gap"]["before"][name])
 
 
-def test_a_second_run_writes_the_same_bytes(root: Path, tmp_path: Path) -> None:
-    shutil.copytree(root / "raw_tests", tmp_path / "raw_tests")
-    assert hfa(tmp_path, "diagnose", "T1").returncode == 0
-    one, two = (folder / "processed" / "T1" / "diagnosis.json" for folder in (root, tmp_path))
-    assert one.read_bytes() == two.read_bytes()
-
-
 def without(root: Path, channels: tuple[str, ...], to: Path) -> Path:
     """The same test as if these channels had not been recorded."""
     shutil.copytree(root / "raw_tests", to / "raw_tests")
@@ -115,13 +108,40 @@ def without(root: Path, channels: tuple[str, ...], to: Path) -> Path:
     return to
 
 
-def test_without_thrust_the_pressures_are_compared(root: Path, tmp_path: Path) -> None:
-    done = hfa(without(root, ("thrust",), tmp_path), "diagnose", "T1")
+def cut(root: Path, to: Path, end: float) -> Path:
+    """The same test as if the logger had stopped ``end`` seconds after the opening."""
+    shutil.copytree(root / "raw_tests", to / "raw_tests")
+    path = to / "raw_tests" / "T1" / "log.csv"
+    lines = path.read_text(encoding="utf-8").splitlines()
+    kept = [line for line in lines[1:] if float(line.split(",")[0]) < 100.0 + end]
+    path.write_text("\n".join([lines[0], *kept]) + "\n", encoding="utf-8")
+    return to
+
+
+@pytest.fixture(scope="module")
+def short(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same test, diagnosed as if thrust had not been recorded and the logger had stopped in the burn."""
+    folder = tmp_path_factory.mktemp("short")
+    made = cut(without(root, ("thrust",), folder / "without"), folder / "cut", 6.2)
+    done = hfa(made, "diagnose", "T1")
     assert done.returncode == 0, done.stderr
-    found = json.loads((tmp_path / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
+    return made
+
+
+def test_what_was_not_recorded_is_not_compared(short: Path) -> None:
+    found = json.loads((short / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
     assert found["compared"]["channels"] == ["p_tank", "p_run", "p_chamber"]
+    assert found["compared"]["end"] == pytest.approx(6.2, abs=0.05)
     assert "nozzle_throat_erosion" in found["set90"]
+    assert found["localisation"][0]["t_end"]["value"] < 6.3
     assert "load_cell_drift" not in {**found["posterior"], **found["upper_limits"]}
+
+
+def test_a_second_run_writes_the_same_bytes(short: Path, tmp_path: Path) -> None:
+    shutil.copytree(short / "raw_tests", tmp_path / "raw_tests")
+    assert hfa(tmp_path, "diagnose", "T1").returncode == 0
+    one, two = (folder / "processed" / "T1" / "diagnosis.json" for folder in (short, tmp_path))
+    assert one.read_bytes() == two.read_bytes()
 
 
 @pytest.mark.parametrize(
@@ -183,25 +203,6 @@ def test_what_cannot_be_calibrated_still_has_its_sensors_judged(root: Path, tmp_
     assert [row["name"] for row in found["effects"]] == ["load_cell_drift"]
     assert found["effects"][0]["parameters"]["drift"]["value"] == pytest.approx(300.0, rel=0.1)
     assert "no p_tank" in found["sentences"][-1]
-
-
-def cut(root: Path, to: Path, end: float) -> Path:
-    """The same test as if the logger had stopped ``end`` seconds after the opening."""
-    shutil.copytree(root / "raw_tests", to / "raw_tests")
-    path = to / "raw_tests" / "T1" / "log.csv"
-    lines = path.read_text(encoding="utf-8").splitlines()
-    kept = [line for line in lines[1:] if float(line.split(",")[0]) < 100.0 + end]
-    path.write_text("\n".join([lines[0], *kept]) + "\n", encoding="utf-8")
-    return to
-
-
-def test_a_log_that_stops_in_the_burn_is_compared_as_far_as_it_goes(root: Path, tmp_path: Path) -> None:
-    done = hfa(cut(root, tmp_path, 6.2), "diagnose", "T1")
-    assert done.returncode == 0, done.stderr
-    found = json.loads((tmp_path / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
-    assert found["compared"]["end"] == pytest.approx(6.2, abs=0.05)
-    assert "nozzle_throat_erosion" in found["set90"]
-    assert found["localisation"][0]["t_end"]["value"] < 6.3
 
 
 def test_a_log_that_stops_before_the_liquid_is_gone_is_refused(root: Path, tmp_path: Path) -> None:
