@@ -58,9 +58,10 @@ compare: $(STAMP) ## TEST=… OTHER=… two tests over each other: processed/TES
 
 all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_tests/
 
-# a file's tests stay together, for they share what is slow to make; linear algebra on one core, for workers have the others
+# A file's tests stay together, for they share what is slow to make, and the files in their order, for the slowest are the
+# first ones; linear algebra on one core, for the workers have the others.
 test: lint rocketpy ## ruff, mypy and the tests
-	OMP_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile $(FLAGS)
+	OMP_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder $(FLAGS)
 
 lint: $(STAMP) ## ruff and mypy
 	$(BIN)/ruff check
