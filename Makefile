@@ -18,7 +18,7 @@ export TEST OTHER
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare all test lint format benchmark rocketpy recovery blind blind-none blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy recovery blind blind-none blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -55,6 +55,9 @@ compare: $(STAMP) ## TEST=… OTHER=… two tests over each other: processed/TES
 		echo "make compare: which two tests? For example: make compare TEST=HF4 OTHER=HF5" >&2; \
 		echo "There are: $(or $(TESTS),none in raw_tests/)" >&2; exit 2; fi
 	@$(BIN)/hfa compare $(FLAGS) -- "$$TEST" "$$OTHER"
+
+campaign: $(STAMP) ## every test, several at a time, and what those of one stand agree on: processed/campaign.html
+	@$(BIN)/hfa campaign $(FLAGS)
 
 all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_tests/
 

@@ -18,7 +18,7 @@ from hfanalysis.calibrate.engine_of_test import Regression
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.of_test import evidence_for
 from hfanalysis.calibrate.tank import calibrate
-from hfanalysis.cli.regression import product_of
+from hfanalysis.campaign.regression import regression_of
 from hfanalysis.segment.phases import Segments
 from hfanalysis.stages.opening import open_test
 from hfanalysis.stages.runner import run_to
@@ -193,7 +193,7 @@ def test_efficiencies_are_those_of_an_engine(products: dict[str, Any], name: str
 
 def test_both_together_have_one_rate_but_not_one_law(products: dict[str, Any]) -> None:
     """docs/calibration.md: the same rate where each is known best, within 10 %; common constants fit worse."""
-    together = product_of(["HF4", "HF5"], products["HF4"]["folder"].parent.parent, None)
+    together = regression_of(["HF4", "HF5"], products["HF4"]["folder"].parent.parent, None)
     assert together["tests"] == ["HF4", "HF5"]
     assert together["agreement"]["verdict"].startswith("disagree")
     rates = [together["alone"][name]["regression_rate_reference"]["value"] for name in ("HF4", "HF5")]

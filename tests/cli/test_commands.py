@@ -315,6 +315,24 @@ def test_a_pdf_without_a_browser_ends_with_what_is_missing(
     assert ended.err.startswith("hfa: --pdf: no browser to print with; expected one of chromium")
 
 
+def test_a_campaign_has_every_test_and_says_which_is_at_fault(run: Run, root: Path, tmp_path: Path) -> None:
+    both = tmp_path / "both"
+    shutil.copytree(root, both)
+    broken = both / "raw_tests" / "HF6" / "test.toml"
+    broken.parent.mkdir()
+    broken.write_text("schema = 1\n")
+    ended = run("campaign", "--root", both, "--jobs", 1)
+    assert ended.status == 2
+    assert "HF6" in ended.err
+    assert "n2_purge" in ended.out
+    product = json.loads((both / "processed" / "campaign.json").read_text())
+    assert {test: row["status"] for test, row in product["tests"].items()} == {"HF5": "done", "HF6": "input at fault"}
+    assert product["tests"]["HF5"]["calibration"]["C_i"]["verdict"] == "identified"
+    assert "HF5/report.html" in (both / "processed" / "campaign.html").read_text()
+    assert run("campaign", "HF7", "--root", both).status == 2
+    assert run("campaign", "--root", tmp_path).status == 2
+
+
 def test_two_tests_are_compared_on_one_page(run: Run, root: Path) -> None:
     if not (root / "raw_tests/HF4").exists():
         shutil.copytree(REPOSITORY / "raw_tests" / "HF4", root / "raw_tests" / "HF4")

@@ -16,7 +16,9 @@ from browser import CHROMIUM, Page, browser
 from PIL import Image
 from sample import channel, material
 from test_page import hostile
+from tests.campaign.rows import made as campaign
 
+from hfanalysis.campaign.page import page as campaign_page
 from hfanalysis.report.compare import compare
 from hfanalysis.report.page import page
 from hfanalysis.report.pdf import print_page
@@ -416,6 +418,16 @@ def test_odd_names_of_channels_stay_names(tab: Page, tmp_path: Path, name: str) 
     assert tab.ask(entry)
     assert tab.ask("document.querySelectorAll('figure').length") == tab.ask("document.querySelectorAll('.plot').length")
     assert tab.ask("document.documentElement.scrollWidth") <= 390
+
+
+def test_a_campaign_s_page_opens_without_complaint_and_fits_a_narrow_screen(tab: Page, tmp_path: Path) -> None:
+    (tmp_path / "campaign.html").write_text(campaign_page(campaign(tmp_path)), encoding="utf-8")
+    tab.console.clear()
+    tab.open(tmp_path / "campaign.html", width=390)
+    assert tab.console == []
+    assert tab.ask("document.documentElement.scrollWidth") <= 390
+    assert tab.ask("document.querySelectorAll('svg.chart circle').length") == 9
+    assert tab.ask("document.querySelector('table a').getAttribute('href')") == "A/report.html"
 
 
 def test_two_tests_share_one_page(tab: Page, tmp_path: Path) -> None:

@@ -245,6 +245,30 @@ def _regression(
         regression.regression(tests, root, out, as_json)
 
 
+Tests = Annotated[list[str] | None, typer.Argument(metavar="[TEST…]", help="Names of tests; none: all.")]
+Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Tests at a time.", show_default="one per core")]
+
+
+@app.command("campaign")
+def _campaign(
+    tests: Tests = None,
+    root: Root = Path(),
+    out: Out = None,
+    jobs: Jobs = None,
+    as_json: EngineJson = False,
+    force: Force = False,
+    quiet: Quiet = False,
+) -> None:
+    """Every stage of all tests, several at a time, and what those of one stand say together: campaign.html, .json."""
+    with ending():
+        from hfanalysis.cli import campaign
+
+        request = campaign.Request(tuple(tests or ()), root, out, jobs, as_json, force, quiet)
+        status = campaign.campaign(request)
+        if status:
+            raise typer.Exit(status)
+
+
 AnyTest = Annotated[
     str | None, typer.Argument(metavar="TEST", help="Name of a test: what can be told apart with its channels.")
 ]

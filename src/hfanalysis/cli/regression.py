@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
-from hfanalysis.adopt.sensors import corrected
-from hfanalysis.calibrate.of_test import evidence_for
-from hfanalysis.calibrate.regression import Joint, fit, fit_together, result
-from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.campaign.regression import regression_of
 from hfanalysis.cli.ending import put
-from hfanalysis.errors import AbsentError, InputError
-from hfanalysis.segment.phases import Segments
+from hfanalysis.errors import InputError
 from hfanalysis.stages.base import Progress, silent
-from hfanalysis.stages.opening import open_test
-from hfanalysis.stages.runner import run_to
-from hfanalysis.testdata.log import read_log
 
 
 def regression(tests: list[str], root: Path, out: Path | None, as_json: bool, progress: Progress = silent) -> None:
     """Fit the tests alone and together, and show both. Raises InputError for fewer than two different tests."""
     if len(set(tests)) < 2:
         raise InputError(f"found {len(set(tests))} test; expected at least two: hfa regression TEST OTHER")
-    product = product_of(tests, root, out, progress)
+    product = regression_of(tests, root, out, progress)
     if as_json:
         from hfanalysis.testdata.products import to_json
 
@@ -31,31 +23,3 @@ def regression(tests: list[str], root: Path, out: Path | None, as_json: bool, pr
     from hfanalysis.cli.tables import show_regression
 
     show_regression(product)
-
-
-def product_of(tests: list[str], root: Path, out: Path | None, progress: Progress = silent) -> dict[str, Any]:
-    """What the tests say alone and together. Raises AbsentError for a test that says nothing of a and n."""
-    evidence = []
-    for name in dict.fromkeys(tests):
-        context = run_to("segment", open_test(root, name, out, progress=progress))
-        segments, effects = Segments.from_json(context.read_json("segments.json")), context.adopted().acting
-        log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)
-        try:
-            tank = calibrate(log, segments, context.definition, 400, effects)
-            evidence.append(evidence_for(log, segments, context.definition, tank, effects))
-        except AbsentError as error:
-            raise AbsentError(f"{name}: {error}") from None
-    alone = [fit([e]) for e in evidence]
-    return _product(
-        fit_together(evidence, alone), {e.test: result(f).to_json() for e, f in zip(evidence, alone, strict=True)}
-    )
-
-
-def _product(joint: Joint, alone: dict[str, Any]) -> dict[str, Any]:
-    words = "agree" if joint.agree else "disagree: common constants fit worse than chance allows"
-    return {
-        "tests": list(alone),
-        **result(joint.fitted).to_json(),
-        "agreement": {"verdict": words, "probability": joint.probability},
-        "alone": alone,
-    }

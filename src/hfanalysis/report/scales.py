@@ -74,6 +74,15 @@ def reading_unit(name: str, unit: str) -> str:
     return SLOW if unit == "m/s" and name.startswith(_SLOW_NAMES) else unit
 
 
+def superscript(number: int) -> str:
+    """A whole number as an exponent.
+
+    >>> superscript(-4)
+    '⁻⁴'
+    """
+    return str(number).translate(_SUPERSCRIPT)
+
+
 def pretty_unit(unit: str) -> str:
     """The unit with real superscripts.
 

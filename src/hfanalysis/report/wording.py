@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hfanalysis.report.scales import reading_unit, scale
+from hfanalysis.report.scales import reading_unit, scale, superscript
 
 NAMES: dict[str, str] = {
     "C_i": "injector coefficient",
@@ -74,7 +74,6 @@ _KILOWATTS = 500.0
 """[W] from which on a power reads better in kW."""
 
 _NOTHING = 1e-200
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 MINUS = "\N{MINUS SIGN}"
 
 
@@ -118,7 +117,7 @@ def shown(quantity: Mapping[str, Any], system: str = "si", name: str = "", diffe
     value, std = factor * quantity["value"] + zero, factor * (quantity.get("std") or 0.0)
     exponent = 0 if unit == "s" else _exponent(max(abs(value), std))
     if exponent:
-        unit = f"×10{str(exponent).translate(_SUPERSCRIPT)} {unit}".strip()
+        unit = f"×10{superscript(exponent)} {unit}".strip()
         factor, zero, value, std = (x / 10.0**exponent for x in (factor, zero, value, std))
     decimals = min(decimals_for(value, std), _FINEST.get(unit, 8))
     interval = [fixed(factor * end + zero, decimals) for end in quantity.get("ci95") or ()]

@@ -1,0 +1,104 @@
+"""The page of a campaign: its tests, and stand by stand what they say together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+from urllib.parse import quote
+
+from markupsafe import Markup, escape
+
+from hfanalysis.campaign.strips import strip
+from hfanalysis.campaign.words import HIDDEN, agreement, diagnosed, regression_sentence
+from hfanalysis.report import html
+from hfanalysis.report.page import render
+from hfanalysis.report.wording import KINDS, fixed
+
+_NUMBERS = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure")
+
+
+def page(product: Mapping[str, Any]) -> str:
+    """The HTML of a campaign's product."""
+    tests = product["tests"]
+    return render(
+        "campaign.html.j2",
+        tests=tests,
+        overview=_overview(tests),
+        missing=[(test, row["status"], row["reason"]) for test, row in tests.items() if row["reason"]],
+        stands=[(name, list(_stand(stand, tests))) for name, stand in product["stands"].items()],
+        generated=sorted({row["source"] for row in tests.values()} - {"measured", None}),
+    )
+
+
+def _overview(tests: Mapping[str, Mapping[str, Any]]) -> Markup:
+    heads = ("burn time", "total impulse", "specific impulse", "peak p_c", "apogee")
+    columns = ("test", "stand", "kind", *(f">{head}" for head in heads), "the model lacks")
+    caption = "Measured performance, apogee predicted with it, and what the diagnosis found."
+    return html.table("Tests", caption, columns, [_test(test, row) for test, row in tests.items()])
+
+
+def _test(test: str, row: Mapping[str, Any]) -> tuple[Any, ...]:
+    name: Any = test
+    if row["page"]:
+        name = Markup('<a href="{}">{}</a>').format(f"{quote(test)}/report.html", test)
+    numbers = [_cell(name, row["performance"].get(name)) for name in _NUMBERS]
+    kind = KINDS.get(row["kind"], row["kind"] or "–")
+    return (name, row["stand"] or "–", kind, *numbers, _cell("apogee", row["apogee"]), diagnosed(row["diagnosis"]))
+
+
+def _cell(name: str, quantity: Mapping[str, Any] | None) -> Markup:
+    return html.value(quantity, name) if quantity and quantity.get("value") is not None else Markup("–")
+
+
+def _stand(stand: Mapping[str, Any], tests: Mapping[str, Mapping[str, Any]]) -> Iterator[Markup]:
+    """Table and pictures of what belongs to the stand, its effects, its regression law."""
+    rows = {test: tests[test]["calibration"] for test in stand["tests"]}
+    columns = ("constant", *(f">{test}" for test in rows), ">together", "the tests")
+    caption = "The mean counts how far the tests differ beyond their own deviations; only what is identified is in it."
+    constants = stand["constants"]
+    yield html.table(
+        "Constants of the stand", caption, columns, [_constant(name, rows, constants[name]) for name in constants]
+    )
+    for name, together in constants.items():
+        picture = strip(name, {test: row.get(name) or {} for test, row in rows.items()}, together)
+        if picture:
+            yield Markup('<figure><div class="plot">{}</div></figure>').format(picture)
+    if stand["effects"]:
+        yield _effects(stand)
+    else:
+        yield html.paragraph("No effect is named in any of the tests.")
+    yield html.paragraph(regression_sentence(stand["regression"]))
+
+
+def _constant(name: str, rows: Mapping[str, Mapping[str, Any]], together: Mapping[str, Any]) -> tuple[Any, ...]:
+    cells = [_judged(name, row.get(name)) for row in rows.values()]
+    return (html.symbol_and_words(name), *cells, _cell(name, together), agreement(together))
+
+
+def _judged(name: str, quantity: Mapping[str, Any] | None) -> Markup:
+    verdict = str((quantity or {}).get("verdict") or "")
+    return _cell(name, quantity) + (Markup(" ") + html.verdict(verdict) if html.mark(verdict) != "good" else Markup())
+
+
+def _effects(stand: Mapping[str, Any]) -> Markup:
+    """A row for each effect and each of its numbers: by test, and together."""
+    tests = stand["tests"]
+    rows: list[tuple[Any, ...]] = []
+    for name, found in stand["effects"].items():
+        chances = [_chance(found["probability"].get(test), test in found["named_in"]) for test in tests]
+        rows.append((Markup("<strong>{}</strong>").format(name), *chances, "", ""))
+        for parameter, numbers in found["parameters"].items():
+            words = Markup('<span class="words">{}</span>').format(parameter.replace("_", " "))
+            cells = [_cell(parameter, numbers["by_test"].get(test)) for test in tests]
+            together = numbers["together"]
+            rows.append((words, *cells, _cell(parameter, together), agreement(together)))
+    columns = ("effect", *(f">{test}" for test in tests), ">together", "the tests")
+    caption = "How probable each effect is that some test names, and its size where it is named."
+    return html.table("Effects", caption, columns, rows)
+
+
+def _chance(probability: float | None, named: bool) -> Markup:
+    if probability is None:
+        return Markup("–")
+    text = f"< {HIDDEN}" if probability < HIDDEN else fixed(probability, 2)
+    return Markup("<strong>{}</strong> named").format(text) if named else escape(text)

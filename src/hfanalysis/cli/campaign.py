@@ -1,0 +1,161 @@
+"""hfa campaign: all tests through all stages, side by side, and what those of one stand say together."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.text import Text
+
+from hfanalysis.campaign.page import page
+from hfanalysis.campaign.product import row_of, stand_row
+from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended, cores, run_all
+from hfanalysis.campaign.words import agreement, diagnosed, regression_sentence
+from hfanalysis.cli.ending import put, tell
+from hfanalysis.cli.tables import new_table, paper
+from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.report.wording import shown
+from hfanalysis.stages.base import Progress, silent
+from hfanalysis.stages.opening import PROCESSED, RAW, open_test
+from hfanalysis.testdata.definition import TestDefinition, find_definition
+from hfanalysis.testdata.products import atomic, to_json, write_json
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the command line asks for; no ``tests`` are all of them."""
+
+    tests: tuple[str, ...]
+    root: Path
+    out: Path | None
+    jobs: int | None
+    as_json: bool
+    force: bool
+    quiet: bool
+
+
+def campaign(request: Request) -> int:
+    """Run the tests, write campaign.json and campaign.html, and show what they say; returns the exit status.
+
+    A test whose log does not hold all that was asked is part of it with what it has. Raises InputError where there is
+    no test, or a name is none, before anything runs; AbsentError where no test can be calibrated.
+    """
+    definitions, refused = _definitions(request)
+    tests = [*definitions, *refused]
+    folder = request.out if request.out is not None else request.root / PROCESSED
+    with _watch(request) as progress:
+        ended = {**_run(list(definitions), request, progress), **refused}
+        rows = {test: row_of(definitions.get(test), folder / test, ended[test]) for test in sorted(tests)}
+        stands = dict.fromkeys(str(row["stand"]) for row in rows.values() if row["stand"])
+        product = {
+            "tests": rows,
+            "stands": {
+                stand: stand_row(
+                    {test: row for test, row in rows.items() if row["stand"] == stand},
+                    request.root,
+                    request.out,
+                    progress,
+                )
+                for stand in stands
+            },
+        }
+    folder.mkdir(parents=True, exist_ok=True)
+    write_json(folder / "campaign.json", product)
+    with atomic(folder / "campaign.html") as scratch:
+        scratch.write_text(page(product), encoding="utf-8")
+    _show(product, request, folder)
+    return _status(ended)
+
+
+def _definitions(request: Request) -> tuple[dict[str, TestDefinition], dict[str, Ended]]:
+    """The tests' definitions, and what is wrong with those that have faults."""
+    found = sorted(path.parent.name for path in (request.root / RAW).glob("*/test.toml"))
+    tests = list(dict.fromkeys(request.tests)) or found
+    if not tests:
+        raise InputError(f"{request.root / RAW}: found no test; expected folders with a test.toml")
+    for test in tests:
+        find_definition(request.root, test)
+    definitions, refused = {}, {}
+    for test in tests:
+        try:
+            definitions[test] = open_test(request.root, test, request.out).definition
+        except InputError as error:
+            refused[test] = Ended(INPUT_AT_FAULT, str(error))
+            tell(str(error))
+    return definitions, refused
+
+
+def _run(tests: list[str], request: Request, progress: Progress) -> Mapping[str, Ended]:
+    arguments = ["--root", str(request.root), *(("--out", str(request.out)) if request.out is not None else ())]
+    arguments += ["--force"] if request.force else []
+    done: list[str] = []
+
+    def ended(test: str, how: Ended) -> None:
+        done.append(test)
+        progress(f"{len(done)} of {len(tests)} tests", len(done) / len(tests))
+        if how.status != DONE:
+            tell(f"{test}: {how.said}")
+
+    progress(f"0 of {len(tests)} tests", 0.0)
+    return run_all(tests, arguments, request.jobs or cores(), ended)
+
+
+def _status(ended: Mapping[str, Ended]) -> int:
+    """A defect of ours first, then the input's faults; what logs do not hold counts where none holds it."""
+    if any(how.defect for how in ended.values()):
+        return 1
+    if any(how.status == INPUT_AT_FAULT for how in ended.values()):
+        return INPUT_AT_FAULT
+    if all(how.status == ABSENT for how in ended.values()):
+        raise AbsentError("none of the tests can be calibrated")
+    return DONE
+
+
+@contextmanager
+def _watch(request: Request) -> Iterator[Progress]:
+    if request.quiet or not sys.stderr.isatty():
+        yield silent
+        return
+    from hfanalysis.cli.progress import spinner
+
+    with spinner("campaign") as progress:
+        yield progress
+
+
+def _show(product: Mapping[str, Any], request: Request, folder: Path) -> None:
+    if request.as_json:
+        put(to_json(product))
+    elif not request.quiet:
+        _print(product)
+        tell(f"written: {folder / 'campaign.html'}")
+
+
+def _print(product: Mapping[str, Any]) -> None:
+    """A line for each test, and for each stand what its tests say together."""
+    console = paper()
+    table = new_table("test", "stand", "total impulse", "specific impulse", "apogee", "the model lacks", title="tests")
+    for test, row in product["tests"].items():
+        found = [*(row["performance"].get(name) for name in ("total_impulse", "specific_impulse")), row["apogee"]]
+        table.add_row(test, Text(row["stand"] or "–"), *map(_number, found), Text(diagnosed(row["diagnosis"])))
+    console.print(table)
+    for name, stand in product["stands"].items():
+        table = new_table("", *stand["tests"], "together", "the tests", title=f"stand {name}")
+        for constant, together in stand["constants"].items():
+            by_test = [product["tests"][test]["calibration"].get(constant) for test in stand["tests"]]
+            table.add_row(constant, *map(_number, by_test), _number(together), Text(agreement(together)))
+        console.print(table)
+        console.print(Text(f"  {regression_sentence(stand['regression'])}"), soft_wrap=True)
+
+
+def _number(quantity: Mapping[str, Any] | None) -> Text:
+    """With its deviation and unit; what a verdict says against it."""
+    if not quantity or quantity.get("value") is None:
+        return Text("–")
+    text = shown(quantity)
+    number = f"{text.value} ± {text.std}" if text.std else text.value
+    doubt = f", {text.verdict}" if text.verdict not in ("", "identified") else ""
+    return Text(f"{f'({number})' if text.unit.startswith('×') else number} {text.unit}".strip() + doubt)

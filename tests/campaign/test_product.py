@@ -1,0 +1,77 @@
+"""What the tests of a stand say together, from the products of each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.campaign.rows import definition, made
+
+from hfanalysis.campaign.page import page
+from hfanalysis.campaign.product import row_of
+from hfanalysis.campaign.side_by_side import Ended
+from hfanalysis.campaign.words import agreement, diagnosed
+
+
+@pytest.fixture(scope="module")
+def product(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    return made(tmp_path_factory.mktemp("campaign"))
+
+
+def test_only_what_is_identified_is_in_the_mean(product: dict[str, Any]) -> None:
+    m = product["stands"]["cell 3"]["constants"]["m"]
+    assert m["tests"] == ["A", "B"]
+    assert m["value"] == pytest.approx(1.04)
+    assert m["agreement"]["verdict"] == "agree"
+
+
+def test_tests_that_differ_are_said_to(product: dict[str, Any]) -> None:
+    c_i = product["stands"]["cell 3"]["constants"]["C_i"]
+    assert c_i["agreement"]["verdict"].startswith("disagree")
+    assert c_i["between"] > 0.02
+    assert "disagree" in agreement(c_i)
+    assert "(< 0.001 by chance)" in agreement(c_i)
+
+
+def test_an_effect_has_its_probability_in_every_test_and_its_size_where_it_is_named(product: dict[str, Any]) -> None:
+    heat = product["stands"]["cell 3"]["effects"]["tank_heat"]
+    assert heat["named_in"] == ["A", "B"]
+    assert heat["probability"] == {"A": 0.93, "B": 0.93, "C": 0.004}
+    together = heat["parameters"]["power"]["together"]
+    assert together["value"] == pytest.approx(1000.0)
+    assert together["tests"] == ["A", "B"]
+
+
+def test_without_a_law_of_two_tests_there_is_the_reason(product: dict[str, Any]) -> None:
+    reason = product["stands"]["cell 3"]["regression"]["reason"]
+    assert reason == "two tests are needed, and a and n are known of none"
+    assert reason in page(product)
+
+
+def test_a_test_at_fault_is_listed_with_its_reason_and_nothing_else(product: dict[str, Any], tmp_path: Path) -> None:
+    row = product["tests"]["D"]
+    assert row["status"] == "input at fault"
+    assert row["calibration"] == {}
+    assert row["page"] is None
+    text = page(product)
+    assert "input at fault: raw_tests/D/test.toml: &lt;b&gt;found nothing" in text
+    assert "<b>found" not in text
+
+
+def test_a_test_that_left_nothing_has_nothing(tmp_path: Path) -> None:
+    row = row_of(definition(tmp_path, "E", None), tmp_path / "processed" / "E", Ended(3, "no firing"))
+    assert (row["status"], row["reason"], row["stand"]) == ("not in the log", "no firing", None)
+    assert row["diagnosis"] is None
+    assert diagnosed(row["diagnosis"]) == "not diagnosed"
+    text = page({"tests": {"E": row}, "stands": {}})
+    assert "not diagnosed" in text
+    assert "E/report.html" not in text
+
+
+def test_the_page_has_a_picture_of_each_constant_and_links_to_the_tests(product: dict[str, Any]) -> None:
+    text = page(product)
+    assert text.count('<svg class="chart"') == 3
+    assert 'href="A/report.html"' in text
+    assert "<strong>0.93</strong> named" in text
+    assert "&lt; 0.01" in text
