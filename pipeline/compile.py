@@ -1,8 +1,8 @@
 """compile.py: compile the package's numerical code, which the first commands would otherwise wait for, piece by piece.
 
 Two processes, for the compiler uses one core: one runs the reference engine and its sensitivities, the other takes a
-test of ``raw_tests/`` (where there is one) through to its calibration, in a folder of its own. What they compile is
-kept beside the sources, where every later run finds it. Nothing depends on it: what is missing is compiled when it is
+test of ``raw_tests/`` (where there is one) through to its page, in a folder of its own. What they compile is kept
+beside the sources, where every later run finds it. Nothing depends on it: what is missing is compiled when it is
 needed.
 """
 
@@ -35,7 +35,7 @@ def main() -> None:
         tests = sorted(path.parent.name for path in ROOT.glob("raw_tests/*/test.toml"))
         if tests:
             (Path(folder) / "raw_tests").symlink_to(ROOT / "raw_tests", target_is_directory=True)
-            commands.append([sys.executable, "-m", "hfanalysis", "calibrate", tests[-1], "--root", folder])
+            commands.append([sys.executable, "-m", "hfanalysis", "report", tests[-1], "--root", folder])
         nowhere = subprocess.DEVNULL
         running = [subprocess.Popen(command, stdout=nowhere, stderr=nowhere) for command in commands]
         for process in running:
