@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+WIDTH = 150
+"""Columns of the terminal that the output is made for: no name of a quantity breaks."""
+
 BLOCK = re.compile(
     r"(<!-- sample: (?P<command>[^>]*?) \(written by `make readme`\) -->\n).*?(<!-- end of sample -->)", re.S
 )
@@ -17,7 +21,8 @@ def sample(match: re.Match[str]) -> str:
     """The block with the command's present output."""
     arguments = match["command"].split()[1:]
     hfa = [sys.executable, "-m", "hfanalysis", *arguments]
-    ended = subprocess.run(hfa, cwd=ROOT, capture_output=True, text=True, check=True)
+    wide = {**os.environ, "COLUMNS": str(WIDTH)}
+    ended = subprocess.run(hfa, cwd=ROOT, env=wide, capture_output=True, text=True, check=True)
     lines = "\n".join(line.rstrip() for line in ended.stdout.splitlines())
     return f"{match[1]}\n```text\n{lines}\n```\n\n{match[3]}"
 

@@ -94,6 +94,17 @@ def test_sentences_give_sizes_in_the_units_of_engineers() -> None:
     assert proof_sentences({"gap": {"closed_fraction": {}}}) == []
 
 
+@pytest.mark.parametrize(
+    ("same", "said"),
+    [(-0.04, "The gap that is left is another one: "), (None, "No channel is off by more than its noise: ")],
+)
+def test_an_effect_that_closes_next_to_nothing_is_explained(same: float | None, said: str) -> None:
+    found = product("named")
+    found["gap"] = {**found["gap"], "closed_fraction": {"same": same}}
+    assert proof_sentences(found)[-1].startswith(f"{said}what names the effect is smaller than the noise")
+    assert proof_sentences({**found, "effects": []}) == proof_sentences(found)[:-1]
+
+
 def test_an_impossible_size_is_said() -> None:
     row = effects_product(verdict_of(eroded()))[0]
     assert "hard to believe" not in effect_sentence(row)

@@ -28,6 +28,9 @@ LIKELIER = 1.5
 MUCH = 1.3
 """Chi-square per observation from which on more is left than noise that was estimated a little too small."""
 
+LITTLE = 0.2
+"""Part of the gap below which its closing is not what speaks for an effect."""
+
 UNEVEN = 0.5
 """Part of its root mean square below which a source's mean says little of it."""
 
@@ -129,7 +132,7 @@ def gap_line(channel: str, gap: Mapping[str, Any]) -> str:
 
 
 def proof_sentences(product: Mapping[str, Any]) -> list[str]:
-    """How much of the gap closes, and on which data."""
+    """How much of the gap closes, and on which data; how an effect can be named though little of it does."""
     arms = {
         "same": "of the gap closes on the data that named it",
         "held_out": "on stretches that were held out",
@@ -138,7 +141,13 @@ def proof_sentences(product: Mapping[str, Any]) -> list[str]:
     }
     found = product["gap"]["closed_fraction"]
     parts = [f"{100.0 * found[arm]:.0f} % {text}" for arm, text in arms.items() if found.get(arm) is not None]
-    return [", ".join(parts) + "."] if parts else []
+    same = found.get("same")
+    said = [", ".join(parts) + "."] if parts else []
+    if product.get("effects") and (same is None or same < LITTLE):
+        where = "No channel is off by more than its noise" if same is None else "The gap that is left is another one"
+        what = "smaller than the noise of single means, or in instants and the filling of the line"
+        said.append(f"{where}: what names the effect is {what}, where no gap is measured.")
+    return said
 
 
 def shown(quantity: Quantity | Mapping[str, Any]) -> str:
