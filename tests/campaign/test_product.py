@@ -9,9 +9,10 @@ import pytest
 from tests.campaign.rows import definition, made
 
 from hfanalysis.campaign.page import page
-from hfanalysis.campaign.product import row_of
+from hfanalysis.campaign.product import row_of, stand_of
 from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.campaign.words import agreement, diagnosed
+from hfanalysis.testdata.definition import load_definition
 
 
 @pytest.fixture(scope="module")
@@ -61,12 +62,21 @@ def test_a_test_at_fault_is_listed_with_its_reason_and_nothing_else(product: dic
 
 def test_a_test_that_left_nothing_has_nothing(tmp_path: Path) -> None:
     row = row_of(definition(tmp_path, "E", None), tmp_path / "processed" / "E", Ended(3, "no firing"))
-    assert (row["status"], row["reason"], row["stand"]) == ("not in the log", "no firing", None)
+    assert (row["status"], row["reason"]) == ("not in the log", "no firing")
+    assert row["stand"] is None
     assert row["diagnosis"] is None
     assert diagnosed(row["diagnosis"]) == "not diagnosed"
     text = page({"tests": {"E": row}, "stands": {}})
     assert "not diagnosed" in text
     assert "E/report.html" not in text
+
+
+def test_a_stand_that_is_not_stated_is_known_by_its_tank_and_injector(tmp_path: Path) -> None:
+    text = definition(tmp_path, "F", None).path.read_text(encoding="utf-8")
+    hardware = '[tank]\nvolume = "16.5 L"\n[injector]\nholes = 22\nhole_area = "3.142 mm^2"\n'
+    path = tmp_path / "raw_tests" / "F" / "test.toml"
+    path.write_text(text + hardware, encoding="utf-8")
+    assert stand_of(load_definition(path)) == "not stated: tank of 16.5 L, injector of 69.12 mm^2"
 
 
 def test_the_page_has_a_picture_of_each_constant_and_links_to_the_tests(product: dict[str, Any]) -> None:

@@ -24,6 +24,7 @@ def page(product: Mapping[str, Any]) -> str:
         "campaign.html.j2",
         tests=tests,
         overview=_overview(tests),
+        lacking=[(test, diagnosed(row["diagnosis"])) for test, row in tests.items()],
         missing=[(test, row["status"], row["reason"]) for test, row in tests.items() if row["reason"]],
         stands=[(name, list(_stand(stand, tests))) for name, stand in product["stands"].items()],
         generated=sorted({row["source"] for row in tests.values()} - {"measured", None}),
@@ -32,8 +33,8 @@ def page(product: Mapping[str, Any]) -> str:
 
 def _overview(tests: Mapping[str, Mapping[str, Any]]) -> Markup:
     heads = ("burn time", "total impulse", "specific impulse", "peak p_c", "apogee")
-    columns = ("test", "stand", "kind", *(f">{head}" for head in heads), "the model lacks")
-    caption = "Measured performance, apogee predicted with it, and what the diagnosis found."
+    columns = ("test", "kind", *(f">{head}" for head in heads))
+    caption = "Measured performance, and the apogee predicted with it."
     return html.table("Tests", caption, columns, [_test(test, row) for test, row in tests.items()])
 
 
@@ -43,7 +44,7 @@ def _test(test: str, row: Mapping[str, Any]) -> tuple[Any, ...]:
         name = Markup('<a href="{}">{}</a>').format(f"{quote(test)}/report.html", test)
     numbers = [_cell(name, row["performance"].get(name)) for name in _NUMBERS]
     kind = KINDS.get(row["kind"], row["kind"] or "–")
-    return (name, row["stand"] or "–", kind, *numbers, _cell("apogee", row["apogee"]), diagnosed(row["diagnosis"]))
+    return (name, kind, *numbers, _cell("apogee", row["apogee"]))
 
 
 def _cell(name: str, quantity: Mapping[str, Any] | None) -> Markup:

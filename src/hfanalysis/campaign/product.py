@@ -38,7 +38,7 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> dic
     performance = (validation.get("performance") or {}).get("measured") or {}
     about = definition.test
     return {
-        "stand": about.stand,
+        "stand": stand_of(definition),
         "kind": about.kind,
         "source": about.source,
         "date": str(about.date) if about.date else None,
@@ -50,6 +50,17 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> dic
         "diagnosis": _diagnosed(_read(folder / "diagnosis.json")),
         "page": f"{folder.name}/report.html" if (folder / "report.html").exists() else None,
     }
+
+
+def stand_of(definition: TestDefinition) -> str | None:
+    """The stand as it is stated; where it is not, the tank and the injector, by which tests of one stand are known."""
+    if definition.test.stand:
+        return definition.test.stand
+    volume = definition.tank.volume if definition.tank else None
+    area = definition.injector.area if definition.injector else None
+    if volume is None or area is None:
+        return None
+    return f"not stated: tank of {1e3 * volume.value:.4g} L, injector of {1e6 * area.value:.4g} mm^2"
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -26,7 +26,7 @@ def diagnosed(diagnosis: Mapping[str, Any] | None) -> str:
         return "not diagnosed"
     if diagnosis["effects"]:
         return listed([f"{row['name']} ({row['probability']:.2f})" for row in diagnosis["effects"]])
-    return "nothing is claimed" if diagnosis["verdict"] == "none" else str(diagnosis["verdict"])
+    return "nothing that can be claimed" if diagnosis["verdict"] == "none" else str(diagnosis["verdict"])
 
 
 def regression_sentence(product: Mapping[str, Any]) -> str:

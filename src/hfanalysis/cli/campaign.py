@@ -18,11 +18,13 @@ from hfanalysis.campaign.words import agreement, diagnosed, regression_sentence
 from hfanalysis.cli.ending import put, tell
 from hfanalysis.cli.tables import new_table, paper
 from hfanalysis.errors import AbsentError, InputError
-from hfanalysis.report.wording import shown
+from hfanalysis.report.wording import in_words, shown
 from hfanalysis.stages.base import Progress, silent
 from hfanalysis.stages.opening import PROCESSED, RAW, open_test
 from hfanalysis.testdata.definition import TestDefinition, find_definition
 from hfanalysis.testdata.products import atomic, to_json, write_json
+
+_SHOWN = ("burn_time", "total_impulse", "specific_impulse")
 
 
 @dataclass(frozen=True)
@@ -135,20 +137,29 @@ def _show(product: Mapping[str, Any], request: Request, folder: Path) -> None:
 
 
 def _print(product: Mapping[str, Any]) -> None:
-    """A line for each test, and for each stand what its tests say together."""
+    """The tests in a table, what each one's model lacks, and for each stand what its tests say together."""
     console = paper()
-    table = new_table("test", "stand", "total impulse", "specific impulse", "apogee", "the model lacks", title="tests")
+    table = new_table("test", *(in_words(name) for name in _SHOWN), "apogee", title="tests")
     for test, row in product["tests"].items():
-        found = [*(row["performance"].get(name) for name in ("total_impulse", "specific_impulse")), row["apogee"]]
-        table.add_row(test, Text(row["stand"] or "–"), *map(_number, found), Text(diagnosed(row["diagnosis"])))
+        found = [*(row["performance"].get(name) for name in _SHOWN), row["apogee"]]
+        table.add_row(test, *map(_number, found))
     console.print(table)
+    for test, row in product["tests"].items():
+        console.print(Text(f"  {test}: the model lacks: {diagnosed(row['diagnosis'])}"), soft_wrap=True)
     for name, stand in product["stands"].items():
-        table = new_table("", *stand["tests"], "together", "the tests", title=f"stand {name}")
-        for constant, together in stand["constants"].items():
-            by_test = [product["tests"][test]["calibration"].get(constant) for test in stand["tests"]]
-            table.add_row(constant, *map(_number, by_test), _number(together), Text(agreement(together)))
+        constants = stand["constants"]
+        table = new_table("", *constants, title=f"stand: {name}")
+        for test in stand["tests"]:
+            table.add_row(test, *(_number(product["tests"][test]["calibration"].get(c)) for c in constants))
+        table.add_row("together", *map(_number, constants.values()), style="bold")
         console.print(table)
+        for constant, together in constants.items():
+            console.print(Text(f"  {constant}: {_agreed(together)}"), soft_wrap=True)
         console.print(Text(f"  {regression_sentence(stand['regression'])}"), soft_wrap=True)
+
+
+def _agreed(together: Mapping[str, Any]) -> str:
+    return f"the tests {agreement(together)}" if together.get("agreement") else agreement(together)
 
 
 def _number(quantity: Mapping[str, Any] | None) -> Text:
