@@ -9,9 +9,10 @@ import pytest
 from tests.campaign.rows import definition, made
 
 from hfanalysis.campaign.page import page
-from hfanalysis.campaign.product import row_of, stand_of
+from hfanalysis.campaign.product import row_of, stand_of, stand_row
 from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.campaign.words import agreement, diagnosed
+from hfanalysis.stages.base import silent
 from hfanalysis.testdata.definition import load_definition
 
 
@@ -71,12 +72,30 @@ def test_a_test_that_left_nothing_has_nothing(tmp_path: Path) -> None:
     assert "E/report.html" not in text
 
 
-def test_a_stand_that_is_not_stated_is_known_by_its_tank_and_injector(tmp_path: Path) -> None:
+def test_a_stand_that_is_not_stated_is_known_by_its_tank(tmp_path: Path) -> None:
     text = definition(tmp_path, "F", None).path.read_text(encoding="utf-8")
-    hardware = '[tank]\nvolume = "16.5 L"\n[injector]\nholes = 22\nhole_area = "3.142 mm^2"\n'
+    hardware = '[tank]\nvolume = "16.5 L"\n'
     path = tmp_path / "raw_tests" / "F" / "test.toml"
     path.write_text(text + hardware, encoding="utf-8")
-    assert stand_of(load_definition(path)) == "not stated: tank of 16.5 L, injector of 69.12 mm^2"
+    assert stand_of(load_definition(path)) == "not stated: the tank of 16.5 L"
+
+
+def test_what_belongs_to_an_injector_is_not_pooled_over_two_of_them(tmp_path: Path) -> None:
+    rows = {
+        test: {**row, "injector_area": {"A": 6e-5, "B": 7e-5}[test]}
+        for test, row in made(tmp_path)["tests"].items()
+        if test in "AB"
+    }
+    constants = stand_row(rows, tmp_path, None, silent)["constants"]
+    assert constants["C_i"] == {"value": None, "reason": "the tests have different injectors"}
+    assert constants["m"]["value"] == pytest.approx(1.04)
+
+
+def test_a_test_alone_on_its_stand_is_compared_with_nothing(product: dict[str, Any]) -> None:
+    stand = {**product["stands"]["cell 3"], "tests": ["A"]}
+    text = page({"tests": product["tests"], "stands": {"cell 3": stand}})
+    assert "A is the only test of this stand here" in text
+    assert "Constants of the stand" not in text
 
 
 def test_the_page_has_a_picture_of_each_constant_and_links_to_the_tests(product: dict[str, Any]) -> None:

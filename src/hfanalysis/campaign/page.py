@@ -9,7 +9,7 @@ from urllib.parse import quote
 from markupsafe import Markup, escape
 
 from hfanalysis.campaign.strips import strip
-from hfanalysis.campaign.words import HIDDEN, agreement, diagnosed, regression_sentence
+from hfanalysis.campaign.words import HIDDEN, agreement, alone, diagnosed, regression_sentence
 from hfanalysis.report import html
 from hfanalysis.report.page import render
 from hfanalysis.report.wording import KINDS, fixed
@@ -53,6 +53,9 @@ def _cell(name: str, quantity: Mapping[str, Any] | None) -> Markup:
 
 def _stand(stand: Mapping[str, Any], tests: Mapping[str, Mapping[str, Any]]) -> Iterator[Markup]:
     """Table and pictures of what belongs to the stand, its effects, its regression law."""
+    if len(stand["tests"]) == 1:
+        yield html.paragraph(alone(stand["tests"][0]))
+        return
     rows = {test: tests[test]["calibration"] for test in stand["tests"]}
     columns = ("constant", *(f">{test}" for test in rows), ">together", "the tests")
     caption = "The mean counts how far the tests differ beyond their own deviations; only what is identified is in it."

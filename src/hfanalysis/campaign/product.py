@@ -21,7 +21,7 @@ HARDWARE = ("C_i", "K_loss", "m")
 CALIBRATED = (*HARDWARE, "a", "n")
 MEASURED = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust")
 
-_NOTHING = ("stand", "kind", "source", "date", "apogee", "diagnosis", "page")
+_NOTHING = ("stand", "injector_area", "kind", "source", "date", "apogee", "diagnosis", "page")
 _EMPTY: dict[str, Any] = {"calibration": {}, "performance": {}}
 
 STATUS = {DONE: "done", INPUT_AT_FAULT: "input at fault", ABSENT: "not in the log"}
@@ -39,6 +39,7 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> dic
     about = definition.test
     return {
         "stand": stand_of(definition),
+        "injector_area": _injector(definition),
         "kind": about.kind,
         "source": about.source,
         "date": str(about.date) if about.date else None,
@@ -53,14 +54,16 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> dic
 
 
 def stand_of(definition: TestDefinition) -> str | None:
-    """The stand as it is stated; where it is not, the tank and the injector, by which tests of one stand are known."""
+    """The stand as it is stated; where it is not, its tank, by which tests of one stand are known."""
     if definition.test.stand:
         return definition.test.stand
     volume = definition.tank.volume if definition.tank else None
+    return None if volume is None else f"not stated: the tank of {1e3 * volume.value:.4g} L"
+
+
+def _injector(definition: TestDefinition) -> float | None:
     area = definition.injector.area if definition.injector else None
-    if volume is None or area is None:
-        return None
-    return f"not stated: tank of {1e3 * volume.value:.4g} L, injector of {1e6 * area.value:.4g} mm^2"
+    return None if area is None else area.value
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -76,10 +79,16 @@ def stand_row(rows: Mapping[str, Mapping[str, Any]], root: Path, out: Path | Non
     """What the tests of one stand, by name, say together."""
     return {
         "tests": list(rows),
-        "constants": {name: _together(_calibrated(rows, name)) for name in HARDWARE},
+        "constants": {name: _constant(rows, name) for name in HARDWARE},
         "effects": _effects(rows),
         "regression": _regression(rows, root, out, tell),
     }
+
+
+def _constant(rows: Mapping[str, Mapping[str, Any]], name: str) -> dict[str, Any]:
+    if name == "C_i" and len({row["injector_area"] for row in rows.values()}) > 1:
+        return Quantity.absent("the tests have different injectors").to_json()
+    return _together(_calibrated(rows, name))
 
 
 def _calibrated(rows: Mapping[str, Mapping[str, Any]], name: str) -> dict[str, Quantity]:

@@ -29,6 +29,11 @@ def diagnosed(diagnosis: Mapping[str, Any] | None) -> str:
     return "nothing that can be claimed" if diagnosis["verdict"] == "none" else str(diagnosis["verdict"])
 
 
+def alone(test: str) -> str:
+    """Of a stand with one test in the campaign."""
+    return f"{test} is the only test of this stand here: there is nothing to compare it with."
+
+
 def regression_sentence(product: Mapping[str, Any]) -> str:
     """a and n of all tests of a stand, and whether one law does."""
     if "reason" in product:

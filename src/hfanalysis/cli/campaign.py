@@ -147,6 +147,8 @@ def _print(product: Mapping[str, Any]) -> None:
     for test, row in product["tests"].items():
         console.print(Text(f"  {test}: the model lacks: {diagnosed(row['diagnosis'])}"), soft_wrap=True)
     for name, stand in product["stands"].items():
+        if len(stand["tests"]) == 1:
+            continue
         constants = stand["constants"]
         table = new_table("", *constants, title=f"stand: {name}")
         for test in stand["tests"]:
