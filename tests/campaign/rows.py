@@ -44,6 +44,7 @@ def products(folder: Path, c_i: float, m: dict[str, Any], heat: float | None) ->
         "verdict": "named" if effects else "none",
         "effects": effects,
         "posterior": {"tank_heat": 0.93 if effects else 0.004, "none": 0.07 if effects else 0.9},
+        "partners": {},
         "gap": {},
     }
     for name, product in {

@@ -9,7 +9,7 @@ import pytest
 from tests.campaign.rows import definition, made
 
 from hfanalysis.campaign.page import page
-from hfanalysis.campaign.product import row_of, stand_of, stand_row
+from hfanalysis.campaign.product import _probability, row_of, stand_of, stand_row
 from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.campaign.words import agreement, diagnosed
 from hfanalysis.stages.base import silent
@@ -43,6 +43,13 @@ def test_an_effect_has_its_probability_in_every_test_and_its_size_where_it_is_na
     together = heat["parameters"]["power"]["together"]
     assert together["value"] == pytest.approx(1000.0)
     assert together["tests"] == ["A", "B"]
+
+
+def test_what_may_be_beside_the_first_effect_of_another_test_counts_as_that() -> None:
+    diagnosis = {"posterior": {"tank_heat": 0.004}, "partners": {"tank_heat": 0.3}}
+    assert _probability(diagnosis, None, "tank_heat") == 0.3
+    assert _probability(diagnosis, {"probability": 0.9}, "tank_heat") == 0.9
+    assert _probability({"posterior": {}}, None, "tank_heat") is None
 
 
 def test_without_a_law_of_two_tests_there_is_the_reason(product: dict[str, Any]) -> None:

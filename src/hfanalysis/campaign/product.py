@@ -72,7 +72,8 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _diagnosed(product: Mapping[str, Any]) -> dict[str, Any] | None:
-    return {name: product[name] for name in ("verdict", "effects", "posterior")} if product else None
+    kept = ("verdict", "effects", "posterior", "partners")
+    return {name: product[name] for name in kept if name in product} if product else None
 
 
 def stand_row(rows: Mapping[str, Mapping[str, Any]], root: Path, out: Path | None, tell: Progress) -> dict[str, Any]:
@@ -128,8 +129,14 @@ def _effects(rows: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def _probability(diagnosis: Mapping[str, Any], named: Mapping[str, Any] | None, name: str) -> float | None:
-    """Of being there, where it is named, or else as the first effect; None where it was not tried."""
-    return float(named["probability"]) if named else diagnosis["posterior"].get(name)
+    """Of being there: as stated where it is named, or else as the first effect or beside it, whichever is more.
+
+    None where it was not tried.
+    """
+    if named:
+        return float(named["probability"])
+    tried = [found[name] for found in (diagnosis["posterior"], diagnosis.get("partners") or {}) if name in found]
+    return max(tried, default=None)
 
 
 def _parameters(found: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
