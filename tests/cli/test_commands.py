@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.adopt.firing import make_root
 
 import hfanalysis
 from hfanalysis.cli import main
@@ -36,6 +37,12 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("root")
     shutil.copytree(REPOSITORY / "raw_tests" / "HF5", root / "raw_tests" / "HF5")
     return root
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A root with a made-up test T1 that lacks nothing: soon diagnosed."""
+    return make_root(tmp_path_factory.mktemp("quick"))
 
 
 @pytest.fixture
@@ -111,8 +118,8 @@ def test_raw_thrust_flies_lower(run: Run, root: Path) -> None:
 
 
 @pytest.mark.parametrize("stage", ["ingest", "segment", "calibrate", "validate", "diagnose", "flight", "report", "run"])
-def test_every_stage_speaks_json(run: Run, root: Path, stage: str) -> None:
-    ended = run(stage, "HF5", "--root", root, "--json")
+def test_every_stage_speaks_json(run: Run, quick: Path, stage: str) -> None:
+    ended = run(stage, "T1", "--root", quick, "--json")
     assert ended.status == 0
     assert isinstance(json.loads(ended.out), dict)
 
@@ -125,14 +132,14 @@ def test_warnings_of_the_products_are_on_standard_error(run: Run, root: Path) ->
     assert all(f"hfa: warning: {text}\n" in ended.err for text in warned)
 
 
-def test_run_does_every_stage_and_keeps_the_raw_files_as_they_are(run: Run, root: Path) -> None:
-    before = sha256_tree(root / "raw_tests")
-    assert run("run", "HF5", "--root", root).status == 0
-    made = {path.name for path in (root / "processed/HF5").iterdir()}
+def test_run_does_every_stage_and_keeps_the_raw_files_as_they_are(run: Run, quick: Path) -> None:
+    before = sha256_tree(quick / "raw_tests")
+    assert run("run", "T1", "--root", quick).status == 0
+    made = {path.name for path in (quick / "processed/T1").iterdir()}
     expected = {"ingest.h5", "segments.json", "calibration.json", "residuals.h5", "diagnosis.json", "report.html"}
     assert expected | {"run.log"} <= made
-    assert (root / "processed/index.html").exists()
-    assert sha256_tree(root / "raw_tests") == before
+    assert (quick / "processed/index.html").exists()
+    assert sha256_tree(quick / "raw_tests") == before
 
 
 def test_products_go_to_another_folder(run: Run, root: Path, tmp_path: Path) -> None:
@@ -315,21 +322,20 @@ def test_a_pdf_without_a_browser_ends_with_what_is_missing(
     assert ended.err.startswith("hfa: --pdf: no browser to print with; expected one of chromium")
 
 
-def test_a_campaign_has_every_test_and_says_which_is_at_fault(run: Run, root: Path, tmp_path: Path) -> None:
-    both = tmp_path / "both"
-    shutil.copytree(root, both)
-    broken = both / "raw_tests" / "HF6" / "test.toml"
+def test_a_campaign_has_every_test_and_says_which_is_at_fault(run: Run, quick: Path, tmp_path: Path) -> None:
+    broken = quick / "raw_tests" / "T2" / "test.toml"
     broken.parent.mkdir()
     broken.write_text("schema = 1\n")
-    ended = run("campaign", "--root", both, "--jobs", 1)
+    ended = run("campaign", "--root", quick, "--jobs", 1)
+    shutil.rmtree(broken.parent)
     assert ended.status == 2
-    assert "HF6" in ended.err
-    assert "n2_purge" in ended.out
-    product = json.loads((both / "processed" / "campaign.json").read_text())
-    assert {test: row["status"] for test, row in product["tests"].items()} == {"HF5": "done", "HF6": "input at fault"}
-    assert product["tests"]["HF5"]["calibration"]["C_i"]["verdict"] == "identified"
-    assert "HF5/report.html" in (both / "processed" / "campaign.html").read_text()
-    assert run("campaign", "HF7", "--root", both).status == 2
+    assert "T2" in ended.err
+    assert "T1: the model lacks: nothing that can be claimed" in ended.out
+    product = json.loads((quick / "processed" / "campaign.json").read_text())
+    assert {test: row["status"] for test, row in product["tests"].items()} == {"T1": "done", "T2": "input at fault"}
+    assert product["tests"]["T1"]["calibration"]["C_i"]["verdict"] == "identified"
+    assert "T1/report.html" in (quick / "processed" / "campaign.html").read_text()
+    assert run("campaign", "T3", "--root", quick).status == 2
     assert run("campaign", "--root", tmp_path).status == 2
 
 
