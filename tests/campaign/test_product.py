@@ -68,6 +68,14 @@ def test_a_test_at_fault_is_listed_with_its_reason_and_nothing_else(product: dic
     assert "<b>found" not in text
 
 
+@pytest.mark.parametrize(("status", "said"), [(2, "input at fault"), (1, "defect")])
+def test_what_an_earlier_run_left_is_not_of_one_that_failed(tmp_path: Path, status: int, said: str) -> None:
+    folder = tmp_path / "processed" / "A"
+    made(tmp_path)
+    row = row_of(definition(tmp_path / "again", "A"), folder, Ended(status, "no such column"))
+    assert (row["status"], row["calibration"], row["diagnosis"], row["page"]) == (said, {}, None, None)
+
+
 def test_a_test_that_left_nothing_has_nothing(tmp_path: Path) -> None:
     row = row_of(definition(tmp_path, "E", None), tmp_path / "processed" / "E", Ended(3, "no firing"))
     assert (row["status"], row["reason"]) == ("not in the log", "no firing")

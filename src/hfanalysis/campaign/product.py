@@ -30,10 +30,11 @@ STATUS = {DONE: "done", INPUT_AT_FAULT: "input at fault", ABSENT: "not in the lo
 def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> dict[str, Any]:
     """A test in short; ``folder`` is where its products are, some of which there may not be.
 
-    Without a ``definition``, one that is at fault, nothing that lies there is this test's.
+    Where its run ended by a fault, theirs or ours, what still lies there is of an earlier one and counts for nothing.
     """
-    if definition is None:
-        return {**dict.fromkeys(_NOTHING), "status": STATUS[ended.status], "reason": ended.said, **_EMPTY}
+    status = {"status": STATUS.get(ended.status, "defect"), "reason": ended.said or None}
+    if definition is None or ended.status not in (DONE, ABSENT):
+        return {**dict.fromkeys(_NOTHING), **status, **_EMPTY}
     calibration, validation = _read(folder / "calibration.json"), _read(folder / "validation.json")
     performance = (validation.get("performance") or {}).get("measured") or {}
     about = definition.test
@@ -43,8 +44,7 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> dic
         "kind": about.kind,
         "source": about.source,
         "date": str(about.date) if about.date else None,
-        "status": STATUS.get(ended.status, "defect"),
-        "reason": ended.said or None,
+        **status,
         "calibration": {name: calibration[name] for name in CALIBRATED if name in calibration},
         "performance": {name: performance[name] for name in MEASURED if name in performance},
         "apogee": _read(folder / "flight.json").get("apogee"),
@@ -76,20 +76,22 @@ def _diagnosed(product: Mapping[str, Any]) -> dict[str, Any] | None:
     return {name: product[name] for name in kept if name in product} if product else None
 
 
-def stand_row(rows: Mapping[str, Mapping[str, Any]], root: Path, out: Path | None, tell: Progress) -> dict[str, Any]:
+def stand_row(
+    rows: Mapping[str, Mapping[str, Any]], root: Path, out: Path | None, progress: Progress
+) -> dict[str, Any]:
     """What the tests of one stand, by name, say together."""
     return {
         "tests": list(rows),
         "constants": {name: _constant(rows, name) for name in HARDWARE},
         "effects": _effects(rows),
-        "regression": _regression(rows, root, out, tell),
+        "regression": _regression(rows, root, out, progress),
     }
 
 
 def _constant(rows: Mapping[str, Mapping[str, Any]], name: str) -> dict[str, Any]:
     if name == "C_i" and len({row["injector_area"] for row in rows.values()}) > 1:
         return Quantity.absent("the tests have different injectors").to_json()
-    return _together(_calibrated(rows, name))
+    return _together(_calibrated(rows, name), "identified")
 
 
 def _calibrated(rows: Mapping[str, Mapping[str, Any]], name: str) -> dict[str, Quantity]:
@@ -98,11 +100,12 @@ def _calibrated(rows: Mapping[str, Mapping[str, Any]], name: str) -> dict[str, Q
     return {test: Quantity.from_json(q) for test, q in found.items() if q.get("verdict") == IDENTIFIED}
 
 
-def _together(found: Mapping[str, Quantity]) -> dict[str, Any]:
+def _together(found: Mapping[str, Quantity], what: str) -> dict[str, Any]:
+    """The mean of the tests in which a number is ``what``, or the reason why there is none."""
     mean = pooled(found)
     if mean is None:
-        stating = "no test states" if not found else f"only {next(iter(found))} states"
-        return Quantity.absent(f"{stating} it as identified; two are needed").to_json()
+        known = [test for test, q in found.items() if q.std]
+        return Quantity.absent(f"{what} in {f'{known[0]} only' if known else 'no test'}; two are needed").to_json()
     verdict = "agree" if mean.agree else "disagree: they differ by more than their deviations allow"
     return {
         **mean.mean.to_json(),
@@ -145,7 +148,9 @@ def _parameters(found: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     return {
         name: {
             "by_test": {test: parameters[name] for test, parameters in found.items() if name in parameters},
-            "together": _together({test: Quantity.from_json(p[name]) for test, p in found.items() if name in p}),
+            "together": _together(
+                {test: Quantity.from_json(p[name]) for test, p in found.items() if name in p}, "known"
+            ),
         }
         for name in names
     }

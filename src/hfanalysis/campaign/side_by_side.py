@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -28,11 +27,6 @@ class Ended:
     def defect(self) -> bool:
         """Whether it is our fault."""
         return self.status not in (DONE, INPUT_AT_FAULT, ABSENT)
-
-
-def cores() -> int:
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def run_all(

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
 from markupsafe import Markup, escape
 
 from hfanalysis.report.scales import reading_unit, scale, superscript
-from hfanalysis.report.svg import Axis, nice_ticks, shortened, tick_text
-from hfanalysis.report.wording import in_words
+from hfanalysis.report.svg import Axis, lettering, nice_ticks, shortened, tick_text
+from hfanalysis.report.wording import exponent_of, in_words
 
 WIDTH, LEFT, RIGHT, TOP, ROW, BOTTOM = 640.0, 130.0, 24.0, 8.0, 26.0, 44.0
 """[px] of a picture; ``ROW`` is the height of a test's."""
-
-_LARGE, _SMALL = 1e4, 1e-2
-"""Sizes from which on, and below which, a power of ten is taken out."""
 
 
 def strip(name: str, found: Mapping[str, Mapping[str, Any]], together: Mapping[str, Any]) -> Markup:
@@ -29,7 +25,7 @@ def strip(name: str, found: Mapping[str, Mapping[str, Any]], together: Mapping[s
     ends = {test: [shown(x) for x in (*(q.get("ci95") or ()), q["value"])] for test, q in known.items()}
     band = [shown(x) for x in together.get("ci95") or ()]
     low, high = min(map(min, ends.values())), max(map(max, ends.values()))
-    exponent = _exponent(max(abs(low), abs(high)))
+    exponent = exponent_of(max(abs(low), abs(high)))
     size = 10.0**exponent
     room = 0.06 * (high - low) or 0.1 * abs(high) or 1.0
     axis = Axis((low - room) / size, (high + room) / size, LEFT, WIDTH - RIGHT)
@@ -39,16 +35,12 @@ def strip(name: str, found: Mapping[str, Mapping[str, Any]], together: Mapping[s
         parts += _test(axis, TOP + ROW * (i + 0.5), test, [x / size for x in values])
     power = f"×10{superscript(exponent)} " if exponent else ""
     words, unit = in_words(name), f"{power}{shown.unit}".strip()
-    parts.append(_text(0.5 * (LEFT + WIDTH - RIGHT), height - 6, f"{words}{f' [{unit}]' if unit else ''}", "label"))
+    parts.append(lettering(0.5 * (LEFT + WIDTH - RIGHT), height - 6, f"{words}{f' [{unit}]' if unit else ''}", "label"))
     label = f"{words} of {', '.join(known)} with 95 % intervals"
     return Markup(
         f'<svg class="chart" viewBox="0 0 {WIDTH:.0f} {height:.0f}" role="img" aria-label="{escape(label)}">'
         f"{''.join(parts)}</svg>"
     )
-
-
-def _exponent(size: float) -> int:
-    return 0 if _SMALL <= size < _LARGE or size == 0.0 else math.floor(math.log10(size))
 
 
 def _band(axis: Axis, ends: list[float], height: float) -> list[str]:
@@ -66,7 +58,7 @@ def _ticks(axis: Axis, height: float) -> list[str]:
     for value in ticks:
         x = axis(value)
         parts.append(f'<path class="grid" d="M{x:.1f} {TOP:.1f}V{bottom:.1f}"/>')
-        parts.append(_text(x, bottom + 17, tick_text(value, ticks), "tick"))
+        parts.append(lettering(x, bottom + 17, tick_text(value, ticks), "tick"))
     return parts
 
 
@@ -74,8 +66,4 @@ def _test(axis: Axis, y: float, test: str, values: list[float]) -> list[str]:
     *ends, value = values
     bar = [f'<path class="line C_i" d="M{axis(ends[0]):.1f} {y:.1f}H{axis(ends[1]):.1f}"/>'] if ends else []
     dot = f'<circle class="dot C_i" cx="{axis(value):.1f}" cy="{y:.1f}" r="4.5"/>'
-    return [_text(LEFT - 12, y + 4, shortened(test), "tick", "end"), *bar, dot]
-
-
-def _text(x: float, y: float, text: str, style: str, anchor: str = "middle") -> str:
-    return f'<text class="{style}" x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
+    return [lettering(LEFT - 12, y + 4, shortened(test), "tick", "end"), *bar, dot]

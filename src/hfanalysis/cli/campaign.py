@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,13 +11,15 @@ from rich.text import Text
 
 from hfanalysis.campaign.page import page
 from hfanalysis.campaign.product import row_of, stand_row
-from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended, cores, run_all
+from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended, run_all
 from hfanalysis.campaign.words import agreement, diagnosed, regression_sentence
 from hfanalysis.cli.ending import put, tell
 from hfanalysis.cli.tables import new_table, paper
+from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.processors import processors
 from hfanalysis.report.wording import in_words, shown
-from hfanalysis.stages.base import Progress, silent
+from hfanalysis.stages.base import Progress
 from hfanalysis.stages.opening import PROCESSED, RAW, open_test
 from hfanalysis.testdata.definition import TestDefinition, find_definition
 from hfanalysis.testdata.products import atomic, to_json, write_json
@@ -49,7 +49,7 @@ def campaign(request: Request) -> int:
     definitions, refused = _definitions(request)
     tests = [*definitions, *refused]
     folder = request.out if request.out is not None else request.root / PROCESSED
-    with _watch(request) as progress:
+    with watch("campaign", request.quiet) as progress:
         ended = {**_run(list(definitions), request, progress), **refused}
         rows = {test: row_of(definitions.get(test), folder / test, ended[test]) for test in sorted(tests)}
         stands = dict.fromkeys(str(row["stand"]) for row in rows.values() if row["stand"])
@@ -103,7 +103,7 @@ def _run(tests: list[str], request: Request, progress: Progress) -> Mapping[str,
             tell(f"{test}: {how.said}")
 
     progress(f"0 of {len(tests)} tests", 0.0)
-    return run_all(tests, arguments, request.jobs or cores(), ended)
+    return run_all(tests, arguments, request.jobs or processors(), ended)
 
 
 def _status(ended: Mapping[str, Ended]) -> int:
@@ -115,17 +115,6 @@ def _status(ended: Mapping[str, Ended]) -> int:
     if all(how.status == ABSENT for how in ended.values()):
         raise AbsentError("none of the tests can be calibrated")
     return DONE
-
-
-@contextmanager
-def _watch(request: Request) -> Iterator[Progress]:
-    if request.quiet or not sys.stderr.isatty():
-        yield silent
-        return
-    from hfanalysis.cli.progress import spinner
-
-    with spinner("campaign") as progress:
-        yield progress
 
 
 def _show(product: Mapping[str, Any], request: Request, folder: Path) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from hfanalysis.cli.ending import put, tell
+from hfanalysis.cli.watch import watch
 from hfanalysis.errors import InputError
 from hfanalysis.testdata.engine_file import load_engine
 from hfanalysis.testdata.products import to_json
@@ -17,7 +17,7 @@ from hfanalysis.testdata.products import to_json
 def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: float | None = None) -> None:
     """The unsteady model of the engine file at ``path``; what it found to ``out`` where that is given."""
     file = load_engine(path)
-    with _watch(file.engine.id, quiet):
+    with watch(file.engine.id, quiet):
         from hfanalysis.simulate import unsteady_run, write
 
         found = unsteady_run.simulate(file, until)
@@ -30,7 +30,7 @@ def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: fl
 def design(path: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
     """The steady design of the engine file at ``path``; with its parametric study to ``out`` where that is given."""
     file = load_engine(path)
-    with _watch(file.engine.id, quiet):
+    with watch(file.engine.id, quiet):
         from hfanalysis.simulate import steady_run, write
 
         found = steady_run.design(file)
@@ -38,18 +38,6 @@ def design(path: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
             with _writing(out):
                 write.design(out, file, found)
     _show(found.product, as_json, quiet)
-
-
-@contextmanager
-def _watch(name: str, quiet: bool) -> Iterator[None]:
-    """A spinner on standard error for what takes over two seconds (compiling, once), at a terminal only."""
-    if quiet or not sys.stderr.isatty():
-        yield
-        return
-    from hfanalysis.cli.progress import spinner
-
-    with spinner(name):
-        yield
 
 
 @contextmanager

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from hfanalysis.cli.ending import put, tell
+from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages import ASIDE, ORDER, way_to
-from hfanalysis.stages.base import BASE, Context, Progress, load_stage, silent
+from hfanalysis.stages.base import BASE, Context, load_stage
 from hfanalysis.stages.opening import open_test
 from hfanalysis.stages.runner import run_to
 from hfanalysis.units import near
@@ -37,7 +35,7 @@ class Request:
 
 def bring(name: str, request: Request) -> Context:
     """Bring a stage (or, for "run", all of them) up to date, silently; returns its context."""
-    with _watch(request) as progress:
+    with watch(request.test, request.quiet) as progress:
         context = open_test(
             request.root, request.test, request.out, progress=progress, settings=_settings(request.settings)
         )
@@ -99,18 +97,6 @@ def proof_test(root: Path, test: str, other: str) -> str:
     if find_definition(root, test) == find_definition(root, other):
         raise InputError(f"--proof-test {other}: found the test itself; expected another one")
     return f"diagnose.proof_test={json.dumps(other)}"
-
-
-@contextmanager
-def _watch(request: Request) -> Iterator[Progress]:
-    """A spinner on standard error for what takes over two seconds, at a terminal only."""
-    if request.quiet or not sys.stderr.isatty():
-        yield silent
-        return
-    from hfanalysis.cli.progress import spinner
-
-    with spinner(request.test) as progress:
-        yield progress
 
 
 def _show(name: str, context: Context, request: Request) -> None:

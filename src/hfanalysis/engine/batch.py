@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from hfanalysis.engine.unsteady import Burn, Engine, burn
+from hfanalysis.processors import processors
 
 
 def burn_many(engines: Sequence[Engine], *, workers: int | None = None, **options: Any) -> list[Burn | str]:
@@ -23,5 +23,5 @@ def burn_many(engines: Sequence[Engine], *, workers: int | None = None, **option
         except (ValueError, ArithmeticError) as error:
             return str(error)
 
-    with ThreadPoolExecutor(workers or len(os.sched_getaffinity(0))) as pool:
+    with ThreadPoolExecutor(workers or processors()) as pool:
         return list(pool.map(attempt, engines))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from os import cpu_count
 from typing import Any
 
 import numpy as np
@@ -30,6 +29,7 @@ from hfanalysis.flight.ascent import (
 )
 from hfanalysis.flight.summary import ASCENT, Spread
 from hfanalysis.launch.firing import Firing
+from hfanalysis.processors import processors
 from hfanalysis.testdata.rocket import Rocket
 from hfanalysis.units import Value
 
@@ -153,7 +153,7 @@ def disperse(firing: Firing, drawn: Array, last: float, progress: Progress | Non
         fly_all(*fixed, drawn[part], results[part], every, path)
 
     starts = range(0, len(drawn), CHUNK)
-    with ThreadPoolExecutor(cpu_count() or 1) as cores:
+    with ThreadPoolExecutor(processors()) as cores:
         for done, _ in enumerate(cores.map(fly_some, starts), 1):
             if progress is not None:
                 progress("flying with drawn inputs", done / len(starts))

@@ -121,8 +121,8 @@ def axes(plot: Plot, x_label: str, y_label: str) -> None:
     plot.parts += _y_ticks(plot, right)
     plot.parts += _x_ticks(plot, bottom)
     plot.parts.append(f'<path class="axis" d="M{LEFT:.1f} {TOP:.1f}V{bottom:.1f}H{right:.1f}"/>')
-    plot.parts.append(_text(0.5 * (LEFT + right), plot.height - 8, x_label, "label", "middle"))
-    plot.parts.append(_text(4, 11, y_label, "label", "start"))
+    plot.parts.append(lettering(0.5 * (LEFT + right), plot.height - 8, x_label, "label", "middle"))
+    plot.parts.append(lettering(4, 11, y_label, "label", "start"))
 
 
 def _y_ticks(plot: Plot, right: float) -> Iterator[str]:
@@ -130,7 +130,7 @@ def _y_ticks(plot: Plot, right: float) -> Iterator[str]:
     for value in ticks:
         y = plot.y(value)
         yield f'<path class="grid" d="M{LEFT:.1f} {y:.1f}H{right:.1f}"/>'
-        yield _text(LEFT - 8, y + 4, tick_text(value, ticks), "tick", "end")
+        yield lettering(LEFT - 8, y + 4, tick_text(value, ticks), "tick", "end")
 
 
 def _x_ticks(plot: Plot, bottom: float) -> Iterator[str]:
@@ -138,7 +138,7 @@ def _x_ticks(plot: Plot, bottom: float) -> Iterator[str]:
     for value in ticks:
         x = plot.x(value)
         yield f'<path class="axis" d="M{x:.1f} {bottom:.1f}v5"/>'
-        yield _text(x, bottom + 19, tick_text(value, ticks), "tick", "middle")
+        yield lettering(x, bottom + 19, tick_text(value, ticks), "tick", "middle")
 
 
 def tick_text(value: float, ticks: Sequence[float]) -> str:
@@ -147,7 +147,8 @@ def tick_text(value: float, ticks: Sequence[float]) -> str:
     return fixed(value, max(0, -math.floor(math.log10(step) + 1e-9)))
 
 
-def _text(x: float, y: float, text: str, style: str, anchor: str) -> str:
+def lettering(x: float, y: float, text: str, style: str, anchor: str = "middle") -> str:
+    """A text of the picture at a place [px]; ``style`` is its class."""
     return f'<text class="{style}" x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
 
 
@@ -163,7 +164,7 @@ def phases(plot: Plot, found: Sequence[Phase]) -> None:
             f'height="{height:.1f}"><title>{escape(phase.name)}</title></rect>'
         )
         if right - left > _LETTER * len(phase.name) + 6:
-            plot.over.append(_text(0.5 * (left + right), top + 15, phase.name, "phase-name", "middle"))
+            plot.over.append(lettering(0.5 * (left + right), top + 15, phase.name, "phase-name", "middle"))
 
 
 def _clamped(axis: Axis, value: float) -> float:
@@ -180,7 +181,7 @@ def events(plot: Plot, found: Sequence[Event]) -> None:
         row = next((row for row, end in enumerate(ends) if end < x - half), _ROWS - 1)
         ends[row] = x + half
         plot.parts.append(_event(plot, event, x))
-        plot.parts.append(_text(x, TOP - 6 - 13 * row, event.name, "event-name", "middle"))
+        plot.parts.append(lettering(x, TOP - 6 - 13 * row, event.name, "event-name", "middle"))
 
 
 def _event(plot: Plot, event: Event, x: float) -> str:
@@ -263,7 +264,7 @@ def _name_ends(plot: Plot) -> None:
     for place, (_, name, style) in zip(places, ordered, strict=True):
         x = WIDTH - RIGHT + 8
         plot.parts.append(f'<path class="line {style}" d="M{x:.1f} {place:.1f}h12"/>')
-        plot.parts.append(_text(x + 17, place + 4, shortened(name), "end-name", "start"))
+        plot.parts.append(lettering(x + 17, place + 4, shortened(name), "end-name", "start"))
 
 
 def shortened(name: str, most: int = 13) -> str:

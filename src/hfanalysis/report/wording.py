@@ -115,7 +115,7 @@ def shown(quantity: Mapping[str, Any], system: str = "si", name: str = "", diffe
     found = scale(reading_unit(name, str(quantity.get("unit") or "")), system)
     factor, zero, unit = found.factor, 0.0 if difference else found.zero, found.unit
     value, std = factor * quantity["value"] + zero, factor * (quantity.get("std") or 0.0)
-    exponent = 0 if unit == "s" else _exponent(max(abs(value), std))
+    exponent = 0 if unit == "s" else exponent_of(max(abs(value), std))
     if exponent:
         unit = f"×10{superscript(exponent)} {unit}".strip()
         factor, zero, value, std = (x / 10.0**exponent for x in (factor, zero, value, std))
@@ -131,7 +131,7 @@ def shown(quantity: Mapping[str, Any], system: str = "si", name: str = "", diffe
     )
 
 
-def _exponent(size: float) -> int:
+def exponent_of(size: float) -> int:
     """The power of ten to take out of numbers that are awkward to read: 0 for most."""
     if size < _NOTHING or 1e-3 <= size < 1e5:
         return 0
