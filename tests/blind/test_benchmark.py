@@ -312,6 +312,11 @@ def until(what: Callable[[], bool], seconds: float = 240.0) -> None:
         time.sleep(0.05)
 
 
+def started(log: Path) -> list[str]:
+    """The numbers of the workers' processes that have started."""
+    return re.findall(r"worker (\d+) starts", log.read_text()) if log.exists() else []
+
+
 def test_cases_are_diagnosed_to_the_last_though_a_worker_is_killed_and_the_run_interrupted(tmp_path: Path) -> None:
     names = [c.id for c in plan(24) if c.kind == "none"][:3]  # no strength has to be found for these: soon written
     limit = [c.id for c in plan(24)].index(names[-1]) + 1
@@ -320,9 +325,10 @@ def test_cases_are_diagnosed_to_the_last_though_a_worker_is_killed_and_the_run_i
     folder = Folder(tmp_path.resolve())
     log = folder.runs / "log" / "workers.log"
     with subprocess.Popen(run, cwd=ROOT, stderr=subprocess.PIPE, text=True) as first:
-        until(lambda: len(folder.notes()) == 1)
-        os.kill(int(re.findall(r"worker (\d+) starts", log.read_text())[0]), signal.SIGKILL)
-        until(lambda: len(re.findall(r"worker \d+ starts", log.read_text())) == 3)
+        until(lambda: len(list(folder.processed.glob("*"))) == 2)
+        os.kill(int(started(log)[0]), signal.SIGKILL)  # each has its first case, so that all three are still to come
+        until(lambda: len(started(log)) == 3)
+        until(lambda: len(folder.notes()) > 0)
         first.send_signal(signal.SIGINT)
         assert "goes on from here" in first.communicate(timeout=60)[1]
     assert first.returncode == 130

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from hfanalysis.engine.effect import Effect, OwnState, Parameter
-from hfanalysis.engine.sites import IS_LIQUID, RATES, T_TANK, TANK_HEAT, term
+from hfanalysis.engine.model import VOLUME
+from hfanalysis.engine.sites import IS_LIQUID, M_LIQUID, RATES, RHO_FEED, T_TANK, TANK_HEAT, term
 
 CAPACITY, TIME, EXCESS, VAPOR_SHARE = range(4)
 
@@ -12,9 +13,8 @@ CAPACITY, TIME, EXCESS, VAPOR_SHARE = range(4)
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if hook != RATES:
         return
-    cooling = (x[0] - env[T_TANK]) / p[TIME]
-    if env[IS_LIQUID] == 0.0:
-        cooling *= p[VAPOR_SHARE]
+    wetted = env[M_LIQUID] / (env[RHO_FEED] * c[VOLUME]) if env[IS_LIQUID] > 0.0 else 0.0
+    cooling = (x[0] - env[T_TANK]) / p[TIME] * (wetted + p[VAPOR_SHARE] * (1.0 - wetted))
     site[TANK_HEAT] += p[CAPACITY] * cooling
     dx[0] = -cooling
 
@@ -25,11 +25,12 @@ EFFECT = Effect(
     meaning="the tank's wall is a store of heat for the oxidizer",
     reference="report, section 5.1 (sources of error: adiabatic oxidizer tank) and 4.1 (blankets left hot); a lumped "
     "wall as in Whitmore and Chandler, J. Propulsion and Power 26 (2010) 706, and Zimmerman et al., AIAA 2013-4045",
-    formula="Q = C (T_w - T) / tau,  dT_w/dt = -(T_w - T) / tau,  T_w(0) = T_0 + dT; slower by a share in vapour",
+    formula="Q = C f (T_w - T) / tau,  dT_w/dt = -f (T_w - T) / tau,  T_w(0) = T_0 + dT,  f = w + s (1 - w), "
+    "w the part of the tank that is full of liquid: what is dry gives its heat to the vapour, slower by a share s",
     sites=("tank_heat",),
     parameters=(
         Parameter("capacity", "J/K", "m c_p of the wall that takes part", typical=4000.0, low=0.0, high=40e3),
-        Parameter("time", "s", "m c_p / (h A) of wall against liquid", 15.0, center=25.0, low=2.0, high=200.0),
+        Parameter("time", "s", "m c_p / (h A) of a wall that is wetted all over", 15.0, center=25.0, low=2.0, high=200.0),
         Parameter("excess", "K", "wall above the oxidizer at ignition", 5.0, center=0.0, low=-20.0, high=100.0),
         Parameter(
             "vapor_share",
