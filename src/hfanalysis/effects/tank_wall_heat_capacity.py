@@ -30,7 +30,9 @@ EFFECT = Effect(
     sites=("tank_heat",),
     parameters=(
         Parameter("capacity", "J/K", "m c_p of the wall that takes part", typical=4000.0, low=0.0, high=40e3),
-        Parameter("time", "s", "m c_p / (h A) of a wall that is wetted all over", 15.0, center=25.0, low=2.0, high=200.0),
+        Parameter(
+            "time", "s", "m c_p / (h A) of a wall that is wetted all over", 15.0, center=25.0, low=2.0, high=200.0
+        ),
         Parameter("excess", "K", "wall above the oxidizer at ignition", 5.0, center=0.0, low=-20.0, high=100.0),
         Parameter(
             "vapor_share",
