@@ -10,6 +10,9 @@ DEPTH, WIDTH = range(2)
 MOST = 0.98
 """Share of the surface that can have burnt through before the last fuel goes: the end stays within reach."""
 
+FALL = 0.64
+"""Part of the width over which the surface falls from 90 to 10 %, for a depth of one."""
+
 
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
@@ -31,10 +34,11 @@ EFFECT = Effect(
     sites=("regression_factor",),
     parameters=(
         Parameter("depth", "-", "share of the surface burnt through when the last fuel goes", 0.5, low=0.0, high=0.95),
-        Parameter("width", "m", "mean web left when the first wall shows", 2e-3, center=3e-3, low=2e-4, high=2e-2),
+        Parameter("width", "m", "mean web left when the first wall shows", 2e-3, center=3e-3, low=2e-5, high=2e-2),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,
+    fading_web=lambda values: FALL * min(values["depth"], MOST) * values["width"],
     twins=(),
     decisive="pictures of the plume, and the slivers themselves after the test",
 )

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Channels = Mapping[str, Array]
 Distortion = Callable[[Array, Channels, Mapping[str, float]], dict[str, Array]]
+FadingWeb = Callable[[Mapping[str, float]], float]
 
 EQUATIONS = (
     "tank_energy", "tank_volume", "injector", "feed", "grain", "chamber_mass", "chamber_energy", "nozzle", "sensor",
@@ -63,7 +64,8 @@ class Effect:
 
     ``sites`` are those of :mod:`hfanalysis.engine.sites` that its term sets, or the channels that it distorts. Where
     the first ``strengths`` parameters are strengths of their own kind (one per transducer), it is the base model when
-    all of them are 0.
+    all of them are 0. ``fading_web``: from its values, the web [m] over which the burning surface goes as the fuel
+    ends; how fast the fire goes out is compared beside the channels.
     """
 
     name: str
@@ -81,6 +83,7 @@ class Effect:
     formula: str = ""
     sites: tuple[str, ...] = ()
     strengths: int = 1
+    fading_web: FadingWeb | None = None
 
     def __post_init__(self) -> None:
         if self.equation not in EQUATIONS:

@@ -9,10 +9,11 @@ from math import inf, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.fitting.fade import fade_misfit, fade_slope
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.probe import Splines
 from hfanalysis.diagnose.observations.alignment import model_times, share
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.observations.observed import FADE, Observed
 from hfanalysis.engine.course import LIQUID_OUT
 from hfanalysis.engine.model import RADIUS, STATES
 from hfanalysis.engine.observe import distorted, distorted_tangents, true_channels, true_tangents
@@ -120,7 +121,7 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
             web = hypothesis.engine.outer_radius - float(burnt.steps.at(np.array([at]))[0][0, RADIUS])
             scalars.append(web / (deviation * _typical_regression(hypothesis, at)))
     for name, (value, deviation) in observed.stated.items():
-        scalars.append((value - _after(name, burnt, observed)) / deviation)
+        scalars.append(_missed(name, value, hypothesis, burnt, observed) / deviation)
     return np.concatenate([observed.whiten(raw), np.array(scalars)])
 
 
@@ -159,7 +160,7 @@ def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Ar
             unit = deviation * _typical_regression(hypothesis, at)
             rows.append(-found.output("port_radius", np.array([at]))[0] / unit)
     for name, (_, deviation) in observed.stated.items():
-        rows.append(-_after_slopes(name, found, observed) / deviation)
+        rows.append(_missed_slopes(name, hypothesis, found, observed) / deviation)
     return np.concatenate([white, *(row[np.newaxis] for row in rows)])
 
 
@@ -199,6 +200,21 @@ def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]
 def _typical_regression(hypothesis: Hypothesis, burn_time: float) -> float:
     """The web over the burn time [m/s]: what turns an instant's deviation into one of the port's radius."""
     return (hypothesis.engine.outer_radius - hypothesis.engine.port_radius) / burn_time
+
+
+def _missed(name: str, value: float, hypothesis: Hypothesis, burnt: Burn, observed: Observed) -> float:
+    """By how much the model misses something that was not read from the channels' blocks (SI; of a fade the log)."""
+    if name != FADE:
+        return value - _after(name, burnt, observed)
+    return fade_misfit(value, burnt.steps.engine, _typical_regression(hypothesis, observed.events["t_fuel_out"][0]))
+
+
+def _missed_slopes(name: str, hypothesis: Hypothesis, found: Tangents, observed: Observed) -> Array:
+    """Slopes of :func:`_missed`."""
+    if name != FADE:
+        return -_after_slopes(name, found, observed)
+    speed = _typical_regression(hypothesis, observed.events["t_fuel_out"][0])
+    return np.array([fade_slope(parameter, found.burn.steps.engine, speed) for parameter in found.parameters])
 
 
 def _after(name: str, burnt: Burn, observed: Observed) -> float:

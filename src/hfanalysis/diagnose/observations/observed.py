@@ -35,6 +35,9 @@ CHAMBER_FORM = 4.0
 SHARE = 0.7071
 """Part of a stated accuracy that is the zero's error; as much is the span's: squares add up to the whole."""
 
+FADE = "fuel_fade"
+"""Among what was stated: the seconds in which the fire went out, with the deviation of their log."""
+
 LEAST_VARIANCE = 1e-3
 """Of any combination of blocks, relative to a single block's."""
 
@@ -103,10 +106,10 @@ class Observed:
 
     ``grid`` [s]: points at which a model is asked: at the opening, through the flow, and ``resting`` ones after it (the
     first, too, stands for the time before). ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its
-    measured end, at which that of every model ends. ``stated``: what was measured outside the log (SI), with standard
-    deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there. ``errors``:
-    model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``plain``: what is
-    plain in the samples without a model, and is in no model.
+    measured end, at which that of every model ends. ``stated``: what was measured outside the log (SI), or in it beside
+    the blocks (FADE), with standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if
+    both are there. ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and
+    thrust. ``plain``: what is plain in the samples without a model, and is in no model.
     """
 
     channels: tuple[Channel, ...]

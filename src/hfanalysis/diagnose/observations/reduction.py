@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from hfanalysis.diagnose.observations.blocks import blocks_of
+from hfanalysis.diagnose.observations.burn_out import fade_of
 from hfanalysis.diagnose.observations.clocks import thrust_delay
 from hfanalysis.diagnose.observations.covariance import channel_of, common_of, oscillations
 from hfanalysis.diagnose.observations.flow_end import noted_flow_end
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, Frame, events_of, frame_of, phases_of
-from hfanalysis.diagnose.observations.observed import Observed, Plain
+from hfanalysis.diagnose.observations.observed import FADE, Observed, Plain
 from hfanalysis.diagnose.observations.opening import slow_opening
 from hfanalysis.diagnose.observations.recorded import recorded
 from hfanalysis.diagnose.observations.swinging import swing_of
@@ -39,7 +40,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         frame.grid,
         frame.resting,
         events_of(segments, frame.ends["tank"]),
-        _stated(definition, segments),
+        _stated(definition, segments) | _fade(signals, segments),
         phases_of(segments, end),
         end,
         max(frame.ends["tank"], noted_flow_end(definition, end)),
@@ -55,6 +56,12 @@ def _plain(signals: dict[str, Signal], frame: Frame) -> tuple[Plain, ...]:
     steady = min([frame.ends["chamber"], *(instant for instant, _ in frame.changes.values())])
     found = (thrust_delay(signals), slow_opening(signals), swing_of(signals, steady - AROUND_CHANGE))
     return tuple(plain for plain in found if plain is not None)
+
+
+def _fade(signals: dict[str, Signal], segments: Segments) -> dict[str, tuple[float, float]]:
+    """The time in which the fire went out."""
+    found = fade_of(signals, segments)
+    return {} if found is None else {FADE: found}
 
 
 def _stated(definition: TestDefinition, segments: Segments) -> dict[str, tuple[float, float]]:

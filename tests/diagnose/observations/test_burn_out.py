@@ -1,0 +1,96 @@
+"""How long does the fire take to go out?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as some
+from tests.diagnose import logged, made
+from tests.engine.stand import engine_on_stand
+
+from hfanalysis.diagnose.fitting.fade import abrupt_end, fade_misfit, fade_slope
+from hfanalysis.diagnose.fitting.fit import fit
+from hfanalysis.diagnose.observations.burn_out import UNSURE, fade_of
+from hfanalysis.diagnose.observations.observed import FADE
+from hfanalysis.effects import effect
+from hfanalysis.engine.effect import Active
+from hfanalysis.quantity import Quantity
+from hfanalysis.segment.signals import Signal
+
+STEP, SPEED = 1e-3, 1.5e-3
+SEGMENTS = logged.segments()
+GONE = SEGMENTS.time("t_fuel_out") or 0.0
+
+
+def falling(pressure: float, thrust: float, step: float = STEP) -> dict[str, Signal]:
+    """Signals that fall within so many seconds as the fuel ends, on a slow decline and with noise."""
+    rng, time = np.random.default_rng(3), np.arange(-1.0, GONE + 2.0, step)
+    out = {}
+    for name, level, seconds in (("p_chamber", 9e5, pressure), ("thrust", 1500.0, thrust)):
+        value = level * (1.2 - 0.03 * time - 0.8 * np.clip((time - GONE) / seconds, 0.0, 1.0))
+        value += 0.01 * level * rng.standard_normal(time.size)
+        out[name] = Signal(name, time, value, 0.01 * level, step)
+    return out
+
+
+@settings(max_examples=10)
+@given(some.floats(0.01, 0.2))
+def test_a_fall_is_timed(seconds: float) -> None:
+    found = fade_of(falling(seconds, seconds), SEGMENTS)
+    assert found is not None
+    assert found[0] == pytest.approx(seconds, rel=0.3)
+    assert UNSURE <= found[1] < 1.2 * UNSURE
+
+
+def test_a_slow_line_to_the_chambers_sensor_is_no_slow_fall() -> None:
+    found = fade_of(falling(0.15, 0.01), SEGMENTS)
+    assert found is not None
+    assert found[0] == pytest.approx(0.01, rel=0.3)
+
+
+def test_what_does_not_tell() -> None:
+    both = falling(0.06, 0.06)
+    assert fade_of({"p_chamber": both["p_chamber"]}, SEGMENTS) is None
+    assert fade_of(falling(0.06, 0.06, step=0.025), SEGMENTS) is None
+    assert fade_of(both, logged.segments(t_fuel_out=Quantity(GONE, "s", 0.2))) is None
+    assert fade_of(both, logged.segments(t_fuel_out=Quantity.absent("not seen"))) is None
+
+
+def sliver(depth: float, width: float) -> Active:
+    return effect("fuel_sliver").at(depth=depth, width=width)
+
+
+def test_a_fall_as_fast_as_a_chamber_empties_is_what_the_base_model_has() -> None:
+    engine = engine_on_stand()
+    assert fade_misfit(0.5 * abrupt_end(engine), engine, SPEED) == 0.0
+    assert fade_misfit(4.0 * abrupt_end(engine), engine, SPEED) == pytest.approx(np.log(4.0))
+    assert fade_misfit(4.0 * abrupt_end(engine), engine_on_stand(effects=(sliver(0.0, 1e-3),)), SPEED) > 1.0
+
+
+@given(some.floats(0.05, 0.9), some.floats(5e-5, 5e-3), some.sampled_from(["depth", "width"]))
+def test_slopes_of_a_fade_are_its_derivatives(depth: float, width: float, moved: str) -> None:
+    at = {"depth": depth, "width": width}
+    step = 1e-4 * at[moved]
+    ahead, behind = (
+        fade_misfit(0.5, engine_on_stand(effects=(sliver(**(at | {moved: at[moved] + side * step})),)), SPEED)
+        for side in (1.0, -1.0)
+    )
+    engine = engine_on_stand(effects=(sliver(**at),))
+    assert fade_slope(f"fuel_sliver.{moved}", engine, SPEED) == pytest.approx((ahead - behind) / (2.0 * step), rel=1e-3)
+    assert fade_slope("a", engine, SPEED) == 0.0
+
+
+def test_a_fire_that_dies_slowly_speaks_for_slivers() -> None:
+    """Though no block shows the fall: they end before it."""
+    engine = engine_on_stand()
+    quick = made.observed()
+    slow = made.replace(quick, stated={FADE: (8.0 * abrupt_end(engine), UNSURE)})
+    base, with_slivers = (
+        [fit(h, test, x).log_evidence for test in (quick, slow)]
+        for h, x in (
+            (made.hypothesis(), made.truth()),
+            (made.hypothesis().with_effect(effect("fuel_sliver")), np.append(made.truth(), [0.6, 0.0])),
+        )
+    )
+    assert with_slivers[1] - base[1] > with_slivers[0] - base[0] + 8.0
