@@ -20,7 +20,7 @@ def test_a_test_without_an_effect_is_accepted_and_calibrates_to_its_truth(tmp_pa
     answer = json.loads(
         write_case(Case("NONE", "none", (), 0.0, "flicker", 77, 77), tmp_path).read_text(encoding="utf-8")
     )
-    command = [sys.executable, "-m", "hfanalysis", "report", "NONE", "--root", str(tmp_path)]
+    command = [sys.executable, "-m", "hfanalysis", "calibrate", "NONE", "--root", str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     product = tmp_path / "processed" / "NONE"

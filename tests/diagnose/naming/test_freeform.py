@@ -69,7 +69,7 @@ def test_a_sensor_that_drifts_stays_there_when_the_flow_is_over() -> None:
 
 def test_wind_on_the_stand_is_seen_behind_a_coarse_form() -> None:
     """The base model takes it for an error of its own in chamber and thrust: a form at which nothing else is seen."""
-    base, best, bench = found("thrust", wind, Form(0, 3))
+    base, best, bench = found("thrust", wind, Form(0, 4))
     assert base.leftover < 1.3
     assert best.names == ("offset of thrust",)
     assert best.form.chamber < base.form.chamber

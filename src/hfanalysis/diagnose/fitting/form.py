@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from hfanalysis.diagnose.observations.observed import CHAMBER_FORM, FORM_ERROR
 
-STEPS, RATIO = 6, 3.0
+STEPS, RATIO = 7, 3.0
 """Sizes that a model-form error may have, and the ratio of neighbours."""
 
 
