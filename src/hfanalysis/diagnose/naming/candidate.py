@@ -21,9 +21,11 @@ from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
 
-PRICE = 5.0
-"""Log of the odds against each step of the model-form error, on either side. Right explanations of simulated tests
-hardly ever ask for one: `make blind-calibrate` prints how many (of 97 none on the tank's side, 4 in the chamber)."""
+FIRST_STEP, STEP = 1.0, 5.0
+"""Log of the odds against the first step of the model-form error, on either side, and against each further one.
+
+The finest suits a generator whose gas is as ideal as the model's; a step coarser is as good a guess for a stand. Right
+explanations of simulated tests hardly ever ask for more: `make blind-calibrate` prints how many."""
 
 FURTHER = 5.0
 """Log of the odds against each effect beyond the first: several at once are rarer than one."""
@@ -128,7 +130,7 @@ class Bench:
     def _promised(self, found: Candidate, form: Form) -> float:
         """What another form gains in log evidence where the slopes of the fit hold: no run is needed to see that."""
         evidence = promised(found.fit, self.at(found.form), self.at(form))
-        return evidence - found.fit.log_evidence - PRICE * (form.total - found.form.total)
+        return evidence - found.fit.log_evidence - price(form) + price(found.form)
 
     @staticmethod
     def _best_of(found: Candidate, tried: Sequence[Candidate | None]) -> Candidate | None:
@@ -157,10 +159,15 @@ class Bench:
             return None
 
 
+def price(form: Form) -> float:
+    """Log of the odds against a form."""
+    return sum(FIRST_STEP * min(steps, 1) + STEP * max(steps - 1, 0) for steps in form)
+
+
 def candidate(names: tuple[str, ...], found: Fit, form: Form, unknown: bool = False) -> Candidate:
     """A fit at a form as a candidate, at the price of the form and of effects beyond the first."""
     further = max(len(names) - unknown - 1, 0)
-    return Candidate(names, found, found.log_evidence - PRICE * form.total - FURTHER * further, form, unknown)
+    return Candidate(names, found, found.log_evidence - price(form) - FURTHER * further, form, unknown)
 
 
 def more_probable(one: Candidate, other: Candidate) -> bool:

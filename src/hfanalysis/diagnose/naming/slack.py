@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.fit import promised
 from hfanalysis.diagnose.fitting.form import STEPS, Form
 from hfanalysis.diagnose.fitting.predict import signatures
-from hfanalysis.diagnose.naming.candidate import PRICE, Bench, Candidate
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate, price
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
@@ -40,8 +40,8 @@ def slack_gain(found: Candidate, bench: Bench) -> float:
     columns = SHAPE_ERROR * _over_time(signature, observed)
 
     def gain(form: Form) -> float:
-        price = PRICE * (form.total - found.form.total)
-        return promised(plain, observed, bench.at(form), columns) - price - plain.log_evidence
+        dearer = price(form) - price(found.form)
+        return promised(plain, observed, bench.at(form), columns) - dearer - plain.log_evidence
 
     form, best = found.form, gain(found.form)
     for _ in range(2 * STEPS):
