@@ -12,12 +12,13 @@ from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import Verdict, effects_product, places, sizes, upper_limits, verdict_of
 from hfanalysis.diagnose.answer.words import story
+from hfanalysis.diagnose.fitting.fade import abrupt_end
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.variants import Settings
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.observations.observed import FADE, Observed
 from hfanalysis.diagnose.observations.reduction import observe_test
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
@@ -151,6 +152,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
             "model_form_error": _errors(chosen),
             "chi_square": chosen.leftover,
             "chi_square_without": found.base.leftover,
+            **_fade(found.base, observed),
         },
         "probabilities_from": "probabilities.json" if scale().temperature != 1.0 else "raw evidences",
         "notes": list(proof.notes),
@@ -158,6 +160,15 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "runtime_s": {"value": None, "reason": "times stand in run.log, so that products are the same from run to run"},
         "seed": 0,
     }
+
+
+def _fade(base: Candidate, observed: Observed) -> dict[str, Any]:
+    """The time in which the fire went out, where it shows, and that in which the chamber empties without fuel."""
+    if FADE not in observed.stated:
+        return {}
+    seconds, log_std = observed.stated[FADE]
+    abrupt = abrupt_end(base.fit.burnt.steps.engine)
+    return {FADE: Quantity(seconds, "s", seconds * log_std), "abrupt_end": Quantity(abrupt, "s")}
 
 
 def _gap(base: Candidate, chosen: Candidate, proof: Proof, observed: Observed) -> dict[str, Any]:

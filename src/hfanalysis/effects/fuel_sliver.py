@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.model import OUTER_RADIUS
 from hfanalysis.engine.sites import PORT_RADIUS, RATES, REGRESSION_FACTOR, term
@@ -10,8 +12,11 @@ DEPTH, WIDTH = range(2)
 MOST = 0.98
 """Share of the surface that can have burnt through before the last fuel goes: the end stays within reach."""
 
-FALL = 0.64
-"""Part of the width over which the surface falls from 90 to 10 %, for a depth of one."""
+FALL = 1.6
+"""Web over which the fire goes out, in widths: the ramp that fits its surface best where depth is near one."""
+
+SHALLOW = 0.4
+"""Depth up to which what is left goes at once all the same, so that no ramp is seen."""
 
 
 @term
@@ -24,6 +29,11 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
         site[REGRESSION_FACTOR] *= 1.0 - min(p[DEPTH], MOST) * near * near
 
 
+def _fading_web(values: Mapping[str, float]) -> float:
+    share = max(min(values["depth"], MOST) - SHALLOW, 0.0) / (1.0 - SHALLOW)
+    return FALL * values["width"] * share * (2.0 - share)
+
+
 EFFECT = Effect(
     name="fuel_sliver",
     equation="grain",
@@ -34,11 +44,11 @@ EFFECT = Effect(
     sites=("regression_factor",),
     parameters=(
         Parameter("depth", "-", "share of the surface burnt through when the last fuel goes", 0.5, low=0.0, high=0.95),
-        Parameter("width", "m", "mean web left when the first wall shows", 2e-3, center=3e-3, low=2e-5, high=2e-2),
+        Parameter("width", "m", "mean web left when the first wall shows", 3e-3, center=1e-3, low=2e-5, high=2e-2),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,
-    fading_web=lambda values: FALL * min(values["depth"], MOST) * values["width"],
+    fading_web=_fading_web,
     twins=(),
     decisive="pictures of the plume, and the slivers themselves after the test",
 )

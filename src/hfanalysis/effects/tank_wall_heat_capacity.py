@@ -25,8 +25,7 @@ EFFECT = Effect(
     meaning="the tank's wall is a store of heat for the oxidizer",
     reference="report, section 5.1 (sources of error: adiabatic oxidizer tank) and 4.1 (blankets left hot); a lumped "
     "wall as in Whitmore and Chandler, J. Propulsion and Power 26 (2010) 706, and Zimmerman et al., AIAA 2013-4045",
-    formula="Q = C f (T_w - T) / tau,  dT_w/dt = -f (T_w - T) / tau,  T_w(0) = T_0 + dT,  f = w + s (1 - w), "
-    "w the part of the tank that is full of liquid: what is dry gives its heat to the vapour, slower by a share s",
+    formula="Q = C f (T_w - T) / tau,  dT_w/dt = -f (T_w - T) / tau,  T_w(0) = T_0 + dT,  f = w + s (1 - w), w wetted",
     sites=("tank_heat",),
     parameters=(
         Parameter("capacity", "J/K", "m c_p of the wall that takes part", typical=4000.0, low=0.0, high=40e3),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from hfanalysis.diagnose.observations.observed import FADE
 from hfanalysis.quantity import Quantity
 
 EQUATIONS = {
@@ -19,6 +20,7 @@ EQUATIONS = {
     "sensor": "a sensor",
 }
 """Where a model may lack something, in words."""
+
 LIKELY = 0.1
 """Probability from which on an effect that may be beside the first is mentioned."""
 
@@ -30,6 +32,9 @@ MUCH = 1.3
 
 LITTLE = 0.2
 """Part of the gap below which its closing is not what speaks for an effect."""
+
+SLOW_FADE = 2.0
+"""How many times longer than the chamber needs to empty the fire has to take to go out to be worth a sentence."""
 
 UNEVEN = 0.5
 """Part of its root mean square below which a source's mean says little of it."""
@@ -44,6 +49,7 @@ def story(product: Mapping[str, Any]) -> list[str]:
     out = [headline(product)]
     out += [place_sentence(row) for row in product["localisation"]]
     out += [effect_sentence(row) for row in product["effects"]]
+    out += fade_sentence(product["compared"])
     if product["verdict"] == "none":
         out += left_over(product)
     else:
@@ -122,6 +128,19 @@ def effect_sentence(row: Mapping[str, Any]) -> str:
     size = row["plausibility"]
     judged = "" if size["plausible"] is not False else " That is hard to believe: take the name with care."
     return f"{row['name']}: {row['meaning']}; {size['why']}.{judged}"
+
+
+def fade_sentence(compared: Mapping[str, Any]) -> list[str]:
+    """How long the fire took to go out, where that was longer than the chamber takes to empty."""
+    if FADE not in compared:
+        return []
+    seconds, abrupt = (1e3 * compared[name].value for name in (FADE, "abrupt_end"))
+    if seconds < SLOW_FADE * abrupt:
+        return []
+    return [
+        f"As the fuel ends chamber pressure and thrust fall within {seconds:.2g} ms; a chamber of this volume empties "
+        f"within {abrupt:.2g} ms."
+    ]
 
 
 def gap_line(channel: str, gap: Mapping[str, Any]) -> str:

@@ -23,7 +23,7 @@ from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.observations.observed import TOGETHER, Observed
+from hfanalysis.diagnose.observations.observed import FADE, TOGETHER, Observed
 from hfanalysis.engine.effect import Effect
 
 Array = NDArray[np.float64]
@@ -36,6 +36,9 @@ SEEN = 0.7
 
 MODERATE = 0.6
 """Strength (as x) from which a fit starts that a score test does not lead: a large effect is not linear."""
+
+FADING = (1.2, -1.5)
+"""Strength and shape (as x) from which a surface that fades is tried: no slope at none leads to a fall that is slow."""
 
 STARTS = 2
 """Starts of an effect's fit."""
@@ -150,6 +153,9 @@ def _first_children(base: Candidate, search: Search, names: list[str]) -> list[C
         if base.form != FINEST and not seen:
             start = _moderate(base, search.catalogue.effects[name].strengths, made.size)
             fits.append(attempted(made, observed, start, SHORT))
+        if not seen and FADE in observed.stated and search.catalogue.effects[name].fading_web is not None:
+            start = _moderate(base, search.catalogue.effects[name].strengths, made.size, *FADING)
+            fits.append(attempted(made, observed, start, SHORT))
         return _best((name,), fits, base.form)
 
     return [c for c in each(child, names) if c is not None]
@@ -225,11 +231,11 @@ def _best(names: tuple[str, ...], fits: list[Fit | None], form: Form) -> Candida
     return None if found is None else candidate(names, found, form)
 
 
-def _moderate(base: Candidate, strengths: int, size: int) -> Array:
-    """The base's constants with an effect of moderate size."""
-    start = np.zeros(size)
+def _moderate(base: Candidate, strengths: int, size: int, strength: float = MODERATE, shape: float = 0.0) -> Array:
+    """The base's constants with an effect of moderate size, its shape (as x) where its prior has it or elsewhere."""
+    start = np.full(size, shape)
     start[: base.fit.x.size] = base.fit.x
-    start[base.fit.x.size : base.fit.x.size + strengths] = MODERATE
+    start[base.fit.x.size : base.fit.x.size + strengths] = strength
     return start
 
 
