@@ -54,7 +54,7 @@ def test_the_wall_gives_what_it_loses_and_cools_behind_the_oxidizer() -> None:
 
 def test_a_wall_left_hot_by_blankets_gives_kilowatts() -> None:
     """C dT / tau: 4 kJ/K at 40 K above the oxidizer over 25 s are 6.4 kW at ignition, where liquid wets the wall."""
-    hot, level = (only("tank_wall_heat_capacity", capacity=4000.0, excess=k) for k in (40.0, 0.0))
+    hot, level = (only("tank_wall_heat_capacity", capacity=4000.0, excess=k, vapor_share=0.2) for k in (40.0, 0.0))
     gain = channel(hot, "tank_temperature", 0.2) - channel(level, "tank_temperature", 0.2)
     _, by_temperature, _ = energy_derivatives(engine_on_stand().saturation.kernel_table, 16.5e-3, 8.2, 292.6)
     gas = engine_on_stand().saturation
