@@ -105,6 +105,17 @@ def test_an_effect_that_closes_next_to_nothing_is_explained(same: float | None, 
     assert proof_sentences({**found, "effects": []}) == proof_sentences(found)[:-1]
 
 
+@pytest.mark.parametrize(("seconds", "said"), [(0.06, True), (0.012, False)])
+def test_a_fire_that_dies_slowly_is_said_beside_what_an_empty_chamber_takes(seconds: float, said: bool) -> None:
+    compared = {
+        "chi_square": 0.9,
+        "fuel_fade": Quantity(seconds, "s", 0.35 * seconds),
+        "abrupt_end": Quantity(0.011, "s"),
+    }
+    text = " ".join(story(product("named", compared=compared)))
+    assert ("fall within 60 ms; a chamber of this volume empties within 11 ms" in text) == said
+
+
 def test_an_impossible_size_is_said() -> None:
     row = effects_product(verdict_of(eroded()))[0]
     assert "hard to believe" not in effect_sentence(row)

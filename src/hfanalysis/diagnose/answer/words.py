@@ -138,8 +138,8 @@ def fade_sentence(compared: Mapping[str, Any]) -> list[str]:
     if seconds < SLOW_FADE * abrupt:
         return []
     return [
-        f"As the fuel ends chamber pressure and thrust fall within {seconds:.2g} ms; a chamber of this volume empties "
-        f"within {abrupt:.2g} ms."
+        f"As the fuel ends chamber pressure and thrust fall within {seconds:.0f} ms; a chamber of this volume empties "
+        f"within {abrupt:.0f} ms."
     ]
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from math import log, pi
 
-from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Engine
 
 FALL = 2.2
@@ -25,23 +24,22 @@ def fade_misfit(seconds: float, engine: Engine, speed: float) -> float:
 
     ``speed``: typical regression [m/s].
     """
-    abrupt = abrupt_end(engine)
-    return log(max(seconds, abrupt) / (abrupt + sum(_fading_web(active) for active in engine.effects) / speed))
+    return log(max(seconds, abrupt_end(engine)) / _modelled(engine, speed))
 
 
 def fade_slope(name: str, engine: Engine, speed: float) -> float:
     """Derivative of :func:`fade_misfit` with a parameter ``EFFECT.PARAMETER`` [SI]."""
-    total = abrupt_end(engine) + sum(_fading_web(active) for active in engine.effects) / speed
     effect, _, parameter = name.partition(".")
     for active in engine.effects:
         if active.effect.name == effect and active.effect.fading_web is not None:
             step = 1e-4 * next(p.typical for p in active.effect.parameters if p.name == parameter)
             more = active.named | {parameter: active.named[parameter] + step}
-            return -(active.effect.fading_web(more) - active.effect.fading_web(active.named)) / step / speed / total
+            wider = active.effect.fading_web(more) - active.effect.fading_web(active.named)
+            return -wider / step / speed / _modelled(engine, speed)
     return 0.0
 
 
-def _fading_web(active: Active) -> float:
-    """Web [m] over which the burning surface fades at last."""
-    shape = active.effect.fading_web
-    return shape(active.named) if shape is not None else 0.0
+def _modelled(engine: Engine, speed: float) -> float:
+    """Seconds in which the fire of a model goes out."""
+    webs = [a.effect.fading_web(a.named) for a in engine.effects if a.effect.fading_web is not None]
+    return abrupt_end(engine) + sum(webs) / speed

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.observations.observed import TOGETHER
 from hfanalysis.diagnose.observations.recorded import LONGEST
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
@@ -43,21 +44,15 @@ UNSURE = 0.35
 def fade_of(signals: Mapping[str, Signal], segments: Segments) -> tuple[float, float] | None:
     """Seconds in which chamber pressure and thrust fall as the fuel ends, and the standard deviation of their log.
 
-    None where that does not show.
-    ``signals``: with times after the opening [s].
+    None where that does not show. ``signals``: with times after the opening [s].
     """
     gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
-    if (
-        gone is None
-        or gone > LONGEST
-        or segments.std("t_fuel_out") > SHARP
-        or not {"p_chamber", "thrust"} <= set(signals)
-    ):
+    if gone is None or gone > LONGEST or segments.std("t_fuel_out") > SHARP or not set(TOGETHER) <= set(signals):
         return None
     start, end = gone - BEFORE, gone + AFTER
     if t_v is not None:
         start, end = (max(start, t_v + CLEAR), end) if t_v < gone else (start, min(end, t_v - CLEAR))
-    read = [signals[name].between(start, end) for name in ("p_chamber", "thrust")]
+    read = [signals[name].between(start, end) for name in TOGETHER]
     found = [_fall(part, gone) for part in read]
     if None in found:
         return None
