@@ -35,9 +35,9 @@ FEWER = 0.3
 """Probability of fewer effects from which on no more of them are claimed; more have paid a price before."""
 
 LEAST_EVIDENCE = {"named": 6.0, "unknown": 12.0}
-"""Log evidence that a claim needs besides. Where simulated tests hide nothing, `make blind-calibrate` prints 6.9, 3.6,
-and 2.5 as the largest of names, and 8.9 as the only source that was fitted at all (of 56 tests); a source that explains
-little is what two tables of nitrous oxide differ by."""
+"""Log evidence that a claim needs besides. Where simulated tests hide nothing, `make blind-calibrate` printed 6.9, 3.6,
+and 2.5 as the largest of names, and 8.9 as the only source that was fitted at all (of 56 tests, with three times the
+finest model-form error); a source that explains little is what two tables of nitrous oxide differ by."""
 
 NAMED_FROM = 0.5
 """Probability from which on one name is the verdict; below, several are."""
