@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import tempfile
 from collections.abc import Iterable
@@ -123,6 +124,8 @@ def main() -> int:
     parser.add_argument("--cases", type=Path, required=True)
     parser.add_argument("--write", type=Path)
     asked = parser.parse_args()
+    for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(threads, "1")  # as the command line does, before numpy is loaded
     names = sorted(p.name for p in (asked.cases / "raw_tests").iterdir() if (p / "test.toml").exists())
     found = []
     with tempfile.TemporaryDirectory() as scratch:
