@@ -92,8 +92,8 @@ def test_people_see_what_a_test_can_tell_apart(run: Run, stand: Path) -> None:
     assert status == 0
     assert all(name in out for name in library())
     assert "HF5: what p_tank, p_run, p_chamber, thrust, m_tank can show" in out
-    assert "twins: tank_heat and tank_wall_heat_capacity" in out
-    assert "The library asks for: a thermocouple on the tank's wall" in out
+    assert "twins: tank_nonequilibrium and tank_stratification" in out
+    assert "The library asks for: a thermocouple in the tank's liquid" in out
 
 
 def test_json_has_what_a_test_can_tell_apart_beside_the_library(run: Run, stand: Path) -> None:
