@@ -59,8 +59,8 @@ def test_a_wall_left_hot_by_blankets_gives_kilowatts() -> None:
     _, by_temperature, _ = energy_derivatives(engine_on_stand().saturation.kernel_table, 16.5e-3, 8.2, 292.6)
     gas = engine_on_stand().saturation
     liquid, vapor = float(gas.liquid_density(292.6)), float(gas.vapor_density(292.6))
-    wetted = (8.2 / 16.5e-3 - vapor) / (liquid - vapor)
-    assert gain * by_temperature == pytest.approx(6400.0 * 0.2 * (wetted + 0.2 * (1.0 - wetted)), rel=0.05)
+    wetted = (channel(level, "tank_mass", 0.1) / 16.5e-3 - vapor) / (liquid - vapor)
+    assert gain * by_temperature == pytest.approx(6400.0 * 0.2 * (wetted + 0.2 * (1.0 - wetted)), rel=0.03)
 
 
 def test_late_boiling_dips_by_its_depth_and_rebounds() -> None:

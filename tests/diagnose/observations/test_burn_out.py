@@ -93,4 +93,4 @@ def test_a_fire_that_dies_slowly_speaks_for_slivers() -> None:
             (made.hypothesis().with_effect(effect("fuel_sliver")), np.append(made.truth(), [1.2, -1.5])),
         )
     )
-    assert with_slivers[1] - base[1] > with_slivers[0] - base[0] + 4.0
+    assert with_slivers[1] - base[1] > with_slivers[0] - base[0] + 8.0

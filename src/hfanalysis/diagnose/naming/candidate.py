@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 FIRST_STEP, STEP = 1.0, 5.0
 """Log of the odds against the first step of the model-form error, on either side, and against each further one.
 
-The finest suits a generator whose gas is as ideal as the model's; a step coarser is as good a guess for a stand. Right
-explanations of simulated tests hardly ever ask for more: `make blind-calibrate` prints how many."""
+The finest suits a generator whose gas is as ideal as the model's; a step coarser is as good a guess for a stand. How
+many right explanations of simulated tests ask for more `make blind-calibrate` prints."""
 
 FURTHER = 5.0
 """Log of the odds against each effect beyond the first: several at once are rarer than one."""

@@ -38,7 +38,7 @@ MODERATE = 0.6
 """Strength (as x) from which a fit starts that a score test does not lead: a large effect is not linear."""
 
 FADING = (1.2, -1.5)
-"""Strength and shape (as x) from which a surface that fades is tried: no slope at none leads to a fall that is slow."""
+"""Strength and shape (as x) from which a surface that fades is tried: the slopes at a small one do not lead to it."""
 
 STARTS = 2
 """Starts of an effect's fit."""

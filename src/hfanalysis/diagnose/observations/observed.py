@@ -27,9 +27,7 @@ TOGETHER = ("p_chamber", "thrust")
 """Channels that share the oscillation of the burn."""
 
 FORM_ERROR, FORM_TIME = 7e-5, 1.0
-"""The finest model-form error: part of a channel's range, and the time [s] over which it is coherent.
-
-So small that slow residuals of generated tests without an effect are as large as they are taken to be."""
+"""The finest model-form error: part of a channel's range, and the time [s] over which it is coherent."""
 
 CHAMBER_FORM = 4.0
 """How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealised further."""
