@@ -44,7 +44,7 @@ EFFECT = Effect(
     sites=("regression_factor",),
     parameters=(
         Parameter("depth", "-", "share of the surface burnt through when the last fuel goes", 0.5, low=0.0, high=0.95),
-        Parameter("width", "m", "mean web left when the first wall shows", 3e-3, center=1e-3, low=2e-5, high=2e-2),
+        Parameter("width", "m", "mean web left when the first wall shows", 6e-3, center=1e-3, low=3e-6, high=2e-2),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,

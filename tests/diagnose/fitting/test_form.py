@@ -13,7 +13,7 @@ from hfanalysis.diagnose.naming.candidate import SHORT, Bench, attempted, candid
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.singles import base_and_singles
-from hfanalysis.diagnose.observations.observed import TOGETHER
+from hfanalysis.diagnose.observations.recorded import TOGETHER
 from hfanalysis.effects import effect
 
 SIDES = st.integers(0, STEPS - 1)

@@ -11,6 +11,7 @@ from tests.diagnose import made
 
 from hfanalysis.diagnose.answer.verdict import of_unknown
 from hfanalysis.diagnose.answer.words import place_sentence
+from hfanalysis.diagnose.fitting.failing import SHARE_OF_FLOW, failing_effect, flow_before
 from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.form import FINEST
 from hfanalysis.diagnose.fitting.swing import swinging
@@ -18,6 +19,8 @@ from hfanalysis.diagnose.fitting.valve import slow_valve
 from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
 from hfanalysis.diagnose.naming.course import course_of
 from hfanalysis.diagnose.naming.plain import FILLING, plain_sources
+from hfanalysis.diagnose.naming.sites import FAILING
+from hfanalysis.diagnose.observations.failing import FailingFlow
 from hfanalysis.diagnose.observations.observed import Plain
 from hfanalysis.diagnose.observations.opening import SlowOpening
 from hfanalysis.diagnose.observations.swinging import Swing
@@ -58,6 +61,34 @@ def test_what_a_filling_line_shows_as_well_is_no_evidence_for_a_slow_valve() -> 
     assert plain_sources(filling, filling, bench) == []
     beside = plain_sources(base, filling, bench)[0]
     assert alone.log_evidence - beside.log_evidence == pytest.approx(plain.log_evidence)
+
+
+def test_a_flow_that_fails_is_a_source_in_the_injector_with_its_time() -> None:
+    t_v = made.observed().events["t_v"][0]
+    plain = FailingFlow(t_v, 0.1, 0.4, 60.0)
+    base, found, bench = with_plain(plain)
+    assert found.names == (FAILING.name,)
+    assert found.log_evidence > base.log_evidence + 0.7 * plain.log_evidence  # blocks that are left there deny it
+    row = row_of(found, bench)
+    assert (row["equation"], row["phase"], row["source"].unit) == ("injector", "liquid", "kg/s")
+    assert row["t_end"].value == pytest.approx(t_v, abs=0.02)
+    assert abs(row["t_start"].value - (t_v - 0.1)) < 3.0 * row["t_start"].std
+    flow = flow_before(base.fit, t_v, plain.seconds)
+    assert min(row["history"]["mean"]) == pytest.approx(-0.4 * flow, rel=0.3)
+    assert re.fullmatch(
+        r"In the last \d+ ± \d+ ms of the liquid the injector's flow fails, by .* g/s on average: .*",
+        place_sentence(row),
+    )
+
+
+def test_a_hidden_failing_flow_is_found_as_large_as_it_is() -> None:
+    """Blocks beside the end of the liquid show what the samples there were misread as."""
+    hidden = failing_effect().at(share=0.5, liquid=0.3)
+    test = made.observed(hidden)
+    plain = FailingFlow(test.events["t_v"][0], 0.4, 0.4, 60.0)
+    base, found, _ = with_plain(plain, hidden)
+    assert found.log_evidence > base.log_evidence + plain.log_evidence + 20.0
+    assert found.fit.values[SHARE_OF_FLOW] == pytest.approx(0.5, rel=0.25)
 
 
 def test_a_flow_that_swings_is_a_source_in_the_injector_with_its_frequency() -> None:

@@ -12,8 +12,8 @@ from tests.diagnose.made import covariance_of
 from hfanalysis.diagnose.observations.blocks import MERGED, NEAR
 from hfanalysis.diagnose.observations.covariance import UNSTEADY_ZERO, coherence_of
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BLOCK, FIRST, REST_BLOCKS
-from hfanalysis.diagnose.observations.observed import FORM_ERROR, SHARE, TOGETHER, Channel, Observed
-from hfanalysis.diagnose.observations.recorded import as_read
+from hfanalysis.diagnose.observations.observed import FORM_ERROR, SHARE, Channel, Observed
+from hfanalysis.diagnose.observations.recorded import TOGETHER, as_read
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.quantity import Quantity

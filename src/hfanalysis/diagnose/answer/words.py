@@ -109,6 +109,13 @@ def place_sentence(row: Mapping[str, Any]) -> str:
             f"The valve takes {1e3 * opens.value:.3g} ± {1e3 * opens.std:.2g} ms to open, by the run line's pressure; "
             f"the model's opens at once.{left}"
         )
+    if "fails_within" in row:
+        within = row["fails_within"]
+        return (
+            f"In the last {1e3 * within.value:.2g} ± {1e3 * within.std:.1g} ms of the liquid the injector's flow "
+            f"fails, by {-value:.2g} ± {std:.1g} {unit} on average: chamber pressure and thrust fall before the tank's "
+            f"shows the end of the liquid, as where gas comes in with it.{left}"
+        )
     if "frequency" in row:
         return (
             f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s the flow swings by {value:.2g} ± {std:.1g} "

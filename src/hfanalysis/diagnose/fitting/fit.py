@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.noise_level import louder_or_quieter
 from hfanalysis.diagnose.fitting.predict import Prediction, predict, with_slopes
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.unsteady import Burn
@@ -125,7 +126,8 @@ def log_evidence(residual: Array, slopes: Array, x: Array, observed: Observed) -
     """Log of the probability of the data, by Laplace's approximation about the most probable ``x``."""
     curvature = slopes.T @ slopes + np.eye(x.size)
     objective = 0.5 * float(residual @ residual + x @ x)
-    return -objective - 0.5 * float(np.linalg.slogdet(curvature)[1]) - observed.log_size
+    size = float(np.linalg.slogdet(curvature)[1])
+    return -objective - 0.5 * size - observed.log_size + louder_or_quieter(residual, slopes, x, observed.slow_noise)
 
 
 def promised(found: Fit, observed: Observed, other: Observed, slack: Array | None = None) -> float:

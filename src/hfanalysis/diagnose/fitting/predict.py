@@ -202,18 +202,34 @@ def _typical_regression(hypothesis: Hypothesis, burn_time: float) -> float:
     return (hypothesis.engine.outer_radius - hypothesis.engine.port_radius) / burn_time
 
 
+LAST = 0.5, 0.2
+"""Seconds before the end of the fuel between which its regression counts for how fast the fire goes out."""
+
+
+def _last_regression(burnt: Burn, gone: float) -> float:
+    """The regression shortly before the fuel is gone [m/s]: late in a firing a tenth of the mean."""
+    first, last = (max(gone - ahead, 0.0) for ahead in LAST)
+    at = np.minimum([first, last], burnt.steps.times[-1, 1])
+    radius = burnt.steps.at(at)[0][:, RADIUS]
+    return max(float(radius[1] - radius[0]) / max(last - first, TICK), LEAST_REGRESSION)
+
+
+LEAST_REGRESSION = 1e-5
+"""[m/s]"""
+
+
 def _missed(name: str, value: float, hypothesis: Hypothesis, burnt: Burn, observed: Observed) -> float:
     """By how much the model misses something that was not read from the channels' blocks (SI; of a fade the log)."""
     if name != FADE:
         return value - _after(name, burnt, observed)
-    return fade_misfit(value, burnt.steps.engine, _typical_regression(hypothesis, observed.events["t_fuel_out"][0]))
+    return fade_misfit(value, burnt.steps.engine, _last_regression(burnt, observed.events["t_fuel_out"][0]))
 
 
 def _missed_slopes(name: str, hypothesis: Hypothesis, found: Tangents, observed: Observed) -> Array:
     """Slopes of :func:`_missed`."""
     if name != FADE:
         return -_after_slopes(name, found, observed)
-    speed = _typical_regression(hypothesis, observed.events["t_fuel_out"][0])
+    speed = _last_regression(found.burn, observed.events["t_fuel_out"][0])
     return np.array([fade_slope(parameter, found.burn.steps.engine, speed) for parameter in found.parameters])
 
 

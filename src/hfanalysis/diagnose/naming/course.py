@@ -8,12 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.fitting.failing import LIQUID_LEFT, SHARE_OF_FLOW, flow_before, lost_at
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.late import delay_name
 from hfanalysis.diagnose.fitting.pulse import START, has_pulse, parameters_of, pulse_in
 from hfanalysis.diagnose.fitting.swing import EDGE, PHASE_OF_SWING, SHARE_OF_SWING, SURE, swing_at
 from hfanalysis.diagnose.fitting.valve import SECONDS_OF_VALVE, loss_share
-from hfanalysis.diagnose.naming.sites import CLOCK, SWING, VALVE, Site, site_of
+from hfanalysis.diagnose.naming.sites import CLOCK, FAILING, SWING, VALVE, Site, site_of
+from hfanalysis.diagnose.observations.failing import FailingFlow
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.swinging import Swing
 from hfanalysis.engine.model import O_TANK_PRESSURE, OUTPUTS
@@ -54,6 +56,8 @@ def course_of(found: Fit, name: str, observed: Observed) -> Course:
         return _course_of_delay(found, site, time)
     if site == VALVE:
         return _course_of_valve(found, float(time[-1]))
+    if site == FAILING:
+        return _course_of_failing(found, float(time[-1]), observed)
     if site == SWING:
         return _course_of_swing(found, float(time[-1]), observed)
     if has_pulse(found.hypothesis, name):
@@ -110,6 +114,20 @@ def _course_of_pulse(found: Fit, site: Site, time: Array) -> Course:
     covariance = found.covariance[np.ix_(own, own)]
     std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", slopes, covariance, slopes), 0.0))
     return Course(site, time, mean, std, found.stds[parameters_of(site.name)[START]])
+
+
+def _course_of_failing(found: Fit, end: float, observed: Observed) -> Course:
+    """What the flow lacks as the last liquid leaves, with points enough for it."""
+    given = next(plain for plain in observed.plain if isinstance(plain, FailingFlow))
+    share, liquid = (found.values[name] for name in (SHARE_OF_FLOW, LIQUID_LEFT))
+    flow = flow_before(found, given.t_v, given.seconds)
+    seconds = liquid / (flow * (1.0 - 0.5 * share))
+    near = np.linspace(given.t_v - 1.2 * seconds, given.t_v, POINTS // 2)
+    time = np.unique(np.r_[near, np.linspace(0.0, end, POINTS // 2)])
+    mean = -flow * lost_at(time, given.t_v, seconds, share)
+    relative = np.hypot(found.stds[SHARE_OF_FLOW] / share, FORM)
+    std = seconds * found.stds[LIQUID_LEFT] / liquid
+    return Course(FAILING, time, mean, relative * np.abs(mean), std, {"fails_within": Quantity(seconds, "s", std)})
 
 
 def _prefix(site: Site) -> str:

@@ -7,13 +7,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.fitting.failing import with_failing
+from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.late import with_delay
 from hfanalysis.diagnose.fitting.swing import with_swing
 from hfanalysis.diagnose.fitting.valve import with_valve
 from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
-from hfanalysis.diagnose.naming.sites import SWING, VALVE, clock_site
+from hfanalysis.diagnose.naming.sites import FAILING, SWING, VALVE, clock_site
 from hfanalysis.diagnose.observations.clocks import Delay
+from hfanalysis.diagnose.observations.failing import FailingFlow
 from hfanalysis.diagnose.observations.observed import Plain
 from hfanalysis.diagnose.observations.opening import SlowOpening
 
@@ -37,7 +40,7 @@ def _with(parent: Candidate, named: Candidate, plain: Plain, bench: Bench) -> Ca
     spoken_for = isinstance(plain, SlowOpening) and FILLING in named.names
     if spoken_for and FILLING in parent.names:
         return None
-    name, made, own = _added(parent.fit.hypothesis, plain)
+    name, made, own = _added(parent.fit, plain)
     found = attempted(made, bench.at(parent.form), np.concatenate([parent.fit.x, own]), SHORT)
     if found is None:
         return None
@@ -45,10 +48,13 @@ def _with(parent: Candidate, named: Candidate, plain: Plain, bench: Bench) -> Ca
     return judged if spoken_for else replace(judged, log_evidence=judged.log_evidence + plain.log_evidence)
 
 
-def _added(hypothesis: Hypothesis, plain: Plain) -> tuple[str, Hypothesis, Array]:
+def _added(parent: Fit, plain: Plain) -> tuple[str, Hypothesis, Array]:
     """The name of its site, the hypothesis with it, and its own x."""
+    hypothesis = parent.hypothesis
     if isinstance(plain, Delay):
         return clock_site("thrust").name, *with_delay(hypothesis, "thrust", plain.seconds)
+    if isinstance(plain, FailingFlow):
+        return FAILING.name, *with_failing(parent, plain)
     if isinstance(plain, SlowOpening):
         return VALVE.name, *with_valve(hypothesis, plain)
     return SWING.name, *with_swing(hypothesis, plain)

@@ -23,7 +23,8 @@ from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.observations.observed import FADE, TOGETHER, Observed
+from hfanalysis.diagnose.observations.observed import FADE, Observed
+from hfanalysis.diagnose.observations.recorded import TOGETHER
 from hfanalysis.engine.effect import Effect
 
 Array = NDArray[np.float64]

@@ -34,6 +34,7 @@ SITES = (
 """Of the model."""
 
 VALVE, SWING = Site("valve", "feed", "Pa", 1e5), Site("swing of the flow", "injector", "1", 0.01)
+FAILING = Site("failing flow", "injector", "kg/s", 0.1)
 """Of the model, where what is plain without it acts."""
 
 OFFSET, CLOCK = "offset of ", "clock of "
@@ -65,4 +66,4 @@ def site_of(name: str, observed: Observed) -> Site:
         return sensor_site(observed, name.removeprefix(OFFSET))
     if name.startswith(CLOCK):
         return clock_site(name.removeprefix(CLOCK))
-    return next(s for s in (*SITES, VALVE, SWING) if s.name == name)
+    return next(s for s in (*SITES, VALVE, SWING, FAILING) if s.name == name)

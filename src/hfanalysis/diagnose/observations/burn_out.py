@@ -12,8 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.observations.observed import TOGETHER
-from hfanalysis.diagnose.observations.recorded import LONGEST
+from hfanalysis.diagnose.observations.recorded import LONGEST, TOGETHER
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
 

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.observations.alignment import share
 from hfanalysis.diagnose.observations.blocks import AT_REST, Blocks
 from hfanalysis.diagnose.observations.frame import BLOCK, EVENT_STD, Frame
-from hfanalysis.diagnose.observations.observed import SHARE, TOGETHER, Channel, averaged
+from hfanalysis.diagnose.observations.observed import SHARE, Channel, averaged
 from hfanalysis.diagnose.observations.oscillation import oscillation
-from hfanalysis.diagnose.observations.recorded import LONGEST, accuracy_of
-from hfanalysis.diagnose.observations.wander import roughness, wander_of
+from hfanalysis.diagnose.observations.recorded import LONGEST, TOGETHER, accuracy_of
+from hfanalysis.diagnose.observations.wander import Wander, roughness, wander_of
 from hfanalysis.segment.signals import sample_noise
 from hfanalysis.testdata.definition import TestDefinition
 
@@ -45,7 +45,8 @@ def channel_of(
     """
     name, resting = blocks.signal.name, frame.resting[blocks.first]
     accuracy = accuracy_of(definition, name, blocks.value)
-    own = _own(blocks, frame, shaken)
+    wander = wander_of(blocks.signal, BLOCK)
+    own = _own(blocks, frame, shaken, wander)
     offset, gain = _offset_and_gain(blocks, resting & (name in AT_REST), accuracy, zero_std)
     moved = _moved_by_knee(blocks, frame)
     covariance = own + offset + gain + np.outer(moved, moved) + _filling(blocks, frame, resting)
@@ -54,7 +55,7 @@ def channel_of(
     std = np.sqrt(own.diagonal())
     return Channel(
         name, blocks.time, blocks.value, blocks.first, blocks.count, resting, std, accuracy, covariance,
-        coherence_of(own),
+        coherence_of(own), _of_blocks(wander.slow(frame.grid), blocks),
     )  # fmt: skip
 
 
@@ -63,10 +64,9 @@ def coherence_of(own: Array) -> float:
     return float(own.shape[0] * np.sum(own**2) / np.trace(own) ** 2)
 
 
-def _own(blocks: Blocks, frame: Frame, shaken: Array | None) -> Array:
+def _own(blocks: Blocks, frame: Frame, shaken: Array | None, noise: Wander) -> Array:
     """By the wander of the sensor, its white noise, and the oscillation."""
     signal = blocks.signal
-    noise = wander_of(signal, BLOCK)
     own, white = noise.covariance(frame.grid), noise.white
     if shaken is not None:
         own = own + shaken
@@ -75,7 +75,12 @@ def _own(blocks: Blocks, frame: Frame, shaken: Array | None) -> Array:
         rough = float(sample_noise(fine.value)) ** 2 - roughness(noise, BLOCK)
         white = max(white, max(rough, 0.0) ** 0.5)
     own[np.diag_indices_from(own)] += max(white, 1e-9 * float(np.abs(blocks.value).max())) ** 2
-    return averaged(averaged(own, blocks.first, blocks.count).T, blocks.first, blocks.count)
+    return _of_blocks(own, blocks)
+
+
+def _of_blocks(covariance: Array, blocks: Blocks) -> Array:
+    """Covariance of blocks from that of the grid's points."""
+    return averaged(averaged(covariance, blocks.first, blocks.count).T, blocks.first, blocks.count)
 
 
 def _offset_and_gain(

@@ -48,7 +48,7 @@ class Frame:
     """The common grid, the changes of phase (instant, deviation), and from when to when is compared [s].
 
     ``filled``: the feed line is; ``ends`` of "chamber" (and thrust) and "tank"; ``fuel_out``: the end of the fuel where
-    the tank is compared beyond it.
+    the tank is compared beyond it; ``failing``: seconds before the end of the liquid in which the flow fails.
     """
 
     grid: Array
@@ -58,14 +58,17 @@ class Frame:
     filled: float
     ends: Mapping[str, float]
     fuel_out: float | None = None
+    failing: float = 0.0
 
     def end(self, channel: str) -> float:
         """Where the comparison of a channel ends [s]."""
         return self.ends["tank" if channel in TANK_SIDE else "chamber"]
 
 
-def frame_of(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> Frame:
-    """The frame of a test that opens at ``origin`` [s of the log]."""
+def frame_of(
+    log: TestLog, segments: Segments, definition: TestDefinition, origin: float, failing: float = 0.0
+) -> Frame:
+    """The frame of a test that opens at ``origin`` [s of the log], whose flow fails so many seconds before its end."""
     last = log_end(log, origin)
     end = min(_end(segments), last)
     ends = {"chamber": end, "tank": min(_tank_end(segments, definition, end), last)}
@@ -91,7 +94,7 @@ def frame_of(log: TestLog, segments: Segments, definition: TestDefinition, origi
     resting = np.ones(grid.size, dtype=bool)
     resting[1 : 1 + burning.size] = False
     filled = segments.time("t_feed") or 0.0
-    return Frame(grid, resting, changes, FIRST, filled, ends, fuel_out)
+    return Frame(grid, resting, changes, FIRST, filled, ends, fuel_out, failing)
 
 
 def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | None:

@@ -17,14 +17,13 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 
 from hfanalysis.diagnose.observations.clocks import Delay
+from hfanalysis.diagnose.observations.failing import FailingFlow
 from hfanalysis.diagnose.observations.opening import SlowOpening
+from hfanalysis.diagnose.observations.recorded import TOGETHER
 from hfanalysis.diagnose.observations.swinging import Swing
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-TOGETHER = ("p_chamber", "thrust")
-"""Channels that share the oscillation of the burn."""
 
 FORM_ERROR, FORM_TIME = 7e-5, 1.0
 """The finest model-form error: part of a channel's range, and the time [s] over which it is coherent."""
@@ -38,6 +37,10 @@ SHARE = 0.7071
 FADE = "fuel_fade"
 """Among what was stated: the seconds in which the fire went out, with the deviation of their log."""
 
+LEAST_SHARE, MOST_SHARE = 0.05, 0.95
+"""Of the noise in a pattern that is slow, from which on it counts, and at most: a covariance of the oscillation that is
+only estimated may leave less than nothing to the rest."""
+
 LEAST_VARIANCE = 1e-3
 """Of any combination of blocks, relative to a single block's."""
 
@@ -48,7 +51,8 @@ class Channel:
 
     ``first`` and ``count`` say which points of the common grid are averaged into each block. ``covariance`` is that of
     sensor noise, oscillation, bias and gain. ``resting`` blocks lie after the end of the flow. ``coherence``: blocks
-    whose noise is worth one independent value.
+    whose noise is worth one independent value. ``slow``: the part of the covariance that is slow noise, whose size a
+    quiet time of seconds does not tell exactly; None where there is none.
     """
 
     name: str
@@ -61,18 +65,20 @@ class Channel:
     accuracy: float
     covariance: Array
     coherence: float = 1.0
+    slow: Array | None = None
 
     def only(self, rows: Integers) -> Channel:
         """The same with some of its blocks."""
         picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
-        return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)])
+        slow = None if self.slow is None else self.slow[np.ix_(rows, rows)]
+        return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)], slow=slow)
 
     def with_white_noise(self) -> Channel:
         """The same with independent noise of the same size, beside offset and gain."""
         burning = np.where(self.resting, 0.0, 1.0)
         gain = self.value * burning / float(np.abs(self.value).max())
         shared = (SHARE * self.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
-        return replace(self, covariance=shared + np.diag(self.noise_std**2), coherence=1.0)
+        return replace(self, covariance=shared + np.diag(self.noise_std**2), coherence=1.0, slow=None)
 
     def form_covariance(self, errors: tuple[float, float]) -> Array:
         """Covariance of a model-form error, given as part of the range of tank channels, and of chamber and thrust.
@@ -96,7 +102,16 @@ def averaged(rows: Array, first: Integers, count: Integers) -> Array:
     return np.asarray((total[first + count] - total[first]) / count.reshape(shape))
 
 
-Plain = Delay | SlowOpening | Swing
+@dataclass(frozen=True)
+class SlowNoise:
+    """Orthonormal ``patterns`` (blocks, patterns) of whitened noise, and the ``shares`` (channels, patterns) of the
+    variance in each that are the slow noise of a channel."""
+
+    patterns: Array
+    shares: Array
+
+
+Plain = Delay | FailingFlow | SlowOpening | Swing
 """What is plain in the samples without any model."""
 
 
@@ -170,6 +185,27 @@ class Observed:
             out.append((slice(at, at + factor.shape[0]), factor))
             at += factor.shape[0]
         return tuple(out)
+
+    @cached_property
+    def slow_noise(self) -> SlowNoise:
+        """What of the whitened noise is slow."""
+        starts = np.cumsum([0, *(c.time.size for c in self.channels)])
+        patterns, shares = [], []
+        for place, factor in self._factors:
+            inside = [i for i in range(len(self.channels)) if place.start <= starts[i] < place.stop]
+            of_channel = np.zeros((len(self.channels), factor.shape[0], factor.shape[0]))
+            for i in inside:
+                if (slow := self.channels[i].slow) is not None:
+                    columns = factor[:, starts[i] - place.start : starts[i + 1] - place.start]
+                    of_channel[i] = columns @ slow @ columns.T
+            values, vectors = np.linalg.eigh(of_channel.sum(axis=0))
+            clear = vectors[:, values > LEAST_SHARE]
+            rows = np.zeros((int(starts[-1]), clear.shape[1]))
+            rows[place] = clear
+            share = np.einsum("jk,ijl,lk->ik", clear, of_channel, clear, optimize=True)
+            patterns.append(rows)
+            shares.append(share * np.minimum(MOST_SHARE / share.sum(axis=0), 1.0))
+        return SlowNoise(np.hstack(patterns), np.hstack(shares))
 
     def whiten(self, rows: Array) -> Array:
         """Rows (blocks of all channels one after the other, ...) in units in which the noise is white and of size

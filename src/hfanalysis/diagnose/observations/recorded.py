@@ -17,6 +17,9 @@ Array = NDArray[np.float64]
 CHANNELS = ("p_tank", "p_run", "p_chamber", "thrust", "m_tank")
 """Canonical channels that are compared."""
 
+TOGETHER = ("p_chamber", "thrust")
+"""Channels that share the oscillation of the burn."""
+
 LONGEST = 30.0
 """Seconds before the opening and after it beyond which nothing is looked at."""
 

@@ -6,6 +6,7 @@ from hfanalysis.diagnose.observations.blocks import blocks_of
 from hfanalysis.diagnose.observations.burn_out import fade_of
 from hfanalysis.diagnose.observations.clocks import thrust_delay
 from hfanalysis.diagnose.observations.covariance import channel_of, common_of, oscillations
+from hfanalysis.diagnose.observations.failing import FailingFlow, failing_flow
 from hfanalysis.diagnose.observations.flow_end import noted_flow_end
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, Frame, events_of, frame_of, phases_of
 from hfanalysis.diagnose.observations.observed import FADE, Observed, Plain
@@ -24,8 +25,9 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     origin = segments.t_open.value
     if origin is None:
         raise AbsentError("no opening was found: there is nothing to compare")
-    frame = frame_of(log, segments, definition, origin)
     signals = recorded(log, definition, origin)
+    failing = failing_flow(signals, segments)
+    frame = frame_of(log, segments, definition, origin, failing.seconds if failing is not None else 0.0)
     blocks = {name: found for name, signal in signals.items() if (found := blocks_of(signal, frame)) is not None}
     if not {"p_tank", "p_chamber", "thrust"} & set(blocks):
         raise AbsentError("neither tank, chamber nor thrust was recorded: the model cannot be compared")
@@ -47,14 +49,19 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         definition.ambient_pressure.value,
         common_of(blocks, shaken),
         fuel_out=frame.fuel_out,
-        plain=_plain(signals, frame),
+        plain=_plain(signals, frame, failing),
     )
 
 
-def _plain(signals: dict[str, Signal], frame: Frame) -> tuple[Plain, ...]:
+def _plain(signals: dict[str, Signal], frame: Frame, failing: FailingFlow | None) -> tuple[Plain, ...]:
     """What is plain without a model; a flow that swings is looked for until the first change of phase."""
     steady = min([frame.ends["chamber"], *(instant for instant, _ in frame.changes.values())])
-    found = (thrust_delay(signals), slow_opening(signals), swing_of(signals, steady - AROUND_CHANGE))
+    found = (
+        thrust_delay(signals),
+        slow_opening(signals),
+        swing_of(signals, steady - AROUND_CHANGE),
+        failing,
+    )
     return tuple(plain for plain in found if plain is not None)
 
 

@@ -30,6 +30,9 @@ CAREFUL = 0.15
 """Log of the variances by which all are raised at last, in their posterior standard deviations: a quiet time that is
 too short misleads only where it shows too little."""
 
+SLOW = 0.15
+"""Time constant [s] from which on a process is slow: a quiet time of seconds holds few of its swings."""
+
 FARTHEST = 40.0
 """By how much the log of a variance may differ from that of the whole reading's."""
 
@@ -51,8 +54,16 @@ class Wander:
 
     def covariance(self, time: Array) -> Array:
         """Of block means at given times (n,): the wander's alone, without white noise."""
+        return self._of(time, TIMES > 0.0)
+
+    def slow(self, time: Array) -> Array:
+        """The part of :meth:`covariance` that is of slow processes."""
+        return self._of(time, TIMES >= SLOW)
+
+    def _of(self, time: Array, which: NDArray[np.bool_]) -> Array:
         lag = np.abs(time[:, None] - time[None, :])
-        return np.asarray(sum(v * np.exp(-lag / tau) for v, tau in zip(self.variances, TIMES, strict=True)))
+        pairs = zip(self.variances[which], TIMES[which], strict=True)
+        return np.asarray(sum(v * np.exp(-lag / tau) for v, tau in pairs))
 
 
 def roughness(wander: Wander, block: float) -> float:

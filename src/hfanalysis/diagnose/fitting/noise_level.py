@@ -1,0 +1,111 @@
+"""How large the slow noise of each sensor is: a quiet time of seconds tells it to a third or so, the rest is fitted.
+
+Noise that is correlated over half a second shows a few independent values in the quiet time before the opening, and
+some ten times as many in a firing. So its size is an unknown of every hypothesis, one factor per channel with a
+log-normal prior; an explanation that leaves little open is believed to be read by sensors that are quiet. The evidence
+is Laplace's, about the best factors, with the parameters of the fit integrated over where their slopes hold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.observations.observed import SlowNoise
+
+Array = NDArray[np.float64]
+
+UNSURE = 0.4
+"""Standard deviation of the log of a factor of the slow noise's amplitude: how far quiet times of 2 to 5 s mislead."""
+
+FARTHEST = 1.2
+"""Log of a factor beyond which none is thought of."""
+
+STEPS, STRIDE, CONVERGED = 12, 0.5, 1e-3
+"""Of Fisher's scoring: its steps, the longest of them, and the shortest that is worth one, in logs of factors."""
+
+
+def louder_or_quieter(residual: Array, slopes: Array, x: Array, noise: SlowNoise) -> float:
+    """What the log evidence gains where the slow noise of each channel is as large as the residual asks for.
+
+    Args:
+        residual: whitened (observations,), about the most probable parameters; blocks come first.
+        slopes: of the residual (observations, parameters).
+        x: the parameters (parameters,), whose priors are N(0, 1).
+        noise: what of the whitened noise is slow.
+    """
+    if noise.shares.size == 0:
+        return 0.0
+    blocks = noise.patterns.shape[0]
+    level = _Level(
+        noise.patterns.T @ residual[:blocks],
+        noise.patterns.T @ slopes[:blocks],
+        slopes.T @ slopes + np.eye(x.size),
+        slopes.T @ residual + x,
+        noise.shares,
+    )
+    log_factor = np.zeros(noise.shares.shape[0])
+    here = level.at(log_factor)
+    for _ in range(STEPS):
+        step = np.linalg.solve(here.information, here.gradient)
+        step *= min(1.0, STRIDE / max(float(np.abs(step).max()), 1e-12))
+        moved = None
+        while moved is None and float(np.abs(step).max()) > CONVERGED:
+            trial = level.at(np.clip(log_factor + step, -FARTHEST, FARTHEST))
+            if trial.gain > here.gain:
+                log_factor, moved = np.clip(log_factor + step, -FARTHEST, FARTHEST), trial
+            step = 0.3 * step
+        if moved is None:
+            break
+        here = moved
+    return here.gain - 0.5 * float(np.linalg.slogdet(UNSURE**2 * here.information)[1])
+
+
+@dataclass(frozen=True)
+class _At:
+    """Log posterior density of factors relative to factors of one, its gradient, and Fisher's information."""
+
+    gain: float
+    gradient: Array
+    information: Array
+
+
+@dataclass(frozen=True)
+class _Level:
+    """What the patterns of slow noise hold: of the residual (patterns,), of its slopes (patterns, parameters), with the
+    ``curvature`` that all observations give the parameters, the ``gradient`` there, which is none where a fit has come
+    to its end, and the ``shares`` of channels (channels, patterns)."""
+
+    left: Array
+    slopes: Array
+    curvature: Array
+    gradient: Array
+    shares: Array
+
+    def at(self, log_factor: Array) -> _At:
+        """With these factors of the channels' slow noise (logs).
+
+        The noise in a pattern is then of variance v instead of 1, and the parameters follow by a step.
+        """
+        squares = np.exp(2.0 * log_factor)
+        variance = 1.0 + (squares - 1.0) @ self.shares
+        extra = 1.0 / variance - 1.0
+        curvature = self.curvature + self.slopes.T @ (extra[:, None] * self.slopes)
+        step = -np.linalg.solve(curvature, self.gradient + self.slopes.T @ (extra * self.left))
+        anyway = float(self.gradient @ np.linalg.solve(self.curvature, self.gradient))
+        grown = float(np.linalg.slogdet(curvature)[1] - np.linalg.slogdet(self.curvature)[1])
+        misfit = float(extra @ self.left**2 - step @ curvature @ step) + anyway
+        prior = float(np.sum((log_factor / UNSURE) ** 2))
+        gain = -0.5 * (float(np.log(variance).sum()) + grown + misfit + prior)
+        # the inverse of the marginal covariance, in the patterns: 1 / v less what the parameters take
+        taken = np.linalg.solve(np.linalg.cholesky(curvature), (self.slopes / variance[:, None]).T).T
+        own = 1.0 / variance
+        part = np.sum(taken**2, axis=1)
+        pull = (self.left + self.slopes @ step) / variance
+        speed = 2.0 * squares[:, None] * self.shares
+        gradient = 0.5 * speed @ (pull**2 - own + part) - log_factor / UNSURE**2
+        shared = np.einsum("ck,kp,kq->cpq", speed, taken, taken, optimize=True)
+        information = speed * (own**2 - 2.0 * own * part) @ speed.T + np.einsum("cpq,dpq->cd", shared, shared)
+        return _At(gain, gradient, 0.5 * information + np.eye(log_factor.size) / UNSURE**2)
