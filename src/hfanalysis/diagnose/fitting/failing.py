@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -69,10 +70,7 @@ def with_failing(parent: Fit, found: FailingFlow) -> tuple[Hypothesis, Array]:
     # what is left behind a ramp of the flow is less than what a whole flow would take along
     liquid = flow * found.seconds * (1.0 - 0.5 * found.share)
     share = Free(SHARE_OF_FLOW, found.share, SURE, "positive")
-    free = (
-        Free(SHARE_OF_FLOW, found.share, SURE, "positive", most=share.place(MOST)),
-        Free(LIQUID_LEFT, liquid, SURE, "positive"),
-    )
+    free = (replace(share, most=share.place(MOST)), Free(LIQUID_LEFT, liquid, SURE, "positive"))
     return parent.hypothesis.with_active(failing_effect().at(share=found.share, liquid=liquid), free), np.zeros(2)
 
 

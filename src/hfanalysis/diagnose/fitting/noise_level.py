@@ -1,4 +1,4 @@
-"""How large the slow noise of each sensor is: a quiet time of seconds tells it to a third or so, the rest is fitted.
+"""How large the slow noise of each sensor is: a quiet time of seconds tells it to a factor of 1.5.
 
 Noise that is correlated over half a second shows a few independent values in the quiet time before the opening, and
 some ten times as many in a firing. So its size is an unknown of every hypothesis, one factor per channel with a

@@ -205,17 +205,16 @@ def _typical_regression(hypothesis: Hypothesis, burn_time: float) -> float:
 LAST = 0.5, 0.2
 """Seconds before the end of the fuel between which its regression counts for how fast the fire goes out."""
 
+LEAST_REGRESSION = 1e-5
+"""Of it [m/s]: a model's grain may have stopped to burn by then."""
+
 
 def _last_regression(burnt: Burn, gone: float) -> float:
-    """The regression shortly before the fuel is gone [m/s]: late in a firing a tenth of the mean."""
+    """The regression shortly before the fuel is gone [m/s]: in the vapour phase less than half of the mean."""
     first, last = (max(gone - ahead, 0.0) for ahead in LAST)
     at = np.minimum([first, last], burnt.steps.times[-1, 1])
     radius = burnt.steps.at(at)[0][:, RADIUS]
     return max(float(radius[1] - radius[0]) / max(last - first, TICK), LEAST_REGRESSION)
-
-
-LEAST_REGRESSION = 1e-5
-"""[m/s]"""
 
 
 def _missed(name: str, value: float, hypothesis: Hypothesis, burnt: Burn, observed: Observed) -> float:
