@@ -312,6 +312,11 @@ def until(what: Callable[[], bool], seconds: float = 240.0) -> None:
         time.sleep(0.05)
 
 
+def interruptible() -> None:
+    """A shell that starts the suite in the background has its children ignore interruptions."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def started(log: Path) -> list[str]:
     """The numbers of the workers' processes that have started."""
     return re.findall(r"worker (\d+) starts", log.read_text()) if log.exists() else []
@@ -324,7 +329,7 @@ def test_cases_are_diagnosed_to_the_last_though_a_worker_is_killed_and_the_run_i
     run = command("run", *what, "--jobs", "2", "--out", str(tmp_path))
     folder = Folder(tmp_path.resolve())
     log = folder.runs / "log" / "workers.log"
-    with subprocess.Popen(run, cwd=ROOT, stderr=subprocess.PIPE, text=True) as first:
+    with subprocess.Popen(run, cwd=ROOT, stderr=subprocess.PIPE, text=True, preexec_fn=interruptible) as first:
         until(lambda: len(folder.notes()) > 0)
         killed, held = (int(number) for number in started(log))
         os.kill(held, signal.SIGSTOP)  # or it might be done with the rest before the other is replaced
