@@ -9,6 +9,7 @@ is Laplace's, about the best factors, with the parameters of the fit integrated 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,6 +85,12 @@ class _Level:
     gradient: Array
     shares: Array
 
+    @cached_property
+    def _as_it_is(self) -> tuple[float, float]:
+        """With factors of one: log of the curvature's determinant, and what a last step would take off chi-square."""
+        last = self.gradient @ np.linalg.solve(self.curvature, self.gradient)
+        return float(np.linalg.slogdet(self.curvature)[1]), float(last)
+
     def at(self, log_factor: Array) -> _At:
         """With these factors of the channels' slow noise (logs).
 
@@ -94,9 +101,9 @@ class _Level:
         extra = 1.0 / variance - 1.0
         curvature = self.curvature + self.slopes.T @ (extra[:, None] * self.slopes)
         step = -np.linalg.solve(curvature, self.gradient + self.slopes.T @ (extra * self.left))
-        anyway = float(self.gradient @ np.linalg.solve(self.curvature, self.gradient))
-        grown = float(np.linalg.slogdet(curvature)[1] - np.linalg.slogdet(self.curvature)[1])
-        misfit = float(extra @ self.left**2 - step @ curvature @ step) + anyway
+        size, lower = self._as_it_is
+        grown = float(np.linalg.slogdet(curvature)[1]) - size
+        misfit = float(extra @ self.left**2 - step @ curvature @ step) + lower
         prior = float(np.sum((log_factor / UNSURE) ** 2))
         gain = -0.5 * (float(np.log(variance).sum()) + grown + misfit + prior)
         # the inverse of the marginal covariance, in the patterns: 1 / v less what the parameters take

@@ -210,7 +210,7 @@ LEAST_REGRESSION = 1e-5
 
 
 def _last_regression(burnt: Burn, gone: float) -> float:
-    """The regression shortly before the fuel is gone [m/s]: in the vapour phase less than half of the mean."""
+    """The regression shortly before the fuel is gone [m/s]: late in a firing well below the mean."""
     first, last = (max(gone - ahead, 0.0) for ahead in LAST)
     at = np.minimum([first, last], burnt.steps.times[-1, 1])
     radius = burnt.steps.at(at)[0][:, RADIUS]
