@@ -94,6 +94,19 @@ def test_covariance_falls_with_the_time_between() -> None:
     assert np.linalg.eigvalsh(covariance).min() > 0.0
 
 
+def test_wide_means_vary_as_the_means_of_what_is_in_them() -> None:
+    """A rest of half a second beside blocks of hundredths: the same process, averaged."""
+    wander = wandering(0, 6.0)
+    inside = np.arange(-1.2, -0.2, 0.001) + 0.0005
+    burning = np.array([0.01, 0.4, 3.0])
+    fine = wander.covariance(np.concatenate([inside, burning]))
+    halves = np.zeros((5, inside.size + 3))
+    halves[0, :500], halves[1, 500:1000], halves[2:, -3:] = 1.0 / 500, 1.0 / 500, np.eye(3)
+    wide = wander.covariance(np.array([-0.95, -0.45, *burning]), np.array([0.5, 0.5, 0.0, 0.0, 0.0]))
+    assert wide == pytest.approx(halves @ fine @ halves.T, rel=2e-3)
+    assert wide[0, 0] < 0.9 * wide[2, 2]
+
+
 def test_a_sensor_that_stands_still_does_not_wander() -> None:
     still = wander_of(signal("p_tank", _times(6.0), np.full(_times(6.0).size, 101_325.0)), BLOCK)
     assert still.white == 0.0

@@ -11,7 +11,7 @@ from tests.diagnose.made import covariance_of
 
 from hfanalysis.diagnose.observations.blocks import MERGED, NEAR
 from hfanalysis.diagnose.observations.covariance import UNSTEADY_ZERO, coherence_of
-from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BLOCK, FIRST, REST_BLOCKS
+from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BEFORE_END, BLOCK, FIRST, REST_BLOCKS
 from hfanalysis.diagnose.observations.observed import FORM_ERROR, SHARE, Channel, Observed
 from hfanalysis.diagnose.observations.recorded import TOGETHER, as_read
 from hfanalysis.engine.unsteady import Burn
@@ -74,11 +74,49 @@ def test_sensors_at_rest_are_compared_where_their_truth_is_known() -> None:
     for c in test.channels:
         after = c.resting & (c.time > 0.0)
         assert after.sum() == (REST_BLOCKS if c.name in ("p_chamber", "thrust") else 0), c.name
-        assert (c.resting & (c.time <= 0.0)).sum() == (1 if c.name in ("p_tank", "m_tank") else 0), c.name
+        assert (c.resting & (c.time <= 0.0)).sum() == (2 if c.name in ("p_tank", "m_tank") else 0), c.name
         assert (test.resting[c.first] == c.resting).all()
     chamber = channel(test, "p_chamber")
     assert chamber.value[chamber.resting] == pytest.approx(test.ambient, abs=1e3)
     assert chamber.time[chamber.resting].min() > changes()[1] + 0.5
+
+
+ZEROED = ("p_run", "p_chamber", "thrust")
+
+
+def zeroed(log: TestLog) -> TestLog:
+    """The same with zeros that were taken before the opening."""
+    return TestLog({n: replace(c, zero_std=1e-3 * c.accuracy) if n in ZEROED else c for n, c in log.channels.items()})
+
+
+def test_sensors_with_a_zero_are_compared_at_rest_before_the_opening() -> None:
+    test = logged.reduced(zeroed(logged.log()))
+    for c in test.channels:
+        before = c.resting & (c.time < 0.0)
+        assert before.sum() == (7 if c.name in ZEROED else 2), c.name
+        assert (c.time[before] < -BEFORE_END).all()
+        assert c.averaged(test.grid) == pytest.approx(c.time, abs=1e-9)
+    run = channel(test, "p_run")
+    assert run.value[run.resting] == pytest.approx(test.ambient, abs=1e3)
+
+
+def test_a_zero_that_moves_before_the_opening_is_not_compared() -> None:
+    """An igniter that burns before the valve opens."""
+    time = logged.clean()[0]
+    test = logged.reduced(zeroed(logged.log(plus={"p_chamber": np.where(time > -1.5, 5e4 * (time + 1.5), 0.0)})))
+    assert not (channel(test, "p_chamber").resting & (channel(test, "p_chamber").time < 0.0)).any()
+    assert (channel(test, "thrust").resting & (channel(test, "thrust").time < 0.0)).sum() == 7
+
+
+def test_what_moves_under_load_alone_is_no_error_of_the_zero() -> None:
+    test = logged.reduced(zeroed(logged.log()))
+    for name in ZEROED:
+        one = test.only((name,))
+        c = one.channels[0]
+        moved = 0.5 * c.accuracy * np.ones((c.time.size, 1))
+        always, loaded = (np.sum(one.whiten(m) ** 2) for m in (moved, moved * ~c.resting[:, np.newaxis]))
+        assert always < 0.6, name
+        assert loaded > 4.0 * always, name
 
 
 def test_a_log_that_ends_with_the_burn_has_no_rest_after_it() -> None:
@@ -86,7 +124,20 @@ def test_a_log_that_ends_with_the_burn_has_no_rest_after_it() -> None:
     short = TestLog({n: _cut(c, end) for n, c in whole.channels.items()})
     test = logged.reduced(short)
     assert not (channel(test, "thrust").resting).any()
-    assert channel(test, "p_tank").resting.sum() == 1
+    assert channel(test, "p_tank").resting.sum() == 2
+
+
+@pytest.mark.parametrize(("quiet", "blocks"), [(0.02, 0), (0.3, 1), (0.65, 1), (1.15, 2)])
+def test_a_log_that_begins_shortly_before_the_opening_has_as_much_rest(quiet: float, blocks: int) -> None:
+    log = TestLog({n: _begun(c, logged.OPENING - quiet) for n, c in logged.log().channels.items()})
+    tank = channel(logged.reduced(log), "p_tank")
+    assert (tank.time < 0.0).sum() == blocks
+    assert tank.resting.sum() == blocks
+
+
+def _begun(c, start: float):  # type: ignore[no-untyped-def]
+    kept = c.time >= start
+    return replace(c, time=c.time[kept], values=c.values[kept], flags=c.flags[kept])
 
 
 def _cut(c, end: float):  # type: ignore[no-untyped-def]
@@ -145,15 +196,17 @@ def test_an_indefinite_covariance_is_still_whitened() -> None:
 
 
 def test_a_sensor_that_was_zeroed_errs_by_its_gain() -> None:
-    log = logged.log()
-    zeroed = TestLog({n: replace(c, zero=5.0, zero_std=2e3 if n == "p_run" else None) for n, c in log.channels.items()})
-    before, after = (channel(logged.reduced(of), "p_run") for of in (log, zeroed))
-    accuracy, zero = logged.ACCURACY["p_run"], SHARE * logged.ACCURACY["p_run"]
-    less = zero**2 - (2e3**2 + (UNSTEADY_ZERO * accuracy) ** 2)
-    assert before.covariance - after.covariance == pytest.approx(less * np.ones_like(before.covariance), rel=1e-6)
-    gain = after.value / np.abs(after.value).max()
-    left = after.covariance - zero**2 * np.outer(gain, gain)
-    assert np.median(left) < 0.25 * accuracy**2
+    """Of an error that stays, the rest before the opening leaves what may move under load."""
+    plain, after = (channel(logged.reduced(of), "p_run") for of in (logged.log(), zeroed(logged.log())))
+    rest, loaded = np.flatnonzero(after.resting), np.flatnonzero(~after.resting)
+    inside, across = after.covariance[np.ix_(rest, rest)], after.covariance[np.ix_(rest, loaded)]
+    left = after.covariance[np.ix_(loaded, loaded)] - across.T @ np.linalg.solve(inside, across)
+    gain = SHARE * after.accuracy * after.value[loaded] / after.value.max()
+    own = plain.covariance - (SHARE * plain.accuracy) ** 2 - np.outer(gain, gain)
+    known = left - own - np.outer(gain, gain)
+    seen_by_rest = 1.0 / np.sum(np.linalg.inv(inside - (SHARE * after.accuracy) ** 2))
+    assert known == pytest.approx(np.full_like(known, (UNSTEADY_ZERO * after.accuracy) ** 2 + seen_by_rest), rel=0.05)
+    assert known.max() < 0.01 * (SHARE * after.accuracy) ** 2
 
 
 def test_a_drift_that_ingest_took_off_is_seen_again() -> None:

@@ -145,7 +145,7 @@ def aligned(observed: Observed, burnt: Burn, times: Array) -> Array:
     moved = times
     if seen is not None and gone is not None:
         moved = model_times(times, seen[0], gone, observed.fuel_out)
-    return np.asarray(np.minimum(moved, burnt.steps.times[-1, 1]))
+    return np.asarray(np.clip(moved, 0.0, burnt.steps.times[-1, 1]))
 
 
 def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Array:

@@ -31,7 +31,7 @@ def model_times(times: Array, seen: float, gone: float, fuel_out: float | None =
 def share(times: Array, seen: float, gone: float, fuel_out: float | None = None) -> Array:
     """Derivative of :func:`model_times` with ``gone``."""
     if fuel_out is None or not stays(seen, gone, fuel_out):
-        return np.asarray(np.minimum(times / seen, 1.0))
+        return np.asarray(np.clip(times / seen, 0.0, 1.0))
     knots = np.array(sorted([(0.0, 0.0), (seen, 1.0), (fuel_out, 0.0)]))
     return np.asarray(np.interp(times, knots[:, 0], knots[:, 1]))
 

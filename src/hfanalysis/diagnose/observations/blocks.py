@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BLOCK, Frame
 from hfanalysis.diagnose.observations.observed import averaged
+from hfanalysis.diagnose.observations.recorded import LONGEST
+from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.signals import Signal
 
 Array = NDArray[np.float64]
@@ -17,8 +19,12 @@ Integers = NDArray[np.int64]
 MERGED, NEAR = 5, 0.4
 """Blocks that are merged into one farther than NEAR [s] from any change: the noise there is coherent anyway."""
 
-BEFORE_OPENING, BEFORE = ("p_tank", "m_tank"), 1.0
-"""Channels that show the tank at rest before the opening, and the seconds of it that are looked at."""
+TANK_AT_REST, TANK_REST = ("p_tank", "m_tank"), 1.2
+"""Channels that show the tank at rest before the opening, and the seconds of it that are looked at: a tank is filled
+before, and warms."""
+
+STEADY = 3.0
+"""Standard deviations that the halves of a rest may differ by."""
 
 AT_REST = ("p_chamber", "thrust")
 """Channels whose true value is known once the flow has ended."""
@@ -40,16 +46,18 @@ class Blocks:
     good: NDArray[np.bool_]
 
 
-def blocks_of(signal: Signal, frame: Frame) -> Blocks | None:
+def blocks_of(signal: Signal, frame: Frame, zeroed: bool) -> Blocks | None:
     """The block means of a signal whose times [s] count from the opening; None where too few are left.
 
-    Blocks without enough samples, and those near a change of phase, are left out.
+    Blocks without enough samples, and those near a change of phase, are left out. ``zeroed``: what it reads before the
+    opening is known to be nothing, or the open air.
     """
-    n = int((~frame.resting).sum())
+    flowing = frame.flowing
+    n = flowing.stop - flowing.start
     edges = np.arange(n + 1) * BLOCK
     at = np.searchsorted(signal.time, edges)
     sums = np.concatenate([[0.0], np.cumsum(signal.value)])
-    samples, centers = np.diff(at), frame.grid[1 : 1 + n]
+    samples, centers = np.diff(at), frame.grid[flowing]
     means = np.where(samples > 0, np.diff(sums[at]) / np.maximum(samples, 1), 0.0)
     filled = (samples > 0) & (samples >= 0.5 * BLOCK / max(signal.step, 1e-9))
     good = filled & (centers > frame.start) & (centers < frame.end(signal.name))
@@ -61,18 +69,58 @@ def blocks_of(signal: Signal, frame: Frame) -> Blocks | None:
     if good.sum() < 10:
         return None
     first, count = _merged(good, centers, frame)
-    time, value, first = averaged(centers, first, count), averaged(means, first, count), first + 1
-    one = np.ones(1, dtype=np.int64)
-    before = signal.between(-BEFORE, -0.05).value
-    if signal.name in BEFORE_OPENING and before.size > 4:
-        time, value = np.r_[0.0, time], np.r_[before.mean(), value]
-        first, count = np.r_[0 * one, first], np.r_[one, count]
-    after = np.flatnonzero(frame.resting)[1:] if signal.name in AT_REST else np.zeros(0, dtype=np.int64)
-    still = _still(signal, frame.grid[after])
-    if np.isfinite(still).all():
-        time, value = np.r_[time, frame.grid[after]], np.r_[value, still]
-        first, count = np.r_[first, after], np.r_[count, np.ones(after.size, dtype=np.int64)]
-    return Blocks(signal, time, value, first, count, means, good)
+    time, value, first = averaged(centers, first, count), averaged(means, first, count), first + flowing.start
+    before, after = _before(signal, frame, zeroed), _after(signal, frame)
+    rest = [_wide(signal, frame, rows) for rows in (before, after)]
+    return Blocks(
+        signal,
+        np.r_[frame.grid[before], time, frame.grid[after]],
+        np.r_[rest[0], value, rest[1]],
+        np.r_[before, first, after],
+        np.r_[np.ones_like(before), count, np.ones_like(after)],
+        means,
+        good,
+    )
+
+
+def _before(signal: Signal, frame: Frame, zeroed: bool) -> Integers:
+    """Blocks of the rest before the opening that count: of the tank's last second, or of a sensor with a zero."""
+    rows = np.arange(frame.before)
+    if signal.name in TANK_AT_REST:
+        rows = rows[frame.grid[rows] - 0.5 * frame.width[rows] >= -TANK_REST]
+    elif not zeroed:
+        return rows[:0]
+    rows = rows[np.isfinite(_wide(signal, frame, rows))]
+    if rows.size and signal.name not in TANK_AT_REST and not _stands(signal, frame, rows):
+        return rows[:0]
+    return rows
+
+
+def _stands(signal: Signal, frame: Frame, rows: Integers) -> bool:
+    """Whether a sensor's reading stands still from the first to the last of these blocks."""
+    edges = frame.grid[rows[[0, -1]]] + 0.5 * frame.width[rows[[0, -1]]] * np.array([-1.0, 1.0])
+    first, half, last = float(edges[0]), float(edges.mean()), float(edges[1])
+    noise = Noise.of(signal, signal.between(-LONGEST, last))
+    moved = signal.mean(first, half) - signal.mean(half, last)
+    return bool(abs(moved) <= STEADY * noise.difference_std((first, half), (half, last)))
+
+
+def _after(signal: Signal, frame: Frame) -> Integers:
+    """Blocks of the rest after the flow: all of them, of a channel whose true value is known there, or none."""
+    rows = np.arange(frame.after.start, frame.after.stop)
+    known = signal.name in AT_REST and bool(np.isfinite(_wide(signal, frame, rows)).all())
+    return rows if known else rows[:0]
+
+
+def _wide(signal: Signal, frame: Frame, rows: Integers) -> Array:
+    """Means over wide blocks of the grid; nan where a log has too few samples in one."""
+    out = np.full(rows.size, np.nan)
+    for i, row in enumerate(rows):
+        half = 0.5 * frame.width[row]
+        inside = signal.between(float(frame.grid[row] - half), float(frame.grid[row] + half)).value
+        if inside.size >= max(2.0, half / max(signal.step, 1e-9)):
+            out[i] = inside.mean()
+    return out
 
 
 def _merged(good: NDArray[np.bool_], centers: Array, frame: Frame) -> tuple[Integers, Integers]:
@@ -94,8 +142,3 @@ def _merged(good: NDArray[np.bool_], centers: Array, frame: Frame) -> tuple[Inte
         i += span
     return np.array(first, dtype=np.int64), np.array(size, dtype=np.int64)
 
-
-def _still(signal: Signal, times: Array) -> Array:
-    """Means about instants after the end of the flow."""
-    half = 0.5 * float(times[1] - times[0]) if times.size > 1 else 0.0
-    return np.array([signal.mean(t - half, t + half) for t in times])

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.observations.alignment import share
-from hfanalysis.diagnose.observations.blocks import AT_REST, Blocks
+from hfanalysis.diagnose.observations.blocks import TANK_AT_REST, Blocks
 from hfanalysis.diagnose.observations.frame import BLOCK, EVENT_STD, Frame
-from hfanalysis.diagnose.observations.observed import SHARE, Channel, averaged
+from hfanalysis.diagnose.observations.observed import SHARE, Channel, averaged, range_of
 from hfanalysis.diagnose.observations.oscillation import oscillation
 from hfanalysis.diagnose.observations.recorded import LONGEST, TOGETHER, accuracy_of
 from hfanalysis.diagnose.observations.wander import Wander, roughness, wander_of
@@ -47,15 +47,15 @@ def channel_of(
     accuracy = accuracy_of(definition, name, blocks.value)
     wander = wander_of(blocks.signal, BLOCK)
     own = _own(blocks, frame, shaken, wander)
-    offset, gain = _offset_and_gain(blocks, resting & (name in AT_REST), accuracy, zero_std)
     moved = _moved_by_knee(blocks, frame)
-    covariance = own + offset + gain + np.outer(moved, moved) + _filling(blocks, frame, resting)
+    covariance = own + _zero_and_span(blocks, resting, accuracy, zero_std) + np.outer(moved, moved)
+    covariance = covariance + _filling(blocks, frame, resting)
     for cold in _without_fire(blocks, frame):
         covariance = covariance + np.outer(cold, cold)
     std = np.sqrt(own.diagonal())
     return Channel(
         name, blocks.time, blocks.value, blocks.first, blocks.count, resting, std, accuracy, covariance,
-        coherence_of(own), _of_blocks(wander.slow(frame.grid), blocks),
+        coherence_of(own), _of_blocks(wander.slow(frame.grid, frame.width), blocks),
     )  # fmt: skip
 
 
@@ -67,14 +67,15 @@ def coherence_of(own: Array) -> float:
 def _own(blocks: Blocks, frame: Frame, shaken: Array | None, noise: Wander) -> Array:
     """By the wander of the sensor, its white noise, and the oscillation."""
     signal = blocks.signal
-    own, white = noise.covariance(frame.grid), noise.white
+    own, white = noise.covariance(frame.grid, frame.width), noise.white
     if shaken is not None:
         own = own + shaken
     else:
         fine = signal.between(frame.start, frame.end(signal.name)).reduced(BLOCK)
         rough = float(sample_noise(fine.value)) ** 2 - roughness(noise, BLOCK)
         white = max(white, max(rough, 0.0) ** 0.5)
-    own[np.diag_indices_from(own)] += max(white, 1e-9 * float(np.abs(blocks.value).max())) ** 2
+    floor = max(white, 1e-9 * float(np.abs(blocks.value).max())) ** 2
+    own[np.diag_indices_from(own)] += floor * BLOCK / np.where(frame.width > 0.0, frame.width, BLOCK)
     return _of_blocks(own, blocks)
 
 
@@ -83,20 +84,25 @@ def _of_blocks(covariance: Array, blocks: Blocks) -> Array:
     return averaged(averaged(covariance, blocks.first, blocks.count).T, blocks.first, blocks.count)
 
 
-def _offset_and_gain(
-    blocks: Blocks, known: NDArray[np.bool_], accuracy: float, zero_std: float | None
-) -> tuple[Array, Array]:
-    """By an error of the zero, and by one of the span; neither where the true value is ``known`` (blocks,)."""
-    burning = np.where(known, 0.0, 1.0)
-    gain = blocks.value * burning / float(np.abs(blocks.value).max())
-    # a zero that was taken before the opening leaves of the accuracy mostly the gain's error
-    offset = SHARE * accuracy if zero_std is None else float(np.hypot(zero_std, UNSTEADY_ZERO * accuracy))
-    return offset**2 * np.outer(burning, burning), (SHARE * accuracy) ** 2 * np.outer(gain, gain)
+def _zero_and_span(blocks: Blocks, resting: NDArray[np.bool_], accuracy: float, zero_std: float | None) -> Array:
+    """By an error of the zero and by one of the span, which shows under load alone; a filled tank is a load.
+
+    What a sensor reads at rest before the opening tells its zero, where that is compared; else the zero that was taken
+    there leaves its own error, and what moves it under load.
+    """
+    at_rest = resting if blocks.signal.name not in TANK_AT_REST else np.zeros_like(resting)
+    loaded = np.where(at_rest, 0.0, 1.0)
+    gain = SHARE * accuracy * loaded * blocks.value / float(np.abs(blocks.value).max())
+    compared = bool((at_rest & (blocks.time < 0.0)).any())
+    offset = zero_std if zero_std is not None and not compared else SHARE * accuracy
+    unsteady = 0.0 if zero_std is None else UNSTEADY_ZERO * accuracy
+    return np.asarray(offset**2 + unsteady**2 * np.outer(loaded, loaded) + np.outer(gain, gain))
 
 
 def _filling(blocks: Blocks, frame: Frame, resting: NDArray[np.bool_]) -> Array:
     """By what the model gets wrong while the line fills."""
-    filling = np.where((blocks.time < frame.filled) & ~resting, FILLING_ERROR * float(np.ptp(blocks.value)), 0.0)
+    size = FILLING_ERROR * range_of(blocks.time, blocks.value)
+    filling = np.where((blocks.time < frame.filled) & ~resting, size, 0.0)
     lag = np.abs(blocks.time[:, None] - blocks.time[None, :])
     return np.asarray(np.exp(-lag / FILLING_TIME) * np.outer(filling, filling))
 
@@ -180,4 +186,4 @@ def _shaken(shaken: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, str],
     stds = {name: wander_of(r.signal, BLOCK).white for name, r in shaken.items()}
     found = oscillation({name: r.fine for name, r in shaken.items()}, level, usable, stds)
     still = int(frame.resting.sum())
-    return {pair: np.pad(matrix, (1, still - 1)) for pair, matrix in found.items()}
+    return {pair: np.pad(matrix, (frame.before + 1, still - frame.before - 1)) for pair, matrix in found.items()}

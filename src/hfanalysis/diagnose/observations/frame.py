@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.observations.flow_end import AROUND_END, flow_end_without_fuel, noted_flow_end
-from hfanalysis.diagnose.observations.recorded import LONGEST, log_end
+from hfanalysis.diagnose.observations.recorded import LONGEST, log_end, log_start
 from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
@@ -42,17 +42,27 @@ SETTLING, SHORTEST_REST, LONGEST_REST = 0.5, 0.4, 10.0
 REST_BLOCKS = 4
 """Blocks that such a rest is cut into."""
 
+BEFORE_BLOCKS, BEFORE_BLOCK, BEFORE_END = 8, 0.5, 0.1
+"""The rest before the opening: at most so many blocks of so many seconds, the last of which ends so long before it."""
+
+LEAST_BEFORE = 0.1
+"""Seconds of a shorter block where a log begins shortly before the opening; a still shorter rest tells nothing."""
+
 
 @dataclass(frozen=True)
 class Frame:
     """The common grid, the changes of phase (instant, deviation), and from when to when is compared [s].
 
-    ``filled``: the feed line is; ``ends`` of "chamber" (and thrust) and "tank"; ``fuel_out``: the end of the fuel where
-    the tank is compared beyond it; ``failing``: seconds before the end of the liquid in which the flow fails.
+    The grid has ``before`` wide blocks of the rest before the opening, the opening itself, points while something
+    flows, and wide blocks of the rest after it; ``width`` [s] of the wide ones, 0 of points. ``filled``: the feed line
+    is; ``ends`` of "chamber" (and thrust) and "tank"; ``fuel_out``: the end of the fuel where the tank is compared
+    beyond it; ``failing``: seconds before the end of the liquid in which the flow fails.
     """
 
     grid: Array
     resting: NDArray[np.bool_]
+    width: Array
+    before: int
     changes: Mapping[str, tuple[float, float]]
     start: float
     filled: float
@@ -63,6 +73,16 @@ class Frame:
     def end(self, channel: str) -> float:
         """Where the comparison of a channel ends [s]."""
         return self.ends["tank" if channel in TANK_SIDE else "chamber"]
+
+    @property
+    def flowing(self) -> slice:
+        """The points of the grid while something flows."""
+        return slice(self.before + 1, self.before + 1 + int((~self.resting).sum()))
+
+    @property
+    def after(self) -> slice:
+        """The blocks of the rest after the flow."""
+        return slice(self.flowing.stop, self.grid.size)
 
 
 def frame_of(
@@ -85,16 +105,29 @@ def frame_of(
     }
     over = noted_flow_end(definition, max(segments.time("t_end") or end, end))
     rest = _rest(log, origin, over if flow_end is None else max(over, flow_end))
-    burning = np.arange(0.5 * BLOCK, ends["tank"], BLOCK)
-    after: Array = np.zeros(0)
-    if rest is not None:
-        width = (rest[1] - rest[0]) / REST_BLOCKS
-        after = np.asarray(rest[0] + width * (np.arange(REST_BLOCKS) + 0.5), dtype=np.float64)
-    grid = np.concatenate([[0.0], burning, after])
+    before, burning = _before(log, origin), np.arange(0.5 * BLOCK, ends["tank"], BLOCK)
+    after = _blocks(*rest, REST_BLOCKS) if rest is not None else np.zeros((2, 0))
+    still = [before, np.zeros((2, 1)), np.stack([burning, np.zeros(burning.size)]), after]
+    grid, width = np.concatenate(still, axis=1)
     resting = np.ones(grid.size, dtype=bool)
-    resting[1 : 1 + burning.size] = False
+    resting[before.shape[1] + 1 : grid.size - after.shape[1]] = False
     filled = segments.time("t_feed") or 0.0
-    return Frame(grid, resting, changes, FIRST, filled, ends, fuel_out, failing)
+    return Frame(grid, resting, width, before.shape[1], changes, FIRST, filled, ends, fuel_out, failing)
+
+
+def _blocks(first: float, last: float, count: int) -> Array:
+    """Middles and widths (2, count) of the blocks that a stretch [s] is cut into."""
+    width = (last - first) / count
+    return np.stack([first + width * (np.arange(count) + 0.5), np.full(count, width)])
+
+
+def _before(log: TestLog, origin: float) -> Array:
+    """Middles and widths (2, blocks) of the blocks of the rest before the opening."""
+    rest = origin - BEFORE_END - log_start(log)
+    if rest < LEAST_BEFORE:
+        return np.zeros((2, 0))
+    count = min(max(int(rest / BEFORE_BLOCK), 1), BEFORE_BLOCKS)
+    return _blocks(-BEFORE_END - min(rest, count * BEFORE_BLOCK), -BEFORE_END, count)
 
 
 def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | None:

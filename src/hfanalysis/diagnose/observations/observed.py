@@ -86,13 +86,18 @@ class Channel:
         It is smooth (Matern, 3/2).
         """
         lag = self.time[:, None] - self.time[None, :]
-        burning = np.where(self.resting, 0.0, errors[self.name in TOGETHER] * float(np.ptp(self.value)))
+        burning = np.where(self.resting, 0.0, errors[self.name in TOGETHER] * range_of(self.time, self.value))
         smooth = np.sqrt(3.0) * np.abs(lag) / FORM_TIME
         return np.asarray((1.0 + smooth) * np.exp(-smooth) * np.outer(burning, burning))
 
     def averaged(self, rows: Array) -> Array:
         """Block means of rows (grid, ...) on the common grid."""
         return averaged(rows, self.first, self.count)
+
+
+def range_of(time: Array, value: Array) -> float:
+    """The range of a channel, from its largest value to the least since the opening: the open air is no part of it."""
+    return float(value.max() - value[time >= 0.0].min())
 
 
 def averaged(rows: Array, first: Integers, count: Integers) -> Array:

@@ -28,12 +28,14 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     signals = recorded(log, definition, origin)
     failing = failing_flow(signals, segments)
     frame = frame_of(log, segments, definition, origin, failing.seconds if failing is not None else 0.0)
-    blocks = {name: found for name, signal in signals.items() if (found := blocks_of(signal, frame)) is not None}
+    zeros = {name: log[name].zero_std for name in signals}
+    reduced = {name: blocks_of(signal, frame, zeros[name] is not None) for name, signal in signals.items()}
+    blocks = {name: found for name, found in reduced.items() if found is not None}
     if not {"p_tank", "p_chamber", "thrust"} & set(blocks):
         raise AbsentError("neither tank, chamber nor thrust was recorded: the model cannot be compared")
     shaken = oscillations(blocks, frame)
     channels = tuple(
-        channel_of(means, definition, frame, shaken.get((name, name)), log[name].zero_std)
+        channel_of(means, definition, frame, shaken.get((name, name)), zeros[name])
         for name, means in blocks.items()
     )
     end = frame.ends["chamber"]

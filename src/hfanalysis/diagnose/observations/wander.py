@@ -36,6 +36,9 @@ SLOW = 0.15
 FARTHEST = 40.0
 """By how much the log of a variance may differ from that of the whole reading's."""
 
+NARROW = 1e-3
+"""Of a process's time constant: a narrower mean is its value."""
+
 LEAST = 60
 """Blocks of quiet time from which on it is analysed."""
 
@@ -52,18 +55,33 @@ class Wander:
     variances: Array
     white: float
 
-    def covariance(self, time: Array) -> Array:
-        """Of block means at given times (n,): the wander's alone, without white noise."""
-        return self._of(time, TIMES > 0.0)
+    def covariance(self, time: Array, width: Array | float = 0.0) -> Array:
+        """Of means about given times (n,): the wander's alone, without white noise.
 
-    def slow(self, time: Array) -> Array:
+        ``width`` [s], one or (n,): of the means, which do not overlap; 0 where they are those that it was fitted to.
+        """
+        return self._of(time, width, TIMES > 0.0)
+
+    def slow(self, time: Array, width: Array | float = 0.0) -> Array:
         """The part of :meth:`covariance` that is of slow processes."""
-        return self._of(time, TIMES >= SLOW)
+        return self._of(time, width, TIMES >= SLOW)
 
-    def _of(self, time: Array, which: NDArray[np.bool_]) -> Array:
-        lag = np.abs(time[:, None] - time[None, :])
+    def _of(self, time: Array, width: Array | float, which: NDArray[np.bool_]) -> Array:
+        widths = np.broadcast_to(np.asarray(width, dtype=np.float64), time.shape)
         pairs = zip(self.variances[which], TIMES[which], strict=True)
-        return np.asarray(sum(v * np.exp(-lag / tau) for v, tau in pairs))
+        return np.asarray(sum(v * _correlation(time, widths / tau, float(tau)) for v, tau in pairs))
+
+
+def _correlation(time: Array, width: Array, tau: float) -> Array:
+    """Covariance of means of a process of unit variance, over parts ``width`` of its time constant: the integral of
+    exp(-lag) over both stretches."""
+    lag = np.abs(time[:, None] - time[None, :]) / tau - 0.5 * (width[:, None] + width[None, :])
+    wide = width > NARROW
+    safe = np.where(wide, width, 1.0)
+    share = np.where(wide, -np.expm1(-safe) / safe, 1.0)
+    out = np.exp(-np.maximum(lag, 0.0)) * np.outer(share, share)
+    np.fill_diagonal(out, np.where(wide, 2.0 * (safe + np.expm1(-safe)) / safe**2, 1.0))
+    return np.asarray(out)
 
 
 def roughness(wander: Wander, block: float) -> float:
