@@ -141,4 +141,3 @@ def _merged(good: NDArray[np.bool_], centers: Array, frame: Frame) -> tuple[Inte
         size.append(span)
         i += span
     return np.array(first, dtype=np.int64), np.array(size, dtype=np.int64)
-

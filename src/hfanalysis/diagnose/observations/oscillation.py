@@ -23,7 +23,7 @@ SMOOTHED = 25
 LAGS = 12
 """Blocks over which the oscillation is coherent at most."""
 
-UNEVEN = 0.3
+UNEVEN = 0.1
 """Part of the oscillation that its neighbours and the other channel do not foretell: it grows and fades."""
 
 WILD = 5.0

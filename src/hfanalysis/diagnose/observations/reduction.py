@@ -35,8 +35,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         raise AbsentError("neither tank, chamber nor thrust was recorded: the model cannot be compared")
     shaken = oscillations(blocks, frame)
     channels = tuple(
-        channel_of(means, definition, frame, shaken.get((name, name)), zeros[name])
-        for name, means in blocks.items()
+        channel_of(means, definition, frame, shaken.get((name, name)), zeros[name]) for name, means in blocks.items()
     )
     end = frame.ends["chamber"]
     return Observed(

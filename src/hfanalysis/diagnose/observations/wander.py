@@ -3,7 +3,7 @@
 Whether a sensor wanders over seconds (1/f) or forgets within tenths of a second decides how small a slow departure of
 the model can be seen. The variances of the processes, each correlated exponentially, come from the periodogram of the
 quiet time (Whittle's likelihood); between neighbouring time constants they change smoothly, so that what is slower than
-the quiet time is carried on from what it shows.
+the quiet time is carried on from what it shows. Their level is the mean of all that the quiet time leaves possible.
 """
 
 from __future__ import annotations
@@ -26,9 +26,17 @@ TIMES = np.array([0.02, 0.06, 0.18, 0.54, 1.6, 4.9, 15.0])
 ROUGH = 1.0
 """Standard deviation of the log of the ratio of neighbouring variances."""
 
-CAREFUL = 0.15
+USUAL = -3.0, 2.0
+"""Log of the variance of a process over that of a block's white noise, and how far sensors differ in it: at about 1 Hz
+the wander of a usual sensor is as strong as its white noise. It keeps a quiet time that happens to show none from
+meaning that there is none."""
+
+CAREFUL = 0.3
 """Log of the variances by which all are raised at last, in their posterior standard deviations: a quiet time that is
 too short misleads only where it shows too little."""
+
+LEVELS = np.linspace(-6.0, 6.0, 49)
+"""Logs of factors of all variances over which their level is averaged."""
 
 SLOW = 0.15
 """Time constant [s] from which on a process is slow: a quiet time of seconds holds few of its swings."""
@@ -104,7 +112,7 @@ def wander_of(signal: Signal, block: float) -> Wander:
 
 
 def _fitted(values: Array, step: float, white: float, flicker: float) -> Wander:
-    """Maximum of Whittle's likelihood with a smooth prior."""
+    """Maximum of Whittle's likelihood with a smooth prior, at the mean level that it leaves possible."""
     n = values.size
     frequency = np.fft.rfftfreq(n, step)[1 : (n - 1) // 2]
     power = 2.0 * step / n * np.abs(np.fft.rfft(values * _taper(n)))[1 : (n - 1) // 2] ** 2
@@ -115,14 +123,17 @@ def _fitted(values: Array, step: float, white: float, flicker: float) -> Wander:
     def cost(x: Array) -> float:
         model = np.exp(x[:-1]) @ shapes + np.exp(x[-1]) * floor
         prior = float(np.sum((np.diff(x[:-1]) / ROUGH) ** 2) + ((x[-1] - np.log(level)) / 10.0) ** 2)
+        prior += float(((x[:-1].mean() - x[-1] - USUAL[0]) / USUAL[1]) ** 2)
         return float(np.sum(np.log(model) + power / model)) + 0.5 * prior
 
     start = np.log(np.r_[np.full(TIMES.size, max(flicker, 1e-3 * level)), max(white**2, 1e-3 * level)])
     bounds = [(np.log(level) - FARTHEST, np.log(level) + FARTHEST)] * start.size
     best = minimize(cost, start, method="L-BFGS-B", bounds=bounds, options={"maxiter": 60}).x
-    return Wander(
-        np.exp(best[:-1]) * np.exp(CAREFUL / np.sqrt(1.0 + frequency.size / 40.0)), float(np.exp(0.5 * best[-1]))
-    )
+    costs = np.array([cost(np.r_[best[:-1] + shift, best[-1]]) for shift in LEVELS])
+    weights = np.exp(costs.min() - costs)
+    mean = float(weights @ np.exp(LEVELS) / weights.sum())
+    mean *= float(np.exp(CAREFUL / np.sqrt(1.0 + frequency.size / 40.0)))
+    return Wander(mean * np.exp(best[:-1]), float(np.exp(0.5 * best[-1])))
 
 
 def _taper(n: int) -> Array:
