@@ -12,7 +12,7 @@ from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import Verdict, effects_product, places, sizes, upper_limits, verdict_of
 from hfanalysis.diagnose.answer.words import story
-from hfanalysis.diagnose.fitting.fade import abrupt_end
+from hfanalysis.diagnose.fitting.fade import abrupt_end, with_abrupt_end
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
@@ -80,9 +80,10 @@ def diagnose(
 
     Raises AbsentError where no engine is stated or too little was recorded.
     """
-    observed = subject.observed()
+    hypothesis = subject.hypothesis()
+    observed = with_abrupt_end(subject.observed(), hypothesis.engine)
     catalogue = Catalogue(_visible(effects, observed), subject.stated())
-    found = name_effects(subject.hypothesis(), observed, catalogue, progress, settings)
+    found = name_effects(hypothesis, observed, catalogue, progress, settings)
     verdict = verdict_of(found)
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
@@ -167,7 +168,7 @@ def _fade(base: Candidate, observed: Observed) -> dict[str, Any]:
     if FADE not in observed.stated:
         return {}
     seconds, log_std = observed.stated[FADE]
-    abrupt = abrupt_end(base.fit.burnt.steps.engine)
+    abrupt = observed.abrupt or abrupt_end(base.fit.burnt.steps.engine)
     return {FADE: Quantity(seconds, "s", seconds * log_std), "abrupt_end": Quantity(abrupt, "s")}
 
 

@@ -80,6 +80,7 @@ def _other(context: Context) -> OtherTest | None:
     would wait for each other's lock for ever.
     """
     from hfanalysis.diagnose.answer.proof import OtherTest
+    from hfanalysis.diagnose.fitting.fade import with_abrupt_end
     from hfanalysis.stages.freshness import STATE
     from hfanalysis.stages.opening import open_test
     from hfanalysis.stages.runner import run_to
@@ -90,7 +91,8 @@ def _other(context: Context) -> OtherTest | None:
         try:
             other = run_to("calibrate", open_test(context.root, name, folder, progress=context.progress))
             subject = subject_of(other)
-            return OtherTest(name, subject.hypothesis(), subject.observed())
+            hypothesis = subject.hypothesis()
+            return OtherTest(name, hypothesis, with_abrupt_end(subject.observed(), hypothesis.engine))
         except AnalysisError as error:
             if asked:
                 raise InputError(f"diagnose.proof_test: {asked} cannot prove anything: {error}") from None

@@ -9,9 +9,9 @@ from hypothesis import strategies as some
 from tests.diagnose import logged, made
 from tests.engine.stand import engine_on_stand
 
-from hfanalysis.diagnose.fitting.fade import abrupt_end, fade_misfit, fade_slope
+from hfanalysis.diagnose.fitting.fade import FARTHEST, abrupt_end, bounded, fade_misfit, fade_slope, with_abrupt_end
 from hfanalysis.diagnose.fitting.fit import fit
-from hfanalysis.diagnose.observations.burn_out import UNSURE, fade_of
+from hfanalysis.diagnose.observations.burn_out import LAG, UNSURE, fade_of
 from hfanalysis.diagnose.observations.observed import FADE
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
@@ -40,7 +40,7 @@ def test_a_fall_is_timed(seconds: float) -> None:
     found = fade_of(falling(seconds, seconds), SEGMENTS)
     assert found is not None
     assert found[0] == pytest.approx(seconds, rel=0.3)
-    assert UNSURE <= found[1] < 1.2 * UNSURE
+    assert found[1] == pytest.approx(np.hypot(UNSURE, np.hypot(LAG, 2.0 * STEP) / found[0]))
 
 
 def test_a_slow_line_to_the_chambers_sensor_is_no_slow_fall() -> None:
@@ -62,10 +62,21 @@ def sliver(depth: float, width: float) -> Active:
 
 
 def test_a_fall_as_fast_as_a_chamber_empties_is_what_the_base_model_has() -> None:
-    engine = engine_on_stand()
-    assert fade_misfit(0.5 * abrupt_end(engine), engine, SPEED) == 0.0
-    assert fade_misfit(4.0 * abrupt_end(engine), engine, SPEED) == pytest.approx(np.log(4.0))
-    assert fade_misfit(4.0 * abrupt_end(engine), engine_on_stand(effects=(sliver(0.0, 1e-3),)), SPEED) > 1.0
+    engine, abrupt = engine_on_stand(), 0.012
+    assert fade_misfit(0.5 * abrupt, abrupt, engine, SPEED) == 0.0
+    assert fade_misfit(4.0 * abrupt, abrupt, engine, SPEED) == pytest.approx(np.log(4.0))
+    assert fade_misfit(4.0 * abrupt, abrupt, engine_on_stand(effects=(sliver(0.0, 1e-3),)), SPEED) > 1.0
+
+
+def test_an_abrupt_end_is_timed_in_a_run_as_in_the_samples() -> None:
+    """A wider throat empties the chamber faster, and one that burns a little longer is no other chamber."""
+    quick = made.replace(made.observed(), stated={FADE: (0.05, UNSURE)})
+    found = with_abrupt_end(quick, made.hypothesis().engine).abrupt
+    assert found is not None
+    assert 0.2 * abrupt_end(made.hypothesis().engine) < found < 1.5 * abrupt_end(made.hypothesis().engine)
+    roomy = made.replace(made.hypothesis().engine, dead_volume=made.hypothesis().engine.dead_volume + 5e-3)
+    assert (with_abrupt_end(quick, roomy).abrupt or 0.0) > 1.5 * found
+    assert with_abrupt_end(made.observed(), roomy).abrupt is None
 
 
 @given(some.floats(0.45, 0.9), some.floats(5e-5, 5e-3), some.sampled_from(["depth", "width"]))
@@ -73,12 +84,22 @@ def test_slopes_of_a_fade_are_its_derivatives(depth: float, width: float, moved:
     at = {"depth": depth, "width": width}
     step = 1e-4 * at[moved]
     ahead, behind = (
-        fade_misfit(0.5, engine_on_stand(effects=(sliver(**(at | {moved: at[moved] + side * step})),)), SPEED)
+        fade_misfit(0.5, 0.012, engine_on_stand(effects=(sliver(**(at | {moved: at[moved] + side * step})),)), SPEED)
         for side in (1.0, -1.0)
     )
     engine = engine_on_stand(effects=(sliver(**at),))
-    assert fade_slope(f"fuel_sliver.{moved}", engine, SPEED) == pytest.approx((ahead - behind) / (2.0 * step), rel=1e-3)
-    assert fade_slope("a", engine, SPEED) == 0.0
+    slope = fade_slope(f"fuel_sliver.{moved}", 0.012, engine, SPEED)
+    assert slope == pytest.approx((ahead - behind) / (2.0 * step), rel=1e-3)
+    assert fade_slope("a", 0.012, engine, SPEED) == 0.0
+
+
+@given(some.floats(-50.0, 50.0))
+def test_a_slow_fall_says_only_so_much(misfit: float) -> None:
+    held, slope = bounded(misfit)
+    assert abs(held) <= min(abs(misfit), FARTHEST)
+    step = 1e-4
+    assert slope == pytest.approx((bounded(misfit + step)[0] - bounded(misfit - step)[0]) / (2.0 * step), abs=1e-6)
+    assert bounded(0.1)[0] == pytest.approx(0.1, rel=1e-3)
 
 
 def test_a_fire_that_dies_slowly_speaks_for_slivers() -> None:

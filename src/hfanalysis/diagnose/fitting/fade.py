@@ -2,15 +2,62 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import log, pi
 
-from hfanalysis.engine.unsteady import Engine
+import numpy as np
+
+from hfanalysis.diagnose.observations.burn_out import AFTER, BEFORE, CLEAR, fall_of
+from hfanalysis.diagnose.observations.observed import FADE, Observed
+from hfanalysis.diagnose.observations.recorded import TOGETHER
+from hfanalysis.engine.observe import true_channels
+from hfanalysis.engine.unsteady import Engine, burn
+from hfanalysis.segment.signals import Signal
 
 FALL = 2.2
 """Time constants in which something that decays falls from 90 to 10 %."""
 
 CHARACTERISTIC_VELOCITY, CHOKED_FLOW = 1500.0, 0.42
 """Typical c* [m/s] of nitrous oxide and paraffin, and the square of Vandenkerckhove's function of its gas."""
+
+FARTHEST = 6.0
+"""Standard deviations beyond which a slow fall says no more: it may have a reason that nobody thought of."""
+
+STEP = 1e-3
+"""Seconds between the readings at which a model's fall is timed."""
+
+
+def with_abrupt_end(observed: Observed, engine: Engine) -> Observed:
+    """The observations with the time in which chamber pressure and thrust of an engine fall whose fire is out at once.
+
+    It is timed in a run as it is in the samples; an engine that cannot be run, or does not burn up to the measured end
+    of the fuel, leaves it open.
+    """
+    if FADE not in observed.stated:
+        return observed
+    gone = observed.events["t_fuel_out"][0]
+    ends_at_once = replace(engine, effects=(), spare_web=engine.outer_radius, fuel_end=gone)
+    try:
+        burnt = burn(ends_at_once, gone + 2.0 * AFTER, run_on=True, keep_idle=True)
+    except (ValueError, ArithmeticError):
+        return observed
+    start, end = gone - BEFORE, min(gone + AFTER, float(burnt.steps.times[-1, 1]))
+    if burnt.liquid_out is not None:
+        dry = burnt.liquid_out
+        start, end = (max(start, dry + CLEAR), end) if dry < gone else (start, min(end, dry - CLEAR))
+    time = np.arange(start, end, STEP)
+    if time.size == 0 or start < 0.0:
+        return observed
+    read = true_channels(burnt, time)
+    falls = [fall_of(Signal(name, time, read[name], 0.0, STEP), gone) for name in TOGETHER]
+    known = [seconds for seconds in falls if seconds is not None]
+    return replace(observed, abrupt=min(known)) if len(known) == len(falls) else observed
+
+
+def bounded(misfit: float) -> tuple[float, float]:
+    """A misfit in standard deviations that nears FARTHEST as it grows, and its slope: one number proves no name."""
+    grown = 1.0 + (misfit / FARTHEST) ** 2
+    return misfit / grown**0.5, grown**-1.5
 
 
 def abrupt_end(engine: Engine) -> float:
@@ -19,15 +66,15 @@ def abrupt_end(engine: Engine) -> float:
     return FALL * volume / (engine.throat_area * CHOKED_FLOW * CHARACTERISTIC_VELOCITY)
 
 
-def fade_misfit(seconds: float, engine: Engine, speed: float) -> float:
-    """Log of the measured over the modelled time in which the fire goes out; 0 for falls faster than an abrupt one.
+def fade_misfit(seconds: float, abrupt: float, engine: Engine, speed: float) -> float:
+    """Log of the measured over the modelled time in which the fire goes out; 0 for falls faster than an ``abrupt`` one.
 
-    ``speed``: typical regression [m/s].
+    ``speed``: regression at the end [m/s].
     """
-    return log(max(seconds, abrupt_end(engine)) / _modelled(engine, speed))
+    return log(max(seconds, abrupt) / _modelled(abrupt, engine, speed))
 
 
-def fade_slope(name: str, engine: Engine, speed: float) -> float:
+def fade_slope(name: str, abrupt: float, engine: Engine, speed: float) -> float:
     """Derivative of :func:`fade_misfit` with a parameter ``EFFECT.PARAMETER`` [SI]."""
     effect, _, parameter = name.partition(".")
     for active in engine.effects:
@@ -35,11 +82,11 @@ def fade_slope(name: str, engine: Engine, speed: float) -> float:
             step = 1e-4 * next(p.typical for p in active.effect.parameters if p.name == parameter)
             more = active.named | {parameter: active.named[parameter] + step}
             wider = active.effect.fading_web(more) - active.effect.fading_web(active.named)
-            return -wider / step / speed / _modelled(engine, speed)
+            return -wider / step / speed / _modelled(abrupt, engine, speed)
     return 0.0
 
 
-def _modelled(engine: Engine, speed: float) -> float:
+def _modelled(abrupt: float, engine: Engine, speed: float) -> float:
     """Seconds in which the fire of a model goes out."""
     webs = [a.effect.fading_web(a.named) for a in engine.effects if a.effect.fading_web is not None]
-    return abrupt_end(engine) + sum(webs) / speed
+    return abrupt + sum(webs) / speed

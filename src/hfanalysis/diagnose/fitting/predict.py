@@ -9,7 +9,7 @@ from math import inf, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fade import fade_misfit, fade_slope
+from hfanalysis.diagnose.fitting.fade import abrupt_end, bounded, fade_misfit, fade_slope
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.probe import Splines
 from hfanalysis.diagnose.observations.alignment import model_times, share
@@ -121,7 +121,8 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
             web = hypothesis.engine.outer_radius - float(burnt.steps.at(np.array([at]))[0][0, RADIUS])
             scalars.append(web / (deviation * _typical_regression(hypothesis, at)))
     for name, (value, deviation) in observed.stated.items():
-        scalars.append(_missed(name, value, hypothesis, burnt, observed) / deviation)
+        missed = _missed(name, value, hypothesis, burnt, observed) / deviation
+        scalars.append(bounded(missed)[0] if name == FADE else missed)
     return np.concatenate([observed.whiten(raw), np.array(scalars)])
 
 
@@ -159,8 +160,11 @@ def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Ar
         else:
             unit = deviation * _typical_regression(hypothesis, at)
             rows.append(-found.output("port_radius", np.array([at]))[0] / unit)
-    for name, (_, deviation) in observed.stated.items():
-        rows.append(_missed_slopes(name, hypothesis, found, observed) / deviation)
+    for name, (value, deviation) in observed.stated.items():
+        slopes = _missed_slopes(name, hypothesis, found, observed) / deviation
+        if name == FADE:
+            slopes = slopes * bounded(_missed(name, value, hypothesis, found.burn, observed) / deviation)[1]
+        rows.append(slopes)
     return np.concatenate([white, *(row[np.newaxis] for row in rows)])
 
 
@@ -221,7 +225,9 @@ def _missed(name: str, value: float, hypothesis: Hypothesis, burnt: Burn, observ
     """By how much the model misses something that was not read from the channels' blocks (SI; of a fade the log)."""
     if name != FADE:
         return value - _after(name, burnt, observed)
-    return fade_misfit(value, burnt.steps.engine, _last_regression(burnt, observed.events["t_fuel_out"][0]))
+    engine = burnt.steps.engine
+    speed = _last_regression(burnt, observed.events["t_fuel_out"][0])
+    return fade_misfit(value, observed.abrupt or abrupt_end(engine), engine, speed)
 
 
 def _missed_slopes(name: str, hypothesis: Hypothesis, found: Tangents, observed: Observed) -> Array:
@@ -229,7 +235,9 @@ def _missed_slopes(name: str, hypothesis: Hypothesis, found: Tangents, observed:
     if name != FADE:
         return -_after_slopes(name, found, observed)
     speed = _last_regression(found.burn, observed.events["t_fuel_out"][0])
-    return np.array([fade_slope(parameter, found.burn.steps.engine, speed) for parameter in found.parameters])
+    engine = found.burn.steps.engine
+    abrupt = observed.abrupt or abrupt_end(engine)
+    return np.array([fade_slope(parameter, abrupt, engine, speed) for parameter in found.parameters])
 
 
 def _after(name: str, burnt: Burn, observed: Observed) -> float:

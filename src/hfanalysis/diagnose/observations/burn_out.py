@@ -36,8 +36,9 @@ SHORTEST = 10
 SHARP = 0.05
 """Standard deviation [s] of the fuel's end above which it is no fall but a slope that blocks show."""
 
-UNSURE = 0.35
-"""Standard deviation of the log of a fall's duration: the line to the sensor, the load cell's mount, the flush."""
+UNSURE, LAG = 0.2, 5e-3
+"""Standard deviation of the log of a fall's duration, for the flush is no straight ramp; and the seconds by which what
+is between the chamber and both sensors may slow a fall, the line to the one and the mount of the other."""
 
 
 def fade_of(signals: Mapping[str, Signal], segments: Segments) -> tuple[float, float] | None:
@@ -52,15 +53,16 @@ def fade_of(signals: Mapping[str, Signal], segments: Segments) -> tuple[float, f
     if t_v is not None:
         start, end = (max(start, t_v + CLEAR), end) if t_v < gone else (start, min(end, t_v - CLEAR))
     read = [signals[name].between(start, end) for name in TOGETHER]
-    found = [_fall(part, gone) for part in read]
+    found = [fall_of(part, gone) for part in read]
     if None in found:
         return None
     seconds = min(d for d in found if d is not None)
-    return seconds, float(np.hypot(UNSURE, 2.0 * max(part.step for part in read) / seconds))
+    slowed = float(np.hypot(LAG, 2.0 * max(part.step for part in read)))
+    return seconds, float(np.hypot(UNSURE, slowed / seconds))
 
 
-def _fall(part: Signal, gone: float) -> float | None:
-    """Seconds of the ramp between two straight lines that fits best; None where it is not resolved."""
+def fall_of(part: Signal, gone: float) -> float | None:
+    """Seconds of the ramp between two straight lines that fits best about ``gone``; None where it is not resolved."""
     starts = gone + np.linspace(EARLIEST, LATEST, INSTANTS)
     if (part.time < starts[0]).sum() < SHORTEST or (part.time > starts[-1]).sum() < SHORTEST:
         return None

@@ -129,7 +129,8 @@ class Observed:
     measured end, at which that of every model ends. ``stated``: what was measured outside the log (SI), or in it beside
     the blocks (FADE), with standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if
     both are there. ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and
-    thrust. ``plain``: what is plain in the samples without a model, and is in no model.
+    thrust. ``plain``: what is plain in the samples without a model, and is in no model. ``abrupt``: the seconds that
+    FADE would be if the fire were out at once, where a model was asked.
     """
 
     channels: tuple[Channel, ...]
@@ -145,6 +146,7 @@ class Observed:
     errors: tuple[float, float] = (FORM_ERROR, CHAMBER_FORM * FORM_ERROR)
     fuel_out: float | None = None
     plain: tuple[Plain, ...] = ()
+    abrupt: float | None = None
 
     def with_errors(self, tank: float, chamber: float) -> Observed:
         """The same with another model-form error."""
