@@ -100,10 +100,12 @@ def test_sensors_with_a_zero_are_compared_at_rest_before_the_opening() -> None:
     assert run.value[run.resting] == pytest.approx(test.ambient, abs=1e3)
 
 
-def test_a_zero_that_moves_before_the_opening_is_not_compared() -> None:
-    """An igniter that burns before the valve opens."""
+@pytest.mark.parametrize(("start", "end", "rise"), [(-1.5, 0.0, 5e4), (-0.7, -0.3, 1e5)])
+def test_a_zero_that_moves_before_the_opening_is_not_compared(start: float, end: float, rise: float) -> None:
+    """An igniter that burns before the valve opens, or flashes [Pa/s]."""
     time = logged.clean()[0]
-    test = logged.reduced(zeroed(logged.log(plus={"p_chamber": np.where(time > -1.5, 5e4 * (time + 1.5), 0.0)})))
+    burns = np.where((time > start) & (time < end), rise * (time - start), 0.0)
+    test = logged.reduced(zeroed(logged.log(plus={"p_chamber": burns})))
     assert not (channel(test, "p_chamber").resting & (channel(test, "p_chamber").time < 0.0)).any()
     assert (channel(test, "thrust").resting & (channel(test, "thrust").time < 0.0)).sum() == 7
 

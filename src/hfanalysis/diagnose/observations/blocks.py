@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +24,8 @@ TANK_AT_REST, TANK_REST = ("p_tank", "m_tank"), 1.2
 """Channels that show the tank at rest before the opening, and the seconds of it that are looked at: a tank is filled
 before, and warms."""
 
-STEADY = 3.0
-"""Standard deviations that the halves of a rest may differ by."""
+STEADY, JUMP = 3.0, 4.5
+"""Standard deviations that the halves of a rest may differ by, and neighbouring blocks of it: an igniter may burn."""
 
 AT_REST = ("p_chamber", "thrust")
 """Channels whose true value is known once the flow has ended."""
@@ -98,11 +99,16 @@ def _before(signal: Signal, frame: Frame, zeroed: bool) -> Integers:
 
 def _stands(signal: Signal, frame: Frame, rows: Integers) -> bool:
     """Whether a sensor's reading stands still from the first to the last of these blocks."""
-    edges = frame.grid[rows[[0, -1]]] + 0.5 * frame.width[rows[[0, -1]]] * np.array([-1.0, 1.0])
-    first, half, last = float(edges[0]), float(edges.mean()), float(edges[1])
-    noise = Noise.of(signal, signal.between(-LONGEST, last))
-    moved = signal.mean(first, half) - signal.mean(half, last)
-    return bool(abs(moved) <= STEADY * noise.difference_std((first, half), (half, last)))
+    begin, end = (frame.grid[rows] + side * frame.width[rows] for side in (-0.5, 0.5))
+    half = float(0.5 * (begin[0] + end[-1]))
+    noise = Noise.of(signal, signal.between(-LONGEST, half))
+
+    def same(one: tuple[float, float], two: tuple[float, float], most: float) -> bool:
+        return abs(signal.mean(*one) - signal.mean(*two)) <= most * noise.difference_std(one, two)
+
+    blocks = [(float(a), float(b)) for a, b in zip(begin, end, strict=True)]
+    halves = same((float(begin[0]), half), (half, float(end[-1])), STEADY)
+    return halves and all(same(one, two, JUMP) for one, two in pairwise(blocks))
 
 
 def _after(signal: Signal, frame: Frame) -> Integers:
