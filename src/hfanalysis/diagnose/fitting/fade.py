@@ -56,8 +56,8 @@ def with_abrupt_end(observed: Observed, engine: Engine) -> Observed:
 
 def bounded(misfit: float) -> tuple[float, float]:
     """A misfit in standard deviations that nears FARTHEST as it grows, and its slope: one number proves no name."""
-    grown = 1.0 + (misfit / FARTHEST) ** 2
-    return misfit / grown**0.5, grown**-1.5
+    grown = 1.0 + (misfit / FARTHEST) ** 4
+    return misfit / grown**0.25, grown**-1.25
 
 
 def abrupt_end(engine: Engine) -> float:
