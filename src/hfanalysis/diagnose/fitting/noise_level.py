@@ -24,8 +24,9 @@ UNSURE = 0.4
 FARTHEST = 1.2
 """Log of a factor beyond which none is thought of."""
 
-STEPS, STRIDE, CONVERGED = 12, 0.5, 1e-3
-"""Of Fisher's scoring: its steps, the longest of them, and the shortest that is worth one, in logs of factors."""
+STEPS, STRIDE, CONVERGED = 12, 0.5, 1e-2
+"""Of Fisher's scoring: its steps, the longest of them, and the shortest that is worth one, in logs of factors: what is
+left beyond it is worth some 1e-3 of log evidence."""
 
 
 def louder_or_quieter(residual: Array, slopes: Array, x: Array, noise: SlowNoise) -> float:

@@ -48,8 +48,8 @@ def channel_of(
     wander = wander_of(blocks.signal, BLOCK)
     own = _own(blocks, frame, shaken, wander)
     moved = _moved_by_knee(blocks, frame)
-    covariance = own + _zero_and_span(blocks, resting, accuracy, zero_std) + np.outer(moved, moved)
-    covariance = covariance + _filling(blocks, frame, resting)
+    sensor = _zero_and_span(blocks, resting, accuracy, zero_std)
+    covariance = own + sensor + np.outer(moved, moved) + _filling(blocks, frame, resting)
     for cold in _without_fire(blocks, frame):
         covariance = covariance + np.outer(cold, cold)
     std = np.sqrt(own.diagonal())
@@ -185,5 +185,5 @@ def _shaken(shaken: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, str],
         level = np.ones(usable.size)
     stds = {name: wander_of(r.signal, BLOCK).white for name, r in shaken.items()}
     found = oscillation({name: r.fine for name, r in shaken.items()}, level, usable, stds)
-    still = int(frame.resting.sum())
-    return {pair: np.pad(matrix, (frame.before + 1, still - frame.before - 1)) for pair, matrix in found.items()}
+    around = (frame.flowing.start, frame.grid.size - frame.flowing.stop)
+    return {pair: np.pad(matrix, around) for pair, matrix in found.items()}

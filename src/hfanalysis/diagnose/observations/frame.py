@@ -107,8 +107,8 @@ def frame_of(
     rest = _rest(log, origin, over if flow_end is None else max(over, flow_end))
     before, burning = _before(log, origin), np.arange(0.5 * BLOCK, ends["tank"], BLOCK)
     after = _blocks(*rest, REST_BLOCKS) if rest is not None else np.zeros((2, 0))
-    still = [before, np.zeros((2, 1)), np.stack([burning, np.zeros(burning.size)]), after]
-    grid, width = np.concatenate(still, axis=1)
+    opening, points = np.zeros((2, 1)), np.stack([burning, np.zeros(burning.size)])
+    grid, width = np.concatenate([before, opening, points, after], axis=1)
     resting = np.ones(grid.size, dtype=bool)
     resting[before.shape[1] + 1 : grid.size - after.shape[1]] = False
     filled = segments.time("t_feed") or 0.0

@@ -50,9 +50,9 @@ class Channel:
     """Block means of one channel: ``time`` [s after the opening], ``value`` and stated ``accuracy`` [SI].
 
     ``first`` and ``count`` say which points of the common grid are averaged into each block. ``covariance`` is that of
-    sensor noise, oscillation, bias and gain. ``resting`` blocks lie after the end of the flow. ``coherence``: blocks
-    whose noise is worth one independent value. ``slow``: the part of the covariance that is slow noise, whose size a
-    quiet time of seconds does not tell exactly; None where there is none.
+    sensor noise, oscillation, bias and gain. ``resting`` blocks lie before the opening or after the end of the flow.
+    ``coherence``: blocks whose noise is worth one independent value. ``slow``: the part of the covariance that is slow
+    noise, whose size a quiet time of seconds does not tell exactly; None where there is none.
     """
 
     name: str
@@ -124,13 +124,13 @@ Plain = Delay | FailingFlow | SlowOpening | Swing
 class Observed:
     """The channels of a test, the instants of its phase changes with their deviations [s], and when it ends [s].
 
-    ``grid`` [s]: points at which a model is asked: at the opening, through the flow, and ``resting`` ones after it (the
-    first, too, stands for the time before). ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its
-    measured end, at which that of every model ends. ``stated``: what was measured outside the log (SI), or in it beside
-    the blocks (FADE), with standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if
-    both are there. ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and
-    thrust. ``plain``: what is plain in the samples without a model, and is in no model. ``abrupt``: the seconds that
-    FADE would be if the fire were out at once, where a model was asked.
+    ``grid`` [s]: points at which a model is asked: through the flow, and ``resting`` ones before it, at the opening and
+    after it. ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its measured end, at which that of
+    every model ends. ``stated``: what was measured outside the log (SI), or in it beside the blocks (FADE), with
+    standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there.
+    ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``plain``:
+    what is plain in the samples without a model, and is in no model. ``abrupt``: the seconds that FADE would be if the
+    fire were out at once, where a model was asked.
     """
 
     channels: tuple[Channel, ...]
