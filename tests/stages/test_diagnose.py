@@ -47,7 +47,7 @@ def test_two_tests_that_prove_each_other_do_not_wait_for_each_other(
         worked.append(other.out)
         return other
 
-    subject = SimpleNamespace(hypothesis=lambda: None, observed=lambda: None)
+    subject = SimpleNamespace(compared=lambda: (None, None))
     monkeypatch.setattr("hfanalysis.stages.runner.run_to", bring)
     monkeypatch.setattr(stage, "subject_of", lambda _context: subject)
     for name, other in (("HF5", "HF4"), ("HF4", "HF5")):

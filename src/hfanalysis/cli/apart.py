@@ -29,7 +29,7 @@ def apart(test: str, root: Path, out: Path | None, as_json: bool) -> None:
     context = bring("calibrate", Request(test, root, out, as_json, force=False, quiet=False))
     subject, found = subject_of(context), library(root / FOLDER)
     try:
-        outlook = look_ahead(subject.hypothesis(), subject.observed(), Catalogue(found, subject.stated()))
+        outlook = look_ahead(*subject.compared(), Catalogue(found, subject.stated()))
     except (ValueError, ArithmeticError) as error:
         raise AbsentError(f"{test}: the calibrated engine cannot be run: {error}") from error
     product = product_of(test, outlook)

@@ -59,6 +59,11 @@ class Subject:
         full = run_full(self.log, self.segments, self.calibration, self.definition)
         return base_hypothesis(full.engine, self.calibration, self.definition.model.conventions != "report")
 
+    def compared(self) -> tuple[Hypothesis, Observed]:
+        """The base model and the observations, with what only the model says of these."""
+        hypothesis = self.hypothesis()
+        return hypothesis, with_abrupt_end(self.observed(), hypothesis.engine)
+
 
 @dataclass(frozen=True)
 class Diagnosis:
@@ -80,8 +85,7 @@ def diagnose(
 
     Raises AbsentError where no engine is stated or too little was recorded.
     """
-    hypothesis = subject.hypothesis()
-    observed = with_abrupt_end(subject.observed(), hypothesis.engine)
+    hypothesis, observed = subject.compared()
     catalogue = Catalogue(_visible(effects, observed), subject.stated())
     found = name_effects(hypothesis, observed, catalogue, progress, settings)
     verdict = verdict_of(found)

@@ -80,7 +80,6 @@ def _other(context: Context) -> OtherTest | None:
     would wait for each other's lock for ever.
     """
     from hfanalysis.diagnose.answer.proof import OtherTest
-    from hfanalysis.diagnose.fitting.fade import with_abrupt_end
     from hfanalysis.stages.freshness import STATE
     from hfanalysis.stages.opening import open_test
     from hfanalysis.stages.runner import run_to
@@ -90,9 +89,7 @@ def _other(context: Context) -> OtherTest | None:
     for name in [asked] if asked else _siblings(context):
         try:
             other = run_to("calibrate", open_test(context.root, name, folder, progress=context.progress))
-            subject = subject_of(other)
-            hypothesis = subject.hypothesis()
-            return OtherTest(name, hypothesis, with_abrupt_end(subject.observed(), hypothesis.engine))
+            return OtherTest(name, *subject_of(other).compared())
         except AnalysisError as error:
             if asked:
                 raise InputError(f"diagnose.proof_test: {asked} cannot prove anything: {error}") from None
