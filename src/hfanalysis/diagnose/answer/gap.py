@@ -2,7 +2,8 @@
 
 Where a sensor's offset and gain are uncertain, what they explain is no gap of the model: it is taken off first. The gap
 is what is left beyond the noise: sqrt(max(0, rms^2 - noise^2)). The mean square of noise varies by chance, the more the
-slower it is: where fractions are taken, an excess that chance makes of no gap counts as none, before and after.
+slower it is, and how large slow noise is a quiet time tells to a factor only: where fractions are taken, an excess that
+either makes of no gap counts as none, before and after.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.noise_level import UNSURE
 from hfanalysis.diagnose.fitting.predict import readings
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import SHORT, attempted
@@ -93,8 +95,15 @@ def total_gap(found: Fit, observed: Observed, where: dict[str, NDArray[np.bool_]
         if mask.any():
             noise = float(np.mean(c.noise_std[mask] ** 2))
             excess = float(np.mean(left[c.name][mask] ** 2)) / noise - 1.0
-            total += excess if excess > CHANCE * float(np.sqrt(2.0 * c.coherence / mask.sum())) else 0.0
+            total += excess if excess > CHANCE * _chance(c, mask, noise) else 0.0
     return float(np.sqrt(total))
+
+
+def _chance(channel: Channel, mask: NDArray[np.bool_], noise: float) -> float:
+    """Standard deviation of the mean square of noise over ``noise``: by chance, and for its slow part is known to a
+    factor only, as the evidence has it."""
+    slow = 0.0 if channel.slow is None else float(np.mean(channel.slow.diagonal()[mask])) / noise
+    return float(np.hypot(np.sqrt(2.0 * channel.coherence / mask.sum()), 2.0 * UNSURE * min(slow, 1.0)))
 
 
 def closed(before: float, after: float) -> float | None:
