@@ -345,3 +345,15 @@ def test_slow_noise_may_stray_further_by_chance() -> None:
     slower = tuple(replace(c, coherence=20.0) for c in louder)
     assert gap.total_gap(found, replace(test, channels=louder)) > 0.5
     assert gap.total_gap(found, replace(test, channels=slower)) == 0.0
+
+
+def test_what_slow_noise_may_be_larger_by_is_no_gap() -> None:
+    """A quiet time tells its size to a factor only; that of white noise it tells."""
+    test = made.observed()
+    found = fit(made.hypothesis(), test)
+    louder = tuple(replace(c, noise_std=0.85 * c.noise_std) for c in test.channels)
+    slow, hardly = (tuple(replace(c, slow=share * np.diag(c.noise_std**2)) for c in louder) for share in (0.8, 0.05))
+    assert gap.total_gap(found, replace(test, channels=slow)) == 0.0
+    assert gap.total_gap(found, replace(test, channels=hardly)) > 0.5
+    far = tuple(replace(c, noise_std=0.5 * c.noise_std, slow=0.2 * np.diag(c.noise_std**2)) for c in test.channels)
+    assert gap.total_gap(found, replace(test, channels=far)) > 0.5
