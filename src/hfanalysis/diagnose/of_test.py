@@ -12,7 +12,7 @@ from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import Verdict, effects_product, places, sizes, upper_limits, verdict_of
 from hfanalysis.diagnose.answer.words import story
-from hfanalysis.diagnose.fitting.fade import abrupt_end, with_abrupt_end
+from hfanalysis.diagnose.fitting.fade import abrupt, with_abrupt_end
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
@@ -172,8 +172,8 @@ def _fade(base: Candidate, observed: Observed) -> dict[str, Any]:
     if FADE not in observed.stated:
         return {}
     seconds, log_std = observed.stated[FADE]
-    abrupt = observed.abrupt or abrupt_end(base.fit.burnt.steps.engine)
-    return {FADE: Quantity(seconds, "s", seconds * log_std), "abrupt_end": Quantity(abrupt, "s")}
+    at_once = abrupt(observed, base.fit.burnt.steps.engine)
+    return {FADE: Quantity(seconds, "s", seconds * log_std), "abrupt_end": Quantity(at_once, "s")}
 
 
 def _gap(base: Candidate, chosen: Candidate, proof: Proof, observed: Observed) -> dict[str, Any]:

@@ -69,7 +69,7 @@ def test_a_fall_as_fast_as_a_chamber_empties_is_what_the_base_model_has() -> Non
 
 
 def test_an_abrupt_end_is_timed_in_a_run_as_in_the_samples() -> None:
-    """A wider throat empties the chamber faster, and one that burns a little longer is no other chamber."""
+    """A roomier chamber takes longer to empty; where no fade was measured nothing is timed."""
     quick = made.replace(made.observed(), stated={FADE: (0.05, UNSURE)})
     found = with_abrupt_end(quick, made.hypothesis().engine).abrupt
     assert found is not None

@@ -27,8 +27,8 @@ FOLDS, FOLD_TIME = 2, 0.5
 """Interleaved parts of the data that are held out in turn, and the seconds that each stretch of them lasts."""
 
 CHANCE = 2.0
-"""Standard deviations of the mean square of noise beyond which an excess is no chance: one in nine tests of five
-channels has one all the same."""
+"""Standard deviations of the mean square of noise beyond which an excess is no chance. Were it normal, one in nine
+tests of five channels would have one by chance alone."""
 
 LEAST_GAP = 0.5
 """Gap, in units of the noise, below which there is no fraction of it to close."""

@@ -7,7 +7,7 @@ from math import log, pi
 
 import numpy as np
 
-from hfanalysis.diagnose.observations.burn_out import AFTER, BEFORE, CLEAR, fall_of
+from hfanalysis.diagnose.observations.burn_out import AFTER, about, fall_of
 from hfanalysis.diagnose.observations.observed import FADE, Observed
 from hfanalysis.diagnose.observations.recorded import TOGETHER
 from hfanalysis.engine.observe import true_channels
@@ -41,13 +41,8 @@ def with_abrupt_end(observed: Observed, engine: Engine) -> Observed:
         burnt = burn(ends_at_once, gone + 2.0 * AFTER, run_on=True, keep_idle=True)
     except (ValueError, ArithmeticError):
         return observed
-    start, end = gone - BEFORE, min(gone + AFTER, float(burnt.steps.times[-1, 1]))
-    if burnt.liquid_out is not None:
-        dry = burnt.liquid_out
-        start, end = (max(start, dry + CLEAR), end) if dry < gone else (start, min(end, dry - CLEAR))
-    time = np.arange(start, end, STEP)
-    if time.size == 0 or start < 0.0:
-        return observed
+    start, end = about(gone, burnt.liquid_out)
+    time = np.arange(max(start, 0.0), min(end, float(burnt.steps.times[-1, 1])), STEP)
     read = true_channels(burnt, time)
     falls = [fall_of(Signal(name, time, read[name], 0.0, STEP), gone) for name in TOGETHER]
     known = [seconds for seconds in falls if seconds is not None]
@@ -58,6 +53,11 @@ def bounded(misfit: float) -> tuple[float, float]:
     """A misfit in standard deviations that nears FARTHEST as it grows, and its slope: one number proves no name."""
     grown = 1.0 + (misfit / FARTHEST) ** 4
     return misfit / grown**0.25, grown**-1.25
+
+
+def abrupt(observed: Observed, engine: Engine) -> float:
+    """Seconds in which a fire that is out at once fades: as a run was timed, else as the chamber empties."""
+    return observed.abrupt if observed.abrupt is not None else abrupt_end(engine)
 
 
 def abrupt_end(engine: Engine) -> float:

@@ -9,7 +9,7 @@ from math import inf, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fade import abrupt_end, bounded, fade_misfit, fade_slope
+from hfanalysis.diagnose.fitting.fade import abrupt, bounded, fade_misfit, fade_slope
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.probe import Splines
 from hfanalysis.diagnose.observations.alignment import model_times, share
@@ -121,8 +121,10 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
             web = hypothesis.engine.outer_radius - float(burnt.steps.at(np.array([at]))[0][0, RADIUS])
             scalars.append(web / (deviation * _typical_regression(hypothesis, at)))
     for name, (value, deviation) in observed.stated.items():
-        missed = _missed(name, value, hypothesis, burnt, observed) / deviation
-        scalars.append(bounded(missed)[0] if name == FADE else missed)
+        if name == FADE:
+            scalars.append(bounded(_faded(observed, burnt) / deviation)[0])
+        else:
+            scalars.append((value - _after(name, burnt, observed)) / deviation)
     return np.concatenate([observed.whiten(raw), np.array(scalars)])
 
 
@@ -160,11 +162,12 @@ def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Ar
         else:
             unit = deviation * _typical_regression(hypothesis, at)
             rows.append(-found.output("port_radius", np.array([at]))[0] / unit)
-    for name, (value, deviation) in observed.stated.items():
-        slopes = _missed_slopes(name, hypothesis, found, observed) / deviation
+    for name, (_, deviation) in observed.stated.items():
         if name == FADE:
-            slopes = slopes * bounded(_missed(name, value, hypothesis, found.burn, observed) / deviation)[1]
-        rows.append(slopes)
+            slope = bounded(_faded(observed, found.burn) / deviation)[1]
+            rows.append(slope * _faded_slopes(observed, found) / deviation)
+        else:
+            rows.append(-_after_slopes(name, found, observed) / deviation)
     return np.concatenate([white, *(row[np.newaxis] for row in rows)])
 
 
@@ -221,23 +224,17 @@ def _last_regression(burnt: Burn, gone: float) -> float:
     return max(float(radius[1] - radius[0]) / max(last - first, TICK), LEAST_REGRESSION)
 
 
-def _missed(name: str, value: float, hypothesis: Hypothesis, burnt: Burn, observed: Observed) -> float:
-    """By how much the model misses something that was not read from the channels' blocks (SI; of a fade the log)."""
-    if name != FADE:
-        return value - _after(name, burnt, observed)
-    engine = burnt.steps.engine
-    speed = _last_regression(burnt, observed.events["t_fuel_out"][0])
-    return fade_misfit(value, observed.abrupt or abrupt_end(engine), engine, speed)
+def _faded(observed: Observed, burnt: Burn) -> float:
+    """Log of the measured over the modelled time in which the fire goes out."""
+    engine, speed = burnt.steps.engine, _last_regression(burnt, observed.events["t_fuel_out"][0])
+    return fade_misfit(observed.stated[FADE][0], abrupt(observed, engine), engine, speed)
 
 
-def _missed_slopes(name: str, hypothesis: Hypothesis, found: Tangents, observed: Observed) -> Array:
-    """Slopes of :func:`_missed`."""
-    if name != FADE:
-        return -_after_slopes(name, found, observed)
-    speed = _last_regression(found.burn, observed.events["t_fuel_out"][0])
-    engine = found.burn.steps.engine
-    abrupt = observed.abrupt or abrupt_end(engine)
-    return np.array([fade_slope(parameter, abrupt, engine, speed) for parameter in found.parameters])
+def _faded_slopes(observed: Observed, found: Tangents) -> Array:
+    """Slopes of :func:`_faded`."""
+    engine, speed = found.burn.steps.engine, _last_regression(found.burn, observed.events["t_fuel_out"][0])
+    at_once = abrupt(observed, engine)
+    return np.array([fade_slope(parameter, at_once, engine, speed) for parameter in found.parameters])
 
 
 def _after(name: str, burnt: Burn, observed: Observed) -> float:

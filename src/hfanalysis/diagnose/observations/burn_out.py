@@ -49,16 +49,21 @@ def fade_of(signals: Mapping[str, Signal], segments: Segments) -> tuple[float, f
     gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
     if gone is None or gone > LONGEST or segments.std("t_fuel_out") > SHARP or not set(TOGETHER) <= set(signals):
         return None
-    start, end = gone - BEFORE, gone + AFTER
-    if t_v is not None:
-        start, end = (max(start, t_v + CLEAR), end) if t_v < gone else (start, min(end, t_v - CLEAR))
-    read = [signals[name].between(start, end) for name in TOGETHER]
+    read = [signals[name].between(*about(gone, t_v)) for name in TOGETHER]
     found = [fall_of(part, gone) for part in read]
     if None in found:
         return None
     seconds = min(d for d in found if d is not None)
     slowed = float(np.hypot(LAG, 2.0 * max(part.step for part in read)))
     return seconds, float(np.hypot(UNSURE, slowed / seconds))
+
+
+def about(gone: float, liquid_out: float | None) -> tuple[float, float]:
+    """What is looked at about the end of the fuel, clear of that of the liquid: from and to [s]."""
+    start, end = gone - BEFORE, gone + AFTER
+    if liquid_out is None:
+        return start, end
+    return (max(start, liquid_out + CLEAR), end) if liquid_out < gone else (start, min(end, liquid_out - CLEAR))
 
 
 def fall_of(part: Signal, gone: float) -> float | None:

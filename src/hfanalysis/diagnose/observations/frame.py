@@ -123,7 +123,7 @@ def _blocks(first: float, last: float, count: int) -> Array:
 
 def _before(log: TestLog, origin: float) -> Array:
     """Middles and widths (2, blocks) of the blocks of the rest before the opening."""
-    rest = origin - BEFORE_END - log_start(log)
+    rest = -log_start(log, origin) - BEFORE_END
     if rest < LEAST_BEFORE:
         return np.zeros((2, 0))
     count = min(max(int(rest / BEFORE_BLOCK), 1), BEFORE_BLOCKS)

@@ -12,13 +12,16 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import toeplitz
-from scipy.signal import savgol_filter
+from scipy.signal import savgol_coeffs, savgol_filter
 from scipy.signal.windows import parzen
 
 Array = NDArray[np.float64]
 
-SMOOTHED = 25
-"""Blocks over which the smooth course is a cubic."""
+SMOOTHED, ORDER = 25, 3
+"""Blocks over which the smooth course is a polynomial, and its order."""
+
+KEPT = 1.0 - float(savgol_coeffs(SMOOTHED, ORDER)[SMOOTHED // 2])
+"""Part of the variance of noise that is left of it beside the smooth course, which follows some of it."""
 
 LAGS = 12
 """Blocks over which the oscillation is coherent at most."""
@@ -65,7 +68,7 @@ def _rough(values: Array, stretches: list[slice]) -> Array:
     """What is left of the blocks after their smooth course; wild ones are cut."""
     out = np.zeros(values.size)
     for s in stretches:
-        left = values[s] - savgol_filter(values[s], SMOOTHED, 3)
+        left = values[s] - savgol_filter(values[s], SMOOTHED, ORDER)
         spread = 1.4826 * float(np.median(np.abs(left)))
         out[s] = np.clip(left, -WILD * spread, WILD * spread)
     return out
@@ -84,6 +87,6 @@ def _autocovariance(a: Array, b: Array, level: Array, stretches: list[slice], no
             scale += float(level[x] @ level[y])
             count += n
         if scale > 0.0:
-            found[lag] = taper[lag] * (product - (noise * count if lag == 0 else 0.0)) / scale
+            found[lag] = taper[lag] * (product / KEPT - (noise * count if lag == 0 else 0.0)) / scale
     found[0] = max(found[0], 0.0) if noise > 0.0 else found[0]
     return found

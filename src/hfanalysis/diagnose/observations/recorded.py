@@ -65,11 +65,11 @@ def accuracy_of(definition: TestDefinition, name: str, value: Array) -> float:
     return stated.value if stated is not None else 2.5e-3 * float(np.abs(value).max())
 
 
-def log_start(log: TestLog) -> float:
-    """Where the log begins [s of the log]."""
-    return min(float(log[name].time.min()) for name in CHANNELS if name in log)
+def log_start(log: TestLog, origin: float) -> float:
+    """Where the log begins [s after the opening at ``origin``], below zero."""
+    return min(float(log[name].time.min()) for name in CHANNELS if name in log) - origin
 
 
 def log_end(log: TestLog, origin: float) -> float:
-    """Where the log ends [s]: beyond it nothing is compared, and no model need run."""
+    """Where the log ends [s after the opening]: beyond it nothing is compared, and no model need run."""
     return max(float(log[name].time.max()) for name in CHANNELS if name in log) - origin

@@ -27,9 +27,9 @@ ROUGH = 1.0
 """Standard deviation of the log of the ratio of neighbouring variances."""
 
 USUAL = -3.0, 2.0
-"""Log of the variance of a process over that of a block's white noise, and how far sensors differ in it: at about 1 Hz
-the wander of a usual sensor is as strong as its white noise. It keeps a quiet time that happens to show none from
-meaning that there is none."""
+"""Log of the variance of a process over that of a block's white noise, and how far sensors differ in it.
+An assumption: at about 1 Hz the wander of a usual sensor is as strong as its white noise. It keeps a quiet time that
+happens to show none from meaning that there is none."""
 
 CAREFUL = 0.3
 """Log of the variances by which all are raised at last, in their posterior standard deviations: a quiet time that is
