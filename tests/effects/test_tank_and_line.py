@@ -20,9 +20,9 @@ AT_REST = float(engine_on_stand().saturation.pressure(engine_on_stand().temperat
 
 @pytest.mark.parametrize("lag", [0.02, 0.1, 2.0])
 def test_heat_keeps_the_tank_warmer_by_the_energy_it_brings(lag: float) -> None:
-    """Before anything flows much: m c dT = P (t - tau (1 - exp(-t/tau))), with the saturated tank's own heat
+    """Before anything flows or fades much: m c dT = P (t - tau (1 - exp(-t/tau))), with the saturated tank's own heat
     capacity."""
-    warm = only("tank_heat", power=2000.0, lag=lag)
+    warm = only("tank_heat", power=2000.0, lag=lag, fade=500.0)
     gain = channel(warm, "tank_temperature", 0.2) - channel(plain(), "tank_temperature", 0.2)
     _, by_temperature, _ = energy_derivatives(engine_on_stand().saturation.kernel_table, 16.5e-3, 8.2, 292.6)
     brought = 2000.0 * (0.2 - lag * (1.0 - np.exp(-0.2 / lag)))

@@ -164,8 +164,8 @@ def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not() -> None:
 
 def test_slopes_are_differences_of_predictions() -> None:
     made, test = hypothesis().with_effect(effect("tank_heat")), reduced()
-    assert made.names[-2:] == ("tank_heat.power", "tank_heat.lag")
-    x = np.concatenate([truth(), [0.4, 1.0]])
+    assert made.names[-3:] == ("tank_heat.power", "tank_heat.lag", "tank_heat.fade")
+    x = np.concatenate([truth(), [0.4, 1.0, -0.5]])
     here = predict(made, test, x, tangents=True)
     assert here.slopes is not None
     for k, name in enumerate(made.names):

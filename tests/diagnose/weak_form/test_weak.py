@@ -64,11 +64,13 @@ def test_chi_square_is_as_large_as_its_degrees_of_freedom() -> None:
     assert float(np.mean(ratios)) == pytest.approx(1.0, abs=0.1)
 
 
-@pytest.mark.parametrize(("power", "lag"), [(2000.0, 0.02), (6000.0, 0.02), (-3000.0, 0.02), (6000.0, 2.0)])
-def test_heat_is_read_in_watts(power: float, lag: float) -> None:
-    found = of(effect("tank_heat").at(power=power, lag=lag))
+@pytest.mark.parametrize(
+    ("power", "lag", "fade"), [(2000.0, 0.02, 500.0), (6000.0, 0.02, 8.0), (-3000.0, 0.02, 30.0), (6000.0, 2.0, 20.0)]
+)
+def test_heat_is_read_in_watts(power: float, lag: float, fade: float) -> None:
+    found = of(effect("tank_heat").at(power=power, lag=lag, fade=fade))
     energy = found["tank_energy"]
-    heat, liquid = power * (1.0 - np.exp(-energy.time / lag)), wet(energy)
+    heat, liquid = power * (1.0 - np.exp(-energy.time / lag)) * np.exp(-energy.time / fade), wet(energy)
     assert energy.value[liquid] == pytest.approx(heat[liquid], rel=0.02, abs=20.0)
     assert energy.value[~liquid] == pytest.approx(heat[~liquid], rel=0.1)
     for name in ("feed", "chamber_mass", "nozzle"):

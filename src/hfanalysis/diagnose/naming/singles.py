@@ -59,6 +59,9 @@ CHAMBER_SIDE = ("grain", "chamber_mass", "chamber_energy", "nozzle")
 SAME = 0.1
 """Standard deviations of a prior within which two fits are one."""
 
+WORSE = 0.05
+"""Log of posterior density by which a child may fit worse than its parent: fits end within as much."""
+
 POLISHING = 3
 """Children whose constants a parent is fitted again from."""
 
@@ -75,7 +78,19 @@ def base_and_singles(hypothesis: Hypothesis, search: Search) -> tuple[Candidate,
     _keep(best, _raced([*_first_children(base, search, names), *_from_other_exponents(base, search, names)], bench))
     if search.settings.polishing and best:
         base = _second_turn(base, best, search)
-    return base, sorted(each(bench.converged, list(best.values())), key=lambda c: -c.log_evidence)
+    found = each(partial(_no_worse, parent=base, bench=bench), each(bench.converged, list(best.values())))
+    return base, sorted(found, key=lambda c: -c.log_evidence)
+
+
+def _no_worse(child: Candidate, parent: Candidate, bench: Bench) -> Candidate:
+    """The child; one that fits worse than its parent, which it is at strength 0, is fitted anew from there."""
+    if child.form != parent.form or child.fit.objective <= parent.fit.objective + WORSE:
+        return child
+    start = np.concatenate([parent.fit.x, np.zeros(child.fit.x.size - parent.fit.x.size)])
+    again = attempted(child.fit.hypothesis, bench.at(parent.form), start)
+    if again is None:
+        return child
+    return max(child, candidate(child.names, again, child.form), key=lambda c: c.log_evidence)
 
 
 def _second_turn(base: Candidate, best: dict[str, Candidate], search: Search) -> Candidate:
