@@ -10,7 +10,7 @@ from tests.effects.runs import channel, only, own_state, plain, with_effects
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect
-from hfanalysis.effects.feed_line_fill import LIQUID_DENSITY
+from hfanalysis.effects.feed_line_fill import FULL_AT, LIQUID_DENSITY
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, energy_derivatives
 from hfanalysis.engine.unsteady import Burn
 
@@ -126,8 +126,8 @@ def test_a_hot_ullage_is_spent_by_what_flows_out_not_by_time() -> None:
     assert own_state(half, 0, later) == pytest.approx(own_state(full, 0, 0.3), rel=0.02)
 
 
-def test_an_empty_line_takes_its_fill_from_the_tank_and_holds_back_the_chamber() -> None:
-    found = only("feed_line_fill", volume=3e-4, steepness=1.0)
+def test_an_empty_rigid_line_takes_its_fill_from_the_tank_and_holds_back_the_chamber() -> None:
+    found = only("feed_line_fill", volume=3e-4, steepness=1.0, boiling=0.0)
     density = LIQUID_DENSITY
     assert own_state(found, 0, 2.0) == pytest.approx(3e-4 * density, rel=0.01)
     missing = channel(plain(), "tank_mass", 1.0) - channel(found, "tank_mass", 1.0)
@@ -136,14 +136,51 @@ def test_an_empty_line_takes_its_fill_from_the_tank_and_holds_back_the_chamber()
     assert channel(found, "chamber_pressure", 0.02) < 0.7 * channel(plain(), "chamber_pressure", 0.02)
 
 
-def test_a_larger_line_takes_longer_to_fill_within_a_second() -> None:
-    filled = [filling_time(volume) for volume in (1e-4, 3e-4, 6e-4)]
+@pytest.mark.parametrize("boiling", [0.0, 0.5, 1.0])
+def test_a_larger_line_takes_longer_to_fill_within_a_second(boiling: float) -> None:
+    filled = [filling_time(volume, boiling) for volume in (1e-4, 3e-4, 6e-4)]
     assert filled == sorted(filled)
     assert 0.03 < filled[0] < filled[2] < 0.9
 
 
-def filling_time(volume: float) -> float:
+def filling_time(volume: float, boiling: float) -> float:
     """When the run line first reaches 98 % of its highest pressure [s]."""
-    found = only("feed_line_fill", volume=volume, steepness=1.0)
+    found = only("feed_line_fill", volume=volume, steepness=1.0, boiling=boiling)
     pressure = found.output("run_pressure")
     return float(found.time[np.argmax(pressure > 0.98 * pressure.max())])
+
+
+def leap_at_the_end_of_the_liquid(run: Burn, name: str) -> float:
+    """By how much an output changes [SI] within 20 ms about the end of the liquid."""
+    assert run.liquid_out is not None
+    return abs(channel(run, name, run.liquid_out + 0.01) - channel(run, name, run.liquid_out - 0.01))
+
+
+@pytest.mark.parametrize("beside", [{}, {"injector_choked_vapor": 0.8}, {"injector_two_phase": 0.3}])
+def test_the_pressure_of_a_boiling_line_does_not_leap_as_the_liquid_ends(beside: dict[str, float]) -> None:
+    """Whatever the injector's law: the line holds what it holds."""
+    others = [effect(name).at(weight=weight) for name, weight in beside.items()]
+    boiling, rigid = (
+        with_effects(*others, effect("feed_line_fill").at(volume=4e-4, boiling=share)) for share in (1.0, 0.0)
+    )
+    assert leap_at_the_end_of_the_liquid(rigid, "run_pressure") > 1.5e5
+    assert leap_at_the_end_of_the_liquid(boiling, "run_pressure") < 0.5e5
+    assert boiling.liquid_out is not None
+    for at in (2.0, boiling.liquid_out + 0.5):
+        assert channel(boiling, "run_pressure", at) == pytest.approx(own_state(boiling, 2, at), rel=1e-3)
+
+
+def test_a_boiling_line_holds_what_its_pressure_says_and_feeds_the_injector() -> None:
+    found = only("feed_line_fill", volume=4e-4, boiling=1.0)
+    assert found.liquid_out is not None
+    held, pressure = (np.array([own_state(found, i, at) for at in (0.1, 2.0, found.liquid_out + 0.5)]) for i in (0, 2))
+    assert held == pytest.approx(4e-4 * LIQUID_DENSITY * (pressure - engine_on_stand().ambient) / FULL_AT, rel=1e-3)
+    at = found.liquid_out + 0.5
+    drawn, onward = channel(found, "tank_outflow", at), channel(found, "oxidizer_flow", at)
+    assert 0.5 * onward < drawn < 0.95 * onward
+
+
+def test_a_boiling_line_of_no_volume_is_none() -> None:
+    tiny = only("feed_line_fill", volume=1e-9, boiling=1.0)
+    for name in ("run_pressure", "tank_pressure", "chamber_pressure"):
+        assert channel(tiny, name, 3.0) == pytest.approx(channel(plain(), name, 3.0), rel=1e-4)

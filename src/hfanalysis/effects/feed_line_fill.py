@@ -1,6 +1,8 @@
-"""A feed line that the opening valve finds empty.
+"""A feed line that the opening valve finds empty, and whose content boils away again as the pressure falls.
 
-What is left in it when the tank's liquid is gone is not followed: no log shows the chamber go on burning then.
+A rigid line is full once it is filled, and follows the tank at once. One whose content boils holds as much as its
+pressure says: it fills more slowly the fuller it is, its pressure cannot leap as the liquid ends, and while the tank's
+falls it feeds the injector from what it holds. Real lines lie between: a share of the line boils.
 """
 
 from __future__ import annotations
@@ -8,10 +10,12 @@ from __future__ import annotations
 from math import sqrt
 
 from hfanalysis.engine.effect import Effect, OwnState, Parameter
-from hfanalysis.engine.model import AREA, LIQUID_LOSS, LOSS_FACTOR
+from hfanalysis.engine.model import AREA, LIQUID_LOSS, LOSS_FACTOR, VAPOR_LOSS
 from hfanalysis.engine.sites import (
     AT_FLOW,
+    FEED_FACTOR,
     FEED_LOSS,
+    INJECTOR_FACTOR,
     IS_LIQUID,
     OXIDIZER_FLOW,
     P_CHAMBER,
@@ -22,12 +26,15 @@ from hfanalysis.engine.sites import (
     term,
 )
 
-VOLUME, STEEPNESS = range(2)
-CONTENT, EMPTY = range(2)
+VOLUME, STEEPNESS, BOILING = range(3)
+CONTENT, EMPTY, PRESSURE = range(3)
 LIQUID_DENSITY = 880.0
 """Of what fills the line [kg/m^3]: nitrous oxide saturated at 278 K."""
 
-LEAST_VOLUME = 2e-6
+FULL_AT = 40e5
+"""Pressure [Pa] at which a line whose content boils holds as much as a full one."""
+
+LEAST_VOLUME = 4e-6
 """Of any valve and fitting [m^3]: a line much smaller than that changes nothing."""
 
 LEAST_RESISTANCE = 0.05
@@ -36,22 +43,38 @@ LEAST_RESISTANCE = 0.05
 
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
-    if env[IS_LIQUID] <= 0.0:
-        return
-    empty = max(x[EMPTY], 0.0)
-    # the line's own pressure comes up as it fills: what it lacks is spent on filling
+    liquid = env[IS_LIQUID] > 0.0
+    empty = max(x[EMPTY], 0.0) if liquid else 0.0
+    # rigid: the line's own pressure comes up as it fills, what it lacks is spent on filling
     by_volume = empty ** p[STEEPNESS] * max(env[P_TANK] - env[P_CHAMBER], 0.0) / (p[VOLUME] + LEAST_VOLUME)
+    rigid, boiling = p[VOLUME] * (1.0 - p[BOILING]), p[VOLUME] * p[BOILING]
+    stated = c[LIQUID_LOSS] >= 0.0
     if hook == AT_FLOW:
-        site[FEED_LOSS] += p[VOLUME] * by_volume
+        # the pressure drop over line and injector at which what is between them is at the line's own pressure
+        drop, lost = x[PRESSURE] - env[P_CHAMBER], c[LIQUID_LOSS] if liquid else c[VAPOR_LOSS]
+        if not stated:
+            orifice, line = 0.5 / (c[AREA] * c[AREA]), c[LOSS_FACTOR] * site[FEED_FACTOR]
+            factor = min(site[INJECTOR_FACTOR], 1.0)
+            drop, lost = drop * (orifice + line) / (orifice + line * (1.0 - factor * factor)), 0.0
+        held = (env[P_TANK] - env[P_CHAMBER] - lost - drop) / (p[VOLUME] + LEAST_VOLUME)
+        site[FEED_LOSS] += rigid * by_volume + boiling * held
     elif hook == RATES:
         resistance = LEAST_RESISTANCE * 0.5 / (c[AREA] * c[AREA])
-        if c[LIQUID_LOSS] < 0.0:
-            resistance = max(resistance, c[LOSS_FACTOR])
-        onward, spare = env[OXIDIZER_FLOW], by_volume * env[RHO_FEED] / resistance
+        onward = env[OXIDIZER_FLOW]
+        lost = c[LIQUID_LOSS] if liquid else c[VAPOR_LOSS]
+        if not stated:
+            resistance = max(resistance, c[LOSS_FACTOR] * site[FEED_FACTOR])
+            lost = c[LOSS_FACTOR] * site[FEED_FACTOR] * onward * onward / env[RHO_FEED]
+        per_loss = env[RHO_FEED] / resistance
         # sqrt(onward^2 + V spare) - onward, over the volume: a small line fills at once, none not at all
+        spare = by_volume * per_loss
         filling = spare / (sqrt(onward * onward + p[VOLUME] * spare) + onward + LEAST_FLOW)
-        site[TANK_LEAK] += p[VOLUME] * filling
-        dx[CONTENT], dx[EMPTY] = p[VOLUME] * filling, -filling / LIQUID_DENSITY
+        # boiling: what it holds is in proportion to its pressure
+        into = sqrt(max(onward * onward + (env[P_TANK] - lost - x[PRESSURE]) * per_loss, 0.0))
+        dx[PRESSURE] = (into - onward) * FULL_AT / (LIQUID_DENSITY * (p[VOLUME] + LEAST_VOLUME))
+        stored = rigid * filling + boiling * dx[PRESSURE] * LIQUID_DENSITY / FULL_AT
+        site[TANK_LEAK] += stored
+        dx[CONTENT], dx[EMPTY] = stored, -filling / LIQUID_DENSITY
 
 
 LEAST_FLOW = 1e-6
@@ -61,29 +84,42 @@ LEAST_FLOW = 1e-6
 EFFECT = Effect(
     name="feed_line_fill",
     equation="feed",
-    meaning="the feed line is filled when the valve opens",
+    meaning="the feed line is filled when the valve opens, and gives away what it holds as the pressure falls",
     reference="report, section 4.1 and phase 1 of its hot fires: the run line's pressure rises until the line is full. "
-    "Flow into the line by the line's own loss p_T - p_run = K mdot^2 / rho, on to the chamber by the report's eq. 3.2",
-    formula="p_T - p_run = K mdot_inj^2 / rho + g (p_T - p_c),  g = e^k V / (V + 2 mL),  "
-    "rho V de/dt = mdot_inj - sqrt(mdot_inj^2 + g (p_T - p_c) rho / K),  e(0) = 1, the empty share",
+    "Flow into the line by the line's own loss p_T - p_run = K mdot^2 / rho, on to the chamber by the report's "
+    "eq. 3.2. What boils is a lumped capacitance: in HF4 and HF5 the line's pressure does not leap as the liquid ends",
+    formula="p_run = b p_L + (1 - b) p_r;  boiling: V (880 kg/m^3 / 40 bar) dp_L/dt = mdot_T - mdot_inj,  "
+    "mdot_T = sqrt(rho (p_T - p_L) / K),  p_L(0) = p_a;  rigid: p_T - p_r = K mdot_inj^2 / rho + g (p_T - p_c),  "
+    "g = e^k V / (V + 4 mL),  rho V de/dt = mdot_inj - sqrt(mdot_inj^2 + g (p_T - p_c) rho / K),  e(0) = 1",
     sites=("feed_loss", "tank_leak"),
     parameters=(
         Parameter("volume", "m^3", "of the line between valve and injector", typical=2e-4, low=0.0, high=3e-3),
         Parameter(
             "steepness",
             "-",
-            "of the pressure that is still lacking, over the room still empty",
+            "of the pressure that a rigid line lacks, over the room still empty",
             0.7,
             center=1.5,
             low=1.0,
             high=4.0,
         ),
+        Parameter(
+            "boiling",
+            "-",
+            "share of the line whose content boils: it holds as much as its pressure says, rising and falling",
+            0.5,
+            center=0.5,
+            low=0.0,
+            high=1.0,
+        ),
     ),
-    phases=("liquid",),
+    phases=("liquid", "vapor", "nitrogen"),
     term=_term,
+    reads=("injector_factor", "feed_factor"),
     states=(
         OwnState("line_content", "kg", 1e-3, lambda engine, values: 0.0),
         OwnState("line_empty", "-", 1e-3, lambda engine, values: 1.0),
+        OwnState("line_pressure", "Pa", 1e3, lambda engine, values: engine.ambient),
     ),
     twins=(),
     decisive="the run line's pressure at 1 kHz, and the line's length and bore",

@@ -65,7 +65,8 @@ class Effect:
     ``sites`` are those of :mod:`hfanalysis.engine.sites` that its term sets, or the channels that it distorts. Where
     the first ``strengths`` parameters are strengths of their own kind (one per transducer), it is the base model when
     all of them are 0. ``fading_web``: from its values, the web [m] over which the burning surface goes as the fuel
-    ends; how fast the fire goes out is compared beside the channels.
+    ends; how fast the fire goes out is compared beside the channels. ``reads``: sites that others set and its term
+    asks for; it comes after them.
     """
 
     name: str
@@ -84,6 +85,7 @@ class Effect:
     sites: tuple[str, ...] = ()
     strengths: int = 1
     fading_web: FadingWeb | None = None
+    reads: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.equation not in EQUATIONS:
@@ -150,7 +152,7 @@ def compose(effects: Sequence[Active], constants: Array, states: int, idle: bool
     if len(set(names)) < len(names):
         raise ValueError(f"an effect is named twice: {sorted(names)}")
     acting = [a for a in effects if a.effect.term is not None and (idle or not a.idle)]
-    acting.sort(key=lambda a: a.effect.name)
+    acting.sort(key=lambda a: (bool(a.effect.reads), a.effect.name))
     rows, values, parameters_at, states_at = [], [constants], constants.size, states
     for a in acting:
         switch = 0 if a.effect.switch is None else a.effect.switch.address

@@ -120,13 +120,13 @@ def test_a_wider_throat_is_lacking_in_chamber_and_nozzle() -> None:
 
 
 def test_a_filling_line_is_lacking_in_the_feed_and_as_mass() -> None:
-    """Of the feed's pressure e^k V / (V + 2 mL) (p_T - p_c), e the share of the line that is empty."""
-    fill = effect("feed_line_fill").at(volume=4e-4, steepness=1.5)
+    """Of the feed's pressure e^k V / (V + 4 mL) (p_T - p_c), e the share of the line that is empty."""
+    fill = effect("feed_line_fill").at(volume=4e-4, steepness=1.5, boiling=0.0)
     run, found = run_of(fill), of(fill)
     feed = found["feed"]
     states, outputs = run.steps.at(feed.time)
     driving = outputs[:, O_TANK_PRESSURE] - outputs[:, O_CHAMBER_PRESSURE]
-    lacking = states[:, len(STATES) + 1] ** 1.5 * (4e-4 / 4.02e-4) * driving * 1e-5
+    lacking = states[:, len(STATES) + 1] ** 1.5 * (4e-4 / 4.04e-4) * driving * 1e-5
     assert feed.value[0] > 1.0
     late, liquid = feed.time > 1.5, wet(feed)
     assert feed.value[late & liquid] == pytest.approx(lacking[late & liquid], abs=0.01)
