@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from math import sqrt
 
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Effect, OwnState, Parameter
 from hfanalysis.engine.model import AREA, LIQUID_LOSS, LOSS_FACTOR, VAPOR_LOSS
 from hfanalysis.engine.sites import (
@@ -41,6 +42,18 @@ LEAST_RESISTANCE = 0.05
 """Of the line over that of the injector, where the engine states none: filling does not become infinitely fast."""
 
 
+@compiled
+def drop_over_both(behind: float, orifice: float, line: float, factor: float) -> float:
+    """Pressure drop over line and injector that leaves ``behind`` to the injector.
+
+    ``orifice`` and ``line``: drop times density over the flow squared; ``factor``: flow over that of both in row.
+
+    >>> drop_over_both(2.0, 1.0, 0.5, 1.0)
+    3.0
+    """
+    return behind * (orifice + line) / (orifice + line * (1.0 - factor * factor))
+
+
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     liquid = env[IS_LIQUID] > 0.0
@@ -53,9 +66,8 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
         # the pressure drop over line and injector at which what is between them is at the line's own pressure
         drop, lost = x[PRESSURE] - env[P_CHAMBER], c[LIQUID_LOSS] if liquid else c[VAPOR_LOSS]
         if not stated:
-            orifice, line = 0.5 / (c[AREA] * c[AREA]), c[LOSS_FACTOR] * site[FEED_FACTOR]
-            factor = min(site[INJECTOR_FACTOR], 1.0)
-            drop, lost = drop * (orifice + line) / (orifice + line * (1.0 - factor * factor)), 0.0
+            orifice, line, lost = 0.5 / (c[AREA] * c[AREA]), c[LOSS_FACTOR] * site[FEED_FACTOR], 0.0
+            drop = drop_over_both(drop, orifice, line, min(site[INJECTOR_FACTOR], 1.0))
         held = (env[P_TANK] - env[P_CHAMBER] - lost - drop) / (p[VOLUME] + LEAST_VOLUME)
         site[FEED_LOSS] += rigid * by_volume + boiling * held
     elif hook == RATES:
