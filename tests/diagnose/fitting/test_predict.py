@@ -132,7 +132,8 @@ def test_a_throat_measured_after_the_test_tells_of_erosion() -> None:
     worn = replace(made.observed(), stated={"throat_radius_after": (radius + 2e-4, 2e-5)})
     without = predict(made.hypothesis(), worn, made.truth(), tangents=False)
     assert without.residual[-1] == pytest.approx(10.0, rel=1e-6)
-    x = np.concatenate([made.truth(), [0.3, 0.0, 0.0, 0.0]])[: eroding().size]
+    x = np.zeros(eroding().size)
+    x[: made.truth().size + 1] = *made.truth(), 0.3
     here = predict(eroding(), worn, x, tangents=True)
     assert here.slopes is not None
     assert here.residual[-1] < 10.0
@@ -190,14 +191,14 @@ def test_splines_sum_to_one_where_they_reach() -> None:
 
 
 def test_a_probe_adds_its_splines_to_its_site() -> None:
-    """Splines every quarter of a second follow a heat that comes with a lag of a second to some milliwatts."""
+    """Splines every quarter of a second follow a heat that comes with a lag of a second, and fades, to some milliwatts."""
     splines, dense = Splines.over(0.0, 4.0, 0.25), np.linspace(0.0, 4.0, 401)
-    heat = 700.0 * (1.0 - np.exp(-dense))
+    heat = 700.0 * (1.0 - np.exp(-dense)) * np.exp(-dense / 8.0)
     fitted = np.linalg.lstsq(splines.at(dense), heat, rcond=None)[0]
     assert splines.at(dense) @ fitted == pytest.approx(heat, abs=0.02)
     coefficients = {f"c{i}": float(c) for i, c in enumerate(fitted)}
     probed = engine_on_stand(effects=(probe("tank_heat", splines, 1000.0).at(on=1.0, **coefficients),))
-    heated = engine_on_stand(effects=(effect("tank_heat").at(power=700.0, lag=1.0),))
+    heated = engine_on_stand(effects=(effect("tank_heat").at(power=700.0, lag=1.0, fade=8.0),))
     times = np.linspace(0.1, 3.9, 20)
     theirs, ours = (burn(e, 4.0, 1e-7, times=times).output("tank_pressure") for e in (heated, probed))
     assert ours == pytest.approx(theirs, rel=1e-6)
