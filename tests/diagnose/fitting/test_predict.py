@@ -191,7 +191,7 @@ def test_splines_sum_to_one_where_they_reach() -> None:
 
 
 def test_a_probe_adds_its_splines_to_its_site() -> None:
-    """Splines every quarter of a second follow a heat that comes with a lag of a second, and fades, to some milliwatts."""
+    """Splines every quarter of a second follow a heat that comes with a lag and fades, to some milliwatts."""
     splines, dense = Splines.over(0.0, 4.0, 0.25), np.linspace(0.0, 4.0, 401)
     heat = 700.0 * (1.0 - np.exp(-dense)) * np.exp(-dense / 8.0)
     fitted = np.linalg.lstsq(splines.at(dense), heat, rcond=None)[0]
