@@ -3,7 +3,8 @@
 Four arms. The same data; stretches of it that were held out; another test of the stand with the effect's constants as
 found here; and placebos: the best wrong effect, and an unknown source of as much freedom.
 
-Models are fitted at the model-form error that the explanation asks for; gaps are measured at the finest, where a
+Models are fitted at the model-form error that the explanation asks for, those of another test at what each asks for
+there; gaps are measured at the finest, where a
 sensor's offset and gain are all that is taken off.
 """
 
@@ -15,8 +16,10 @@ from typing import Any
 import numpy as np
 
 from hfanalysis.diagnose.answer.gap import closed, frozen, held_out, root_mean_square, total_gap
+from hfanalysis.diagnose.fitting.fit import Fit
+from hfanalysis.diagnose.fitting.form import COARSEST
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.naming.candidate import Candidate, attempted
+from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.diagnose.observations.observed import Observed
 
@@ -53,6 +56,8 @@ def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
     fractions["other_test"] = elsewhere["closed_fraction"] if elsewhere else None
     if other is None:
         notes.append("there is no other test of this stand to prove it on")
+    elif elsewhere is None:
+        notes.append(f"{other.name} cannot be modelled with these constants of the effects: nothing is proved on it")
     wrong = _placebo(found, chosen)
     fractions["placebo"] = closed(before, total_gap(wrong.fit, observed)) if wrong else None
     free = next((c for c in found.unknown if len(c.names) == 1), None)
@@ -68,12 +73,9 @@ def _placebo(found: Naming, chosen: Candidate) -> Candidate | None:
 
 def _elsewhere(chosen: Candidate, other: OtherTest) -> dict[str, Any] | None:
     """The other test without and with the effects, their constants frozen and its own free."""
-    observed, fitted = other.observed, other.observed.with_errors(*chosen.form.errors)
-    base = attempted(other.hypothesis, fitted, np.zeros(other.hypothesis.size))
-    if base is None:
-        return None
-    after = attempted(frozen(other.hypothesis, chosen.fit), fitted, base.x)
-    if after is None:
+    observed, bench = other.observed, Bench(other.observed)
+    base, after = (_settled(h, bench) for h in (other.hypothesis, frozen(other.hypothesis, chosen.fit)))
+    if base is None or after is None:
         return None
     gaps = [total_gap(f, observed) for f in (base, after)]
     return {
@@ -82,3 +84,9 @@ def _elsewhere(chosen: Candidate, other: OtherTest) -> dict[str, Any] | None:
         "before": root_mean_square(base, observed),
         "after": root_mean_square(after, observed),
     }
+
+
+def _settled(hypothesis: Hypothesis, bench: Bench) -> Fit | None:
+    """A fit that comes down from the coarsest model-form error, as on the test itself: a fine one at once is lost."""
+    coarse = attempted(hypothesis, bench.at(COARSEST), np.zeros(hypothesis.size), SHORT)
+    return None if coarse is None else bench.converged(bench.judged(candidate((), coarse, COARSEST))).fit
