@@ -35,6 +35,12 @@ LIQUID_DENSITY = 880.0
 FULL_AT = 40e5
 """Pressure [Pa] at which a line whose content boils holds as much as a full one."""
 
+HELD_PER_PASCAL = LIQUID_DENSITY / FULL_AT
+"""By what a boiling line holds more for its pressure, per volume [kg/m^3/Pa]."""
+
+LEAST_FLOW = 1e-6
+"""Onward flow [kg/s] that keeps the quotient finite where nothing flows."""
+
 LEAST_VOLUME = 4e-6
 """Of any valve and fitting [m^3]: a line much smaller than that changes nothing."""
 
@@ -54,43 +60,46 @@ def drop_over_both(behind: float, orifice: float, line: float, factor: float) ->
     return behind * (orifice + line) / (orifice + line * (1.0 - factor * factor))
 
 
+@compiled
+def grown(onward: float, spare: float) -> float:
+    """Flow [kg/s] through the line that takes a spare drop besides the loss of what flows ``onward``; none back.
+
+    ``spare``: that drop times density over the line's resistance [kg^2/s^2].
+    """
+    return sqrt(max(onward * onward + spare, 0.0))
+
+
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
-    liquid = env[IS_LIQUID] > 0.0
-    empty = max(x[EMPTY], 0.0) if liquid else 0.0
-    # rigid: the line's own pressure comes up as it fills, what it lacks is spent on filling
-    by_volume = empty ** p[STEEPNESS] * max(env[P_TANK] - env[P_CHAMBER], 0.0) / (p[VOLUME] + LEAST_VOLUME)
+    room = p[VOLUME] + LEAST_VOLUME
     rigid, boiling = p[VOLUME] * (1.0 - p[BOILING]), p[VOLUME] * p[BOILING]
+    # a rigid line's own pressure comes up as it fills: what it lacks is spent on filling
+    empty = max(x[EMPTY], 0.0) if env[IS_LIQUID] > 0.0 else 0.0
+    lacking = empty ** p[STEEPNESS] * max(env[P_TANK] - env[P_CHAMBER], 0.0) / room
+    # the line's loss is stated, one for each phase, or grows with the square of the flow
     stated = c[LIQUID_LOSS] >= 0.0
+    lost = c[LIQUID_LOSS] if env[IS_LIQUID] > 0.0 else c[VAPOR_LOSS]
+    orifice, line = 0.5 / (c[AREA] * c[AREA]), c[LOSS_FACTOR] * site[FEED_FACTOR]
     if hook == AT_FLOW:
-        # the pressure drop over line and injector at which what is between them is at the line's own pressure
-        drop, lost = x[PRESSURE] - env[P_CHAMBER], c[LIQUID_LOSS] if liquid else c[VAPOR_LOSS]
-        if not stated:
-            orifice, line, lost = 0.5 / (c[AREA] * c[AREA]), c[LOSS_FACTOR] * site[FEED_FACTOR], 0.0
-            drop = drop_over_both(drop, orifice, line, min(site[INJECTOR_FACTOR], 1.0))
-        held = (env[P_TANK] - env[P_CHAMBER] - lost - drop) / (p[VOLUME] + LEAST_VOLUME)
-        site[FEED_LOSS] += rigid * by_volume + boiling * held
+        # the drop over line and injector at which what is between them is at the boiling line's own pressure
+        drop = x[PRESSURE] - env[P_CHAMBER]
+        over = lost + drop if stated else drop_over_both(drop, orifice, line, min(site[INJECTOR_FACTOR], 1.0))
+        site[FEED_LOSS] += rigid * lacking + boiling * (env[P_TANK] - env[P_CHAMBER] - over) / room
     elif hook == RATES:
-        resistance = LEAST_RESISTANCE * 0.5 / (c[AREA] * c[AREA])
         onward = env[OXIDIZER_FLOW]
-        lost = c[LIQUID_LOSS] if liquid else c[VAPOR_LOSS]
-        if not stated:
-            resistance = max(resistance, c[LOSS_FACTOR] * site[FEED_FACTOR])
-            lost = c[LOSS_FACTOR] * site[FEED_FACTOR] * onward * onward / env[RHO_FEED]
-        per_loss = env[RHO_FEED] / resistance
-        # sqrt(onward^2 + V spare) - onward, over the volume: a small line fills at once, none not at all
-        spare = by_volume * per_loss
-        filling = spare / (sqrt(onward * onward + p[VOLUME] * spare) + onward + LEAST_FLOW)
-        # boiling: what it holds is in proportion to its pressure
-        into = sqrt(max(onward * onward + (env[P_TANK] - lost - x[PRESSURE]) * per_loss, 0.0))
-        dx[PRESSURE] = (into - onward) * FULL_AT / (LIQUID_DENSITY * (p[VOLUME] + LEAST_VOLUME))
-        stored = rigid * filling + boiling * dx[PRESSURE] * LIQUID_DENSITY / FULL_AT
+        least = LEAST_RESISTANCE * orifice
+        resistance = least if stated else max(least, line)
+        per_drop = env[RHO_FEED] / resistance
+        # grown(onward, V spare) - onward, over the volume: a small line fills at once, none not at all
+        spare = lacking * per_drop
+        filling = spare / (grown(onward, p[VOLUME] * spare) + onward + LEAST_FLOW)
+        # what boils holds as much as its pressure says
+        loss = lost if stated else line * onward * onward / env[RHO_FEED]
+        into = grown(onward, (env[P_TANK] - loss - x[PRESSURE]) * per_drop)
+        dx[PRESSURE] = (into - onward) / (HELD_PER_PASCAL * room)
+        stored = rigid * filling + boiling * dx[PRESSURE] * HELD_PER_PASCAL
         site[TANK_LEAK] += stored
         dx[CONTENT], dx[EMPTY] = stored, -filling / LIQUID_DENSITY
-
-
-LEAST_FLOW = 1e-6
-"""Onward flow [kg/s] that keeps the quotient finite where nothing flows."""
 
 
 EFFECT = Effect(

@@ -68,8 +68,8 @@ def test_a_fall_as_fast_as_a_chamber_empties_is_what_the_base_model_has() -> Non
     assert fade_misfit(4.0 * abrupt, abrupt, engine_on_stand(effects=(sliver(0.0, 1e-3),)), SPEED) > 1.0
 
 
-def test_an_abrupt_end_is_timed_in_a_run_as_in_the_samples() -> None:
-    """A roomier chamber takes longer to empty; where no fade was measured nothing is timed."""
+def test_an_abrupt_end_takes_longer_in_a_roomier_chamber() -> None:
+    """It is timed in a run, near what the chamber's volume says; where no fade was measured, not at all."""
     quick = made.replace(made.observed(), stated={FADE: (0.05, UNSURE)})
     found = with_abrupt_end(quick, made.hypothesis().engine).abrupt
     assert found is not None

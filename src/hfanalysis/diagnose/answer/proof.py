@@ -4,8 +4,7 @@ Four arms. The same data; stretches of it that were held out; another test of th
 found here; and placebos: the best wrong effect, and an unknown source of as much freedom.
 
 Models are fitted at the model-form error that the explanation asks for, those of another test at what each asks for
-there; gaps are measured at the finest, where a
-sensor's offset and gain are all that is taken off.
+there; gaps are measured at the finest, where a sensor's offset and gain are all that is taken off.
 """
 
 from __future__ import annotations
@@ -13,13 +12,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from hfanalysis.diagnose.answer.gap import closed, frozen, held_out, root_mean_square, total_gap
-from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.form import COARSEST
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.diagnose.observations.observed import Observed
 
@@ -74,9 +69,10 @@ def _placebo(found: Naming, chosen: Candidate) -> Candidate | None:
 def _elsewhere(chosen: Candidate, other: OtherTest) -> dict[str, Any] | None:
     """The other test without and with the effects, their constants frozen and its own free."""
     observed, bench = other.observed, Bench(other.observed)
-    base, after = (_settled(h, bench) for h in (other.hypothesis, frozen(other.hypothesis, chosen.fit)))
-    if base is None or after is None:
+    models = [bench.settled(h) for h in (other.hypothesis, frozen(other.hypothesis, chosen.fit))]
+    if None in models:
         return None
+    base, after = (found.fit for found in models if found is not None)
     gaps = [total_gap(f, observed) for f in (base, after)]
     return {
         "test": other.name,
@@ -84,9 +80,3 @@ def _elsewhere(chosen: Candidate, other: OtherTest) -> dict[str, Any] | None:
         "before": root_mean_square(base, observed),
         "after": root_mean_square(after, observed),
     }
-
-
-def _settled(hypothesis: Hypothesis, bench: Bench) -> Fit | None:
-    """A fit that comes down from the coarsest model-form error, as on the test itself: a fine one at once is lost."""
-    coarse = attempted(hypothesis, bench.at(COARSEST), np.zeros(hypothesis.size), SHORT)
-    return None if coarse is None else bench.converged(bench.judged(candidate((), coarse, COARSEST))).fit

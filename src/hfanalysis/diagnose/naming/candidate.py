@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.fit import Fit, fit, fit_on, promised
-from hfanalysis.diagnose.fitting.form import FINEST, Form
+from hfanalysis.diagnose.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.observations.observed import Observed
@@ -76,6 +76,14 @@ class Bench:
         if form not in self._at:
             self._at[form] = self.observed.with_errors(*form.errors)
         return self._at[form]
+
+    def settled(self, hypothesis: Hypothesis) -> Candidate | None:
+        """A model at the form that suits it, from the coarsest on: a fine one at once is lost where it starts far away.
+
+        None where it cannot be run.
+        """
+        coarse = attempted(hypothesis, self.at(COARSEST), np.zeros(hypothesis.size), SHORT)
+        return None if coarse is None else self.converged(self.judged(candidate((), coarse, COARSEST)))
 
     def judged(self, found: Candidate) -> Candidate:
         """A candidate at the form that makes the data most probable: finer or coarser as long as that helps.

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.form import COARSEST, FINEST, Form
+from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate, more_probable
@@ -133,10 +133,9 @@ def _descended(hypothesis: Hypothesis, bench: Bench) -> Candidate:
 
     Where no instant tells when the fuel is gone a and n have more than one valley; coarse forms do not tell them apart.
     """
-    coarse = attempted(hypothesis, bench.at(COARSEST), np.zeros(hypothesis.size), SHORT)
-    if coarse is None:
+    best = bench.settled(hypothesis)
+    if best is None:
         raise ArithmeticError("the base model cannot be fitted to this test")
-    best = bench.converged(bench.judged(candidate((), coarse, COARSEST)))
     place, found = [f.name for f in hypothesis.free].index("n"), best
     for exponent in FROM_EXPONENTS:
         start = found.fit.x.copy()
