@@ -12,8 +12,9 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.fitting.predict import ACCURACY, readings, with_spare_fuel
+from hfanalysis.diagnose.observations.channel import Channel
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, EVENT_STD, FIRST, FUEL_STD
-from hfanalysis.diagnose.observations.observed import Channel, Observed
+from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.recorded import TOGETHER
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine, burn

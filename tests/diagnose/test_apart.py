@@ -15,8 +15,9 @@ from hfanalysis.diagnose.apart import NOMINAL, TWINS, Outlook, look_ahead, proje
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.fitting.predict import readings, with_spare_fuel
 from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.observations.channel import Channel
 from hfanalysis.diagnose.observations.frame import EVENT_STD
-from hfanalysis.diagnose.observations.observed import Channel, Observed
+from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.sensors import FURTHER, USUAL, Sensor, missing_sensors
 from hfanalysis.effects import library
 from hfanalysis.engine.unsteady import burn

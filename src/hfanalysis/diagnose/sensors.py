@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.predict import TICK, aligned, slopes_of
 from hfanalysis.diagnose.observations.alignment import share
+from hfanalysis.diagnose.observations.channel import Channel, averaged
 from hfanalysis.diagnose.observations.covariance import FILLING_ERROR, FILLING_TIME
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, FIRST
-from hfanalysis.diagnose.observations.observed import Channel, Observed, averaged
+from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.course import LIQUID_OUT
 from hfanalysis.engine.model import OUTPUTS, RADIUS, STATES
 from hfanalysis.engine.observe import true_channels

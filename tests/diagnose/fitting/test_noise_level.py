@@ -13,7 +13,8 @@ from tests.diagnose import made
 
 from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.noise_level import FARTHEST, UNSURE, louder_or_quieter
-from hfanalysis.diagnose.observations.observed import MOST_SHARE, Observed, SlowNoise
+from hfanalysis.diagnose.observations.noise import MOST_SHARE, SlowNoise
+from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
 

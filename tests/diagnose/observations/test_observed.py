@@ -10,9 +10,10 @@ from tests.diagnose import logged, made
 from tests.diagnose.made import covariance_of
 
 from hfanalysis.diagnose.observations.blocks import MERGED, NEAR
+from hfanalysis.diagnose.observations.channel import FORM_ERROR, SHARE, Channel
 from hfanalysis.diagnose.observations.covariance import coherence_of
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BEFORE_END, BLOCK, FIRST, REST_BLOCKS
-from hfanalysis.diagnose.observations.observed import FORM_ERROR, SHARE, Channel, Observed
+from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.recorded import TOGETHER, as_read
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError

@@ -19,7 +19,8 @@ from hfanalysis.diagnose.fitting.noise_level import UNSURE
 from hfanalysis.diagnose.fitting.predict import readings
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import SHORT, attempted
-from hfanalysis.diagnose.observations.observed import Channel, Observed
+from hfanalysis.diagnose.observations.channel import Channel
+from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
 

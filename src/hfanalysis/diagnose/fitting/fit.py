@@ -99,10 +99,13 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
         moved = None
         for _ in range(8):
             step = _step(here.slopes, here.residual, x, least, highest, damping)
+            expected = _expected(here, x, step)
             trial = _try(hypothesis, observed, x + step)
-            if trial is not None and _objective(trial, x + step) < before - TRUST * _expected(here, x, step):
+            if trial is not None and _objective(trial, x + step) < before - TRUST * expected:
                 moved = trial
                 break
+            if 0.0 < expected < CONVERGED:
+                break  # a shorter step brings less
             damping = max(10.0 * damping, 1e-3)
         if moved is None:
             done = True
@@ -148,20 +151,21 @@ def promised(found: Fit, observed: Observed, other: Observed, slack: Array | Non
 
 
 def _step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, damping: float) -> Array:
-    """A damped Gauss-Newton step that stays within bounds: what would leave them stays where it is."""
+    """A damped Gauss-Newton step towards the best point within bounds: what would leave them ends there, and the others
+    follow."""
     gradient = slopes.T @ residual + x
     curvature = slopes.T @ slopes + np.eye(x.size)
     curvature = curvature + damping * np.diag(curvature.diagonal())
-    free = np.ones(x.size, dtype=bool)
-    step = np.zeros(x.size)
-    for _ in range(x.size):
-        step = np.zeros(x.size)
-        step[free] = -np.linalg.solve(curvature[np.ix_(free, free)], gradient[free])
-        step *= min(1.0, LONGEST_STRIDE / max(float(np.abs(step).max()), 1e-12))
-        stuck = free & (((x <= least) & (step < 0.0)) | ((x >= most) & (step > 0.0)))
-        if not stuck.any():
+    free, step = np.ones(x.size, dtype=bool), np.zeros(x.size)
+    while free.any():
+        pull = gradient[free] + curvature[np.ix_(free, ~free)] @ step[~free]
+        step[free] = -np.linalg.solve(curvature[np.ix_(free, free)], pull)
+        leaving = free & ((x + step < least) | (x + step > most))
+        if not leaving.any():
             break
-        free &= ~stuck
+        step[leaving] = (np.clip(x + step, least, most) - x)[leaving]
+        free &= ~leaving
+    step *= min(1.0, LONGEST_STRIDE / max(float(np.abs(step).max()), 1e-12))
     return np.asarray(np.clip(x + step, least, most) - x)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from hfanalysis.diagnose.observations.observed import CHAMBER_FORM, FORM_ERROR
+from hfanalysis.diagnose.observations.channel import CHAMBER_FORM, FORM_ERROR
 
 STEPS, RATIO = 7, 3.0
 """Sizes that a model-form error may have, and the ratio of neighbours."""

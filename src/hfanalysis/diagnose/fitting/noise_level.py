@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.observations.observed import SlowNoise
+from hfanalysis.diagnose.observations.noise import SlowNoise
 
 Array = NDArray[np.float64]
 
@@ -107,13 +107,11 @@ class _Level:
         misfit = float(extra @ self.left**2 - step @ curvature @ step) + lower
         prior = float(np.sum((log_factor / UNSURE) ** 2))
         gain = -0.5 * (float(np.log(variance).sum()) + grown + misfit + prior)
-        # the inverse of the marginal covariance, in the patterns: 1 / v less what the parameters take
-        taken = np.linalg.solve(np.linalg.cholesky(curvature), (self.slopes / variance[:, None]).T).T
-        own = 1.0 / variance
-        part = np.sum(taken**2, axis=1)
+        # R, the inverse of the marginal covariance, in the patterns: 1 / v less what the parameters take
+        taken = np.linalg.solve(np.linalg.cholesky(curvature), (self.slopes / variance[:, None]).T)
+        inverse = np.diag(1.0 / variance) - taken.T @ taken
         pull = (self.left + self.slopes @ step) / variance
         speed = 2.0 * squares[:, None] * self.shares
-        gradient = 0.5 * speed @ (pull**2 - own + part) - log_factor / UNSURE**2
-        shared = np.einsum("ck,kp,kq->cpq", speed, taken, taken, optimize=True)
-        information = speed * (own**2 - 2.0 * own * part) @ speed.T + np.einsum("cpq,dpq->cd", shared, shared)
+        gradient = 0.5 * speed @ (pull**2 - inverse.diagonal()) - log_factor / UNSURE**2
+        information = speed @ inverse**2 @ speed.T  # traces of R dV/df R dV/dg
         return _At(gain, gradient, 0.5 * information + np.eye(log_factor.size) / UNSURE**2)

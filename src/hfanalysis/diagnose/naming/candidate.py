@@ -33,10 +33,11 @@ FURTHER = 5.0
 HOPELESS = 30.0
 """Log evidence behind the best at the same form from which on a candidate is not fitted any finer."""
 
-DOUBT = 30.0
-"""Log evidence that a form may promise a set of effects to lose, by the slopes of its fit, and still be tried: it is
-not linear. In HF5 and four practice cases no form that gained something had promised to lose more, but for free
-sources; of those that gained nothing three in four had."""
+DOUBT, FAR_DOUBT = 30.0, 100.0
+"""Log evidence that a form may promise to lose, by the slopes of a fit, and still be tried, for nothing is linear: by
+sets of effects, which are near the data, and by the rest. In HF4, HF5 and five practice cases no form that gained
+something had promised to lose more than 30, but for free sources; of those of sets that gained nothing three in four
+had."""
 
 SHORT, LONG = 12, 25
 """Steps of a fit that looks around, and of one that is to converge."""
@@ -126,12 +127,9 @@ class Bench:
         return [] if form == found.form else [form]
 
     def _refitted(self, found: Candidate, forms: Sequence[Form]) -> list[Candidate | None]:
-        """At forms of which something may be hoped for; None for the others.
-
-        Only sets of effects, which take most of the time, are near enough to the data to be foretold.
-        """
-        foretold = found.fit.converged and not found.unknown and len(found.names) > 1
-        hopeful = [form for form in forms if not foretold or self._promised(found, form) > -DOUBT]
+        """At forms of which something may be hoped for; None for the others."""
+        doubt = FAR_DOUBT if found.unknown or len(found.names) < 2 else DOUBT
+        hopeful = [form for form in forms if not found.fit.converged or self._promised(found, form) > -doubt]
         made = dict(zip(hopeful, each(partial(self.refitted, found), hopeful), strict=True))
         return [made.get(form) for form in forms]
 

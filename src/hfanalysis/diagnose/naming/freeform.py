@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,16 +55,19 @@ STRIDES = (1.0, 0.5, 0.2)
 
 def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
     """Sources instead of any name, and beside the best name, where either is worth it; the best first."""
-    sides = [_instead, _beside] if named.names else [_instead]
-    found = each(lambda side: side(base, named, bench), sides)
-    return sorted((_priced(c) for side in found for c in side), key=lambda c: -c.log_evidence)
+    sides = [partial(side, base, named, bench) for side in (_instead, _at_finest, plain_sources)]
+    if named.names:
+        sides += [partial(_beside, base, named, bench), partial(plain_sources, named, named, bench)]
+    instead, at_finest, *others = each(lambda side: side(), sides)
+    done = {c.names for c in instead if c.form == FINEST}
+    found = [*instead, *(c for c in at_finest if c.names not in done), *(c for side in others for c in side)]
+    return sorted((_priced(c) for c in found), key=lambda c: -c.log_evidence)
 
 
 def _instead(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
     """Sources instead of any name."""
     start, sources = _worth_it(base, bench)
-    out = _fitted(start, sources, bench, named)
-    return out + _at_finest(base, out, bench, named) + plain_sources(base, named, bench)
+    return _fitted(start, sources, bench, named)
 
 
 def _beside(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
@@ -79,7 +83,7 @@ def _beside(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
         found = _fitted(start, sources, bench)
         best = max(found, key=lambda c: c.log_evidence)
         found += [less for less in [dropped(best, bench)] if less is not best]
-    return plain_sources(named, named, bench) + found
+    return found
 
 
 def _priced(source: Candidate) -> Candidate:
@@ -98,7 +102,7 @@ def _worth_it(parent: Candidate, bench: Bench) -> tuple[Candidate, list[Source]]
     return parent, _few(sources)
 
 
-def _at_finest(base: Candidate, tried: list[Candidate], bench: Bench, named: Candidate) -> list[Candidate]:
+def _at_finest(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
     """The likeliest source at the finest form, where the base model asks for a coarser one.
 
     A model-form error in chamber and thrust takes up what only one of them shows: at a form that lets the base model
@@ -106,8 +110,7 @@ def _at_finest(base: Candidate, tried: list[Candidate], bench: Bench, named: Can
     """
     if base.form == FINEST or (finest := bench.refitted(base, FINEST)) is None:
         return []
-    done = {c.names for c in tried if c.form == FINEST}
-    return _fitted(finest, [s for s in _seen(finest, bench)[:1] if (s.site.name,) not in done], bench, named)
+    return _fitted(finest, _seen(finest, bench)[:1], bench, named)
 
 
 def _few(sources: list[Source]) -> list[Source]:

@@ -43,7 +43,7 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[
     found: list[Candidate] = []
     for size in range(2, MOST_EFFECTS + 1):
         search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
-        grown = sorted((c for parent in front for c in _partners(parent, search, tried)), key=lambda c: -c.log_evidence)
+        grown = sorted(_partners(front, search, tried), key=lambda c: -c.log_evidence)
         best = [c for c in each(lambda c: dropped(c, bench), grown[:2]) if len(c.names) > 1]
         loose = _loosened([*best, *grown], bench)
         front = [c for c, free in zip(best, loose, strict=False) if free.log_evidence > _of_subsets(c, known)][:1]
@@ -84,22 +84,29 @@ def _best_each(candidates: list[Candidate]) -> list[Candidate]:
     return list(best.values())
 
 
-def _partners(parent: Candidate, search: Search, tried: set[frozenset[str]]) -> list[Candidate]:
-    """The parent with each of the few effects that a score test asks for, at the form that suits them."""
-    bench = search.bench
-    names = [
-        n for n in search.catalogue.effects if frozenset((*parent.names, n)) not in tried and n not in parent.names
-    ]
-    asked = _asked(parent, [bench.at(form) for form in parent.form.either_finer or [parent.form]], search, names)
-    tried |= {frozenset((*parent.names, name)) for name in asked}
-    fits = each(lambda start: attempted(start[0], bench.at(parent.form), start[1]), list(asked.values()))
-    out = [
-        candidate((*parent.names, name), found, parent.form)
-        for name, found in zip(asked, fits, strict=True)
-        if found is not None
-    ]
-    top = max((c.log_evidence for c in out), default=0.0)
-    return each(bench.judged, [c for c in out if c.log_evidence > top - HOPELESS])
+def _partners(front: list[Candidate], search: Search, tried: set[frozenset[str]]) -> list[Candidate]:
+    """Each parent with each of the few effects that a score test asks for, at the form that suits them."""
+    bench, jobs = search.bench, list[tuple[Candidate, str, Hypothesis, Array]]()
+    for parent in front:
+        names = [
+            n for n in search.catalogue.effects if frozenset((*parent.names, n)) not in tried and n not in parent.names
+        ]
+        asked = _asked(parent, [bench.at(form) for form in parent.form.either_finer or [parent.form]], search, names)
+        tried |= {frozenset((*parent.names, name)) for name in asked}
+        jobs += [(parent, name, made, start) for name, (made, start) in asked.items()]
+
+    def grown(job: tuple[Candidate, str, Hypothesis, Array]) -> Candidate | None:
+        parent, name, made, start = job
+        found = attempted(made, bench.at(parent.form), start)
+        return None if found is None else candidate((*parent.names, name), found, parent.form)
+
+    found = each(grown, jobs)
+    promising = list[Candidate]()
+    for parent in front:
+        own = [c for (of, *_), c in zip(jobs, found, strict=True) if of is parent and c is not None]
+        top = max((c.log_evidence for c in own), default=0.0)
+        promising += [c for c in own if c.log_evidence > top - HOPELESS]
+    return each(bench.judged, promising)
 
 
 def _asked(

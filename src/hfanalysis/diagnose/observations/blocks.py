@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.diagnose.observations.channel import averaged
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BLOCK, Frame
-from hfanalysis.diagnose.observations.observed import averaged
 from hfanalysis.diagnose.observations.recorded import LONGEST
 from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.signals import Signal

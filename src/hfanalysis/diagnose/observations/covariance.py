@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.observations.alignment import share
 from hfanalysis.diagnose.observations.blocks import TANK_AT_REST, Blocks
+from hfanalysis.diagnose.observations.channel import SHARE, Channel, averaged, range_of
 from hfanalysis.diagnose.observations.frame import BLOCK, EVENT_STD, Frame
-from hfanalysis.diagnose.observations.observed import SHARE, Channel, averaged, range_of
 from hfanalysis.diagnose.observations.oscillation import oscillation
 from hfanalysis.diagnose.observations.recorded import LONGEST, TOGETHER, accuracy_of
 from hfanalysis.diagnose.observations.wander import Wander, roughness, wander_of

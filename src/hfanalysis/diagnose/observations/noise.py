@@ -1,0 +1,121 @@
+"""What the blocks of a test may be off by, as factors that make it white, at every model-form error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cholesky, lapack
+
+from hfanalysis.diagnose.observations.channel import Channel
+from hfanalysis.diagnose.observations.recorded import TOGETHER
+
+Array = NDArray[np.float64]
+
+LEAST_SHARE, MOST_SHARE = 0.05, 0.95
+"""Of the noise in a pattern that is slow, from which on it counts, and at most: a covariance of the oscillation that is
+only estimated may leave less than nothing to the rest."""
+
+LEAST_VARIANCE = 1e-3
+"""Of any combination of blocks, relative to a single block's."""
+
+
+@dataclass(frozen=True)
+class SlowNoise:
+    """Orthonormal ``patterns`` (blocks, patterns) of whitened noise, and the ``shares`` (channels, patterns) of the
+    variance in each that are the slow noise of a channel."""
+
+    patterns: Array
+    shares: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Channels whose noise goes together, with ``common``, the covariance of the first and second if there are two.
+
+    What is made for a model-form error is kept: a search asks for it again and again. ``place``: their blocks among
+    those of all channels; ``first``: the number of the first channel among all.
+    """
+
+    channels: tuple[Channel, ...]
+    common: Array | None
+    place: slice
+    first: int
+    _whitening: dict[float, Array] = field(default_factory=dict)
+    _slow: dict[float, tuple[Array, Array]] = field(default_factory=dict)
+
+    def error(self, errors: tuple[float, float]) -> float:
+        """The model-form error that counts for these channels."""
+        return errors[self.channels[0].name in TOGETHER]
+
+    def whitening(self, errors: tuple[float, float]) -> Array:
+        """The inverse Cholesky factor of their covariance."""
+        key = self.error(errors)
+        if key not in self._whitening:
+            own = [c.covariance + c.form_covariance(errors) for c in self.channels]
+            joint = own[0] if self.common is None else np.block([[own[0], self.common], [self.common.T, own[1]]])
+            self._whitening[key] = _whitening(joint)
+        return self._whitening[key]
+
+    def slow(self, errors: tuple[float, float]) -> tuple[Array, Array]:
+        """Orthonormal patterns (blocks, patterns) of the whitened noise, and the share (channels, patterns) of the
+        variance in each that is the slow noise of each channel."""
+        key = self.error(errors)
+        if key not in self._slow:
+            self._slow[key] = self._slow_patterns(self.whitening(errors))
+        return self._slow[key]
+
+    def _slow_patterns(self, factor: Array) -> tuple[Array, Array]:
+        of_channel, at = np.zeros((len(self.channels), factor.shape[0], factor.shape[0])), 0
+        for i, channel in enumerate(self.channels):
+            if channel.slow is not None:
+                columns = factor[:, at : at + channel.time.size]
+                of_channel[i] = columns @ channel.slow @ columns.T
+            at += channel.time.size
+        values, vectors = np.linalg.eigh(of_channel.sum(axis=0))
+        clear = vectors[:, values > LEAST_SHARE]
+        share = np.stack([np.sum(clear * (slow @ clear), axis=0) for slow in of_channel])
+        return clear, share * np.minimum(MOST_SHARE / share.sum(axis=0), 1.0)
+
+
+def groups_of(channels: Sequence[Channel], common: Array | None) -> Iterator[Group]:
+    """The channels, one by one or, where their noise has a ``common`` covariance, two together."""
+    at = i = 0
+    while i < len(channels):
+        both = channels[i].name == TOGETHER[0] and common is not None
+        inside = tuple(channels[i : i + 1 + both])
+        size = sum(c.time.size for c in inside)
+        yield Group(inside, common if both else None, slice(at, at + size), i)
+        at, i = at + size, i + len(inside)
+
+
+def slow_noise(groups: Sequence[Group], errors: tuple[float, float]) -> SlowNoise:
+    """What of the whitened noise of all groups is slow."""
+    found = [group.slow(errors) for group in groups]
+    number = sum(clear.shape[1] for clear, _ in found)
+    patterns = np.zeros((groups[-1].place.stop, number))
+    shares = np.zeros((sum(len(group.channels) for group in groups), number))
+    at = 0
+    for group, (clear, share) in zip(groups, found, strict=True):
+        columns = slice(at, at + clear.shape[1])
+        patterns[group.place, columns] = clear
+        shares[group.first : group.first + len(group.channels), columns] = share
+        at = columns.stop
+    return SlowNoise(patterns, shares)
+
+
+def _whitening(covariance: Array) -> Array:
+    """W, lower triangular, with W C W^T = 1.
+
+    An estimated covariance need not be positive: what is smaller than LEAST_VARIANCE is raised.
+    """
+    try:
+        root = cholesky(covariance, lower=True, check_finite=False)
+    except np.linalg.LinAlgError:
+        size = np.sqrt(covariance.diagonal())
+        values, vectors = np.linalg.eigh(covariance / np.outer(size, size))
+        raised = (vectors * np.maximum(values, LEAST_VARIANCE)) @ vectors.T
+        root = cholesky(raised * np.outer(size, size), lower=True)
+    return np.asarray(lapack.dtrtri(root, lower=1)[0])
