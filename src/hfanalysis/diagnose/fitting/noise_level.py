@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from hfanalysis.diagnose.observations.noise import SlowNoise
 
@@ -89,8 +90,9 @@ class _Level:
     @cached_property
     def _as_it_is(self) -> tuple[float, float]:
         """With factors of one: log of the curvature's determinant, and what a last step would take off chi-square."""
-        last = self.gradient @ np.linalg.solve(self.curvature, self.gradient)
-        return float(np.linalg.slogdet(self.curvature)[1]), float(last)
+        root = cholesky(self.curvature, lower=True)
+        last = solve_triangular(root, self.gradient, lower=True)
+        return 2.0 * float(np.log(root.diagonal()).sum()), float(last @ last)
 
     def at(self, log_factor: Array) -> _At:
         """With these factors of the channels' slow noise (logs).
@@ -100,15 +102,15 @@ class _Level:
         squares = np.exp(2.0 * log_factor)
         variance = 1.0 + (squares - 1.0) @ self.shares
         extra = 1.0 / variance - 1.0
-        curvature = self.curvature + self.slopes.T @ (extra[:, None] * self.slopes)
-        step = -np.linalg.solve(curvature, self.gradient + self.slopes.T @ (extra * self.left))
+        root = cholesky(self.curvature + self.slopes.T @ (extra[:, None] * self.slopes), lower=True)
+        step = -cho_solve((root, True), self.gradient + self.slopes.T @ (extra * self.left))
         size, lower = self._as_it_is
-        grown = float(np.linalg.slogdet(curvature)[1]) - size
-        misfit = float(extra @ self.left**2 - step @ curvature @ step) + lower
+        grown = 2.0 * float(np.log(root.diagonal()).sum()) - size
+        misfit = float(extra @ self.left**2 - np.sum((root.T @ step) ** 2)) + lower
         prior = float(np.sum((log_factor / UNSURE) ** 2))
         gain = -0.5 * (float(np.log(variance).sum()) + grown + misfit + prior)
         # R, the inverse of the marginal covariance, in the patterns: 1 / v less what the parameters take
-        taken = np.linalg.solve(np.linalg.cholesky(curvature), (self.slopes / variance[:, None]).T)
+        taken = solve_triangular(root, (self.slopes / variance[:, None]).T, lower=True)
         inverse = np.diag(1.0 / variance) - taken.T @ taken
         pull = (self.left + self.slopes @ step) / variance
         speed = 2.0 * squares[:, None] * self.shares
