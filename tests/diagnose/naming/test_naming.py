@@ -15,7 +15,7 @@ from hfanalysis.diagnose.answer.limits import inserted, limits
 from hfanalysis.diagnose.answer.verdict import of_unknown, places, verdict_of
 from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.fitting.fit import fit, promised
-from hfanalysis.diagnose.fitting.form import FINEST, Form
+from hfanalysis.diagnose.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import mid_flux
 from hfanalysis.diagnose.fitting.late import late
 from hfanalysis.diagnose.fitting.probe import Splines, probe
@@ -335,6 +335,26 @@ def test_what_another_form_promises_is_what_a_fit_finds_there() -> None:
     assert again is not None
     assert promised(chosen.fit, here, other) == pytest.approx(again.log_evidence, abs=0.5)
     assert abs(again.log_evidence - chosen.fit.log_evidence) > 5.0
+
+
+def test_a_form_without_hope_is_not_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A base model that leaves much open comes to the same form in fewer fits where each is asked what it promises."""
+    found = named("injector_choked_vapor")
+    base, ran = found.bench.refitted(found.base, COARSEST), list[Form]()
+    assert base is not None
+    refitted = Bench.refitted
+
+    def seen(bench: Bench, one: Candidate, form: Form) -> Candidate | None:
+        ran.append(form)
+        return refitted(bench, one, form)
+
+    monkeypatch.setattr(Bench, "refitted", seen)
+    hopeful, count = found.bench.judged(base), len(ran)
+    monkeypatch.setattr("hfanalysis.diagnose.naming.candidate.FAR_DOUBT", np.inf)
+    all_of_them = found.bench.judged(base)
+    assert hopeful.form == all_of_them.form
+    assert hopeful.log_evidence == pytest.approx(all_of_them.log_evidence, abs=0.1)
+    assert 0 < count < len(ran) - count
 
 
 def test_what_no_candidate_explains_is_model_form_error() -> None:

@@ -287,6 +287,18 @@ def test_rows_are_whitened_anew_for_another_form(excess: float) -> None:
     assert test.rewhitened(fine, test) == pytest.approx(fine, rel=1e-6, abs=1e-9)
 
 
+def test_what_is_made_for_an_error_of_one_side_serves_all_forms_with_it() -> None:
+    test = logged.reduced()
+    one, other = test.with_errors(0.01, 0.002), test.with_errors(0.01, 0.005)
+    rows = np.random.default_rng(4).standard_normal(sum(c.time.size for c in test.channels))
+    alone = replace(other, ambient=other.ambient)
+    assert one.whiten(rows) != pytest.approx(other.whiten(rows))
+    assert other.whiten(rows).tolist() == alone.whiten(rows).tolist()
+    assert other.slow_noise.shares.tolist() == alone.slow_noise.shares.tolist()
+    same = [a is b for (_, a), (_, b) in zip(one._factors, other._factors, strict=True)]
+    assert same == [c.name not in TOGETHER for c in test.channels if c.name != TOGETHER[1]]
+
+
 def test_what_cannot_be_compared_is_left_out() -> None:
     log = logged.log()
     dead = replace(log["p_run"], values=np.full_like(log["p_run"].values, 1e5))

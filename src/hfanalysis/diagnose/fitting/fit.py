@@ -98,7 +98,7 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
         before = _objective(here, x)
         moved = None
         for _ in range(8):
-            step = _step(here.slopes, here.residual, x, least, highest, damping)
+            step = bounded_step(here.slopes, here.residual, x, least, highest, damping)
             expected = _expected(here, x, step)
             trial = _try(hypothesis, observed, x + step)
             if trial is not None and _objective(trial, x + step) < before - TRUST * expected:
@@ -150,21 +150,25 @@ def promised(found: Fit, observed: Observed, other: Observed, slack: Array | Non
     return log_evidence(residual + slopes @ step, slopes, x + step, other)
 
 
-def _step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, damping: float) -> Array:
-    """A damped Gauss-Newton step towards the best point within bounds: what would leave them ends there, and the others
-    follow."""
+def bounded_step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, damping: float) -> Array:
+    """A damped Gauss-Newton step (parameters,) from ``x``, at most LONGEST_STRIDE long, that stays within bounds.
+
+    Whatever reaches a bound on the way stays there, and the others go on without it: all the way it is downhill.
+    """
     gradient = slopes.T @ residual + x
     curvature = slopes.T @ slopes + np.eye(x.size)
     curvature = curvature + damping * np.diag(curvature.diagonal())
     free, step = np.ones(x.size, dtype=bool), np.zeros(x.size)
     while free.any():
-        pull = gradient[free] + curvature[np.ix_(free, ~free)] @ step[~free]
-        step[free] = -np.linalg.solve(curvature[np.ix_(free, free)], pull)
-        leaving = free & ((x + step < least) | (x + step > most))
-        if not leaving.any():
+        onward = np.zeros(x.size)
+        pull = gradient[free] + curvature[free] @ step
+        onward[free] = -np.linalg.solve(curvature[np.ix_(free, free)], pull)
+        room = np.where(onward > 0.0, most, least) - x - step
+        part = np.divide(room, onward, out=np.full(x.size, np.inf), where=onward != 0.0)
+        step += min(1.0, max(float(part.min()), 0.0)) * onward
+        if part.min() >= 1.0:
             break
-        step[leaving] = (np.clip(x + step, least, most) - x)[leaving]
-        free &= ~leaving
+        free &= part > part.min()
     step *= min(1.0, LONGEST_STRIDE / max(float(np.abs(step).max()), 1e-12))
     return np.asarray(np.clip(x + step, least, most) - x)
 
