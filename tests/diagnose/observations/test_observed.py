@@ -291,7 +291,7 @@ def test_what_is_made_for_an_error_of_one_side_serves_all_forms_with_it() -> Non
     test = logged.reduced()
     one, other = test.with_errors(0.01, 0.002), test.with_errors(0.01, 0.005)
     rows = np.random.default_rng(4).standard_normal(sum(c.time.size for c in test.channels))
-    alone = replace(other, ambient=other.ambient)
+    alone = replace(other)  # which shares nothing
     assert one.whiten(rows) != pytest.approx(other.whiten(rows))
     assert other.whiten(rows).tolist() == alone.whiten(rows).tolist()
     assert other.slow_noise.shares.tolist() == alone.slow_noise.shares.tolist()

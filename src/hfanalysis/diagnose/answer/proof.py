@@ -69,10 +69,10 @@ def _placebo(found: Naming, chosen: Candidate) -> Candidate | None:
 def _elsewhere(chosen: Candidate, other: OtherTest) -> dict[str, Any] | None:
     """The other test without and with the effects, their constants frozen and its own free."""
     observed, bench = other.observed, Bench(other.observed)
-    models = [bench.settled(h) for h in (other.hypothesis, frozen(other.hypothesis, chosen.fit))]
-    if None in models:
+    without, explained = (bench.settled(h) for h in (other.hypothesis, frozen(other.hypothesis, chosen.fit)))
+    if without is None or explained is None:
         return None
-    base, after = (found.fit for found in models if found is not None)
+    base, after = without.fit, explained.fit
     gaps = [total_gap(f, observed) for f in (base, after)]
     return {
         "test": other.name,

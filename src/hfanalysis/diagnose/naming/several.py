@@ -100,13 +100,15 @@ def _partners(front: list[Candidate], search: Search, tried: set[frozenset[str]]
         found = attempted(made, bench.at(parent.form), start)
         return None if found is None else candidate((*parent.names, name), found, parent.form)
 
-    found = each(grown, jobs)
-    promising = list[Candidate]()
-    for parent in front:
-        own = [c for (of, *_), c in zip(jobs, found, strict=True) if of is parent and c is not None]
-        top = max((c.log_evidence for c in own), default=0.0)
-        promising += [c for c in own if c.log_evidence > top - HOPELESS]
-    return each(bench.judged, promising)
+    return each(bench.judged, _in_the_running([c for c in each(grown, jobs) if c is not None]))
+
+
+def _in_the_running(grown: list[Candidate]) -> list[Candidate]:
+    """Those that are not far behind the best with the same parent, whose form they share."""
+    top = dict[tuple[str, ...], float]()
+    for c in grown:
+        top[c.names[:-1]] = max(c.log_evidence, top.get(c.names[:-1], -np.inf))
+    return [c for c in grown if c.log_evidence > top[c.names[:-1]] - HOPELESS]
 
 
 def _asked(

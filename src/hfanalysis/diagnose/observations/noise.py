@@ -46,13 +46,13 @@ class Group:
     _whitening: dict[float, Array] = field(default_factory=dict)
     _slow: dict[float, tuple[Array, Array]] = field(default_factory=dict)
 
-    def error(self, errors: tuple[float, float]) -> float:
+    def _error(self, errors: tuple[float, float]) -> float:
         """The model-form error that counts for these channels."""
         return errors[self.channels[0].name in TOGETHER]
 
     def whitening(self, errors: tuple[float, float]) -> Array:
         """The inverse Cholesky factor of their covariance."""
-        key = self.error(errors)
+        key = self._error(errors)
         if key not in self._whitening:
             own = [c.covariance + c.form_covariance(errors) for c in self.channels]
             joint = own[0] if self.common is None else np.block([[own[0], self.common], [self.common.T, own[1]]])
@@ -62,7 +62,7 @@ class Group:
     def slow(self, errors: tuple[float, float]) -> tuple[Array, Array]:
         """Orthonormal patterns (blocks, patterns) of the whitened noise, and the share (channels, patterns) of the
         variance in each that is the slow noise of each channel."""
-        key = self.error(errors)
+        key = self._error(errors)
         if key not in self._slow:
             self._slow[key] = self._slow_patterns(self.whitening(errors))
         return self._slow[key]
