@@ -210,7 +210,7 @@ def test_without_an_engine_the_section_tells_the_sensors_and_claims_no_numbers(t
 def test_a_test_that_cannot_be_diagnosed_says_why_in_the_section(tmp_path: Path) -> None:
     bare = without(material(tmp_path), diagnosis="the engine is not stated: [engine] is missing")
     laid = section(lay_out(bare))
-    assert "could not be diagnosed:</strong> the engine is not stated" in told(laid)
+    assert "This test has no diagnosis:</strong> the engine is not stated" in told(laid)
     assert "lead diagnosed" not in page(bare)
 
 

@@ -47,11 +47,11 @@ def headline(product: Mapping[str, Any]) -> str:
 
 
 def _absent(material: Material) -> Markup:
-    """Why this test could not be diagnosed; where more is missing than that, the page says it elsewhere."""
+    """Why this test has no diagnosis; where more is missing than that, the page says it elsewhere."""
     reason = material.why_not("diagnosis")
     if reason in {material.absent.get(name) for name in _SHARED} or "diagnosis" not in material.absent:
         raise AbsentError(reason)
-    words = Markup('<p class="absent"><strong>This test could not be diagnosed:</strong> {}</p>')
+    words = Markup('<p class="absent"><strong>This test has no diagnosis:</strong> {}</p>')
     return words.format(html.switchable(reason))
 
 
