@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 SECONDS = 10.0
 WITH_TERMS = [name for name, found in library().items() if found.term is not None]
-OF_SENSORS = [name for name, found in library().items() if found.distort is not None]
+OF_SENSORS = [name for name, found in library().items() if found.of_sensor]
 
 
 @cache

@@ -21,7 +21,7 @@ def corrected(log: TestLog, origin: float, effects: Sequence[Active]) -> TestLog
 
     The same log where none distorts a channel that it has.
     """
-    acting = [active for active in effects if active.effect.distort is not None and not active.idle]
+    acting = [active for active in effects if active.effect.of_sensor and not active.idle]
     names = {name for active in acting for name in active.effect.sites if name in log}
     if not names:
         return log

@@ -99,7 +99,7 @@ def diagnose(
 
 def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Effect]:
     """Effects that the channels of a test can show at all: a sensor's need the sensor."""
-    return {n: e for n, e in effects.items() if e.distort is None or set(e.sites) & set(observed.names)}
+    return {n: e for n, e in effects.items() if not e.of_sensor or set(e.sites) & set(observed.names)}
 
 
 def _purge(subject: Subject) -> dict[str, float]:

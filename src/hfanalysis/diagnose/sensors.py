@@ -89,7 +89,7 @@ class Sensor:
         resting, std = np.zeros(points.size, dtype=bool), np.full(points.size, self.accuracy)
         name = "p_chamber" if self.of == "chamber_pressure" else self.of  # the model errs for both alike
         channel = Channel(name, time, value, points, count, resting, std, self.accuracy, covariance)
-        return replace(observed, channels=(channel,), common=None)
+        return replace(observed, channels=(channel,), common=None, alike=None)
 
     def _points(self, observed: Observed, burnt: Burn) -> Integers:
         """Where its blocks begin on the common grid."""

@@ -66,7 +66,8 @@ class Effect:
     the first ``strengths`` parameters are strengths of their own kind (one per transducer), it is the base model when
     all of them are 0. ``fading_web``: from its values, the web [m] over which the burning surface goes as the fuel
     ends; how fast the fire goes out is compared beside the channels. ``reads``: sites that others set and its term
-    asks for; it comes after them.
+    asks for; it comes after them. An effect of the engine may have a distortion besides, where a channel that no
+    equation has shows it.
     """
 
     name: str
@@ -90,8 +91,13 @@ class Effect:
     def __post_init__(self) -> None:
         if self.equation not in EQUATIONS:
             raise ValueError(f"{self.name}: no governing equation is called {self.equation!r}")
-        if (self.term is None) == (self.distort is None):
-            raise ValueError(f"{self.name}: an effect has either a term or a distortion")
+        if self.term is None and self.distort is None:
+            raise ValueError(f"{self.name}: an effect has a term or a distortion")
+
+    @property
+    def of_sensor(self) -> bool:
+        """Whether it acts on what sensors read alone."""
+        return self.term is None
 
     @property
     def strength(self) -> Parameter:

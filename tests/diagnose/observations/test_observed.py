@@ -12,7 +12,7 @@ from tests.diagnose.made import covariance_of
 from hfanalysis.diagnose.observations.blocks import MERGED, NEAR
 from hfanalysis.diagnose.observations.channel import FORM_ERROR, SHARE, Channel
 from hfanalysis.diagnose.observations.covariance import coherence_of
-from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BEFORE_END, BLOCK, FIRST, REST_BLOCKS
+from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BEFORE_END, BLOCK, EVENT_STD, FIRST, REST_BLOCKS
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.recorded import TOGETHER, as_read
 from hfanalysis.engine.unsteady import Burn
@@ -156,7 +156,8 @@ def test_noise_of_that_covariance_is_white_after_whitening(with_common: bool) ->
     assert test.whiten(root) @ test.whiten(root).T == pytest.approx(np.eye(root.shape[0]), abs=1e-6)
     draws = test.whiten(root @ np.random.default_rng(2).standard_normal((root.shape[0], 40)))
     assert draws.std() == pytest.approx(1.0, abs=0.02)
-    assert test.log_size == pytest.approx(0.5 * np.linalg.slogdet(covariance)[1])
+    moved = np.hypot(EVENT_STD, FORM_ERROR * test.events["t_v"][0]) / EVENT_STD
+    assert test.log_size == pytest.approx(0.5 * np.linalg.slogdet(covariance)[1] + np.log(moved))
 
 
 def test_the_covariance_of_a_log_is_positive() -> None:
@@ -281,8 +282,11 @@ def test_rows_are_whitened_anew_for_another_form(excess: float) -> None:
     coarse = test.with_errors(0.01, 0.002)
     blocks = sum(c.time.size for c in test.channels)
     raw, scalars = rng.standard_normal((blocks, 2)), rng.standard_normal((3, 2))
+    assert list(test.events) == ["t_v", "t_fuel_out"]
+    at, deviation = test.events["t_v"]
+    fewer = np.hypot(deviation, FORM_ERROR * at) / np.hypot(deviation, 0.01 * at)
     fine = np.concatenate([test.whiten(raw), scalars])
-    expected = np.concatenate([coarse.whiten(raw), scalars])
+    expected = np.concatenate([coarse.whiten(raw), scalars * [[fewer], [1.0], [1.0]]])
     assert coarse.rewhitened(fine, test) == pytest.approx(expected, rel=1e-6, abs=1e-9)
     assert test.rewhitened(fine, test) == pytest.approx(fine, rel=1e-6, abs=1e-9)
 

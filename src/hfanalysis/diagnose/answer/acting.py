@@ -66,7 +66,7 @@ def acting(found: Fit, name: str, observed: Observed) -> Acting:
     """
     active = next(a for a in found.burnt.steps.engine.effects if a.effect.name == name)
     time = np.linspace(0.0, float(observed.grid[~observed.resting][-1]), POINTS)
-    if active.effect.distort is not None:
+    if active.effect.of_sensor:
         return _sensor(found, active, observed)
     course = _Course.of(found, observed, time)
     mean = course.source(active.effect, found.x)

@@ -26,7 +26,7 @@ def limits(chosen: Candidate, bench: Bench, catalogue: Catalogue) -> dict[str, t
     visible = {
         name: effect
         for name, effect in catalogue.effects.items()
-        if name not in chosen.names and (effect.distort is None or set(effect.sites) & set(observed.names))
+        if name not in chosen.names and (not effect.of_sensor or set(effect.sites) & set(observed.names))
     }
     found = each(lambda name: _limit(chosen.fit, catalogue.add(chosen.fit.hypothesis, name), observed), list(visible))
     return {

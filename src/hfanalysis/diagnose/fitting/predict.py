@@ -14,6 +14,7 @@ from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.probe import Splines
 from hfanalysis.diagnose.observations.alignment import model_times, share
 from hfanalysis.diagnose.observations.observed import FADE, Observed
+from hfanalysis.diagnose.observations.recorded import ALIKE
 from hfanalysis.engine.course import LIQUID_OUT
 from hfanalysis.engine.model import RADIUS, STATES
 from hfanalysis.engine.observe import distorted, distorted_tangents, true_channels, true_tangents
@@ -113,7 +114,8 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
         parts.append(channel.value - model)
     raw = np.concatenate(parts)
     scalars = []
-    for name, (at, deviation) in observed.events.items():
+    for name, (at, _) in observed.events.items():
+        deviation = observed.spread(name)
         if name == "t_v":
             gone = burnt.liquid_out if burnt.liquid_out is not None else 2.0 * observed.end
             scalars.append((at - gone) / deviation)
@@ -122,7 +124,7 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
             scalars.append(web / (deviation * _typical_regression(hypothesis, at)))
     for name, (value, deviation) in observed.stated.items():
         if name == FADE:
-            scalars.append(bounded(_faded(observed, burnt) / deviation)[0])
+            scalars.append(bounded(faded(observed, burnt, burnt.steps.engine) / deviation)[0])
         else:
             scalars.append((value - _after(name, burnt, observed)) / deviation)
     return np.concatenate([observed.whiten(raw), np.array(scalars)])
@@ -131,8 +133,13 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
 def readings(observed: Observed, burnt: Burn) -> dict[str, Array]:
     """What the sensors read on the common grid."""
     times = aligned(observed, burnt, observed.grid)
-    channels = _resting(observed, true_channels(burnt, times))
+    channels = _resting(observed, _with_purge_line(true_channels(burnt, times)))
     return distorted(channels, observed.grid, burnt.steps.engine.effects)
+
+
+def _with_purge_line(channels: dict[str, Array]) -> dict[str, Array]:
+    """The channels, or their slopes, with a purge line that follows the tank through its check valve."""
+    return {**channels, ALIKE[1]: channels[ALIKE[0]]}
 
 
 def _resting(observed: Observed, channels: Mapping[str, Array]) -> dict[str, Array]:
@@ -156,7 +163,8 @@ def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Ar
     read = _slopes_of_readings(observed, found)
     white = -observed.whiten(np.concatenate([c.averaged(read[c.name]) for c in observed.channels]))
     rows = []
-    for name, (at, deviation) in observed.events.items():
+    for name, (at, _) in observed.events.items():
+        deviation = observed.spread(name)
         if name == "t_v":
             rows.append(-np.nan_to_num(found.event(LIQUID_OUT)) / deviation)
         else:
@@ -164,7 +172,7 @@ def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Ar
             rows.append(-found.output("port_radius", np.array([at]))[0] / unit)
     for name, (_, deviation) in observed.stated.items():
         if name == FADE:
-            slope = bounded(_faded(observed, found.burn) / deviation)[1]
+            slope = bounded(faded(observed, found.burn, found.burn.steps.engine) / deviation)[1]
             rows.append(slope * _faded_slopes(observed, found) / deviation)
         else:
             rows.append(-_after_slopes(name, found, observed) / deviation)
@@ -188,10 +196,11 @@ def signatures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Array:
 def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]:
     """Slopes (grid, parameters) of what is read at aligned instants, which move with the end of the liquid."""
     times = aligned(observed, found.burn, observed.grid)
-    channels, slopes = true_channels(found.burn, times), true_tangents(found, times)
+    channels = _with_purge_line(true_channels(found.burn, times))
+    slopes = _with_purge_line(true_tangents(found, times))
     seen = observed.events.get("t_v")
     if seen is not None and found.burn.liquid_out is not None:
-        ahead = true_channels(found.burn, np.minimum(times + TICK, found.burn.steps.times[-1, 1]))
+        ahead = _with_purge_line(true_channels(found.burn, np.minimum(times + TICK, found.burn.steps.times[-1, 1])))
         moved = share(observed.grid, seen[0], found.burn.liquid_out, observed.fuel_out)
         moment = np.nan_to_num(found.event(LIQUID_OUT))
         for name in slopes:
@@ -224,14 +233,14 @@ def _last_regression(burnt: Burn, gone: float) -> float:
     return max(float(radius[1] - radius[0]) / max(last - first, TICK), LEAST_REGRESSION)
 
 
-def _faded(observed: Observed, burnt: Burn) -> float:
-    """Log of the measured over the modelled time in which the fire goes out."""
-    engine, speed = burnt.steps.engine, _last_regression(burnt, observed.events["t_fuel_out"][0])
+def faded(observed: Observed, burnt: Burn, engine: Engine) -> float:
+    """Log of the measured over the time in which the fire of an engine goes out that burns as ``burnt`` until then."""
+    speed = _last_regression(burnt, observed.events["t_fuel_out"][0])
     return fade_misfit(observed.stated[FADE][0], abrupt(observed, engine), engine, speed)
 
 
 def _faded_slopes(observed: Observed, found: Tangents) -> Array:
-    """Slopes of :func:`_faded`."""
+    """Slopes of :func:`faded`."""
     engine, speed = found.burn.steps.engine, _last_regression(found.burn, observed.events["t_fuel_out"][0])
     at_once = abrupt(observed, engine)
     return np.array([fade_slope(parameter, at_once, engine, speed) for parameter in found.parameters])

@@ -47,11 +47,11 @@ class Blocks:
     good: NDArray[np.bool_]
 
 
-def blocks_of(signal: Signal, frame: Frame, zeroed: bool) -> Blocks | None:
+def blocks_of(signal: Signal, frame: Frame, zeroed: bool, start: float = 0.0) -> Blocks | None:
     """The block means of a signal whose times [s] count from the opening; None where too few are left.
 
     Blocks without enough samples, and those near a change of phase, are left out. ``zeroed``: what it reads before the
-    opening is known to be nothing, or the open air.
+    opening is known to be nothing, or the open air. ``start`` [s]: nothing is compared before.
     """
     flowing = frame.flowing
     n = flowing.stop - flowing.start
@@ -61,7 +61,7 @@ def blocks_of(signal: Signal, frame: Frame, zeroed: bool) -> Blocks | None:
     samples, centers = np.diff(at), frame.grid[flowing]
     means = np.where(samples > 0, np.diff(sums[at]) / np.maximum(samples, 1), 0.0)
     filled = (samples > 0) & (samples >= 0.5 * BLOCK / max(signal.step, 1e-9))
-    good = filled & (centers > frame.start) & (centers < frame.end(signal.name))
+    good = filled & (centers > max(frame.start, start)) & (centers < frame.end(signal.name))
     for name, (instant, deviation) in frame.changes.items():
         berth = 2.0 * deviation if name == "t_v" else min(2.0 * deviation, AROUND_CHANGE)
         good &= np.abs(centers - instant) > AROUND_CHANGE + berth

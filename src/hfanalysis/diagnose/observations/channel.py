@@ -29,7 +29,8 @@ class Channel:
     ``first`` and ``count`` say which points of the common grid are averaged into each block. ``covariance`` is that of
     sensor noise, oscillation, bias and gain. ``resting`` blocks lie before the opening or after the end of the flow.
     ``coherence``: blocks whose noise is worth one independent value. ``slow``: the part of the covariance that is slow
-    noise, whose size a quiet time of seconds does not tell exactly; None where there is none.
+    noise, whose size a quiet time of seconds does not tell exactly; None where there is none. ``span``: the range that
+    the model-form error is a part of, where it is not the channel's own.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Channel:
     covariance: Array
     coherence: float = 1.0
     slow: Array | None = None
+    span: float | None = None
 
     def only(self, rows: Integers) -> Channel:
         """The same with some of its blocks."""
@@ -58,18 +60,23 @@ class Channel:
         return replace(self, covariance=shared + np.diag(self.noise_std**2), coherence=1.0, slow=None)
 
     def form_covariance(self, errors: tuple[float, float]) -> Array:
-        """Covariance of a model-form error, given as part of the range of tank channels, and of chamber and thrust.
+        """Covariance of a model-form error, given as part of the range of tank channels, and of chamber and thrust."""
+        return form_covariance(self.time, self.form_size(errors))
 
-        It is smooth (Matern, 3/2).
-        """
-        lag = self.time[:, None] - self.time[None, :]
-        burning = np.where(self.resting, 0.0, errors[self.name in TOGETHER] * range_of(self.time, self.value))
-        smooth = np.sqrt(3.0) * np.abs(lag) / FORM_TIME
-        return np.asarray((1.0 + smooth) * np.exp(-smooth) * np.outer(burning, burning))
+    def form_size(self, errors: tuple[float, float]) -> Array:
+        """Standard deviation of a model-form error in each block."""
+        span = range_of(self.time, self.value) if self.span is None else self.span
+        return np.where(self.resting, 0.0, errors[self.name in TOGETHER] * span)
 
     def averaged(self, rows: Array) -> Array:
         """Block means of rows (grid, ...) on the common grid."""
         return averaged(rows, self.first, self.count)
+
+
+def form_covariance(time: Array, size: Array) -> Array:
+    """Covariance of a model-form error of this ``size`` in blocks at these times: it is smooth (Matern, 3/2)."""
+    smooth = np.sqrt(3.0) * np.abs(time[:, None] - time[None, :]) / FORM_TIME
+    return np.asarray((1.0 + smooth) * np.exp(-smooth) * np.outer(size, size))
 
 
 def range_of(time: Array, value: Array) -> float:

@@ -36,19 +36,18 @@ SPEED_ORDER = 3
 
 
 def channel_of(
-    blocks: Blocks, definition: TestDefinition, frame: Frame, shaken: Array | None, zero_std: float | None
+    blocks: Blocks, definition: TestDefinition, frame: Frame, shaken: Array | None, sensor: Array
 ) -> Channel:
     """The channel of these blocks with the covariance of their noise.
 
-    ``shaken`` (grid, grid): covariance of an oscillation that it shows; ``zero_std`` [SI]: standard deviation of its
-    zero, where one was taken before the opening.
+    ``shaken`` (grid, grid): covariance of an oscillation that it shows; ``sensor`` (blocks, blocks): that of the
+    sensor's zero and span.
     """
     name, resting = blocks.signal.name, frame.resting[blocks.first]
     accuracy = accuracy_of(definition, name, blocks.value)
     wander = wander_of(blocks.signal, BLOCK)
     own = _own(blocks, frame, shaken, wander)
     moved = _moved_by_knee(blocks, frame)
-    sensor = _zero_and_span(blocks, resting, accuracy, zero_std)
     covariance = own + sensor + np.outer(moved, moved) + _filling(blocks, frame, resting)
     for cold in _without_fire(blocks, frame):
         covariance = covariance + np.outer(cold, cold)
@@ -84,12 +83,14 @@ def _of_blocks(covariance: Array, blocks: Blocks) -> Array:
     return averaged(averaged(covariance, blocks.first, blocks.count).T, blocks.first, blocks.count)
 
 
-def _zero_and_span(blocks: Blocks, resting: NDArray[np.bool_], accuracy: float, zero_std: float | None) -> Array:
-    """By an error of the zero and by one of the span, which shows under load alone; a filled tank is a load.
+def zero_and_span(blocks: Blocks, definition: TestDefinition, frame: Frame, zero_std: float | None) -> Array:
+    """Covariance of blocks by an error of the zero and by one of the span, which shows under load alone; a filled tank
+    is a load.
 
     What a sensor reads at rest before the opening tells its zero, where that is compared; else the zero that was taken
-    there leaves its own error, and what moves it under load.
+    there leaves its own error (``zero_std``, SI), and what moves it under load.
     """
+    resting, accuracy = frame.resting[blocks.first], accuracy_of(definition, blocks.signal.name, blocks.value)
     at_rest = resting if blocks.signal.name not in TANK_AT_REST else np.zeros_like(resting)
     loaded = np.where(at_rest, 0.0, 1.0)
     gain = SHARE * accuracy * loaded * blocks.value / float(np.abs(blocks.value).max())

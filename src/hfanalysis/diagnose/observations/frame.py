@@ -27,10 +27,10 @@ AROUND_CHANGE = 0.04
 FIRST = 0.03
 """Seconds after the opening before which nothing is compared: the chamber fills, the igniter is not modelled."""
 
-TANK_SIDE = ("p_tank", "p_run", "m_tank")
+TANK_SIDE = ("p_tank", "p_run", "m_tank", "p_purge")
 """Channels that go on telling when the nozzle has unchoked."""
 
-EVENT_STD = 0.005
+EVENT_STD = 0.002
 """Least standard deviation [s] of the instant of a phase change."""
 
 FUEL_STD = 0.05

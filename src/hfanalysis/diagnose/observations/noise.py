@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cholesky, lapack
+from scipy.linalg import block_diag, cholesky, lapack
 
-from hfanalysis.diagnose.observations.channel import Channel
-from hfanalysis.diagnose.observations.recorded import TOGETHER
+from hfanalysis.diagnose.observations.channel import Channel, form_covariance
+from hfanalysis.diagnose.observations.recorded import ALIKE, TOGETHER
 
 Array = NDArray[np.float64]
 
@@ -36,13 +36,15 @@ class Group:
     """Channels whose noise goes together, with ``common``, the covariance of the first and second if there are two.
 
     What is made for a model-form error is kept: a search asks for it again and again. ``place``: their blocks among
-    those of all channels; ``first``: the number of the first channel among all.
+    those of all channels; ``first``: the number of the first channel among all. ``alike``: what the model gets wrong is
+    one error in both.
     """
 
     channels: tuple[Channel, ...]
     common: Array | None
     place: slice
     first: int
+    alike: bool = False
     _whitening: dict[float, Array] = field(default_factory=dict)
     _slow: dict[float, tuple[Array, Array]] = field(default_factory=dict)
 
@@ -54,10 +56,17 @@ class Group:
         """The inverse Cholesky factor of their covariance."""
         key = self._error(errors)
         if key not in self._whitening:
-            own = [c.covariance + c.form_covariance(errors) for c in self.channels]
-            joint = own[0] if self.common is None else np.block([[own[0], self.common], [self.common.T, own[1]]])
-            self._whitening[key] = _whitening(joint)
+            own = [c.covariance for c in self.channels]
+            noise = own[0] if self.common is None else np.block([[own[0], self.common], [self.common.T, own[1]]])
+            self._whitening[key] = _whitening(noise + self._form_covariance(errors))
         return self._whitening[key]
+
+    def _form_covariance(self, errors: tuple[float, float]) -> Array:
+        """Covariance of what the model gets wrong."""
+        if not self.alike:
+            return np.asarray(block_diag(*(c.form_covariance(errors) for c in self.channels)))
+        time = np.concatenate([c.time for c in self.channels])
+        return form_covariance(time, np.concatenate([c.form_size(errors) for c in self.channels]))
 
     def slow(self, errors: tuple[float, float]) -> tuple[Array, Array]:
         """Orthonormal patterns (blocks, patterns) of the whitened noise, and the share (channels, patterns) of the
@@ -80,14 +89,15 @@ class Group:
         return clear, share * np.minimum(MOST_SHARE / share.sum(axis=0), 1.0)
 
 
-def groups_of(channels: Sequence[Channel], common: Array | None) -> Iterator[Group]:
-    """The channels, one by one or, where their noise has a ``common`` covariance, two together."""
-    at = i = 0
+def groups_of(channels: Sequence[Channel], common: Array | None, alike: Array | None) -> Iterator[Group]:
+    """The channels, one by one or, where two of them have a ``common`` covariance or are ``alike``, together."""
+    shared, at, i = {TOGETHER[0]: common, ALIKE[0]: alike}, 0, 0
     while i < len(channels):
-        both = channels[i].name == TOGETHER[0] and common is not None
-        inside = tuple(channels[i : i + 1 + both])
+        name = channels[i].name
+        between = shared.get(name)
+        inside = tuple(channels[i : i + (1 if between is None else 2)])
         size = sum(c.time.size for c in inside)
-        yield Group(inside, common if both else None, slice(at, at + size), i)
+        yield Group(inside, between, slice(at, at + size), i, name == ALIKE[0] and between is not None)
         at, i = at + size, i + len(inside)
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import hypot, log
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from hfanalysis.diagnose.observations.clocks import Delay
 from hfanalysis.diagnose.observations.failing import FailingFlow
 from hfanalysis.diagnose.observations.noise import Group, SlowNoise, groups_of, slow_noise
 from hfanalysis.diagnose.observations.opening import SlowOpening
-from hfanalysis.diagnose.observations.recorded import TOGETHER
+from hfanalysis.diagnose.observations.recorded import ALIKE, TOGETHER
 from hfanalysis.diagnose.observations.swinging import Swing
 
 Array = NDArray[np.float64]
@@ -41,7 +42,8 @@ class Observed:
     ``grid`` [s]: points at which a model is asked: through the flow, and ``resting`` ones before it, at the opening and
     after it. ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its measured end, at which that of
     every model ends. ``stated``: what was measured outside the log (SI), or in it beside the blocks (FADE), with
-    standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there.
+    standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there;
+    ``alike``: the same of ALIKE, which come one after the other.
     ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``plain``:
     what is plain in the samples without a model, and is in no model. ``abrupt``: the seconds that FADE would be if the
     fire were out at once, where a model was asked.
@@ -57,6 +59,7 @@ class Observed:
     flow_end: float
     ambient: float
     common: Array | None = None
+    alike: Array | None = None
     errors: tuple[float, float] = (FORM_ERROR, CHAMBER_FORM * FORM_ERROR)
     fuel_out: float | None = None
     plain: tuple[Plain, ...] = ()
@@ -70,31 +73,41 @@ class Observed:
 
     def with_white_noise(self) -> Observed:
         """The same as if the noise of blocks were independent: what it costs to think so can be studied."""
-        return replace(self, channels=tuple(c.with_white_noise() for c in self.channels), common=None)
+        return replace(self, channels=tuple(c.with_white_noise() for c in self.channels), common=None, alike=None)
 
     def only(self, names: tuple[str, ...]) -> Observed:
         """The same with these channels alone."""
         kept = tuple(c for c in self.channels if c.name in names)
-        both = set(TOGETHER) <= {c.name for c in kept}
-        return replace(self, channels=kept, common=self.common if both else None)
+        common, alike = (
+            shared if {*pair} <= {*names} else None for pair, shared in ((TOGETHER, self.common), (ALIKE, self.alike))
+        )
+        return replace(self, channels=kept, common=common, alike=alike)
 
     def without(self, left_out: Mapping[str, NDArray[np.bool_]]) -> Observed:
         """The same without some blocks of each channel."""
         keep = {c.name: np.flatnonzero(~left_out[c.name]) for c in self.channels}
-        common = self.common
-        if common is not None:
-            common = common[np.ix_(*(keep[name] for name in TOGETHER))]
-        return replace(self, channels=tuple(c.only(keep[c.name]) for c in self.channels), common=common)
+        common, alike = (
+            None if shared is None else shared[np.ix_(*(keep[name] for name in pair))]
+            for pair, shared in ((TOGETHER, self.common), (ALIKE, self.alike))
+        )
+        return replace(self, channels=tuple(c.only(keep[c.name]) for c in self.channels), common=common, alike=alike)
 
     @cached_property
     def log_size(self) -> float:
-        """Log of the determinant of the covariance's root."""
-        return -float(sum(np.linalg.slogdet(factor)[1] for _, factor in self._factors))
+        """Log of the determinant of the covariance's root, of the instants in units of their own deviations."""
+        of_blocks = -float(sum(np.linalg.slogdet(factor)[1] for _, factor in self._factors))
+        return of_blocks + sum(log(self.spread(name) / deviation) for name, (_, deviation) in self.events.items())
+
+    def spread(self, event: str) -> float:
+        """Standard deviation of measured less modelled instant [s]: what a form gets wrong of the tank moves the end of
+        its liquid by as large a part."""
+        at, deviation = self.events[event]
+        return hypot(deviation, self.errors[0] * at) if event == "t_v" else deviation
 
     @cached_property
     def _groups(self) -> tuple[Group, ...]:
         """The channels by whose noise goes together."""
-        return tuple(groups_of(self.channels, self.common))
+        return tuple(groups_of(self.channels, self.common, self.alike))
 
     @cached_property
     def _factors(self) -> tuple[tuple[slice, Array], ...]:
@@ -114,11 +127,13 @@ class Observed:
     def rewhitened(self, rows: Array, other: Observed) -> Array:
         """Rows that ``other`` has whitened, which differs in its model-form error only, as this one does.
 
-        Rows beyond the blocks, of events and of what was stated, stay as they are.
+        Rows of events follow the blocks'; those of what was stated, which come last, stay as they are.
         """
         out = rows.copy()
         for (place, factor), (_, before) in zip(self._factors, other._factors, strict=True):
             out[place] = factor @ solve_triangular(before, rows[place], lower=True)
+        for row, name in enumerate(self.events, self._groups[-1].place.stop):
+            out[row] *= other.spread(name) / self.spread(name)
         return out
 
     def left_open(self, residual: Array) -> tuple[float, float]:

@@ -20,6 +20,9 @@ CHANNELS = ("p_tank", "p_run", "p_chamber", "thrust", "m_tank")
 TOGETHER = ("p_chamber", "thrust")
 """Channels that share the oscillation of the burn."""
 
+ALIKE = ("p_tank", "p_purge")
+"""Channels that show one pressure, where a purge line follows the tank through its check valve."""
+
 LONGEST = 30.0
 """Seconds before the opening and after it beyond which nothing is looked at."""
 

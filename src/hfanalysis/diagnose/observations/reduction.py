@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
 from hfanalysis.diagnose.observations.blocks import blocks_of
 from hfanalysis.diagnose.observations.burn_out import fade_of
+from hfanalysis.diagnose.observations.channel import Channel, range_of
 from hfanalysis.diagnose.observations.clocks import thrust_delay
-from hfanalysis.diagnose.observations.covariance import channel_of, common_of, oscillations
+from hfanalysis.diagnose.observations.covariance import channel_of, common_of, oscillations, zero_and_span
 from hfanalysis.diagnose.observations.failing import FailingFlow, failing_flow
 from hfanalysis.diagnose.observations.flow_end import noted_flow_end
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, Frame, events_of, frame_of, phases_of
 from hfanalysis.diagnose.observations.observed import FADE, Observed, Plain
 from hfanalysis.diagnose.observations.opening import slow_opening
-from hfanalysis.diagnose.observations.recorded import recorded
+from hfanalysis.diagnose.observations.purge_line import PurgeLine, purge_line
+from hfanalysis.diagnose.observations.recorded import ALIKE, recorded
 from hfanalysis.diagnose.observations.swinging import swing_of
 from hfanalysis.errors import AbsentError
 from hfanalysis.segment.phases import Segments
 from hfanalysis.segment.signals import Signal
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
+
+Array = NDArray[np.float64]
 
 
 def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -> Observed:
@@ -34,12 +43,17 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     if not {"p_tank", "p_chamber", "thrust"} & set(blocks):
         raise AbsentError("neither tank, chamber nor thrust was recorded: the model cannot be compared")
     shaken = oscillations(blocks, frame)
-    channels = tuple(
-        channel_of(means, definition, frame, shaken.get((name, name)), zeros[name]) for name, means in blocks.items()
-    )
+    channels = {
+        name: channel_of(
+            means, definition, frame, shaken.get((name, name)), zero_and_span(means, definition, frame, zeros[name])
+        )
+        for name, means in blocks.items()
+    }
+    line = purge_line(log, segments, definition, origin, frame.ends["tank"])
+    channels, alike = _with_purge_line(channels, line, definition, frame)
     end = frame.ends["chamber"]
     return Observed(
-        channels,
+        tuple(channels.values()),
         frame.grid,
         frame.resting,
         events_of(segments, frame.ends["tank"]),
@@ -49,9 +63,24 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         max(frame.ends["tank"], noted_flow_end(definition, end)),
         definition.ambient_pressure.value,
         common_of(blocks, shaken),
+        alike,
         fuel_out=frame.fuel_out,
         plain=_plain(signals, frame, failing),
     )
+
+
+def _with_purge_line(
+    channels: dict[str, Channel], line: PurgeLine | None, definition: TestDefinition, frame: Frame
+) -> tuple[dict[str, Channel], Array | None]:
+    """The channels with the purge line behind the tank's pressure, and the covariance of both; as they are where the
+    line tells nothing. What the model gets wrong of the tank is the same of the line."""
+    tank = channels.get(ALIKE[0])
+    means = None if line is None or tank is None else blocks_of(line.signal, frame, False, line.start)
+    if line is None or tank is None or means is None:
+        return channels, None
+    own = channel_of(means, definition, frame, None, line.zero_and_span(means.value))
+    own = replace(own, span=range_of(tank.time, tank.value))
+    return {ALIKE[0]: tank, ALIKE[1]: own, **channels}, line.with_tank(tank.value, own.value)
 
 
 def _plain(signals: dict[str, Signal], frame: Frame, failing: FailingFlow | None) -> tuple[Plain, ...]:
