@@ -12,6 +12,7 @@ from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.naming.dropping import dropped, without
+from hfanalysis.diagnose.naming.fading import fades, fading_fit
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.slack import slack_gain
@@ -85,19 +86,24 @@ def _best_each(candidates: list[Candidate]) -> list[Candidate]:
 
 
 def _partners(front: list[Candidate], search: Search, tried: set[frozenset[str]]) -> list[Candidate]:
-    """Each parent with each of the few effects that a score test asks for, at the form that suits them."""
-    bench, jobs = search.bench, list[tuple[Candidate, str, Hypothesis, Array]]()
+    """Each parent with each of the few effects that a score test asks for or that fade, at the form that suits them."""
+    bench, jobs = search.bench, list[tuple[Candidate, str, tuple[Hypothesis, Array] | None]]()
     for parent in front:
         names = [
             n for n in search.catalogue.effects if frozenset((*parent.names, n)) not in tried and n not in parent.names
         ]
         asked = _asked(parent, [bench.at(form) for form in parent.form.either_finer or [parent.form]], search, names)
-        tried |= {frozenset((*parent.names, name)) for name in asked}
-        jobs += [(parent, name, made, start) for name, (made, start) in asked.items()]
+        wanted = [*asked, *(n for n in names if n not in asked and fades(search, n))]
+        tried |= {frozenset((*parent.names, name)) for name in wanted}
+        jobs += [(parent, name, asked.get(name)) for name in wanted]
 
-    def grown(job: tuple[Candidate, str, Hypothesis, Array]) -> Candidate | None:
-        parent, name, made, start = job
-        found = attempted(made, bench.at(parent.form), start)
+    def grown(job: tuple[Candidate, str, tuple[Hypothesis, Array] | None]) -> Candidate | None:
+        parent, name, asked_from = job
+        observed = bench.at(parent.form)
+        if asked_from is None:
+            found = fading_fit(parent.fit, search, name, observed)
+        else:
+            found = attempted(asked_from[0], observed, asked_from[1])
         return None if found is None else candidate((*parent.names, name), found, parent.form)
 
     return each(bench.judged, _in_the_running([c for c in each(grown, jobs) if c is not None]))

@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.predict import faded
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.naming.fading import fades, fading_fit, held
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.observations.observed import FADE, Observed
+from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.recorded import TOGETHER
 from hfanalysis.engine.effect import Effect
 
@@ -38,10 +38,6 @@ SEEN = 0.7
 
 MODERATE = 0.6
 """Strength (as x) from which a fit starts that a score test does not lead: a large effect is not linear."""
-
-FADING, FADING_SHAPES = 1.2, np.linspace(-4.0, 2.0, 25)
-"""Strength from which a surface that fades is tried, as slopes at a small one do not lead to it; and shapes (as x), of
-which the one is taken that fades as long as measured."""
 
 STARTS = 2
 """Starts of an effect's fit."""
@@ -170,8 +166,8 @@ def _first_children(base: Candidate, search: Search, names: list[str]) -> list[C
         if base.form != FINEST and not seen:
             start = _moderate(base, search.catalogue.effects[name].strengths, made.size)
             fits.append(attempted(made, observed, start, SHORT))
-        if not seen and FADE in observed.stated and search.catalogue.effects[name].fading_web is not None:
-            fits.append(_fading(base, search.catalogue.effects[name].strengths, made, observed))
+        if not seen and fades(search, name):
+            fits.append(fading_fit(base.fit, search, name, observed))
         return _best((name,), fits, base.form)
 
     return [c for c in each(child, names) if c is not None]
@@ -211,7 +207,7 @@ def _with_exponent(base: Candidate, place: int, x: float, observed: Observed) ->
         return None
     start = base.fit.x.copy()
     start[place] = x
-    found = attempted(_held(hypothesis, slice(place, place + 1), start), observed, start, SHORT)
+    found = attempted(held(hypothesis, slice(place, place + 1), start), observed, start, SHORT)
     return None if found is None else replace(found, hypothesis=hypothesis)
 
 
@@ -245,30 +241,12 @@ def _best(names: tuple[str, ...], fits: list[Fit | None], form: Form) -> Candida
     return None if found is None else candidate(names, found, form)
 
 
-def _moderate(base: Candidate, strengths: int, size: int, strength: float = MODERATE, shape: float = 0.0) -> Array:
-    """The base's constants with an effect of moderate size, its shape (as x) where its prior has it or elsewhere."""
-    start = np.full(size, shape)
+def _moderate(base: Candidate, strengths: int, size: int) -> Array:
+    """The base's constants with an effect of moderate size."""
+    start = np.zeros(size)
     start[: base.fit.x.size] = base.fit.x
-    start[base.fit.x.size : base.fit.x.size + strengths] = strength
+    start[base.fit.x.size : base.fit.x.size + strengths] = MODERATE
     return start
-
-
-def _fading(base: Candidate, strengths: int, made: Hypothesis, observed: Observed) -> Fit | None:
-    """The base with a surface that fades as long as the fire does.
-
-    The constants follow first: far from what suits them they would take the surface along on their way.
-    """
-    starts = [_moderate(base, strengths, made.size, FADING, shape) for shape in FADING_SHAPES.tolist()]
-    start = min(starts, key=lambda x: abs(faded(observed, base.fit.burnt, made.at(x))))
-    followed = attempted(_held(made, slice(base.fit.x.size, None), start), observed, start, SHORT)
-    return None if followed is None else attempted(made, observed, followed.x, SHORT)
-
-
-def _held(hypothesis: Hypothesis, places: slice, x: Array) -> Hypothesis:
-    """The same with some of its free parameters held where they are."""
-    free = list(hypothesis.free)
-    free[places] = [replace(f, least=at, most=at) for f, at in zip(free[places], x[places].tolist(), strict=True)]
-    return replace(hypothesis, free=tuple(free))
 
 
 def _raced(started: list[Candidate], bench: Bench) -> list[Candidate]:

@@ -1,0 +1,53 @@
+"""A surface that fades as the fuel ends, fitted from where it fades as long as the fire did.
+
+The slopes at a small one do not lead there: no score test sees it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.fitting.fit import Fit
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.predict import faded
+from hfanalysis.diagnose.naming.candidate import SHORT, attempted
+from hfanalysis.diagnose.naming.search import Search
+from hfanalysis.diagnose.observations.observed import FADE, Observed
+
+Array = NDArray[np.float64]
+
+STRENGTH, SHAPES = 1.2, np.linspace(-4.0, 2.0, 25)
+"""Strength and shapes (as x) of the surfaces of which the one is taken that fades as long as measured."""
+
+
+def fades(search: Search, name: str) -> bool:
+    """Whether how long the fire took to go out tells of an effect."""
+    return FADE in search.bench.observed.stated and search.catalogue.effects[name].fading_web is not None
+
+
+def fading_fit(parent: Fit, search: Search, name: str, observed: Observed) -> Fit | None:
+    """A fit with a surface that fades besides; None where it cannot be run.
+
+    The constants follow first: far from what suits them they would take the surface along on their way.
+    """
+    made = search.catalogue.add(parent.hypothesis, name)
+    own, strengths = slice(parent.x.size, None), search.catalogue.effects[name].strengths
+
+    def start(shape: float) -> Array:
+        x = np.concatenate([parent.x, np.full(made.size - parent.x.size, shape)])
+        x[parent.x.size : parent.x.size + strengths] = STRENGTH
+        return x
+
+    nearest = min(map(start, SHAPES.tolist()), key=lambda x: abs(faded(observed, parent.burnt, made.at(x))))
+    followed = attempted(held(made, own, nearest), observed, nearest, SHORT)
+    return None if followed is None else attempted(made, observed, followed.x, SHORT)
+
+
+def held(hypothesis: Hypothesis, places: slice, x: Array) -> Hypothesis:
+    """The same with some of its free parameters held where they are."""
+    free = list(hypothesis.free)
+    free[places] = [replace(f, least=at, most=at) for f, at in zip(free[places], x[places].tolist(), strict=True)]
+    return replace(hypothesis, free=tuple(free))
