@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -57,6 +59,17 @@ def test_a_line_that_does_not_follow_tells_nothing(share: float) -> None:
 def test_without_a_purge_line_or_its_sag_there_is_none() -> None:
     assert "p_purge" not in logged.reduced().names
     assert "p_purge" not in logged.reduced(log(line_that_follows())).names
+
+
+@pytest.mark.parametrize("name", ["p_tank", "p_purge"])
+def test_a_gap_where_the_line_begins_to_sag_leaves_nothing_to_tell_its_zero_by(name: str) -> None:
+    whole = log(line_that_follows())
+    since = whole[name].time - logged.OPENING - T_PURGE
+    kept = (since < -1.2) | (since > 0.3)
+    cut = replace(whole[name], **{key: getattr(whole[name], key)[kept] for key in ("time", "values", "flags")})
+    broken = TestLog({**whole.channels, name: cut})
+    assert "p_purge" in reduced(line_that_follows()).names
+    assert "p_purge" not in logged.reduced(broken, t_purge=Quantity(T_PURGE, "s", 2e-3)).names
 
 
 def test_its_errors_are_those_of_two_sensors_one_of_which_reads_the_tank() -> None:

@@ -37,6 +37,9 @@ CLEAR = 5.0
 LEVEL, AROUND = 1.0, 0.1
 """Seconds before it sags in which the line's level is taken, and on either side in which the tank's pressure is."""
 
+FEWEST = 4
+"""Samples of either that this takes at least."""
+
 
 @dataclass(frozen=True)
 class PurgeLine:
@@ -89,20 +92,21 @@ def purge_line(
     fell, tank_fell = (_fall(signal, start, end) for signal in (line, tank))
     if not (tank_fell > CLEAR * accuracy and FOLLOWS[0] * tank_fell < fell < FOLLOWS[1] * tank_fell):
         return None
-    at_first = tank.between(t_purge - AROUND, t_purge + AROUND)
+    at_first, before = tank.between(t_purge - AROUND, t_purge + AROUND), line.between(t_purge - LEVEL, t_purge - AROUND)
+    if min(at_first.time.size, before.time.size) < FEWEST:
+        return None
     slope, level = np.polyfit(at_first.time - t_purge, at_first.value, 1)
-    cracking = line.mean(t_purge - LEVEL, t_purge - AROUND) - level
+    stood = float(before.value.mean())
     late = slope * segments.std("t_purge")
     noise = np.hypot(_mean_std(line, LEVEL), _mean_std(tank, 2.0 * AROUND))
-    own, stood = accuracy_of(definition, ALIKE[1], line.value), line.mean(t_purge - LEVEL, t_purge)
     return PurgeLine(
-        replace(line, value=line.value - cracking),
+        replace(line, value=line.value - (stood - float(level))),
         start,
         float(level),
         float(np.hypot(late, noise)),
         SHARE * accuracy,
         SHARE * accuracy / float(np.abs(tank.value).max()),
-        SHARE * own / abs(stood),
+        SHARE * accuracy_of(definition, ALIKE[1], line.value) / stood,
     )
 
 

@@ -50,7 +50,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         for name, means in blocks.items()
     }
     line = purge_line(log, segments, definition, origin, frame.ends["tank"])
-    channels, alike = _with_purge_line(channels, line, definition, frame)
+    channels, alike = _with_second_look(channels, line, definition, frame)
     end = frame.ends["chamber"]
     return Observed(
         tuple(channels.values()),
@@ -69,7 +69,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     )
 
 
-def _with_purge_line(
+def _with_second_look(
     channels: dict[str, Channel], line: PurgeLine | None, definition: TestDefinition, frame: Frame
 ) -> tuple[dict[str, Channel], Array | None]:
     """The channels with the purge line behind the tank's pressure, and the covariance of both; as they are where the
