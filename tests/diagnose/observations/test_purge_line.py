@@ -7,9 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.diagnose import logged
+from tests.diagnose import logged, made
 from tests.segment.stand import channel
 
+from hfanalysis.diagnose.fitting.hypothesis import Block, Hypothesis
+from hfanalysis.diagnose.fitting.predict import predict, readings
+from hfanalysis.diagnose.fitting.probe import Splines
 from hfanalysis.diagnose.observations.channel import FORM_ERROR, SHARE
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.purge_line import SETTLED, purge_line
@@ -106,6 +109,40 @@ def test_what_the_model_gets_wrong_of_the_tank_is_no_news_in_its_line() -> None:
     together, against = (coarse.whiten(np.concatenate([v, rest])) for v in (both, apart))
     assert together @ together < 1.3 * alone @ alone + 5.0
     assert against @ against > 10.0 * together @ together
+
+
+def hypothesis() -> Hypothesis:
+    """With nitrogen from the line, and a tank's transducer that is off from ignition on, known and unknown."""
+    with_both = made.hypothesis().with_effect(effect("n2_purge")).with_effect(effect("pressure_transducer_offset"))
+    splines = Splines.over(0.0, 8.0, 2.0)
+    names = tuple(f"source.{i}" for i in range(splines.count))
+    return replace(with_both, blocks=(Block(names, 1e4 * np.eye(splines.count), splines, "p_tank"),))
+
+
+def test_what_the_tanks_sensor_errs_by_as_the_lines_zero_is_taken_is_in_the_line() -> None:
+    test, made_of = reduced(line_that_follows(), seed=None), hypothesis()
+    x = np.zeros(made_of.size)
+    x[: made.truth().size] = made.truth()
+    place = made_of.names.index("pressure_transducer_offset.p_tank")
+    line = test.channels[1]
+    burnt = predict(made_of, test, x, tangents=False).burnt
+    with_it = predict(made_of, test, x + np.eye(x.size)[place], tangents=False).burnt
+    offset = made_of.values(x + np.eye(x.size)[place])["pressure_transducer_offset.p_tank"]
+    change = line.averaged(readings(test, with_it)["p_purge"] - readings(test, burnt)["p_purge"])
+    assert change == pytest.approx(np.full(line.time.size, offset))
+
+
+def test_slopes_of_a_test_with_a_purge_line_are_differences_of_predictions() -> None:
+    test, made_of = reduced(line_that_follows()), hypothesis()
+    x = np.concatenate([made.truth(), np.full(made_of.size - made.truth().size, 0.4)])
+    x = np.clip(x, *made_of.bounds)
+    here = predict(made_of, test, x, tangents=True)
+    assert here.slopes is not None
+    for k, name in enumerate(made_of.names):
+        step = 1e-3 * np.eye(x.size)[k]  # small, for the line has a corner where the valve opens
+        up, down = (predict(made_of, test, x + s * step, tangents=False).residual for s in (1, -1))
+        quotient = (up - down) / 2e-3
+        assert np.linalg.norm(here.slopes[:, k] - quotient) < 0.02 * np.linalg.norm(quotient) + 1.0, name
 
 
 def test_leaving_blocks_or_channels_out_leaves_the_rest_as_it_is() -> None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.noise_level import UNSURE
-from hfanalysis.diagnose.fitting.predict import readings
+from hfanalysis.diagnose.fitting.predict import added, readings
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import SHORT, attempted
 from hfanalysis.diagnose.observations.channel import Channel
@@ -40,7 +40,7 @@ def residuals_of(found: Fit, observed: Observed) -> dict[str, Array]:
     read = readings(observed, found.burnt)
     out = {}
     for c in observed.channels:
-        raw = c.value - c.averaged(read[c.name]) - found.hypothesis.offset(c.name, found.x, c.time)
+        raw = c.value - c.averaged(read[c.name]) - added(found.hypothesis, observed, found.x, c)
         out[c.name] = raw - _bias(c, raw, observed.errors)
     return out
 

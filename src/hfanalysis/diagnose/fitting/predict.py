@@ -13,6 +13,7 @@ from hfanalysis.diagnose.fitting.fade import abrupt, bounded, fade_misfit, fade_
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.probe import Splines
 from hfanalysis.diagnose.observations.alignment import model_times, share
+from hfanalysis.diagnose.observations.channel import Channel
 from hfanalysis.diagnose.observations.observed import FADE, Observed
 from hfanalysis.diagnose.observations.recorded import ALIKE
 from hfanalysis.engine.course import LIQUID_OUT
@@ -100,6 +101,8 @@ def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
     for i, channel in enumerate(observed.channels):
         if channel.name == sensor:
             rows[i] = splines.at(channel.time)
+        elif (sensor, channel.name) == ALIKE and observed.line_zero is not None:
+            rows[i] = rows[i] + splines.at(np.array([observed.line_zero]))
     return np.concatenate(
         [-observed.whiten(np.concatenate(rows)), np.zeros((len(observed.events) + len(observed.stated), splines.count))]
     )
@@ -110,7 +113,7 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
     read = readings(observed, burnt)
     parts = []
     for channel in observed.channels:
-        model = channel.averaged(read[channel.name]) + hypothesis.offset(channel.name, x, channel.time)
+        model = channel.averaged(read[channel.name]) + added(hypothesis, observed, x, channel)
         parts.append(channel.value - model)
     raw = np.concatenate(parts)
     scalars = []
@@ -134,12 +137,29 @@ def readings(observed: Observed, burnt: Burn) -> dict[str, Array]:
     """What the sensors read on the common grid."""
     times = aligned(observed, burnt, observed.grid)
     channels = _resting(observed, _with_purge_line(true_channels(burnt, times)))
-    return distorted(channels, observed.grid, burnt.steps.engine.effects)
+    return _with_its_zero(observed, channels, distorted(channels, observed.grid, burnt.steps.engine.effects))
 
 
 def _with_purge_line(channels: dict[str, Array]) -> dict[str, Array]:
     """The channels, or their slopes, with a purge line that follows the tank through its check valve."""
     return {**channels, ALIKE[1]: channels[ALIKE[0]]}
+
+
+def _with_its_zero(observed: Observed, true: Mapping[str, Array], read: dict[str, Array]) -> dict[str, Array]:
+    """What is read, or its slopes, with a purge line whose zero was taken of the tank's sensor: what that errs by at
+    the time is in it ever after."""
+    if observed.line_zero is None:
+        return read
+    taken = int(np.abs(observed.grid - observed.line_zero).argmin())
+    return {**read, ALIKE[1]: read[ALIKE[1]] + (read[ALIKE[0]] - true[ALIKE[0]])[taken]}
+
+
+def added(hypothesis: Hypothesis, observed: Observed, x: Array, channel: Channel) -> Array:
+    """What unknown sources add to a channel's blocks."""
+    own = hypothesis.offset(channel.name, x, channel.time)
+    if channel.name != ALIKE[1] or observed.line_zero is None:
+        return own
+    return own + hypothesis.offset(ALIKE[0], x, np.array([observed.line_zero]))
 
 
 def _resting(observed: Observed, channels: Mapping[str, Array]) -> dict[str, Array]:
@@ -210,7 +230,8 @@ def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]
         slopes[name] = np.where(observed.resting[:, np.newaxis], 0.0, slopes[name])
     channels = _resting(observed, channels)
     effects = found.burn.steps.engine.effects
-    return distorted_tangents(channels, slopes, observed.grid, effects, found.parameters)
+    read = distorted_tangents(channels, slopes, observed.grid, effects, found.parameters)
+    return _with_its_zero(observed, slopes, read)
 
 
 def _typical_regression(hypothesis: Hypothesis, burn_time: float) -> float:

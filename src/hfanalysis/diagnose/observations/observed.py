@@ -43,7 +43,8 @@ class Observed:
     after it. ``fuel_out``: where the comparison of the tank goes on beyond the fuel, its measured end, at which that of
     every model ends. ``stated``: what was measured outside the log (SI), or in it beside the blocks (FADE), with
     standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there;
-    ``alike``: the same of ALIKE, which come one after the other.
+    ``alike``: the same of ALIKE, which come one after the other; ``line_zero`` [s]: when the zero of the second was
+    taken of the first.
     ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``plain``:
     what is plain in the samples without a model, and is in no model. ``abrupt``: the seconds that FADE would be if the
     fire were out at once, where a model was asked.
@@ -60,6 +61,7 @@ class Observed:
     ambient: float
     common: Array | None = None
     alike: Array | None = None
+    line_zero: float | None = None
     errors: tuple[float, float] = (FORM_ERROR, CHAMBER_FORM * FORM_ERROR)
     fuel_out: float | None = None
     plain: tuple[Plain, ...] = ()

@@ -46,14 +46,15 @@ class PurgeLine:
     """The line's pressure less what its valve cracks at, with times [s] after the opening, and from when on it follows
     the tank.
 
-    What it cracks at was read of both sensors as the line began to sag, when the tank's read ``at_first`` [Pa], with a
-    standard deviation of ``read_std`` [Pa]. So the zero is that of the tank's sensor, and the spans, whose relative
-    errors are ``tank_span`` and ``own_span``, err by what the pressure has changed since; ``zero_std`` [Pa] is that of
-    the tank's sensor.
+    What it cracks at was read of both sensors as the line began to sag (``taken`` [s]), when the tank's read
+    ``at_first`` [Pa], with a standard deviation of ``read_std`` [Pa]. So the zero is that of the tank's sensor, and the
+    spans, whose relative errors are ``tank_span`` and ``own_span``, err by what the pressure has changed since;
+    ``zero_std`` [Pa] is that of the tank's sensor.
     """
 
     signal: Signal
     start: float
+    taken: float
     at_first: float
     read_std: float
     zero_std: float
@@ -102,6 +103,7 @@ def purge_line(
     return PurgeLine(
         replace(line, value=line.value - (stood - float(level))),
         start,
+        t_purge,
         float(level),
         float(np.hypot(late, noise)),
         SHARE * accuracy,

@@ -64,6 +64,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         definition.ambient_pressure.value,
         common_of(blocks, shaken),
         alike,
+        line.taken if line is not None and alike is not None else None,
         fuel_out=frame.fuel_out,
         plain=_plain(signals, frame, failing),
     )
