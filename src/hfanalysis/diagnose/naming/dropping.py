@@ -20,8 +20,9 @@ def dropped(found: Candidate, bench: Bench) -> Candidate:
         again = without(found, name, bench.at(found.form))
         if again is None:
             continue
-        names = tuple(n for n in found.names if n != name)
-        less = bench.judged(candidate(names, again, found.form, found.unknown))
+        names = list(found.names)
+        names.remove(name)  # its first: the site of a source, which stays, may be called like an effect
+        less = bench.judged(candidate(tuple(names), again, found.form, found.unknown))
         if less.log_evidence > found.log_evidence:
             found = less
     return found
