@@ -47,15 +47,19 @@ def channel_of(
     accuracy = accuracy_of(definition, name, blocks.value)
     wander = wander_of(blocks.signal, BLOCK)
     own = _own(blocks, frame, shaken, wander)
-    moved = _moved_by_knee(blocks, frame)
-    covariance = own + sensor + np.outer(moved, moved) + _filling(blocks, frame, resting)
-    for cold in _without_fire(blocks, frame):
-        covariance = covariance + np.outer(cold, cold)
+    shared = of_the_model(blocks, frame)
+    covariance = own + sensor + shared @ shared.T + _filling(blocks, frame, resting)
     std = np.sqrt(own.diagonal())
     return Channel(
         name, blocks.time, blocks.value, blocks.first, blocks.count, resting, std, accuracy, covariance,
         coherence_of(own), _of_blocks(wander.slow(frame.grid, frame.width), blocks),
     )  # fmt: skip
+
+
+def of_the_model(blocks: Blocks, frame: Frame) -> Array:
+    """What a channel differs by (blocks, errors) if the end of the liquid was seen a standard deviation late, and if
+    more flows without fire than the model says."""
+    return np.stack([_moved_by_knee(blocks, frame), *_without_fire(blocks, frame)], axis=1)
 
 
 def coherence_of(own: Array) -> float:

@@ -30,8 +30,10 @@ FIRST = 0.03
 TANK_SIDE = ("p_tank", "p_run", "m_tank", "p_purge")
 """Channels that go on telling when the nozzle has unchoked."""
 
-EVENT_STD = 0.002
-"""Least standard deviation [s] of the instant of a phase change."""
+EVENT_STD = 0.005
+"""Least standard deviation [s] of the instant of a phase change. It is found better than that (by a millisecond in
+blind cases), but that a model's liquid ends as sharply is not known: where another generator than the blind cases'
+made a test without an effect, 2 ms asked for heat in the tank."""
 
 FUEL_STD = 0.05
 """Least standard deviation [s] of the end of the fuel, which fades rather than stops."""

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.observations.blocks import blocks_of
+from hfanalysis.diagnose.observations.blocks import Blocks, blocks_of
 from hfanalysis.diagnose.observations.burn_out import fade_of
 from hfanalysis.diagnose.observations.channel import Channel, range_of
 from hfanalysis.diagnose.observations.clocks import thrust_delay
-from hfanalysis.diagnose.observations.covariance import channel_of, common_of, oscillations, zero_and_span
+from hfanalysis.diagnose.observations.covariance import channel_of, common_of, of_the_model, oscillations, zero_and_span
 from hfanalysis.diagnose.observations.failing import FailingFlow, failing_flow
 from hfanalysis.diagnose.observations.flow_end import noted_flow_end
 from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, Frame, events_of, frame_of, phases_of
@@ -50,7 +50,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         for name, means in blocks.items()
     }
     line = purge_line(log, segments, definition, origin, frame.ends["tank"])
-    channels, alike = _with_second_look(channels, line, definition, frame)
+    channels, alike = _with_second_look(channels, blocks.get(ALIKE[0]), line, definition, frame)
     end = frame.ends["chamber"]
     return Observed(
         tuple(channels.values()),
@@ -71,17 +71,22 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
 
 
 def _with_second_look(
-    channels: dict[str, Channel], line: PurgeLine | None, definition: TestDefinition, frame: Frame
+    channels: dict[str, Channel],
+    of_tank: Blocks | None,
+    line: PurgeLine | None,
+    definition: TestDefinition,
+    frame: Frame,
 ) -> tuple[dict[str, Channel], Array | None]:
     """The channels with the purge line behind the tank's pressure, and the covariance of both; as they are where the
     line tells nothing. What the model gets wrong of the tank is the same of the line."""
-    tank = channels.get(ALIKE[0])
-    means = None if line is None or tank is None else blocks_of(line.signal, frame, False, line.start)
-    if line is None or tank is None or means is None:
+    means = None if line is None else blocks_of(line.signal, frame, False, line.start)
+    if line is None or of_tank is None or means is None:
         return channels, None
+    tank = channels[ALIKE[0]]
     own = channel_of(means, definition, frame, None, line.zero_and_span(means.value))
     own = replace(own, span=range_of(tank.time, tank.value))
-    return {ALIKE[0]: tank, ALIKE[1]: own, **channels}, line.with_tank(tank.value, own.value)
+    alike = line.with_tank(tank.value, own.value) + of_the_model(of_tank, frame) @ of_the_model(means, frame).T
+    return {ALIKE[0]: tank, ALIKE[1]: own, **channels}, alike
 
 
 def _plain(signals: dict[str, Signal], frame: Frame, failing: FailingFlow | None) -> tuple[Plain, ...]:
