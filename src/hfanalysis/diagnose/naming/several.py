@@ -26,6 +26,9 @@ PLAIN = 5.0
 ASKED = 2.5
 """Gain in log probability that a score test must promise for a further effect to be fitted."""
 
+FAR = 3.0
+"""Log evidence that a single effect gains from the constants of a pair before sets are tried anew."""
+
 PARTNERS = 4
 """Effects that are tried as a further one, by their score, on either side that can be finer."""
 
@@ -36,15 +39,19 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[
     """The singles and sets of several effects, with the evidence that they have with slack; each the best first.
 
     Forward from the best two, dropping what is no longer needed. A further effect has to make the data more probable
-    where both have slack: what the closure of the first gets wrong is no second effect.
+    where both have slack: what the closure of the first gets wrong is no second effect. Where the second did no more
+    than show the first the way to a better fit, the search begins anew with that.
     """
     bench, tried = search.bench, set[frozenset[str]]()
+    singles = sorted(singles, key=lambda c: -c.log_evidence)
     front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + PLAIN]
     known = _loosened(singles, bench)
     found: list[Candidate] = []
     for size in range(2, MOST_EFFECTS + 1):
         search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
         grown = sorted(_partners(front, search, tried), key=lambda c: -c.log_evidence)
+        if size == 2 and (better := _shown_the_way(grown[:2], singles, bench)):
+            return sets_of(base, _best_each([*better, *singles]), search)
         best = [c for c in each(lambda c: dropped(c, bench), grown[:2]) if len(c.names) > 1]
         loose = _loosened([*best, *grown], bench)
         front = [c for c, free in zip(best, loose, strict=False) if free.log_evidence > _of_subsets(c, known)][:1]
@@ -56,6 +63,17 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[
     if found and (other := swapped(last, search)) is not last:
         found += _loosened([other], bench)
     return known[: len(singles)], sorted(_best_each(found), key=lambda c: -c.log_evidence)
+
+
+def _shown_the_way(pairs: list[Candidate], singles: list[Candidate], bench: Bench) -> list[Candidate]:
+    """The first effects of pairs, fitted again from the pairs' constants: those that are far better there."""
+
+    def alone(pair: Candidate) -> Candidate | None:
+        again = without(pair, pair.names[1], bench.at(pair.form))
+        return None if again is None else bench.judged(candidate(pair.names[:1], again, pair.form))
+
+    known = {c.names: c.log_evidence for c in singles}
+    return [c for c in each(alone, pairs) if c is not None and c.log_evidence > known[c.names] + FAR]
 
 
 def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:

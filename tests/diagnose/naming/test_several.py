@@ -1,0 +1,45 @@
+"""Sets of effects, and what single effects learn from them."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from tests.diagnose import made
+
+from hfanalysis.diagnose.fitting.fit import fit
+from hfanalysis.diagnose.fitting.form import FINEST
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
+from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.naming.search import Search
+from hfanalysis.diagnose.naming.several import sets_of
+from hfanalysis.effects import effect
+
+EROSION, LAG = (effect(name) for name in ("nozzle_throat_erosion", "chamber_tap_lag"))
+
+
+@cache
+def bench() -> Bench:
+    return Bench(made.observed(EROSION.at(rate=1e-4), LAG.at(lag=0.03)))
+
+
+def eroding(steps: int, start: tuple[float, ...]) -> Candidate:
+    """The throat's erosion alone, fitted for a few steps from some constants."""
+    hypothesis = made.hypothesis().with_effect(EROSION)
+    x = np.zeros(hypothesis.size)
+    x[: len(start)] = start
+    return candidate((EROSION.name,), fit(hypothesis, bench().observed, x, steps), FINEST)
+
+
+def test_a_single_effect_that_was_stuck_goes_on_from_where_a_pair_led() -> None:
+    """That the pair is not worth its price makes no difference."""
+    search = Search(bench(), Catalogue({e.name: e for e in (EROSION, LAG)}, {}))
+    base = candidate((), fit(made.hypothesis(), bench().observed), FINEST)
+    best = eroding(25, (*base.fit.x, 0.3))
+    stuck = eroding(1, (*base.fit.x, 1.5))
+    assert stuck.log_evidence < best.log_evidence - 10.0
+    (again,), _ = sets_of(base, [stuck], search)
+    (same,), _ = sets_of(base, [best], search)
+    assert again.fit.log_evidence == pytest.approx(same.fit.log_evidence, abs=0.5)
+    assert again.log_evidence == pytest.approx(same.log_evidence, abs=0.5)
