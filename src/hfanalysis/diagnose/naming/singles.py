@@ -49,8 +49,8 @@ ELSEWHERE = (-1.0, 1.0)
 """How far from the base model's n effects are looked for besides, in standard deviations of its prior."""
 
 FAR_BEHIND = 300.0
-"""Log evidence behind the base model from which on it is not looked there: not even an effect leads back. In a blind case
-n followed what a loss of thrust of 3 % does; from where the base model had 160 less it was found."""
+"""Log evidence behind the base model from which on it is not looked there: not even an effect leads back. In a blind
+case n followed what a loss of thrust of 3 % does; from where the base model had 160 less it was found."""
 
 CHAMBER_SIDE = ("grain", "chamber_mass", "chamber_energy", "nozzle")
 """Equations whose effects a and n may be bent to."""
