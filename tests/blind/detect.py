@@ -8,8 +8,9 @@ same. d'_{k|l} likewise, the rival l being free as well, with a strength that is
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import sqrt
 
 import numpy as np
@@ -55,14 +56,33 @@ def shifted(stand: Stand, q: Array) -> Stand:
 OPENING = 5e-3
 """Standard deviation of the instant of opening [s]; the log does not state it."""
 
+CONVERGED = 2e-3
+"""Relative gain in chi-square (twice that in d') below which a fit has ended."""
+
+ALIKE = 0.06
+"""Difference in the logarithm of d' that a quick fit may make: hardly more than the search for a strength leaves."""
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Tangents of the nuisances at a point, and Q and R of their least-squares system in units of the priors."""
+
+    tangents: Array
+    q: Array
+    r: Array
+
 
 @dataclass(frozen=True)
 class Fit:
-    """What is left of a test after the best model without the effect: whitened residual, nuisances, chi-square."""
+    """What is left of a test after the best model without the effect: whitened residual, nuisances, chi-square.
+
+    ``slopes``: those on which the last steps were made.
+    """
 
     residual: Array
     nuisances: Array
     chi2: float
+    slopes: Slopes
 
 
 class Detector:
@@ -77,10 +97,8 @@ class Detector:
         self.priors = np.array(
             [n[1] for n in NUISANCES] + [v for i in instruments.sensors for v in _sensor_priors(i)] + [OPENING]
         )
-        physics = [self._tangent(i) for i in range(len(NUISANCES))]
-        self.tangents = np.column_stack([*physics, *self._sensor_tangents(), self._later(channels)])
-        system = np.vstack([self.tangents * self.priors, np.eye(len(self.priors))])
-        self._q, self._r = np.linalg.qr(system)
+        self._of_sensors = np.column_stack([*self._sensor_tangents(), self._later(channels)])
+        self.slopes = self._slopes_at(np.zeros(len(NUISANCES)))
         self.rivals = {r.effect.name: r for r in rivals}
         self._columns: dict[str, Array] = {}
 
@@ -92,11 +110,16 @@ class Detector:
         stand = self.stand if q is None else shifted(self.stand, q)
         return self._white(*observed(stand, hidden)) - self.zero
 
-    def _tangent(self, i: int) -> Array:
-        q = np.zeros(len(NUISANCES))
-        q[i] = NUISANCES[i][2]
-        up = self.response((), q)
-        return (up - self.response((), -q)) / (2.0 * q[i])
+    def _slopes_at(self, q: Array) -> Slopes:
+        physics = [self._tangent(i, q) for i in range(len(NUISANCES))]
+        tangents = np.column_stack([*physics, self._of_sensors])
+        return Slopes(tangents, *np.linalg.qr(np.vstack([tangents * self.priors, np.eye(len(self.priors))])))
+
+    def _tangent(self, i: int, q: Array) -> Array:
+        step = np.zeros(len(NUISANCES))
+        step[i] = NUISANCES[i][2]
+        up = self.response((), q + step)
+        return (up - self.response((), q - step)) / (2.0 * step[i])
 
     def _sensor_tangents(self) -> list[Array]:
         out = []
@@ -112,36 +135,55 @@ class Detector:
         late = np.vstack([channels[:1], channels[:-1]])
         return (self.observer.whitened(self.observer.means(late, self.base), self.base) - self.zero) / kernel.STEP
 
-    def fit(self, target: Array, most: int = 4) -> Fit:
-        """The base model fitted to a response: steps on the tangents of the base, each checked by a run."""
-        best = Fit(target, np.zeros(len(self.priors)), float(target @ target))
+    def quick_fit(self, target: Array, most: int = 4) -> Fit:
+        """The base model fitted to a response: steps on the tangents of the base, each checked by a run.
+
+        Near the least chi-square for most effects, and far above it where a bent valley of the nuisances follows the
+        effect, as a and n do a regression that depends on pressure.
+        """
+        best = Fit(target, np.zeros(len(self.priors)), float(target @ target), self.slopes)
         for _ in range(most):
-            step, before = self._step(best), best
-            for share in (1.0, 0.4, 0.1):
-                trial = self._at(target, before.nuisances + share * step)
-                if trial.chi2 < before.chi2:
-                    best = trial
-                    break
+            before, best = best, self._stepped(target, best, (1.0, 0.4, 0.1))
             if before.chi2 - best.chi2 < 0.02 * best.chi2:
                 break
         return best
 
-    def _at(self, target: Array, theta: Array) -> Fit:
+    def fit(self, target: Array, most: int = 25) -> Fit:
+        """The base model fitted to a response to the end: every step on tangents of its own."""
+        best = self.quick_fit(target)
+        for _ in range(most):
+            before = replace(best, slopes=self._slopes_at(best.nuisances[: len(NUISANCES)]))
+            best = self._stepped(target, before, (1.0, 0.5, 0.2, 0.05))
+            if before.chi2 - best.chi2 < CONVERGED * best.chi2:
+                break
+        return best
+
+    def _stepped(self, target: Array, fit: Fit, shares: Sequence[float]) -> Fit:
+        """The first share of a step that fits better; the fit itself where none does."""
+        step = self._step(fit)
+        for share in shares:
+            trial = self._at(target, fit.slopes, fit.nuisances + share * step)
+            if trial.chi2 < fit.chi2:
+                return trial
+        return fit
+
+    def _at(self, target: Array, slopes: Slopes, theta: Array) -> Fit:
         count = len(NUISANCES)
-        moved = self.response((), theta[:count]) + self.tangents[:, count:] @ theta[count:]
+        moved = self.response((), theta[:count]) + self._of_sensors @ theta[count:]
         residual = target - moved
-        return Fit(residual, theta, float(residual @ residual + np.sum((theta / self.priors) ** 2)))
+        return Fit(residual, theta, float(residual @ residual + np.sum((theta / self.priors) ** 2)), slopes)
 
     def _right(self, fit: Fit) -> Array:
         return np.concatenate([fit.residual, -fit.nuisances / self.priors])
 
     def _step(self, fit: Fit) -> Array:
         """To the least squares of the linear problem; columns are in units of their priors."""
-        return np.asarray(solve_triangular(self._r, self._q.T @ self._right(fit))) * self.priors
+        return np.asarray(solve_triangular(fit.slopes.r, fit.slopes.q.T @ self._right(fit))) * self.priors
 
-    def d_prime(self, hidden: tuple[Hidden, ...]) -> tuple[float, Fit]:
+    def d_prime(self, hidden: tuple[Hidden, ...], quick: bool = False) -> tuple[float, Fit]:
         """Detectability of a hidden effect (or of all of them together) against none."""
-        fit = self.fit(self.response(hidden))
+        target = self.response(hidden)
+        fit = self.quick_fit(target) if quick else self.fit(target)
         return sqrt(fit.chi2), fit
 
     def column(self, name: str) -> Array:
@@ -166,25 +208,35 @@ class Detector:
     def _with_rival(self, fit: Fit, column: Array, most: float = np.inf) -> tuple[float, float]:
         """Least chi-square, and the rival's amount, from 0 to ``most``, at which it is had."""
         right, c = self._right(fit), np.concatenate([column, np.zeros(len(self.priors))])
-        right, c = (v - self._q @ (self._q.T @ v) for v in (right, c))
+        q = fit.slopes.q
+        right, c = (v - q @ (q.T @ v) for v in (right, c))
         square = float(c @ c)
         amount = min(max(float(c @ right) / square, 0.0), most) if square > 1e-12 else 0.0
         rest = right - amount * c
         return min(float(rest @ rest), fit.chi2), amount
 
     def solve(self, hidden: Hidden, target: float, among: Sequence[str] = ()) -> tuple[Hidden, float, Fit]:
-        """The strength, up to the most plausible, at which d' (with rivals: the least against them) is ``target``."""
+        """The strength, up to the most plausible, at which d' (with rivals: the least against them) is ``target``.
 
-        def measure(x: Hidden) -> tuple[float, Fit]:
-            d, fit = self.d_prime((x,))
+        Sought with quick fits, and once more with whole ones where these see another d'.
+        """
+
+        def measure(x: Hidden, quick: bool = False) -> tuple[float, Fit]:
+            d, fit = self.d_prime((x,), quick)
             return (min([d, *(self.against(fit, r) for r in among)]) if among else d), fit
 
-        return _bracketed(hidden, target, measure)
+        found, seen, _ = _bracketed(hidden, target, partial(measure, quick=True))
+        d, fit = measure(found)
+        if abs(np.log(max(d, 1e-9) / seen)) < ALIKE:
+            return found, d, fit
+        return _bracketed(found, target, measure, found.strength)
 
 
-def _bracketed(hidden: Hidden, target: float, measure) -> tuple[Hidden, float, Fit]:  # type: ignore[no-untyped-def]
+def _bracketed(
+    hidden: Hidden, target: float, measure: Callable[[Hidden], tuple[float, Fit]], start: float | None = None
+) -> tuple[Hidden, float, Fit]:
     """Secants in the logarithms of strength and d'; they are nearly proportional."""
-    most, strength = hidden.effect.most, hidden.effect.nominal
+    most, strength = hidden.effect.most, hidden.effect.nominal if start is None else start
     seen: list[tuple[float, float]] = []
     best: tuple[float, Hidden, float, Fit] | None = None
     for _ in range(9):

@@ -219,8 +219,20 @@ def test_calibration_swallows_most_of_what_a_nuisance_can_imitate(stand: st.Stan
     assert np.sqrt(detector.fit(other_injector).chi2) < 0.02 * np.linalg.norm(other_injector)
 
 
+def test_a_fit_follows_what_nuisances_imitate_along_a_bent_valley() -> None:
+    lasting = st.draw(np.random.default_rng(11), burns_out=False, purge=True)
+    rng = np.random.default_rng(2)
+    detector = Detector(lasting, se.draw(rng, "ar1"), rivals(rng))
+    away = np.array([0.0, 0.0, 0.0, -0.6, 0.1, 0.0, 0.0])
+    other_fuel = detector.response((), away)
+    penalty = float(np.linalg.norm(away / detector.priors[: away.size]))
+    assert np.sqrt(detector.quick_fit(other_fuel).chi2) > 5.0 * penalty
+    assert np.sqrt(detector.fit(other_fuel).chi2) <= 1.01 * penalty
+
+
 @pytest.mark.parametrize(
-    ("name", "target"), [("tank_heat", 8.0), ("nozzle_throat_erosion", 4.0), ("load_cell_drift", 16.0)]
+    ("name", "target"),
+    [("tank_heat", 8.0), ("nozzle_throat_erosion", 4.0), ("load_cell_drift", 16.0), ("grain_pressure_regression", 4.0)],
 )
 def test_the_detectability_asked_for_is_met(name: str, target: float) -> None:
     case = Case("X", "single", (name,), target, "flicker", 21, 21)

@@ -1,17 +1,29 @@
-"""Regression that depends on the chamber's pressure."""
+"""Regression that depends on the chamber's pressure.
+
+In one firing pressure and flux fall together: n takes the place of nearly any power of the pressure, and what can be
+seen is how that power changes with it.
+"""
 
 from __future__ import annotations
+
+import numpy as np
 
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.sites import P_CHAMBER, RATES, REGRESSION_FACTOR, term
 
-EXPONENT, REFERENCE = range(2)
+EXPONENT, BEND, REFERENCE = range(3)
+
+LEAST_BENT = 1e-5
+"""Below it the series of (exp(x) - 1)/x is as good as the quotient."""
 
 
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if hook == RATES:
-        site[REGRESSION_FACTOR] *= (env[P_CHAMBER] / p[REFERENCE]) ** p[EXPONENT]
+        above = np.log(env[P_CHAMBER] / p[REFERENCE])
+        bent = p[BEND] * above
+        share = np.expm1(bent) / bent if abs(bent) > LEAST_BENT else 1.0 + 0.5 * bent
+        site[REGRESSION_FACTOR] *= np.exp(p[EXPONENT] * above * share)
 
 
 EFFECT = Effect(
@@ -21,10 +33,11 @@ EFFECT = Effect(
     reference="Zilliac and Karabeyoglu, Hybrid Rocket Fuel Regression Rate Data and Modeling, AIAA 2006-4504; "
     "the entrained share of a melting fuel depends on the gas's dynamic pressure: Karabeyoglu, Altman and Cantwell, "
     "J. Propulsion and Power 18 (2002) 610",
-    formula="dr/dt = a G^n (p_c / p_ref)^k",
+    formula="dr/dt = a G^n exp(k ((p_c/p_ref)^b - 1) / b), for b = 0 a G^n (p_c / p_ref)^k",
     sites=("regression_factor",),
     parameters=(
-        Parameter("exponent", "-", "power of the chamber pressure", typical=0.1, low=-0.5, high=1.0),
+        Parameter("exponent", "-", "power of the chamber pressure at p_ref", typical=0.1, low=-0.5, high=1.0),
+        Parameter("bend", "-", "power of the pressure with which that power grows", typical=0.7, low=-1.0, high=1.5),
         Parameter("reference", "Pa", "pressure at which a holds", 5e5, center=15e5, low=1e5, high=100e5, given=True),
     ),
     phases=("liquid", "vapor", "nitrogen"),

@@ -32,7 +32,7 @@ EFFECT = Effect(
         Parameter(
             "time", "s", "m c_p / (h A) of a wall that is wetted all over", 15.0, center=25.0, low=2.0, high=200.0
         ),
-        Parameter("excess", "K", "wall above the oxidizer at ignition", 5.0, center=0.0, low=-20.0, high=100.0),
+        Parameter("excess", "K", "wall above the oxidizer at ignition", 2.0, center=0.0, low=-20.0, high=100.0),
         Parameter(
             "vapor_share",
             "-",

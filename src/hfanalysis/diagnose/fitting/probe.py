@@ -4,24 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.engine.effect import Effect, Parameter
-from hfanalysis.engine.sites import HOOK_OF_SITE, RATES, SITES, term
+from hfanalysis.engine.sites import HOOK_OF_SITE, IS_LIQUID, RATES, SITES, term
 
 Array = NDArray[np.float64]
 
-GIVEN = ("site", "hook", "first", "spacing", "count")
-SITE, HOOK, FIRST, SPACING, COUNT = range(5)
+GIVEN = ("site", "hook", "first", "spacing", "count", "wet")
+SITE, HOOK, FIRST, SPACING, COUNT, WET = range(6)
 COEFFICIENTS = len(GIVEN) + 1
 
 
 @term
 def _source(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     """p: the strength (which is 1: all coefficients together are the source), GIVEN, the coefficients."""
-    if hook != int(p[1 + HOOK]):
+    if hook != int(p[1 + HOOK]) or (p[1 + WET] > 0.0 and env[IS_LIQUID] == 0.0):
         return
     u = (t - p[1 + FIRST]) / p[1 + SPACING]
     k = int(np.floor(u))
@@ -47,20 +48,22 @@ def _source(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 class Splines:
     """Cubic B-splines with ``count`` coefficients; the i-th peaks at ``first`` + i ``spacing`` [s].
 
-    Beyond their ends they fade, or stay as they are at these if they are ``held``.
+    Beyond their ends they fade, or stay as they are at these if they are ``held``. Those of a source that ends with the
+    liquid, at ``liquid_out`` [s], break off there.
     """
 
     first: float
     spacing: float
     count: int
     held: bool = False
+    liquid_out: float = inf
 
     @classmethod
-    def over(cls, start: float, end: float, spacing: float, held: bool = False) -> Splines:
-        """Splines that reach over an interval."""
+    def over(cls, start: float, end: float, spacing: float, wet: bool = False) -> Splines:
+        """Splines that reach over an interval, or over that in which liquid flows."""
         pieces = max(int(np.ceil((end - start) / spacing)), 1)
         width = (end - start) / pieces
-        return cls(start - width, width, pieces + 3, held)
+        return cls(start - width, width, pieces + 3, liquid_out=end if wet else inf)
 
     def reach(self, peak: float) -> tuple[float, float]:
         """From when to when [s] the spline that peaks there is not 0."""
@@ -73,7 +76,7 @@ class Splines:
             times = np.clip(times, self.first + self.spacing, last)
         u = np.abs((times[:, None] - self.first) / self.spacing - np.arange(self.count)[None, :])
         near, far = (4.0 - 6.0 * u**2 + 3.0 * u**3) / 6.0, (2.0 - u) ** 3 / 6.0
-        return np.where(u < 1.0, near, np.where(u < 2.0, far, 0.0))
+        return np.where(times[:, None] >= self.liquid_out, 0.0, np.where(u < 1.0, near, np.where(u < 2.0, far, 0.0)))
 
 
 @lru_cache(maxsize=64)
@@ -85,6 +88,7 @@ def probe(site: str, splines: Splines, typical: float) -> Effect:
         splines.first,
         splines.spacing,
         splines.count,
+        np.isfinite(splines.liquid_out),
     )
     fixed = [
         Parameter(name, "", "of the probe", 1.0, center=float(v), given=True)

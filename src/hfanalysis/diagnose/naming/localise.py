@@ -8,7 +8,9 @@ Sensors are sites too: an offset over time.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,30 +36,34 @@ WINDY, WIND_SPACING = ("thrust",), 0.25
 """Channels in which wind on the stand may be read, and the spacing of its splines [s]: it is faster than what an engine
 does. What is slow in a sensor does not go with the flow: one that has drifted reads as much too much at rest."""
 
+WETTED = tuple(site for site in SITES if site.name in ("tank_pressure", "injector_factor", "feed_loss"))
+"""Sites at which a source may end with the liquid: what it does in tank, line and injector ends at once."""
+
 FINE = 200
 """Instants at which pulses are laid over the splines."""
 
-CORRELATION = 1.5
-"""Splines over which a source is coherent."""
+CORRELATIONS = 1.5, 5.0
+"""Splines over which a source may be coherent: what changes slowly needs few numbers, and is found when it is weak."""
 
 
 @dataclass(frozen=True)
 class Smooth:
     """A smooth source as the linear search sees it: coefficients of splines, their ``scale``, and the log evidence.
 
-    ``nuisances``: where the calibrated constants then are (x).
+    ``correlation``: splines over which it is coherent; ``nuisances``: where the calibrated constants then are (x).
     """
 
     site: Site
     log_evidence: float
     scale: float
+    correlation: float
     coefficients: Array
     splines: Splines
     nuisances: Array
 
     def added_to(self, hypothesis: Hypothesis, share: float = 1.0) -> tuple[Hypothesis, Array]:
         """The hypothesis with this source, and the x of its parameters at a ``share`` of its size."""
-        matrix = np.asarray(self.scale * np.linalg.cholesky(smooth_prior(self.splines.count)))
+        matrix = np.asarray(self.scale * np.linalg.cholesky(smooth_prior(self.splines.count, self.correlation)))
         start = np.asarray(share * np.linalg.solve(matrix, self.coefficients))
         if self.site.sensor is not None:
             names = tuple(f"offset_{self.site.sensor}.c{i}" for i in range(self.splines.count))
@@ -85,10 +91,10 @@ class Sudden:
 Source = Smooth | Sudden
 
 
-def smooth_prior(count: int) -> Array:
-    """Covariance of the coefficients of a source of size one."""
+def smooth_prior(count: int, correlation: float) -> Array:
+    """Covariance of the coefficients of a source of size one that is coherent over so many splines."""
     lag = np.arange(count)[:, None] - np.arange(count)[None, :]
-    return np.asarray(np.exp(-0.5 * (lag / CORRELATION) ** 2) + 1e-6 * np.eye(count))
+    return np.asarray(np.exp(-0.5 * (lag / correlation) ** 2) + 1e-6 * np.eye(count))
 
 
 @dataclass(frozen=True)
@@ -111,44 +117,38 @@ def _project(fitted: Fit, columns: Array) -> _Projected:
     return _Projected(columns.T @ clear, -(clear.T @ r), -(through @ r), -(through @ columns))
 
 
-def _best_scale(projected: _Projected, typical: float) -> tuple[float, float, Array]:
-    """Scale, log evidence against no source, and coefficients."""
-    best: tuple[float, float, Array] | None = None
-    count = projected.pull.size
-    prior = smooth_prior(count)
-    root = np.linalg.cholesky(prior)
+class _Size(NamedTuple):
+    """Of a smooth source: log evidence against none, scale, splines over which it is coherent, coefficients."""
+
+    log_evidence: float
+    scale: float
+    correlation: float
+    mean: Array
+
+
+def _sizes(projected: _Projected, typical: float, correlation: float) -> list[_Size]:
+    """A smooth source at every scale."""
+    count, found = projected.pull.size, []
+    root = np.linalg.cholesky(smooth_prior(count, correlation))
     information, pull = root.T @ projected.information @ root, root.T @ projected.pull
     for scale in SCALES * typical:
         inner = np.eye(count) + scale**2 * information
         solved = np.linalg.solve(inner, scale**2 * pull)
         gain = 0.5 * float(pull @ solved) - 0.5 * float(np.linalg.slogdet(inner)[1])
-        if best is None or gain > best[1]:
-            best = (float(scale), gain, np.asarray(root @ solved))
-    assert best is not None
-    return best
+        found.append(_Size(gain, float(scale), correlation, np.asarray(root @ solved)))
+    return found
 
 
 def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
     """The smooth source and the sudden one at every site, linear about the fit, the best first."""
     end = float(observed.grid[~observed.resting][-1])
     splines = Splines.over(0.0, end, SPACING)
-    engine, names = fitted.hypothesis.at(fitted.x), []
-    active = []
-    taken = {a.effect.name for a in engine.effects}
-    sites = [s for s in SITES if f"probe_{s.name}" not in taken]
-    for site in sites:
-        effect = probe(site.name, splines, site.typical)
-        active.append(effect.at(on=1.0))
-        names.append([f"{effect.name}.c{i}" for i in range(splines.count)])
-    probed = replace(engine, effects=(*engine.effects, *active))
-    flat = [n for group in names for n in group]
-    spared = with_spare_fuel(probed, observed.fuel_out)
-    tangents = run_with_tangents(spared, flat, observed.longest + AFTER, run_on=True)
-    slopes = slopes_of(fitted.hypothesis, observed, tangents)
     found: list[Source] = []
-    for k, site in enumerate(sites):
-        projected = _project(fitted, slopes[:, k * splines.count : (k + 1) * splines.count])
+    for site, projected in _projected(fitted, observed, SITES, splines):
         found += [_smooth(site, projected, splines), _sudden(site, projected, splines, end)]
+    if "t_v" in observed.events:
+        wet = Splines.over(0.0, observed.events["t_v"][0], SPACING, wet=True)
+        found += [_smooth(site, projected, wet) for site, projected in _projected(fitted, observed, WETTED, wet)]
     slow, fast = replace(splines, held=True), Splines.over(0.0, end, WIND_SPACING)
     for name, own in [*((name, slow) for name in observed.names), *((name, fast) for name in WINDY)]:
         if name in observed.names and name not in _sensors(fitted):
@@ -157,9 +157,29 @@ def linear_sources(fitted: Fit, observed: Observed) -> list[Source]:
     return sorted(found, key=lambda s: -s.log_evidence)
 
 
+def _projected(
+    fitted: Fit, observed: Observed, sites: Sequence[Site], splines: Splines
+) -> list[tuple[Site, _Projected]]:
+    """What splines at these sites change in the observations; none at a site that has a source."""
+    engine = fitted.hypothesis.at(fitted.x)
+    taken = {a.effect.name for a in engine.effects}
+    probes = {site: probe(site.name, splines, site.typical) for site in sites}
+    probes = {site: effect for site, effect in probes.items() if effect.name not in taken}
+    probed = replace(engine, effects=(*engine.effects, *(effect.at(on=1.0) for effect in probes.values())))
+    names = [f"{effect.name}.c{i}" for effect in probes.values() for i in range(splines.count)]
+    tangents = run_with_tangents(
+        with_spare_fuel(probed, observed.fuel_out), names, observed.longest + AFTER, run_on=True
+    )
+    slopes = slopes_of(fitted.hypothesis, observed, tangents)
+    columns = np.split(slopes, len(probes), axis=1) if probes else []
+    return [(site, _project(fitted, own)) for site, own in zip(probes, columns, strict=True)]
+
+
 def _smooth(site: Site, projected: _Projected, splines: Splines) -> Smooth:
-    scale, gain, mean = _best_scale(projected, site.typical)
-    return Smooth(site, gain, scale, mean, splines, projected.start + projected.follow @ mean)
+    sizes = [size for c in CORRELATIONS for size in _sizes(projected, site.typical, c)]
+    best = max(sizes, key=lambda size: size.log_evidence)
+    nuisances = projected.start + projected.follow @ best.mean
+    return Smooth(site, best.log_evidence, best.scale, best.correlation, best.mean, splines, nuisances)
 
 
 def _sudden(site: Site, projected: _Projected, splines: Splines, end: float) -> Sudden:
