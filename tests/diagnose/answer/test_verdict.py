@@ -319,7 +319,7 @@ def test_what_an_effect_does_is_given_over_time() -> None:
 
 def test_the_band_of_a_source_holds_what_its_other_constants_leave_open() -> None:
     """Pressure against a reference that nobody knows: how much of the regression is the effect's is a convention."""
-    hidden = effect("grain_pressure_regression").at(exponent=0.5)
+    hidden = effect("grain_pressure_regression").at(exponent=0.3, bend=1.0)
     test = made.observed(hidden)
     found = fit(made.hypothesis().with_effect(effect("grain_pressure_regression")), test)
     source = acting(found, "grain_pressure_regression", test)

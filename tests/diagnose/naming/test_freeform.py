@@ -1,8 +1,9 @@
-"""Unknown sources in sensors: at rest as well, and faster than an engine."""
+"""Unknown sources: in sensors at rest as well, and faster than an engine; in the engine until the liquid ends."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -17,7 +18,9 @@ from hfanalysis.diagnose.fitting.probe import Splines
 from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
 from hfanalysis.diagnose.naming.course import course_of
 from hfanalysis.diagnose.naming.freeform import unknown_sources
+from hfanalysis.diagnose.naming.localise import CORRELATIONS, Smooth, linear_sources
 from hfanalysis.engine.effect import Active, Effect, Parameter
+from hfanalysis.engine.sites import AT_FLOW, FEED_LOSS, IS_LIQUID, term
 
 
 def misread(channel: str, course: Callable[[np.ndarray], np.ndarray]) -> Active:
@@ -81,9 +84,62 @@ def test_wind_on_the_stand_is_seen_behind_a_coarse_form() -> None:
     assert "goes up and down by 4" in place_sentence(row)
 
 
-def test_splines_are_held_beyond_their_ends_or_fade() -> None:
+@term
+def _growing_loss(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
+    if hook == AT_FLOW and env[IS_LIQUID] > 0.0:
+        site[FEED_LOSS] += p[0] * t
+
+
+def flashing(rate: float) -> Active:
+    """A loss in the feed line that grows [Pa/s] as long as liquid flows, and is gone with it."""
+    return Effect(
+        name="growing_loss",
+        equation="feed",
+        meaning="in no library",
+        reference="this test",
+        parameters=(Parameter("rate", "Pa/s", "at which it grows", 1e4),),
+        phases=("liquid",),
+        term=_growing_loss,
+        sites=("feed_loss",),
+    ).at(rate=rate)
+
+
+def test_a_source_may_end_with_the_liquid() -> None:
+    test = made.observed(flashing(2e4))
+    bench = Bench(test)
+    base = candidate((), fit(made.hypothesis(), bench.at(FINEST)), FINEST)
+    best = unknown_sources(base, base, bench)[0]
+    assert best.names == ("feed_loss",)
+    block = best.fit.hypothesis.blocks[0]
+    t_v = test.events["t_v"][0]
+    assert block.splines.liquid_out == t_v
+    course = course_of(best.fit, "feed_loss", test)
+    wet = course.time < t_v
+    assert not course.mean[~wet].any()
+    assert course.mean[wet][-1] > 0.5 * course.mean.max()
+    # what loss the line had anyway is calibrated with it: the growth is what is seen
+    grown = course.mean[wet] - 2e4 * course.time[wet]
+    assert (np.abs(grown - grown.mean()) < 3.0 * course.std[wet] + 2e3).all()
+    through = [s for s in linear_sources(base.fit, test) if s.site.name == "feed_loss" and isinstance(s, Smooth)]
+    until, beyond = sorted(through, key=lambda s: s.splines.liquid_out)
+    assert until.log_evidence > beyond.log_evidence + 5.0
+
+
+def test_a_slow_source_is_coherent_over_many_splines() -> None:
+    _, best, bench = found("p_chamber", drift, FINEST)
+    base = candidate((), fit(made.hypothesis(), bench.at(FINEST)), FINEST)
+    slow = next(s for s in linear_sources(base.fit, bench.at(FINEST)) if s.site.name == best.names[0])
+    assert isinstance(slow, Smooth)
+    assert slow.correlation == max(CORRELATIONS)
+
+
+def test_splines_are_held_beyond_their_ends_or_fade_or_break_off() -> None:
     at = np.array([-3.0, 0.0, 2.2, 6.0, 40.0])
-    fading, held = (Splines.over(0.0, 6.0, 0.5, held).at(at) for held in (False, True))
+    splines = Splines.over(0.0, 6.0, 0.5)
+    fading, held = splines.at(at), replace(splines, held=True).at(at)
     assert np.array_equal(held[1:4], fading[1:4])
     assert np.array_equal(held[[0, 4]], fading[[1, 3]])
     assert not fading[[0, 4]].any()
+    wet = Splines.over(0.0, 6.0, 0.5, wet=True).at(at)
+    assert np.array_equal(wet[:3], fading[:3])
+    assert not wet[3:].any()
