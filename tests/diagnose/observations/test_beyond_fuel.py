@@ -16,7 +16,7 @@ from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.diagnose.fitting.predict import predict, readings, with_spare_fuel
 from hfanalysis.diagnose.observations.alignment import MOST_MOVED, model_times, share
-from hfanalysis.diagnose.observations.flow_end import AROUND_END, AT_ONCE, find_flow_end
+from hfanalysis.diagnose.observations.flow_end import APART, AROUND_END, AT_ONCE, WITHOUT_FIRE, find_flow_end
 from hfanalysis.diagnose.observations.frame import TANK_SIDE
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.reduction import observe_test
@@ -73,11 +73,11 @@ def reduced(late: bool = True) -> Observed:
     return observations(late, log(late), fuel_out(late))
 
 
-def observations(late: bool, of: TestLog, noted: float, std: float = 6e-3) -> Observed:
+def observations(late: bool, of: TestLog, noted: float, std: float = 6e-3, t_v: Quantity | None = None) -> Observed:
     """What a log is reduced to; the end that was ``noted`` at the stand [s] is usually that of the fire."""
     liquid_out = run(late).liquid_out
     assert liquid_out is not None
-    known = {"t_v": Quantity(liquid_out, "s", 1e-3), "t_fuel_out": Quantity(fuel_out(late), "s", std)}
+    known = {"t_v": t_v or Quantity(liquid_out, "s", 1e-3), "t_fuel_out": Quantity(fuel_out(late), "s", std)}
     seen = Seen(burn_time=Value(round(noted, 1)))
     return observe_test(of, logged.segments(**known), logged.stated(observed=seen))
 
@@ -99,14 +99,15 @@ def last(test: Observed, name: str) -> float:
     return float(channel.time[~channel.resting].max())
 
 
-def test_the_tank_is_compared_until_shortly_before_the_valve_closes() -> None:
-    test = reduced()
-    assert test.fuel_out == fuel_out()
+@pytest.mark.parametrize("late", [True, False])
+def test_the_tank_is_compared_until_shortly_before_the_valve_closes(late: bool) -> None:
+    test = reduced(late)
+    assert test.fuel_out == fuel_out(late)
     for name in test.names:
         if name in TANK_SIDE:
             assert CLOSING - AROUND_END - 0.2 < last(test, name) <= CLOSING - AROUND_END + 0.06
         else:
-            assert last(test, name) < fuel_out()
+            assert last(test, name) < fuel_out(late)
     assert "t_v" in test.events
 
 
@@ -129,30 +130,38 @@ def test_a_fire_that_fades_is_compared_as_before() -> None:
     assert max(last(test, name) for name in test.names) < fuel_out()
 
 
-def test_a_test_whose_fuel_ends_while_liquid_flows_is_compared_up_to_there() -> None:
-    early = reduced(False)
-    assert early.fuel_out is None
-    assert max(last(early, name) for name in early.names) < fuel_out(False)
+def test_how_fast_liquid_flows_without_fire_is_known_to_a_tenth_only() -> None:
+    early, late = reduced(False), reduced()
+    t_v, deviation = early.events["t_v"]
+    assert early.spread("t_v") > 0.9 * WITHOUT_FIRE * (t_v - fuel_out(False)) > 10.0 * deviation
+    assert late.spread("t_v") < 1.1 * late.events["t_v"][1]
 
 
-def test_the_model_burns_out_when_the_fuel_was_seen_to_end_whatever_its_web() -> None:
-    test, x = reduced(), truth()
+def test_fuel_and_liquid_that_end_together_are_not_followed() -> None:
+    together = Quantity(fuel_out(False) + 0.5 * APART, "s", 1e-3)
+    assert observations(False, log(False), fuel_out(False), t_v=together).fuel_out is None
+
+
+@pytest.mark.parametrize("late", [True, False])
+def test_the_model_burns_out_when_the_fuel_was_seen_to_end_whatever_its_web(late: bool) -> None:
+    test, x = reduced(late), truth(late)
     slower = x.copy()
-    slower[hypothesis().names.index("a")] -= 0.1
-    burnt = predict(hypothesis(), test, slower, tangents=False).burnt
-    assert burnt.burn_time == pytest.approx(fuel_out(), abs=1e-9)
-    web = hypothesis().engine.outer_radius - burnt.state("port_radius")[-1]
+    slower[hypothesis(late).names.index("a")] -= 0.1
+    burnt = predict(hypothesis(late), test, slower, tangents=False).burnt
+    assert burnt.burn_time == pytest.approx(fuel_out(late), abs=1e-9)
+    web = hypothesis(late).engine.outer_radius - burnt.state("port_radius")[-1]
     assert web > 1e-4
     row = sum(c.time.size for c in test.channels) + list(test.events).index("t_fuel_out")
-    assert predict(hypothesis(), test, slower, tangents=False).residual[row] > 1.0
-    assert abs(predict(hypothesis(), test, x, tangents=False).residual[row]) < 0.1
+    assert predict(hypothesis(late), test, slower, tangents=False).residual[row] > 1.0
+    assert abs(predict(hypothesis(late), test, x, tangents=False).residual[row]) < 0.1
 
 
-def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not() -> None:
-    test = reduced()
+@pytest.mark.parametrize("late", [True, False])
+def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not(late: bool) -> None:
+    test = reduced(late)
     on = replace(test, fuel_out=None)
-    right, wrong = (predict(hypothesis(), t, truth(), tangents=False) for t in (test, on))
-    beyond = np.concatenate([(c.time > fuel_out()) & ~c.resting for c in test.channels])
+    right, wrong = (predict(hypothesis(late), t, truth(late), tangents=False) for t in (test, on))
+    beyond = np.concatenate([(c.time > fuel_out(late)) & ~c.resting for c in test.channels])
     assert beyond.sum() > 60
     # the noise of a sample is estimated from four quiet seconds
     assert 0.6 < np.mean(right.residual[: beyond.size][beyond] ** 2) < 1.4
@@ -162,10 +171,11 @@ def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not() -> None:
     assert np.mean(np.concatenate(apart)[beyond] ** 2) > 3.0
 
 
-def test_slopes_are_differences_of_predictions() -> None:
-    made, test = hypothesis().with_effect(effect("tank_heat")), reduced()
+@pytest.mark.parametrize("late", [True, False])
+def test_slopes_are_differences_of_predictions(late: bool) -> None:
+    made, test = hypothesis(late).with_effect(effect("tank_heat")), reduced(late)
     assert made.names[-3:] == ("tank_heat.power", "tank_heat.lag", "tank_heat.fade")
-    x = np.concatenate([truth(), [0.4, 1.0, -0.5]])
+    x = np.concatenate([truth(late), [0.4, 1.0, -0.5]])
     here = predict(made, test, x, tangents=True)
     assert here.slopes is not None
     for k, name in enumerate(made.names):

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.observations.alignment import share
 from hfanalysis.diagnose.observations.blocks import TANK_AT_REST, Blocks
 from hfanalysis.diagnose.observations.channel import SHARE, Channel, averaged, range_of
+from hfanalysis.diagnose.observations.flow_end import WITHOUT_FIRE
 from hfanalysis.diagnose.observations.frame import BLOCK, EVENT_STD, Frame
 from hfanalysis.diagnose.observations.oscillation import oscillation
 from hfanalysis.diagnose.observations.recorded import LONGEST, TOGETHER, accuracy_of
@@ -135,24 +136,25 @@ def _moved_by_knee(blocks: Blocks, frame: Frame) -> Array:
 def _without_fire(blocks: Blocks, frame: Frame) -> tuple[Array, ...]:
     """What a channel differs by if the flow into the chamber without fire is WITHOUT_FIRE larger than the model's.
 
-    Nobody knows how hot the chamber's walls keep what still enters: its pressure there, and with it the flow, is the
-    model's weakest point. The tank is then empty sooner, and the run line loses more.
+    Its pressure there, and with it the flow, is the model's weakest point. The tank is then empty sooner, and the run
+    line loses more. Where liquid is left at the end of the fire, its end is compared by itself: the model is laid over
+    the measurement up to there.
     """
     if frame.fuel_out is None:
         return ()
-    after = (blocks.time > frame.fuel_out) & ~frame.resting[blocks.first]
-    if after.sum() <= SPEED_ORDER + 2:
+    t_v = max(frame.changes.get("t_v", (0.0, 0.0))[0], frame.fuel_out)
+    flowing = ~frame.resting[blocks.first]
+    wet, dry = (blocks.time > frame.fuel_out) & (blocks.time < t_v) & flowing, (blocks.time > t_v) & flowing
+    if dry.sum() <= SPEED_ORDER + 2:
         return ()
-    passed = blocks.time[after] - frame.fuel_out
-    speed = np.polyval(np.polyder(np.polyfit(passed, blocks.value[after], SPEED_ORDER)), passed)
+    passed = blocks.time[dry] - t_v
+    speed = np.polyval(np.polyder(np.polyfit(passed, blocks.value[dry], SPEED_ORDER)), passed)
     sooner = np.zeros(blocks.time.size)
-    sooner[after] = WITHOUT_FIRE * speed * passed
+    sooner[dry] = WITHOUT_FIRE * speed * passed
     if blocks.signal.name != "p_run":
         return (sooner,)
-    return sooner, np.where(after, 2.0 * WITHOUT_FIRE * LOST * blocks.value, 0.0)
+    return sooner, *(np.where(part, 2.0 * WITHOUT_FIRE * LOST * blocks.value, 0.0) for part in (wet, dry) if part.any())
 
-
-WITHOUT_FIRE = 0.1
 
 LOST = 0.25
 """Of the run line's pressure, about what is lost before it."""

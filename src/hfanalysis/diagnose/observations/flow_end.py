@@ -29,8 +29,12 @@ APART = 0.25
 AT_ONCE = 0.05
 """Standard deviation [s] of the end of the fuel up to which it is one: a fire that fades goes on beyond its middle."""
 
-AFTER_FUEL = 0.1
-"""Seconds after the fuel's end in which the feed settles."""
+AFTER_CHANGE = 0.1
+"""Seconds after the end of fuel or liquid in which the feed settles."""
+
+WITHOUT_FIRE = 0.1
+"""Part of the flow into a chamber without fire by which that of a model may be wrong: nobody knows what pressure the
+walls of the chamber make of what still enters."""
 
 STEP, SPAN = 0.05, 0.5
 """Seconds between the instants that are looked at, and over which a change is sudden."""
@@ -68,14 +72,15 @@ def flow_end_without_fuel(log: TestLog, segments: Segments, definition: TestDefi
     gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
     if gone is None or segments.std("t_fuel_out") > AT_ONCE or not {"p_tank", "p_run"} <= set(log.channels):
         return None
-    if t_v is not None and gone < t_v + APART:
-        return None  # liquid that enters a hot chamber without fuel: nothing in the model says what pressure it makes
+    if t_v is not None and abs(gone - t_v) < APART:
+        return None
+    last = gone if t_v is None else max(gone, t_v)
     tank, run = (signal_of(log, name, origin) for name in ("p_tank", "p_run"))
     if tank.dead or run.dead:
         return None
     of_tank, of_run = (accuracy_of(definition, s.name, s.value) for s in (tank, run))
     accuracy = float(np.hypot(of_tank, of_run))
-    end = find_flow_end(tank, run, gone, definition.ambient_pressure.value, accuracy, segments.time("t_purge"))
+    end = find_flow_end(tank, run, last, definition.ambient_pressure.value, accuracy, segments.time("t_purge"))
     noted = noted_flow_end(definition, 0.0)
     if end is not None and noted > gone + AROUND_END:
         end = min(end, noted)
@@ -89,9 +94,9 @@ def noted_flow_end(definition: TestDefinition, end: float) -> float:
 
 
 def find_flow_end(
-    tank: Signal, run: Signal, fuel_out: float, ambient: float, accuracy: float, t_purge: float | None = None
+    tank: Signal, run: Signal, after: float, ambient: float, accuracy: float, t_purge: float | None = None
 ) -> float | None:
-    """The earliest instant [s] after the fuel's end at which the flow may have ended; None where none can be told.
+    """The earliest instant [s] ``after`` fuel and liquid at which the flow may have ended; None where none can be told.
 
     ``tank`` and ``run``: the tank's pressure and that ahead of the injector [Pa], with times after the opening, and the
     ``accuracy`` of their difference [Pa]. The flow ends where one of them is no longer logged, where p_run falls away
@@ -99,7 +104,7 @@ def find_flow_end(
     or where the tank is empty. Nitrogen that enters from ``t_purge`` on may hold the tank's pressure as well, but
     raises it only when nothing leaves.
     """
-    start = fuel_out + AFTER_FUEL
+    start = after + AFTER_CHANGE
     last = min(_logged(signal, start) for signal in (tank, run))
     times = np.arange(start, last - 0.5 * STEP, STEP)
     if times.size < 2 * round(SPAN / STEP) + 1:

@@ -20,6 +20,7 @@ from scipy.linalg import solve_triangular
 from hfanalysis.diagnose.observations.channel import CHAMBER_FORM, FORM_ERROR, Channel
 from hfanalysis.diagnose.observations.clocks import Delay
 from hfanalysis.diagnose.observations.failing import FailingFlow
+from hfanalysis.diagnose.observations.flow_end import WITHOUT_FIRE
 from hfanalysis.diagnose.observations.noise import Group, SlowNoise, groups_of, slow_noise
 from hfanalysis.diagnose.observations.opening import SlowOpening
 from hfanalysis.diagnose.observations.recorded import ALIKE, TOGETHER
@@ -102,9 +103,12 @@ class Observed:
 
     def spread(self, event: str) -> float:
         """Standard deviation of measured less modelled instant [s]: what a form gets wrong of the tank moves the end of
-        its liquid by as large a part."""
+        its liquid by as large a part, and what nobody knows of a flow without fire moves it besides."""
         at, deviation = self.events[event]
-        return hypot(deviation, self.errors[0] * at) if event == "t_v" else deviation
+        if event != "t_v":
+            return deviation
+        unburnt = max(at - self.fuel_out, 0.0) if self.fuel_out is not None else 0.0
+        return hypot(deviation, self.errors[0] * at, WITHOUT_FIRE * unburnt)
 
     @cached_property
     def _groups(self) -> tuple[Group, ...]:
