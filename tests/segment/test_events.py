@@ -348,3 +348,14 @@ def test_without_a_chamber_pressure_the_kind_is_as_stated() -> None:
     signals = {"p_run": standing(0.0)["p_run"]}
     assert recognise(signals, "cold_flow", AMBIENT, (0.1, 5.0), None, None).name == "cold_flow"
     assert "as stated" in recognise(signals, "hot_fire", AMBIENT, (0.1, 5.0), None, None).why
+
+
+@pytest.mark.parametrize(("seconds", "kind"), [(0.5, "cold_flow"), (1.5, "hot_fire")])
+def test_a_fire_that_is_out_early_in_the_liquid_phase_is_one_and_an_igniter_is_none(seconds: float, kind: str) -> None:
+    time = np.arange(-1.0, 6.0, 1e-3)
+    fire = (time > 0.1) & (time < 0.1 + seconds)
+    pressure = AMBIENT + np.where(fire, 16e5, np.where(time > 0.0, 2e5, 0.0))
+    signals = {"p_chamber": Signal("p_chamber", time, pressure, 1e3, 1e-3)}
+    found = recognise(signals, "hot_fire", AMBIENT, (0.1, 5.0), 1.2, 1.1e-3)
+    assert (found.name, found.misfire) == (kind, kind == "cold_flow")
+    assert (" s" in found.why.partition(", from ")[2]) == (kind == "hot_fire")
