@@ -106,7 +106,9 @@ def test_json_has_what_a_test_can_tell_apart_beside_the_library(run: Run, stand:
     assert list(found["effects"]) == list(test["effects"]) == list(library())
     heat = test["effects"]["tank_heat"]
     assert heat["seen_at"] * heat["detectability"] == pytest.approx(test["seen_from"] * heat["typical"])
-    assert heat["rivals"][0]["name"] == "tank_wall_heat_capacity"
+    apart = [rival["apart"] for rival in heat["rivals"]]
+    assert apart == sorted(apart)
+    assert test["effects"]["tank_nonequilibrium"]["rivals"][0]["name"] == "tank_stratification"
     assert all(pair["apart"] < test["twins_below"] for pair in test["twins"])
     assert test["effects"]["fuel_sliver"]["seen_at"] is None
     assert {"throat_radius_after", "T_tank"} <= set(test["sensors"])
