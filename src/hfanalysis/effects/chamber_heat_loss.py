@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import erfc, exp, pi, sqrt
 
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.model import THROAT_AREA
 from hfanalysis.engine.nozzle import choked_flow_factor
@@ -17,9 +18,25 @@ from hfanalysis.engine.sites import (
     term,
 )
 
-LOSS, EXPONENT = range(2)
+LOSS, EXPONENT, WARMING = range(3)
 REFERENCE_PRESSURE = 20e5
 """Chamber pressure [Pa] at which the loss is stated."""
+
+
+LATE = 5.0
+"""Square root of time from which on the series in its inverse is taken."""
+
+
+@compiled
+def cold_share(root: float) -> float:
+    """Heat flow into a thick wall, of what a cold one takes; ``root`` is sqrt(t h^2 / (k rho c)).
+
+    >>> [round(cold_share(root), 3) for root in (0.0, 1.0, 10.0)]
+    [1.0, 0.428, 0.056]
+    """
+    if root > LATE:
+        return (1.0 - 0.5 / root**2 + 0.75 / root**4) / (sqrt(pi) * root)
+    return exp(root**2) * erfc(root)
 
 
 @term
@@ -29,7 +46,8 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     gamma, rt, pressure = env[GAMMA_CHAMBER], env[RT_CHAMBER], env[P_CHAMBER]
     # the choked nozzle carries mdot c_p T = p A_t (mdot sqrt(RT) / (A_t p)) sqrt(R T) gamma / (gamma - 1)
     carried = pressure * c[THROAT_AREA] * choked_flow_factor(gamma) * sqrt(rt) * gamma / (gamma - 1.0)
-    share = p[LOSS] * (pressure / REFERENCE_PRESSURE) ** p[EXPONENT] / carried
+    cold = cold_share(sqrt(max(t, 0.0) / p[WARMING]))
+    share = p[LOSS] * cold * (pressure / REFERENCE_PRESSURE) ** p[EXPONENT] / carried
     site[TEMPERATURE_FACTOR] *= 1.0 - env[HOT_SHARE] * share / (1.0 + share)
 
 
@@ -38,12 +56,22 @@ EFFECT = Effect(
     equation="chamber_energy",
     meaning="the burnt gas gives heat to the walls of the chamber, which the report takes as adiabatic",
     reference="report, section 5.1 (sources of error: adiabatic combustion chamber); turbulent convection goes with "
-    "p^0.8: Bartz, Jet Propulsion 27 (1957) 49",
-    formula="T = T_ad / (1 + Q / (mdot c_p T_ad)),  Q = Q_20 (p_c / 20 bar)^k",
+    "p^0.8: Bartz, Jet Propulsion 27 (1957) 49; a thick wall takes the less "
+    "the warmer it is: Carslaw and Jaeger, Conduction of Heat in Solids, 1959, section 2.7",
+    formula="T = T_ad / (1 + Q / (mdot c_p T_ad)),  Q = Q_20 (p_c / 20 bar)^k exp(t/tau) erfc(sqrt(t/tau))",
     sites=("temperature_factor",),
     parameters=(
-        Parameter("loss", "W", "heat flow into the walls at 20 bar", typical=1e5, low=0.0, high=2e6),
+        Parameter("loss", "W", "heat flow into the cold walls at 20 bar", typical=1e5, low=0.0, high=2e6),
         Parameter("exponent", "-", "power of the chamber pressure", 0.2, center=0.8, low=0.0, high=1.0, given=True),
+        Parameter(
+            "warming",
+            "s",
+            "k rho c of a thick wall over the gas's heat transfer coefficient squared",
+            150.0,
+            center=50.0,
+            low=0.3,
+            high=1e4,
+        ),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,

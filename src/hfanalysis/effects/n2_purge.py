@@ -12,7 +12,7 @@ from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
 from hfanalysis.engine.model import NITROGEN_CV, SPECIFIC_NITROGEN
 from hfanalysis.engine.sites import NITROGEN_INFLOW, P_TANK, RATES, T_TANK, TANK_HEAT, switch, term
 
-AREA, SUPPLY, CRACKING, TEMPERATURE, RESISTANCE = range(5)
+AREA, SUPPLY, CRACKING, TEMPERATURE, LINE_TO_VALVE = range(5)
 GAMMA = 1.4
 CRITICAL = (2.0 / (GAMMA + 1.0)) ** (GAMMA / (GAMMA - 1.0))
 CHOKED = sqrt(GAMMA) * (2.0 / (GAMMA + 1.0)) ** (0.5 * (GAMMA + 1.0) / (GAMMA - 1.0))
@@ -45,15 +45,16 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 
 def _line(times: Array, channels: Channels, values: Mapping[str, float]) -> dict[str, Array]:
-    """The purge line's pressure above the tank's, beyond the cracking pressure: the valve's spring gives way to a flow
-    in proportion. It cannot be more than what drives the flow."""
+    """The purge line's pressure above the tank's, beyond the cracking pressure: what a flow loses in the open valve, as
+    in any restriction by its square. It cannot be more than what drives the flow."""
     if "p_purge" not in channels:
         return dict(channels)
     opens_at = values["supply_pressure"] - values["cracking_pressure"]
     driving = np.maximum(opens_at - channels["p_tank"], 1.0)
     beyond = np.maximum((1.0 - driving / values["supply_pressure"] - CRITICAL) / (1.0 - CRITICAL), 0.0)
-    choked = values["area"] * CHOKED * values["supply_pressure"] / sqrt(SPECIFIC_NITROGEN * values["temperature"])
-    dropped = values["resistance"] * choked * np.sqrt(np.maximum(1.0 - beyond**2, 0.0))
+    share, at_valve = np.maximum(1.0 - beyond**2, 0.0), channels["p_tank"] + values["cracking_pressure"]
+    dynamic = 0.5 * CHOKED**2 * values["supply_pressure"] ** 2 * share / np.maximum(at_valve, 1.0)
+    dropped = values["line_to_valve"] ** 2 * dynamic
     lifted = np.where(channels["p_tank"] < opens_at, driving * dropped / (driving + dropped), 0.0)
     return {**channels, "p_purge": channels["p_purge"] + lifted}
 
@@ -63,9 +64,9 @@ EFFECT = Effect(
     equation="tank_volume",
     meaning="nitrogen enters the tank through the purge line's check valve",
     reference="report, section 4.2.2: the valve opens when the tank is below the purge line by its cracking pressure; "
-    "flow of an orifice by ISO 6358, the spring taking the cracking pressure and giving way to a flow in proportion",
+    "flow of an orifice by ISO 6358; the spring takes the cracking pressure, the open valve loses by the flow's square",
     formula="mdot = A p_s sqrt(gamma / (R T_s)) (2/(gamma+1))^((gamma+1)/(2 (gamma-1))) phi(p_T + p_crack, p_s); "
-    "1 / (p_purge - p_T - p_crack) = 1 / (k mdot) + 1 / (p_s - p_T - p_crack)",
+    "1 / (p_purge - p_T - p_crack) = 2 A_v^2 (p_T + p_crack) / (mdot^2 R T_s) + 1 / (p_s - p_T - p_crack), A_v = A / r",
     sites=("nitrogen_inflow", "tank_heat"),
     parameters=(
         Parameter("area", "m^2", "effective area of line and check valve", typical=1e-5, low=0.0, high=2e-4),
@@ -79,7 +80,7 @@ EFFECT = Effect(
             "temperature", "K", "of the nitrogen in its line", 15.0, center=293.15, low=200.0, high=330.0, given=True
         ),
         Parameter(
-            "resistance", "Pa s/kg", "pressure of the check valve's spring by flow", 4e7, center=1e7, low=1e4, high=1e10
+            "line_to_valve", "-", "effective area of line and valve over that of the open valve", 0.6, 0.3, 0.01, 3.0
         ),
     ),
     phases=("liquid", "vapor", "nitrogen"),

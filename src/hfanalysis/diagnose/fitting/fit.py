@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.noise_level import louder_or_quieter
 from hfanalysis.diagnose.fitting.predict import Prediction, predict, with_slopes
+from hfanalysis.diagnose.fitting.size import of_any_size
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.unsteady import Burn
 
@@ -120,17 +121,31 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
         x, here = x + step, there
         damping = max(0.1 * damping, 1e-9)
     assert here.slopes is not None
-    evidence = log_evidence(here.residual, here.slopes, x, observed)
+    evidence = log_evidence(here.residual, here.slopes, x, observed, hypothesis)
     covariance = np.asarray(np.linalg.inv(here.slopes.T @ here.slopes + np.eye(x.size)))
     return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, done)
 
 
-def log_evidence(residual: Array, slopes: Array, x: Array, observed: Observed) -> float:
-    """Log of the probability of the data, by Laplace's approximation about the most probable ``x``."""
+def log_evidence(residual: Array, slopes: Array, x: Array, observed: Observed, hypothesis: Hypothesis) -> float:
+    """Log of the probability of the data, by Laplace's approximation about the most probable ``x``.
+
+    Strengths of effects are of any size there; ``x`` may go on beyond the parameters of the hypothesis.
+    """
     curvature = slopes.T @ slopes + np.eye(x.size)
     objective = 0.5 * float(residual @ residual + x @ x)
     size = float(np.linalg.slogdet(curvature)[1])
-    return -objective - 0.5 * size - observed.log_size + louder_or_quieter(residual, slopes, x, observed.slow_noise)
+    noise = louder_or_quieter(residual, slopes, x, observed.slow_noise)
+    return -objective - 0.5 * size - observed.log_size + noise + _of_any_size(curvature, x, hypothesis)
+
+
+def _of_any_size(curvature: Array, x: Array, hypothesis: Hypothesis) -> float:
+    """What the log evidence changes by as strengths are of any size."""
+    groups = hypothesis.strengths
+    if not groups:
+        return 0.0
+    where = np.concatenate(groups)
+    columns = np.linalg.solve(curvature, np.eye(x.size)[:, where])
+    return of_any_size(np.linalg.inv(columns[where]), x[where], [group.size for group in groups])
 
 
 def promised(found: Fit, observed: Observed, other: Observed, slack: Array | None = None) -> float:
@@ -147,7 +162,7 @@ def promised(found: Fit, observed: Observed, other: Observed, slack: Array | Non
         columns[: white.shape[0]] = -white
         slopes, x = np.hstack([slopes, columns]), np.concatenate([x, np.zeros(slack.shape[1])])
     step = -np.linalg.solve(slopes.T @ slopes + np.eye(x.size), slopes.T @ residual + x)
-    return log_evidence(residual + slopes @ step, slopes, x + step, other)
+    return log_evidence(residual + slopes @ step, slopes, x + step, other, found.hypothesis)
 
 
 def bounded_step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, damping: float) -> Array:

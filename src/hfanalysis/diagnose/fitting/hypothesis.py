@@ -189,6 +189,15 @@ class Hypothesis:
         return sum("." not in f.name for f in self.free)
 
     @property
+    def strengths(self) -> list[NDArray[np.int64]]:
+        """Where among the parameters the strengths of each effect are that may move."""
+        wide = [i for i, f in enumerate(self.free) if f.shape == "wide"]
+        effect = [self.free[i].name.partition(".")[0] for i in wide]
+        return [
+            np.array([i for i, own in zip(wide, effect, strict=True) if own == name]) for name in dict.fromkeys(effect)
+        ]
+
+    @property
     def named(self) -> tuple[str, ...]:
         """The effects whose parameters may move."""
         return tuple(dict.fromkeys(f.name.partition(".")[0] for f in self.free if "." in f.name))

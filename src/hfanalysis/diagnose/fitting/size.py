@@ -1,0 +1,78 @@
+"""How large an effect is, nobody knows beforehand: its typical size, or a tenth or a hundredth of it.
+
+A fit takes the strength of an effect for one of typical size, give or take. Where an effect turns out to be far
+smaller, that would cost it odds that it does not deserve, and the more so the finer the sensors see it; an unknown
+source, whose size is chosen, would win. So strengths have a mixture of priors, from the typical size down; where an
+effect has several strengths (one per transducer) most of its prior is that all but one of them are nothing. A fit's
+slopes tell what that changes in its evidence: the strengths' likelihood is Gaussian, with everything else integrated
+over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from itertools import combinations, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+SIZES = (1.0, 0.3, 0.1, 0.03, 0.01)
+"""Sizes relative to the typical one, each as probable as the others."""
+
+TOGETHER = (0.75, 0.15, 0.10)
+"""Probability that one, two or three of an effect's strengths are not nothing."""
+
+
+def of_any_size(precision: Array, x: Array, groups: Sequence[int]) -> float:
+    """What log evidence changes by where the strengths of effects have the mixture for a prior, and not N(0, 1).
+
+    Args:
+        precision: of the strengths (strengths, strengths), the priors N(0, 1) counted, all other parameters integrated
+            over.
+        x: the most probable strengths (strengths,) in prior standard deviations.
+        groups: how many strengths each effect has, in their order.
+    """
+    if not groups:
+        return 0.0
+    spread, odds = _mixture(tuple(groups))
+    likelihood = precision - np.eye(x.size)
+    pull = precision @ x
+    here = _log_evidence(likelihood, pull, spread)
+    as_it_is = _log_evidence(likelihood, pull, np.ones((1, x.size)))[0]
+    return float(np.logaddexp.reduce(here + odds) - as_it_is)
+
+
+def _log_evidence(likelihood: Array, pull: Array, variance: Array) -> Array:
+    """Of a Gaussian likelihood exp(pull x - x likelihood x / 2) under priors N(0, variance), each row a prior."""
+    inner = np.eye(pull.size) + variance[:, :, None] * likelihood
+    mean = np.linalg.solve(inner, (variance * pull)[:, :, None])[:, :, 0]
+    return np.asarray(0.5 * mean @ pull - 0.5 * np.linalg.slogdet(inner)[1])
+
+
+@lru_cache(maxsize=64)
+def _mixture(groups: tuple[int, ...]) -> tuple[Array, Array]:
+    """Variances (priors, strengths) and the log of the odds of each prior."""
+    choices = [_of_one(count) for count in groups]
+    spreads, odds = [], []
+    for chosen in product(*choices):
+        spreads.append(np.concatenate([sizes for sizes, _ in chosen]) ** 2)
+        odds.append(sum(log for _, log in chosen))
+    return np.array(spreads), np.array(odds)
+
+
+def _of_one(count: int) -> list[tuple[Array, float]]:
+    """Sizes of an effect's strengths, and the log of their odds."""
+    out = []
+    numbers = np.array(TOGETHER[:count]) / sum(TOGETHER[:count])
+    for number, probability in enumerate(numbers, 1):
+        among = list(combinations(range(count), number))
+        for which in among:
+            for size in SIZES:
+                sizes = np.zeros(count)
+                sizes[list(which)] = size
+                out.append((sizes, float(np.log(probability / (len(among) * len(SIZES))))))
+    return out
