@@ -12,7 +12,7 @@ from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
 from hfanalysis.engine.model import NITROGEN_CV, SPECIFIC_NITROGEN
 from hfanalysis.engine.sites import NITROGEN_INFLOW, P_TANK, RATES, T_TANK, TANK_HEAT, switch, term
 
-AREA, SUPPLY, CRACKING, TEMPERATURE, LINE_TO_VALVE = range(5)
+AREA, SUPPLY, CRACKING, TEMPERATURE, VALVE = range(5)
 GAMMA = 1.4
 CRITICAL = (2.0 / (GAMMA + 1.0)) ** (GAMMA / (GAMMA - 1.0))
 CHOKED = sqrt(GAMMA) * (2.0 / (GAMMA + 1.0)) ** (0.5 * (GAMMA + 1.0) / (GAMMA - 1.0))
@@ -54,7 +54,7 @@ def _line(times: Array, channels: Channels, values: Mapping[str, float]) -> dict
     beyond = np.maximum((1.0 - driving / values["supply_pressure"] - CRITICAL) / (1.0 - CRITICAL), 0.0)
     share, at_valve = np.maximum(1.0 - beyond**2, 0.0), channels["p_tank"] + values["cracking_pressure"]
     dynamic = 0.5 * CHOKED**2 * values["supply_pressure"] ** 2 * share / np.maximum(at_valve, 1.0)
-    dropped = values["line_to_valve"] ** 2 * dynamic
+    dropped = (values["area"] / values["valve"]) ** 2 * dynamic
     lifted = np.where(channels["p_tank"] < opens_at, driving * dropped / (driving + dropped), 0.0)
     return {**channels, "p_purge": channels["p_purge"] + lifted}
 
@@ -66,7 +66,7 @@ EFFECT = Effect(
     reference="report, section 4.2.2: the valve opens when the tank is below the purge line by its cracking pressure; "
     "flow of an orifice by ISO 6358; the spring takes the cracking pressure, the open valve loses by the flow's square",
     formula="mdot = A p_s sqrt(gamma / (R T_s)) (2/(gamma+1))^((gamma+1)/(2 (gamma-1))) phi(p_T + p_crack, p_s); "
-    "1 / (p_purge - p_T - p_crack) = 2 A_v^2 (p_T + p_crack) / (mdot^2 R T_s) + 1 / (p_s - p_T - p_crack), A_v = A / r",
+    "1 / (p_purge - p_T - p_crack) = 2 A_v^2 (p_T + p_crack) / (mdot^2 R T_s) + 1 / (p_s - p_T - p_crack)",
     sites=("nitrogen_inflow", "tank_heat"),
     parameters=(
         Parameter("area", "m^2", "effective area of line and check valve", typical=1e-5, low=0.0, high=2e-4),
@@ -79,9 +79,7 @@ EFFECT = Effect(
         Parameter(
             "temperature", "K", "of the nitrogen in its line", 15.0, center=293.15, low=200.0, high=330.0, given=True
         ),
-        Parameter(
-            "line_to_valve", "-", "effective area of line and valve over that of the open valve", 0.6, 0.3, 0.01, 3.0
-        ),
+        Parameter("valve", "m^2", "effective area of the open check valve", 3e-5, center=1e-6, low=1e-8, high=1e-3),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,
