@@ -6,10 +6,12 @@ from math import sqrt
 
 import numpy as np
 import pytest
+from scipy.special import erfcx
 from tests.effects.runs import channel, only, own_state, plain, with_effects
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect
+from hfanalysis.effects.chamber_heat_loss import cold_share
 from hfanalysis.effects.injector_choked_vapor import expanding_flow
 from hfanalysis.effects.injector_two_phase import critical_ratio, flashing_flow
 from hfanalysis.engine.effect import Active
@@ -106,15 +108,23 @@ def test_after_burn_out_there_is_no_hot_gas_to_lose_anything() -> None:
         )
 
 
-def test_heat_into_the_walls_is_missing_in_the_gas() -> None:
-    """Q = mdot c_p (T_ad - T), 100 kW of some megawatts."""
-    found = only("chamber_heat_loss", loss=1e5, exponent=0.0)
+@pytest.mark.parametrize("warming", [1e6, 2.0])
+def test_heat_into_the_walls_is_missing_in_the_gas(warming: float) -> None:
+    """Q = mdot c_p (T_ad - T), 100 kW of some megawatts, of which a wall that has warmed takes less."""
+    found = only("chamber_heat_loss", loss=1e5, exponent=0.0, warming=warming)
     flow, rt, gamma = (channel(found, n, 2.0) for n in ("nozzle_flow", "chamber_temperature_by_mass", "gamma"))
     kept = flow * rt * gamma / (gamma - 1.0)
     adiabatic = channel(plain(), "chamber_temperature_by_mass", 2.0)
     lost = flow * (adiabatic - rt) * gamma / (gamma - 1.0)
     assert 2e6 < kept < 1e7
-    assert lost == pytest.approx(1e5, rel=0.05)
+    assert lost == pytest.approx(1e5 * cold_share((2.0 / warming) ** 0.5), rel=0.05)
+
+
+@pytest.mark.parametrize("root", [1e-3, 0.3, 1.0, 4.9, 5.1, 30.0])
+def test_a_thick_wall_takes_what_conduction_carries_away(root: float) -> None:
+    """exp(x^2) erfc(x), scaled by another library."""
+    assert cold_share(root) == pytest.approx(float(erfcx(root)), rel=1e-3)
+    assert cold_share(root) < cold_share(0.9 * root)
 
 
 def test_no_heat_loss_takes_more_than_the_gas_carries() -> None:
