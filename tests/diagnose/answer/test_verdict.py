@@ -185,10 +185,10 @@ def probable(*gains: tuple[str, float]) -> Naming:
         ((("tank_heat", 20.0), ("n2_purge", 19.5)), "ambiguous"),
         ((("tank_heat", -20.0),), "none"),
         ((("tank_heat", 20.0), ("unknown", 30.0)), "unknown"),
-        ((("tank_heat", 6.2),), "named"),
-        ((("tank_heat", 5.8),), "none"),
-        ((("unknown", 9.8),), "none"),
-        ((("unknown", 10.2),), "unknown"),
+        ((("tank_heat", 5.2),), "named"),
+        ((("tank_heat", 4.8),), "none"),
+        ((("unknown", 8.3),), "none"),
+        ((("unknown", 8.7),), "unknown"),
     ],
 )
 def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> None:  # type: ignore[no-untyped-def]
