@@ -24,12 +24,13 @@ Array = NDArray[np.float64]
 POINTS = 120
 """Instants at which a source is given."""
 
-SHAPE_ERROR = 0.2
+SHAPE_ERROR = 0.25
 """By how much, relative to itself, a source may be wrong where the effect has another shape than its closure."""
 
-LEAST_ERROR = 0.03
+LEAST_ERROR = 0.05
 """The least deviation of a source, relative to its largest value. Both are chosen on the calibration split, whose cover
-`python -m benchmarks.blind table --split calibration` prints."""
+`python -m benchmarks.blind table --split calibration` prints: with 0.2 and 0.03 bands of 220 tests held 0.85 of the
+samples, with these 0.88."""
 
 STEP = 0.02
 """Of x, for the slopes of a source."""
