@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from tests.diagnose import made
 
@@ -14,12 +15,14 @@ from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.fitting.failing import SHARE_OF_FLOW, failing_effect, flow_before
 from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.form import FINEST
+from hfanalysis.diagnose.fitting.late import late
 from hfanalysis.diagnose.fitting.swing import swinging
 from hfanalysis.diagnose.fitting.valve import slow_valve
 from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
-from hfanalysis.diagnose.naming.course import course_of
+from hfanalysis.diagnose.naming.course import Course, course_of
 from hfanalysis.diagnose.naming.plain import FILLING, plain_sources
-from hfanalysis.diagnose.naming.sites import FAILING
+from hfanalysis.diagnose.naming.sites import FAILING, sensor_site
+from hfanalysis.diagnose.observations.clocks import Delay
 from hfanalysis.diagnose.observations.failing import FailingFlow
 from hfanalysis.diagnose.observations.observed import Plain
 from hfanalysis.diagnose.observations.opening import SlowOpening
@@ -102,3 +105,30 @@ def test_a_flow_that_swings_is_a_source_in_the_injector_with_its_frequency() -> 
     assert row["source"].std < 0.003
     assert (row["t_start"].value, row["t_end"].value) == (pytest.approx(0.8, abs=0.2), pytest.approx(2.6, abs=0.2))
     assert re.search(r"swings by (2.9|3|3.1) ± 0.\d+ % at 4 Hz", place_sentence(row))
+
+
+def test_a_clock_that_is_late_is_a_source_in_the_sensor_with_its_delay() -> None:
+    base, found, bench = with_plain(Delay(0.04, 60.0), late("thrust").at(delay=0.05))
+    assert found.log_evidence > base.log_evidence + 60.0
+    row = row_of(found, bench)
+    assert (row["equation"], row["channel"], row["source"].unit) == ("sensor", "thrust", "N")
+    assert row["delay"].value == pytest.approx(0.05, abs=0.01)
+    assert (row["t_start"].value, row["phase"]) == (0.0, "vapor")  # it shows most where the thrust falls
+    assert max(row["history"]["mean"]) > 10.0 * abs(row["history"]["mean"][5])
+    assert re.search(r"\(thrust\) is read (4\d|5\d)(\.\d)? ± \S+ ms late", place_sentence(row))
+
+
+@pytest.mark.parametrize(
+    ("course", "equation"),
+    [
+        (lambda t: 20.0 * np.sin(np.pi * t), "nozzle"),  # gone as the flow ends
+        (lambda t: -20.0 * np.sin(np.pi * t), "nozzle"),
+        (lambda t: 20.0 * t, "sensor"),  # a cell that does not come back
+        (lambda t: 20.0 * np.sin(4.0 * np.pi * t), "sensor"),  # to and fro
+    ],
+)
+def test_a_thrust_that_departs_until_the_flow_ends_is_the_nozzles(course, equation: str) -> None:  # type: ignore[no-untyped-def]
+    time = np.linspace(0.0, 1.0, 50)
+    made_up = Course(sensor_site(made.observed(), "thrust"), time, course(time), np.ones(50), 0.1)
+    assert made_up.equation == equation
+    assert of_unknown(made_up, 1.0, {"liquid": 0.0})["equation"] == equation

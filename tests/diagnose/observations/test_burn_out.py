@@ -9,6 +9,7 @@ from hypothesis import strategies as some
 from tests.diagnose import logged, made
 from tests.engine.stand import engine_on_stand
 
+from hfanalysis.diagnose.answer.acting import acting
 from hfanalysis.diagnose.fitting.fade import FARTHEST, abrupt_end, bounded, fade_misfit, fade_slope, with_abrupt_end
 from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.observations.burn_out import LAG, UNSURE, fade_of
@@ -115,3 +116,17 @@ def test_a_fire_that_dies_slowly_speaks_for_slivers() -> None:
         )
     )
     assert with_slivers[1] - base[1] > with_slivers[0] - base[0] + 8.0
+
+
+def test_slivers_are_a_source_where_the_fuel_ends() -> None:
+    """As much fuel burns as in a fire that is out at once: less of it before, what is left after."""
+    slow = made.replace(made.observed(), stated={FADE: (8.0 * abrupt_end(engine_on_stand()), UNSURE)})
+    found = fit(made.hypothesis().with_effect(effect("fuel_sliver")), slow, np.append(made.truth(), [1.2, -1.5]))
+    source, gone = acting(found, "fuel_sliver", slow), slow.events["t_fuel_out"][0]
+    there = source.mean != 0.0
+    assert (source.equation, source.unit) == ("grain", "kg/s")
+    assert np.abs(source.time[there] - gone).max() < 0.5
+    assert (source.mean[there & (source.time < gone)] < 0.0).all()
+    assert (source.mean[there & (source.time > gone)] > 0.0).all()
+    burnt = np.abs(source.mean)
+    assert abs(np.trapezoid(source.mean, source.time)) < 0.15 * np.trapezoid(burnt, source.time)

@@ -12,7 +12,15 @@ from tests.diagnose.made import covariance_of
 from hfanalysis.diagnose.observations.blocks import MERGED, NEAR
 from hfanalysis.diagnose.observations.channel import FORM_ERROR, SHARE, Channel
 from hfanalysis.diagnose.observations.covariance import coherence_of
-from hfanalysis.diagnose.observations.frame import AROUND_CHANGE, BEFORE_END, BLOCK, EVENT_STD, FIRST, REST_BLOCKS
+from hfanalysis.diagnose.observations.frame import (
+    AROUND_CHANGE,
+    BEFORE_END,
+    BLOCK,
+    EVENT_STD,
+    FIRST,
+    REST_BLOCKS,
+    phases_of,
+)
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.recorded import TOGETHER, as_read
 from hfanalysis.engine.unsteady import Burn
@@ -345,3 +353,13 @@ def test_the_noise_of_a_wandering_sensor_is_coherent() -> None:
     white, slow = np.eye(40), np.exp(-np.abs(np.subtract.outer(np.arange(40), np.arange(40))) / 5.0)
     assert coherence_of(white) == pytest.approx(1.0)
     assert coherence_of(slow) == pytest.approx(5.0, rel=0.15)
+
+
+def test_phases_follow_each_other_though_nitrogen_could_enter_before_the_liquid_is_gone() -> None:
+    early = logged.segments(t_purge=Quantity(1.5, "s", 0.01))
+    t_v = early.time("t_v")
+    assert t_v is not None
+    assert t_v > 1.5
+    found = phases_of(early, 8.0)
+    assert list(found) == ["filling", "liquid", "vapor", "nitrogen", "end"]
+    assert found["nitrogen"] == found["vapor"] == t_v

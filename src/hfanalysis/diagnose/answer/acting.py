@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.predict import aligned, readings, with_spare_fuel
+from hfanalysis.diagnose.fitting.predict import aligned, last_regression, readings, with_spare_fuel
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.effect import Active, Effect, compose
 from hfanalysis.engine.model import OUTPUTS, STATES, evaluate_rates
@@ -34,6 +34,10 @@ samples, with these 0.88."""
 
 STEP = 0.02
 """Of x, for the slopes of a source."""
+
+FADE_ERROR, FINEST = (0.5, 0.2), 0.01
+"""By how much the flow of fading fuel may be wrong, relative to itself and to the flow before; the shortest fade [s]
+that is drawn."""
 
 UNITS = {
     "tank_energy": "W",
@@ -69,6 +73,8 @@ def acting(found: Fit, name: str, observed: Observed) -> Acting:
     time = np.linspace(0.0, float(observed.grid[~observed.resting][-1]), POINTS)
     if active.effect.of_sensor:
         return _sensor(found, active, observed)
+    if active.effect.fading_web is not None and "t_fuel_out" in observed.events:
+        return _fading(found, active, observed, time)
     course = _Course.of(found, observed, time)
     mean = course.source(active.effect, found.x)
     slopes = np.column_stack([course.slope(active.effect, k, mean) for k in range(found.x.size)])
@@ -106,6 +112,26 @@ def _sensor(found: Fit, active: Active, observed: Observed) -> Acting:
     unit = "N" if channel == "thrust" else "kg" if channel == "m_tank" else "Pa"
     std = _relative(found, active.effect) * np.abs(mean)
     return Acting("sensor", unit, observed.grid[burning], mean, _with_shape(mean, std), channel)
+
+
+def _fading(found: Fit, active: Active, observed: Observed, time: Array) -> Acting:
+    """The fuel flow beside that of a fire which is out at once where the measured fuel ends, and burns as much.
+
+    In a run the fuel lasts up to that instant whatever its surface does; how it fades goes by the time that it takes.
+    """
+    gone = observed.events["t_fuel_out"][0]
+    share, speed = min(active.values[0], 1.0), last_regression(found.burnt, gone)
+    assert active.effect.fading_web is not None
+    seconds = max(active.effect.fading_web(active.named) / speed, FINEST)
+    first, last = gone - (1.0 - 0.5 * share) * seconds, gone + 0.5 * share * seconds
+    time = np.unique(np.r_[time, np.linspace(first, last, POINTS // 2), gone - 1e-6])
+    before = aligned(observed, found.burnt, np.array([max(first, 0.0)]))
+    flow = float(found.burnt.steps.at(before)[1][0, OUTPUTS.index("fuel_flow")])
+    left = 1.0 - share * (time - first) / seconds
+    mean = flow * np.where((time < first) | (time > last), 0.0, np.where(time < gone, left - 1.0, left))
+    near = np.abs(time - gone) < seconds
+    std = np.hypot(FADE_ERROR[0] * np.abs(mean), FADE_ERROR[1] * flow * near)
+    return Acting(active.effect.equation, UNITS[active.effect.equation], time, mean, _with_shape(mean, std))
 
 
 @dataclass(frozen=True)

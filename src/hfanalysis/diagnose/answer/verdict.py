@@ -166,8 +166,11 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
 def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:
     """A row for an unknown source."""
     site = course.site
-    made = Acting(site.equation, site.unit, course.time, course.mean, course.std, site.sensor)
-    return {**of_acting(site.name, made, gain, phases, course.blur), **course.sizes}
+    made = Acting(course.equation, site.unit, course.time, course.mean, course.std, site.sensor)
+    row = {**of_acting(site.name, made, gain, phases, course.blur), **course.sizes}
+    if "delay" in course.sizes:  # a clock is late all the time, though it shows where the reading changes
+        row |= {"t_start": Quantity(0.0, "s", course.blur), "t_end": Quantity(float(course.time[-1]), "s", course.blur)}
+    return row
 
 
 SEEN = 0.05

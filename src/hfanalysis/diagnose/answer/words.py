@@ -121,8 +121,9 @@ def place_sentence(row: Mapping[str, Any]) -> str:
             f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s the flow swings by {value:.2g} ± {std:.1g} "
             f"{unit} at {row['frequency'].value:.2g} Hz: run line and chamber show it in opposite directions.{left}"
         )
-    if unit == "s":
-        return f"{where[0].upper()}{where[1:]} is read {1e3 * value:.3g} ± {1e3 * std:.2g} ms late.{left}"
+    if "delay" in row:
+        delay = row["delay"]
+        return f"{where[0].upper()}{where[1:]} is read {1e3 * delay.value:.3g} ± {1e3 * delay.std:.2g} ms late.{left}"
     span = f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s {where}"
     if "rms" in row and abs(value) < UNEVEN * factor * row["rms"].value:
         swing = factor * row["rms"].value

@@ -246,7 +246,7 @@ LEAST_REGRESSION = 1e-5
 """Of it [m/s]: a model's grain may have stopped to burn by then."""
 
 
-def _last_regression(burnt: Burn, gone: float) -> float:
+def last_regression(burnt: Burn, gone: float) -> float:
     """The regression shortly before the fuel is gone [m/s]: late in a firing well below the mean."""
     first, last = (max(gone - ahead, 0.0) for ahead in LAST)
     at = np.minimum([first, last], burnt.steps.times[-1, 1])
@@ -256,13 +256,13 @@ def _last_regression(burnt: Burn, gone: float) -> float:
 
 def faded(observed: Observed, burnt: Burn, engine: Engine) -> float:
     """Log of the measured over the time in which the fire of an engine goes out that burns as ``burnt`` until then."""
-    speed = _last_regression(burnt, observed.events["t_fuel_out"][0])
+    speed = last_regression(burnt, observed.events["t_fuel_out"][0])
     return fade_misfit(observed.stated[FADE][0], abrupt(observed, engine), engine, speed)
 
 
 def _faded_slopes(observed: Observed, found: Tangents) -> Array:
     """Slopes of :func:`faded`."""
-    engine, speed = found.burn.steps.engine, _last_regression(found.burn, observed.events["t_fuel_out"][0])
+    engine, speed = found.burn.steps.engine, last_regression(found.burn, observed.events["t_fuel_out"][0])
     at_once = abrupt(observed, engine)
     return np.array([fade_slope(parameter, at_once, engine, speed) for parameter in found.parameters])
 

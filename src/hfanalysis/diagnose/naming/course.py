@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.failing import LIQUID_LEFT, SHARE_OF_FLOW, flow_before, lost_at
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.late import delay_name
+from hfanalysis.diagnose.fitting.predict import readings
 from hfanalysis.diagnose.fitting.pulse import START, has_pulse, parameters_of, pulse_in
 from hfanalysis.diagnose.fitting.swing import EDGE, PHASE_OF_SWING, SHARE_OF_SWING, SURE, swing_at
 from hfanalysis.diagnose.fitting.valve import SECONDS_OF_VALVE, loss_share
-from hfanalysis.diagnose.naming.sites import CLOCK, FAILING, SWING, VALVE, Site, site_of
+from hfanalysis.diagnose.naming.sites import CLOCK, FAILING, OFFSET, SWING, VALVE, Site, sensor_site, site_of
 from hfanalysis.diagnose.observations.failing import FailingFlow
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.swinging import Swing
@@ -26,11 +27,17 @@ Array = NDArray[np.float64]
 POINTS, POINTS_A_TURN = 200, 12
 """Instants at which a source is given, and those in a turn of one that swings."""
 
+START_UP = 0.1
+"""Seconds from the opening in which a late reading is not drawn."""
+
 FORM = 0.3
 """By how much, relative to itself, the loss of an opening valve may be wrong: each has a characteristic of its own."""
 
 STEP = 1e-3
 """Of x, for the slopes of a pulse."""
+
+GONE, ONE_SIDED = 0.2, 0.4
+"""Part of its largest size below which a source is gone, and goes to one side."""
 
 
 @dataclass(frozen=True)
@@ -48,12 +55,25 @@ class Course:
     blur: float
     sizes: Mapping[str, Quantity] = field(default_factory=dict)
 
+    @property
+    def equation(self) -> str:
+        """The equation that the source is in.
+
+        What the thrust departs by to one side and is gone as the flow ends is the nozzle's: a cell that has drifted
+        does not come back at that instant, and gusts blow to and fro.
+        """
+        if self.site.name != f"{OFFSET}thrust":
+            return self.site.equation
+        low, high, last = float(self.mean.min()), float(self.mean.max()), abs(float(self.mean[-1]))
+        largest, other = max(high, -low), min(max(high, 0.0), max(-low, 0.0))
+        return "nozzle" if last < GONE * largest and other < ONE_SIDED * largest else self.site.equation
+
 
 def course_of(found: Fit, name: str, observed: Observed) -> Course:
     """An unknown source as a fit has it; ``name`` is that of its site."""
     site, time = site_of(name, observed), np.linspace(0.0, float(observed.grid[~observed.resting][-1]), POINTS)
     if name.startswith(CLOCK):
-        return _course_of_delay(found, site, time)
+        return _course_of_delay(found, site, observed)
     if site == VALVE:
         return _course_of_valve(found, float(time[-1]))
     if site == FAILING:
@@ -71,10 +91,20 @@ def course_of(found: Fit, name: str, observed: Observed) -> Course:
     raise ValueError(f"the fit has no source at {name}")
 
 
-def _course_of_delay(found: Fit, site: Site, time: Array) -> Course:
+def _course_of_delay(found: Fit, site: Site, observed: Observed) -> Course:
+    """What a sensor that is read late reads too much, but for the start, where the model leaps."""
     assert site.sensor is not None
-    name = delay_name(site.sensor)
-    return Course(site, time, np.full_like(time, found.values[name]), np.full_like(time, found.stds[name]), 0.0)
+    name, engine = delay_name(site.sensor), found.burnt.steps.engine
+    others = tuple(a for a in engine.effects if not name.startswith(a.effect.name))
+    in_time = replace(found.burnt, steps=replace(found.burnt.steps, engine=replace(engine, effects=others)))
+    extra = readings(observed, found.burnt)[site.sensor] - readings(observed, in_time)[site.sensor]
+    flowing = ~observed.resting & (observed.grid > START_UP)
+    mean = extra[flowing]
+    read = sensor_site(observed, site.sensor)
+    return Course(
+        replace(site, unit=read.unit), observed.grid[flowing], mean, FORM * np.abs(mean), START_UP,
+        {"delay": Quantity(found.values[name], "s", found.stds[name])},
+    )  # fmt: skip
 
 
 def _course_of_valve(found: Fit, end: float) -> Course:

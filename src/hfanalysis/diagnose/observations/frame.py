@@ -185,11 +185,12 @@ def events_of(segments: Segments, end: float) -> dict[str, tuple[float, float]]:
 
 
 def phases_of(segments: Segments, end: float) -> dict[str, float]:
-    """Where each phase begins [s]."""
+    """Where each phase begins [s], one after the other: nitrogen that could enter before the liquid is gone makes no
+    phase of its own up to there."""
     found = {"filling": 0.0, "liquid": segments.time("t_feed") or 0.0}
     t_v, t_purge = segments.time("t_v"), segments.time("t_purge")
     if t_v is not None:
         found["vapor"] = t_v
     if t_purge is not None:
-        found["nitrogen"] = t_purge
+        found["nitrogen"] = max(t_purge, t_v if t_v is not None else t_purge)
     return {**found, "end": end}
