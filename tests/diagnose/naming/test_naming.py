@@ -221,9 +221,9 @@ def test_a_thrust_of_another_clock_is_unknown_with_its_delay() -> None:
     verdict = verdict_of(found)
     assert verdict.label == "unknown", verdict.posterior
     row = places(verdict, found)[0]
-    assert (row["equation"], row["channel"], row["source"].unit) == ("sensor", "thrust", "s")
-    assert abs(row["source"].value - 0.1) < 3.0 * row["source"].std
-    assert row["source"].std < 0.01
+    assert (row["equation"], row["channel"], row["source"].unit) == ("sensor", "thrust", "N")
+    assert abs(row["delay"].value - 0.1) < 3.0 * row["delay"].std
+    assert row["delay"].std < 0.01
     assert re.fullmatch(r"A sensor \(thrust\) is read \d+(\.\d)? ± [\d.]+ ms late\.", place_sentence(row))
 
 
