@@ -187,8 +187,8 @@ def probable(*gains: tuple[str, float]) -> Naming:
         ((("tank_heat", 20.0), ("unknown", 30.0)), "unknown"),
         ((("tank_heat", 5.2),), "named"),
         ((("tank_heat", 4.8),), "none"),
-        ((("unknown", 8.3),), "none"),
-        ((("unknown", 8.7),), "unknown"),
+        ((("unknown", 9.8),), "none"),
+        ((("unknown", 10.2),), "unknown"),
     ],
 )
 def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> None:  # type: ignore[no-untyped-def]
