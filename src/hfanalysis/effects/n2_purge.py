@@ -12,12 +12,15 @@ from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
 from hfanalysis.engine.model import NITROGEN_CV, SPECIFIC_NITROGEN
 from hfanalysis.engine.sites import NITROGEN_INFLOW, P_TANK, RATES, T_TANK, TANK_HEAT, switch, term
 
-AREA, SUPPLY, CRACKING, TEMPERATURE, VALVE = range(5)
+AREA, SUPPLY, CRACKING, TEMPERATURE, LINE_TO_VALVE = range(5)
 GAMMA = 1.4
 CRITICAL = (2.0 / (GAMMA + 1.0)) ** (GAMMA / (GAMMA - 1.0))
 CHOKED = sqrt(GAMMA) * (2.0 / (GAMMA + 1.0)) ** (0.5 * (GAMMA + 1.0) / (GAMMA - 1.0))
 SMALL_SHARE = 1e-3
 """Share of the choked flow squared below which the flow falls linearly."""
+
+LEAST_AREA = 1e-9
+"""Effective area [m^2] of a leak that moves no valve."""
 
 CP = NITROGEN_CV + SPECIFIC_NITROGEN
 
@@ -54,7 +57,7 @@ def _line(times: Array, channels: Channels, values: Mapping[str, float]) -> dict
     beyond = np.maximum((1.0 - driving / values["supply_pressure"] - CRITICAL) / (1.0 - CRITICAL), 0.0)
     share, at_valve = np.maximum(1.0 - beyond**2, 0.0), channels["p_tank"] + values["cracking_pressure"]
     dynamic = 0.5 * CHOKED**2 * values["supply_pressure"] ** 2 * share / np.maximum(at_valve, 1.0)
-    dropped = (values["area"] / values["valve"]) ** 2 * dynamic
+    dropped = values["line_to_valve"] ** 2 * dynamic * values["area"] / (values["area"] + LEAST_AREA)
     lifted = np.where(channels["p_tank"] < opens_at, driving * dropped / (driving + dropped), 0.0)
     return {**channels, "p_purge": channels["p_purge"] + lifted}
 
@@ -79,7 +82,9 @@ EFFECT = Effect(
         Parameter(
             "temperature", "K", "of the nitrogen in its line", 15.0, center=293.15, low=200.0, high=330.0, given=True
         ),
-        Parameter("valve", "m^2", "effective area of the open check valve", 3e-5, center=1e-6, low=1e-8, high=1e-3),
+        Parameter(
+            "line_to_valve", "-", "effective area of line and valve over that of the open valve", 0.6, 0.3, 0.01, 3.0
+        ),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,

@@ -166,7 +166,7 @@ def test_a_flow_through_the_check_valve_lifts_the_line_up_to_its_supply() -> Non
         return np.asarray(read["p_purge"] - tank)
 
     driving = np.maximum(38e5 - 4e5 - tank, 0.0)
-    little, much = lifted(area=1e-7, valve=5e-7), lifted(area=1e-5, valve=1e-8)
+    little, much = lifted(area=1e-7, line_to_valve=0.2), lifted(area=1e-5, line_to_valve=1e3)
     assert (little[driving == 0.0] == 0.0).all()
     assert (np.diff(little[driving > 0.0]) > 0.0).all()
     assert (little <= driving).all()
