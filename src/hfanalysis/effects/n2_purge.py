@@ -69,7 +69,8 @@ EFFECT = Effect(
     reference="report, section 4.2.2: the valve opens when the tank is below the purge line by its cracking pressure; "
     "flow of an orifice by ISO 6358; the spring takes the cracking pressure, the open valve loses by the flow's square",
     formula="mdot = A p_s sqrt(gamma / (R T_s)) (2/(gamma+1))^((gamma+1)/(2 (gamma-1))) phi(p_T + p_crack, p_s); "
-    "1 / (p_purge - p_T - p_crack) = 2 A_v^2 (p_T + p_crack) / (mdot^2 R T_s) + 1 / (p_s - p_T - p_crack)",
+    "1 / (p_purge - p_T - p_crack) = 2 A_v^2 (p_T + p_crack) / (mdot^2 R T_s) + 1 / (p_s - p_T - p_crack), "
+    "A_v = A / r",
     sites=("nitrogen_inflow", "tank_heat"),
     parameters=(
         Parameter("area", "m^2", "effective area of line and check valve", typical=1e-5, low=0.0, high=2e-4),
