@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 from tests.diagnose import made
 
-from hfanalysis.diagnose.fitting.size import SIZES, TOGETHER, of_any_size
+from hfanalysis.diagnose.fitting.size import HOW_MANY, SIZES, of_any_size
 from hfanalysis.effects import effect
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ def test_the_change_is_that_of_an_integral_over_the_mixture(precision: float, x:
 def test_of_several_strengths_most_are_nothing() -> None:
     precisions, x = np.array([900.0, 400.0, 100.0]), np.array([0.1, 0.02, -0.15])
     total = 0.0
-    for number, share in enumerate(TOGETHER, 1):
+    for number, share in enumerate(HOW_MANY, 1):
         among = list(combinations(range(3), number))
         for which in among:
             for size in SIZES:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.predict import aligned, last_regression, readings, with_spare_fuel
+from hfanalysis.diagnose.fitting.predict import aligned, last_regression, misread, with_spare_fuel
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.effect import Active, Effect, compose
 from hfanalysis.engine.model import OUTPUTS, STATES, evaluate_rates
@@ -29,15 +29,16 @@ SHAPE_ERROR = 0.25
 
 LEAST_ERROR = 0.05
 """The least deviation of a source, relative to its largest value. Both are chosen on the calibration split, whose cover
-`python -m benchmarks.blind table --split calibration` prints: with 0.2 and 0.03 bands of 220 tests held 0.85 of the
-samples, with these 0.88."""
+`python -m benchmarks.blind table --split calibration` prints."""
 
 STEP = 0.02
 """Of x, for the slopes of a source."""
 
-FADE_ERROR, FINEST = (0.5, 0.2), 0.01
-"""By how much the flow of fading fuel may be wrong, relative to itself and to the flow before; the shortest fade [s]
-that is drawn."""
+FADE_ERROR, FLOW_ERROR = 0.5, 0.2
+"""By how much the flow of fading fuel may be wrong, relative to itself and to the flow before."""
+
+BRIEFEST_FADE = 0.01
+"""Seconds of the shortest fade that is drawn."""
 
 UNITS = {
     "tank_energy": "W",
@@ -99,12 +100,8 @@ def _relative(found: Fit, effect: Effect) -> float:
 
 def _sensor(found: Fit, active: Active, observed: Observed) -> Acting:
     """What a sensor reads too much, on the channel that it distorts most."""
-    engine = found.burnt.steps.engine
-    others = tuple(a for a in engine.effects if a.effect.name != active.effect.name)
-    with_it = readings(observed, found.burnt)
-    clean = replace(found.burnt, steps=replace(found.burnt.steps, engine=replace(engine, effects=others)))
-    without = readings(observed, clean)
-    extra = {n: with_it[n] - without[n] for n in observed.names}
+    misled = misread(observed, found.burnt, active.effect.name)
+    extra = {n: misled[n] for n in observed.names}
     noise = {c.name: float(np.median(c.noise_std)) for c in observed.channels}
     channel = max(extra, key=lambda n: float(np.abs(extra[n]).max()) / noise[n])
     burning = ~observed.resting
@@ -122,7 +119,7 @@ def _fading(found: Fit, active: Active, observed: Observed, time: Array) -> Acti
     gone = observed.events["t_fuel_out"][0]
     share, speed = min(active.values[0], 1.0), last_regression(found.burnt, gone)
     assert active.effect.fading_web is not None
-    seconds = max(active.effect.fading_web(active.named) / speed, FINEST)
+    seconds = max(active.effect.fading_web(active.named) / speed, BRIEFEST_FADE)
     first, last = gone - (1.0 - 0.5 * share) * seconds, gone + 0.5 * share * seconds
     time = np.unique(np.r_[time, np.linspace(first, last, POINTS // 2), gone - 1e-6])
     before = aligned(observed, found.burnt, np.array([max(first, 0.0)]))
@@ -130,7 +127,7 @@ def _fading(found: Fit, active: Active, observed: Observed, time: Array) -> Acti
     left = 1.0 - share * (time - first) / seconds
     mean = flow * np.where((time < first) | (time > last), 0.0, np.where(time < gone, left - 1.0, left))
     near = np.abs(time - gone) < seconds
-    std = np.hypot(FADE_ERROR[0] * np.abs(mean), FADE_ERROR[1] * flow * near)
+    std = np.hypot(FADE_ERROR * np.abs(mean), FLOW_ERROR * flow * near)
     return Acting(active.effect.equation, UNITS[active.effect.equation], time, mean, _with_shape(mean, std))
 
 

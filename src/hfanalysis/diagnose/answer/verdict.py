@@ -167,10 +167,7 @@ def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> dict
     """A row for an unknown source."""
     site = course.site
     made = Acting(course.equation, site.unit, course.time, course.mean, course.std, site.sensor)
-    row = {**of_acting(site.name, made, gain, phases, course.blur), **course.sizes}
-    if "delay" in course.sizes:  # a clock is late all the time, though it shows where the reading changes
-        row |= {"t_start": Quantity(0.0, "s", course.blur), "t_end": Quantity(float(course.time[-1]), "s", course.blur)}
-    return row
+    return {**of_acting(site.name, made, gain, phases, course.blur, course.stretch), **course.sizes}
 
 
 SEEN = 0.05
@@ -180,9 +177,13 @@ Z90 = 1.6449
 
 
 def of_acting(
-    name: str, source: Acting, gain: float, phases: Mapping[str, float], blur: float | None = None
-) -> dict[str, Any]:
-    """A row of the localisation: equation, phase, from when to when, how much, with bands."""
+    name: str, source: Acting, gain: float, phases: Mapping[str, float],
+    blur: float | None = None, stretch: tuple[float, float] | None = None,
+) -> dict[str, Any]:  # fmt: skip
+    """A row of the localisation: equation, phase, from when to when, how much, with bands.
+
+    ``stretch``: from when to when it acts [s], where its size does not tell.
+    """
     size = np.abs(source.mean)
     there = size > SEEN * size.max()
     if blur is not None:
@@ -190,7 +191,7 @@ def of_acting(
     if not there.any():
         there = size >= size.max()
     step = float(source.time[1] - source.time[0])
-    first, last = float(source.time[there][0]), float(source.time[there][-1])
+    first, last = stretch or (float(source.time[there][0]), float(source.time[there][-1]))
     inside = (source.time >= first) & (source.time <= last)
     return {
         "equation": source.equation,

@@ -39,6 +39,9 @@ SLOW_FADE = 2.0
 UNEVEN = 0.5
 """Part of its root mean square below which a source's mean says little of it."""
 
+BRIEF = 0.5
+"""Seconds of a stretch below which its beginning and end are said to hundredths."""
+
 _UNITS = {"Pa": ("bar", 1e-5), "W": ("kW", 1e-3), "kg/s": ("g/s", 1e3), "1": ("%", 100.0)}
 _CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
 _UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
@@ -124,7 +127,8 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     if "delay" in row:
         delay = row["delay"]
         return f"{where[0].upper()}{where[1:]} is read {1e3 * delay.value:.3g} ± {1e3 * delay.std:.2g} ms late.{left}"
-    span = f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s {where}"
+    digits = 1 if row["t_end"].value - row["t_start"].value > BRIEF else 2
+    span = f"From {row['t_start'].value:.{digits}f} to {row['t_end'].value:.{digits}f} s {where}"
     if "rms" in row and abs(value) < UNEVEN * factor * row["rms"].value:
         swing = factor * row["rms"].value
         return f"{span} goes up and down by {swing:.3g} {unit} (rms; mostly in the {row['phase']} phase).{left}"

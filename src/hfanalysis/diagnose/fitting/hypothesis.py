@@ -190,7 +190,7 @@ class Hypothesis:
 
     @property
     def strengths(self) -> list[NDArray[np.int64]]:
-        """Where among the parameters the strengths of each effect are that may move."""
+        """Where among the parameters the strengths of each effect are that may move: those with long tails."""
         wide = [i for i, f in enumerate(self.free) if f.shape == "wide"]
         effect = [self.free[i].name.partition(".")[0] for i in wide]
         return [

@@ -140,6 +140,14 @@ def readings(observed: Observed, burnt: Burn) -> dict[str, Array]:
     return _with_its_zero(observed, channels, distorted(channels, observed.grid, burnt.steps.engine.effects))
 
 
+def misread(observed: Observed, burnt: Burn, name: str) -> dict[str, Array]:
+    """What the sensors read too much on the common grid for an effect of theirs in a run."""
+    engine = burnt.steps.engine
+    others = tuple(a for a in engine.effects if a.effect.name != name)
+    without = readings(observed, replace(burnt, steps=replace(burnt.steps, engine=replace(engine, effects=others))))
+    return {channel: read - without[channel] for channel, read in readings(observed, burnt).items()}
+
+
 def _with_purge_line(channels: dict[str, Array]) -> dict[str, Array]:
     """The channels, or their slopes, with a purge line that follows the tank through its check valve."""
     return {**channels, ALIKE[1]: channels[ALIKE[0]]}

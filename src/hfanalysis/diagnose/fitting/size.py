@@ -23,7 +23,7 @@ Integers = NDArray[np.int64]
 SIZES = (1.0, 0.3, 0.1, 0.03, 0.01)
 """Sizes relative to the typical one, each as probable as the others."""
 
-TOGETHER = (0.75, 0.15, 0.10)
+HOW_MANY = (0.75, 0.15, 0.10)
 """Probability that one, two or three of an effect's strengths are not nothing."""
 
 
@@ -67,7 +67,7 @@ def _mixture(groups: tuple[int, ...]) -> tuple[Array, Array]:
 def _of_one(count: int) -> list[tuple[Array, float]]:
     """Sizes of an effect's strengths, and the log of their odds."""
     out = []
-    numbers = np.array(TOGETHER[:count]) / sum(TOGETHER[:count])
+    numbers = np.array(HOW_MANY[:count]) / sum(HOW_MANY[:count])
     for number, probability in enumerate(numbers, 1):
         among = list(combinations(range(count), number))
         for which in among:

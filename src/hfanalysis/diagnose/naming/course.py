@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.failing import LIQUID_LEFT, SHARE_OF_FLOW, flow_before, lost_at
 from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.late import delay_name
-from hfanalysis.diagnose.fitting.predict import readings
+from hfanalysis.diagnose.fitting.late import delay_name, late
+from hfanalysis.diagnose.fitting.predict import misread
 from hfanalysis.diagnose.fitting.pulse import START, has_pulse, parameters_of, pulse_in
 from hfanalysis.diagnose.fitting.swing import EDGE, PHASE_OF_SWING, SHARE_OF_SWING, SURE, swing_at
 from hfanalysis.diagnose.fitting.valve import SECONDS_OF_VALVE, loss_share
@@ -45,7 +45,7 @@ class Course:
     """A source over time as a fit has it: ``mean`` and ``std`` at ``time`` [s] in the site's unit.
 
     ``blur``: the standard deviation of the instants at which it begins and ends [s]. ``sizes``: what else it is known
-    by.
+    by. ``stretch``: from when to when it acts [s], where its size over time does not tell.
     """
 
     site: Site
@@ -54,6 +54,7 @@ class Course:
     std: Array
     blur: float
     sizes: Mapping[str, Quantity] = field(default_factory=dict)
+    stretch: tuple[float, float] | None = None
 
     @property
     def equation(self) -> str:
@@ -92,19 +93,16 @@ def course_of(found: Fit, name: str, observed: Observed) -> Course:
 
 
 def _course_of_delay(found: Fit, site: Site, observed: Observed) -> Course:
-    """What a sensor that is read late reads too much, but for the start, where the model leaps."""
+    """What a sensor that is read late reads too much, but for the start, where the model leaps. It is late all the
+    time, though that shows where its reading changes."""
     assert site.sensor is not None
-    name, engine = delay_name(site.sensor), found.burnt.steps.engine
-    others = tuple(a for a in engine.effects if not name.startswith(a.effect.name))
-    in_time = replace(found.burnt, steps=replace(found.burnt.steps, engine=replace(engine, effects=others)))
-    extra = readings(observed, found.burnt)[site.sensor] - readings(observed, in_time)[site.sensor]
+    name, effect = delay_name(site.sensor), late(site.sensor).name
     flowing = ~observed.resting & (observed.grid > START_UP)
-    mean = extra[flowing]
+    time, mean = observed.grid[flowing], misread(observed, found.burnt, effect)[site.sensor][flowing]
     read = sensor_site(observed, site.sensor)
-    return Course(
-        replace(site, unit=read.unit), observed.grid[flowing], mean, FORM * np.abs(mean), START_UP,
-        {"delay": Quantity(found.values[name], "s", found.stds[name])},
-    )  # fmt: skip
+    delay = {"delay": Quantity(found.values[name], "s", found.stds[name])}
+    whole = (0.0, float(time[-1]))
+    return Course(replace(site, unit=read.unit), time, mean, FORM * np.abs(mean), START_UP, delay, whole)
 
 
 def _course_of_valve(found: Fit, end: float) -> Course:
