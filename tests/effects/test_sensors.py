@@ -9,7 +9,7 @@ from tests.effects.runs import OF_SENSORS, base, only, typical, with_effects
 
 from hfanalysis.effects import effect
 from hfanalysis.effects.chamber_tap_lag import lagged
-from hfanalysis.engine.observe import CHANNELS, observe
+from hfanalysis.engine.observe import CHANNELS, distorted, observe
 
 Array = NDArray[np.float64]
 
@@ -77,18 +77,28 @@ def test_one_transducer_can_be_off_by_itself() -> None:
 
 def test_a_lag_delays_a_ramp_by_its_time_constant() -> None:
     ramp = 3e5 * TIMES
-    assert lagged(TIMES, ramp, 0.05)[-1] == pytest.approx(3e5 * (8.0 - 0.05), rel=1e-9)
+    assert lagged(TIMES, ramp, np.full(TIMES.size, 0.05))[-1] == pytest.approx(3e5 * (8.0 - 0.05), rel=1e-9)
 
 
 def test_a_lag_answers_a_step_exponentially() -> None:
     times = np.array([0.0, 1e-9, 0.05, 0.1])
-    assert lagged(times, np.array([0.0, 1.0, 1.0, 1.0]), 0.05) == pytest.approx(
+    assert lagged(times, np.array([0.0, 1.0, 1.0, 1.0]), np.full(4, 0.05)) == pytest.approx(
         [0.0, 0.0, 1.0 - np.exp(-1.0), 1.0 - np.exp(-2.0)], abs=1e-6
     )
 
 
 def test_a_lag_of_nothing_reads_the_truth_and_grows_out_of_it_linearly() -> None:
     wave = np.sin(TIMES)
-    assert np.array_equal(lagged(TIMES, wave, 0.0), wave)
-    small = lagged(TIMES, wave, 1e-6) - wave
+    assert np.array_equal(lagged(TIMES, wave, np.zeros(TIMES.size)), wave)
+    small = lagged(TIMES, wave, np.full(TIMES.size, 1e-6)) - wave
     assert small[1:] / 1e-6 == pytest.approx(-np.diff(wave) / np.diff(TIMES), abs=1e-6)
+
+
+@pytest.mark.parametrize("thinning", [0.0, 0.5, 1.0])
+def test_a_tube_lags_the_more_the_thinner_its_gas(thinning: float) -> None:
+    """The lag is stated at 10 bar; at 2.5 bar a ramp is read by 4^k of it late."""
+    slope = 1e3
+    ramp = 2.5e5 + slope * (TIMES - TIMES[-1])
+    read = effect("chamber_tap_lag").at(lag=0.05, thinning=thinning)
+    found = distorted({"p_chamber": ramp}, TIMES, [read])["p_chamber"]
+    assert ramp[-1] - found[-1] == pytest.approx(slope * 0.05 * 4.0**thinning, rel=0.01)

@@ -13,7 +13,7 @@ from tests.engine.stand import engine_on_stand
 from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.effects import effect
 from hfanalysis.engine import sensitivity
-from hfanalysis.engine.course import FUEL_OUT, LIQUID_OUT
+from hfanalysis.engine.course import FUEL_OUT, LIQUID_OUT, SHOCK
 from hfanalysis.engine.sensitivity import ENGINE_PARAMETERS, Tangents, run_with_tangents
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 
@@ -103,6 +103,24 @@ def test_a_fire_that_is_out_at_a_given_time_has_tangents_beyond_it(name: str) ->
         beyond &= np.abs(GRID - (found.burn.liquid_out or 0.0)) > 0.06
         tangent = found.output(channel, GRID)[:, 0]
         assert np.abs(tangent - quotient)[beyond].max() < 0.02 * np.abs(quotient[beyond]).max()
+
+
+@pytest.mark.parametrize("name", ["a", "temperature"])
+def test_thrust_has_exact_tangents_on_either_side_of_a_shock_that_enters_the_nozzle(name: str) -> None:
+    """Its slope over the chamber's pressure changes at once there; a step across it would smear that over the step."""
+    engine = replace(engine_on_stand(), spare_web=0.05)
+    steps = burn(engine, SECONDS, 1e-6, True).steps
+    enters = float(steps.times[steps.events == SHOCK, 1][-1])
+    beside = enters + np.array([-0.1, -0.05, -0.02, -0.01, 0.01, 0.02, 0.05, 0.1])
+    found = run_with_tangents(engine, [name], SECONDS, rtol=1e-6, run_on=True, times=beside)
+    runs, step = [], 1e-4 * ENGINE_PARAMETERS[name]
+    for sign in (1.0, -1.0):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(sensitivity, "SHIFT", sign * 1e-4)
+            runs.append(burn(sensitivity.shifted(engine, name)[0], SECONDS, 1e-8, True, times=beside))
+    quotient = (runs[0].output("thrust") - runs[1].output("thrust")) / (2.0 * step)
+    assert abs(quotient[3] - quotient[4]) > 0.3 * abs(quotient[3])
+    assert found.output("thrust", beside)[:, 0] == pytest.approx(quotient, rel=0.01)
 
 
 def test_an_effect_of_strength_zero_has_a_tangent() -> None:

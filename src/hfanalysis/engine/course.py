@@ -1,7 +1,7 @@
 """The course of a run: phases and events, step by step, in one compiled loop.
 
 Phase changes are events: the end of the liquid, the end of the fuel, a rocket that falls back onto its pad, a
-nozzle that unchokes, and the switches of effects. A step that passes one is shortened to end on it; equations
+shock that enters the nozzle, a nozzle that unchokes, and the switches of effects. A step that passes one is shortened to end on it; equations
 change only between steps.
 """
 
@@ -51,7 +51,7 @@ from hfanalysis.engine.model import (
     equations_at,
     rates_at,
 )
-from hfanalysis.engine.nozzle import mach_at_area, pressure_ratio
+from hfanalysis.engine.nozzle import mach_at_area, pressure_after_shock, pressure_ratio
 from hfanalysis.engine.rosenbrock import (
     DENSE,
     GAMMA,
@@ -75,9 +75,9 @@ Integers = NDArray[np.int64]
 SCALES = np.array([1e-2, 1e-1, 1e-4, 1e-5, 1e-5, 1e-1, 1e-2, 1.0, 1e-3, 1e-5, 10.0, 1e-5, 1.0, 1e-3, 1e-3])
 """What counts as small of each state [SI]: absolute tolerances are the relative one times this."""
 
-LIQUID_OUT, FUEL_OUT, GROUND, CHOKING = range(4)
+LIQUID_OUT, FUEL_OUT, GROUND, CHOKING, SHOCK = range(5)
 """Events of the engine; those from OWN_EVENTS on are the switches of its terms."""
-OWN_EVENTS = 4
+OWN_EVENTS = 5
 
 REACHED_END, BURNT_OUT, GIVEN_UP, BLOWN_DOWN = range(4)
 """How a run ends."""
@@ -179,8 +179,11 @@ def event_values(t: float, y: Array, liquid: bool, burning: bool, model: int, ou
     values[LIQUID_OUT] = dry
     values[FUEL_OUT] = min(c[OUTER_RADIUS] + c[SPARE_WEB] - y[RADIUS], c[FUEL_END] - t) if burning else 1.0
     values[GROUND] = y[ALTITUDE] - c[LAUNCH_ALTITUDE] + PAD if c[FLIES] > 0.0 else 1.0
-    subsonic = mach_at_area(c[EXIT_AREA] / (c[THROAT_AREA] * m.site[THROAT_FACTOR]), out[O_GAMMA], False)
-    values[CHOKING] = out[O_CHAMBER_PRESSURE] * pressure_ratio(subsonic, out[O_GAMMA]) - out[O_AMBIENT]
+    ratio, gamma = c[EXIT_AREA] / (c[THROAT_AREA] * m.site[THROAT_FACTOR]), out[O_GAMMA]
+    subsonic, supersonic = mach_at_area(ratio, gamma, False), mach_at_area(ratio, gamma, True)
+    behind = pressure_ratio(supersonic, gamma) * pressure_after_shock(supersonic, gamma)
+    values[CHOKING] = out[O_CHAMBER_PRESSURE] * pressure_ratio(subsonic, gamma) - out[O_AMBIENT]
+    values[SHOCK] = out[O_CHAMBER_PRESSURE] * behind - out[O_AMBIENT]
     for k in range(m.terms.shape[0]):
         address = m.terms[k, SWITCH_ADDRESS]
         value = 1.0
@@ -499,7 +502,7 @@ def integrate(
         s = enter(t, y, liquid, burning, model)
         if event >= CHOKING:
             s.before[event] = -1e-300 if falling else 1e-300  # or the same crossing would be found again
-        if event != CHOKING:
+        if event not in (CHOKING, SHOCK):
             h = min(h, 10.0 * FIRST_STEP)
         old_error, rejected = 1.0, False
     return ending, first(steps, n, n), happened

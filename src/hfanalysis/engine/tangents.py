@@ -27,6 +27,10 @@ Integers = NDArray[np.int64]
 NUDGE = 1e-6
 """Relative to a state, or to its scale: the difference with which an event's change of the state is followed."""
 
+INSIDE = 1e-3
+"""Part of a step by which slopes are formed beside an event, on the step's own side: differences of the state at the
+event itself might lead to the other."""
+
 _ROOT = np.sqrt(6.0)
 NODES = np.array([(4.0 - _ROOT) / 10.0, (4.0 + _ROOT) / 10.0, 1.0])
 RADAU = np.array(
@@ -240,11 +244,12 @@ def linearize_step(
     t, h = run.times[n, 0], run.times[n, 1] - run.times[n, 0]
     liquid, burning = run.phases[n, 0] == 1, run.phases[n, 1] == 1
     if n == 0 or run.events[n - 1] >= 0:
-        copy(run.begin[n], y, y.size)
-        linearize(t, y, liquid, burning, m, p, moving, at_node(slopes, 3), spare)
+        interpolate(INSIDE, run.begin[n], run.end[n], run.dense[n], y)
+        linearize(t + INSIDE * h, y, liquid, burning, m, p, moving, at_node(slopes, 3), spare)
     for k in range(3):
-        interpolate(NODES[k], run.begin[n], run.end[n], run.dense[n], y)
-        linearize(t + NODES[k] * h, y, liquid, burning, m, p, moving, at_node(slopes, k), spare)
+        theta = min(NODES[k], 1.0 - INSIDE if run.events[n] >= 0 else 1.0)
+        interpolate(theta, run.begin[n], run.end[n], run.dense[n], y)
+        linearize(t + theta * h, y, liquid, burning, m, p, moving, at_node(slopes, k), spare)
 
 
 @compiled(nogil=True)
