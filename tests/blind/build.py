@@ -90,6 +90,10 @@ def _detectability(detector: Detector | None, hidden: tuple[Hidden, ...]) -> dic
     if detector is None:
         return {"d_prime": 0.0, "against": {}, "given_others": {}, "after_best_of_library": None}
     d, fit = detector.d_prime(hidden)
+    own = detector.on_axis_of(hidden, fit)
+    if own is not detector:
+        detector = own
+        d, fit = detector.d_prime(hidden)
     names = [h.effect.name for h in hidden]
     # a rival's column is at its nominal strength, its own shape; those of the hidden effects are the hidden ones
     against = {r: detector.against(fit, r) for r in detector.rivals if r not in names}

@@ -63,6 +63,10 @@ ALIKE = 0.06
 """Difference in the logarithm of d' that a quick fit may make: hardly more than the search for a strength leaves."""
 
 
+LASTS_ALIKE = 0.1
+"""Relative difference of the seconds of fire after the liquid up to which a test has the time axis of the base."""
+
+
 @dataclass(frozen=True)
 class Slopes:
     """Tangents of the nuisances at a point, and Q and R of their least-squares system in units of the priors."""
@@ -86,12 +90,18 @@ class Fit:
 
 
 class Detector:
-    """Detectability for one stand, one test and its instruments."""
+    """Detectability for one stand, one test and its instruments.
 
-    def __init__(self, stand: Stand, instruments: se.Instruments, rivals: Sequence[Hidden] = ()) -> None:
-        self.stand = stand
+    ``axis``: the stand whose run has the phases on whose time axis tests are compared; this one if it is not given.
+    """
+
+    def __init__(
+        self, stand: Stand, instruments: se.Instruments, rivals: Sequence[Hidden] = (), axis: Stand | None = None
+    ) -> None:
+        self.stand, self.instruments = stand, instruments
         channels, self.base = observed(stand, ())
-        self.observer = Observer.of(stand, self.base, instruments)
+        reference = self.base if axis is None else observed(axis, ())[1]
+        self.observer = Observer.of(axis or stand, reference, instruments)
         self._base_means = self.observer.means(channels, self.base)
         self.zero = self._white(channels, self.base)
         self.priors = np.array(
@@ -218,18 +228,41 @@ class Detector:
     def solve(self, hidden: Hidden, target: float, among: Sequence[str] = ()) -> tuple[Hidden, float, Fit]:
         """The strength, up to the most plausible, at which d' (with rivals: the least against them) is ``target``.
 
-        Sought with quick fits, and once more with whole ones where these see another d'.
+        Sought with quick fits, and once more with whole ones where these see another d'; anew where the test has
+        another time axis.
         """
+        found, d, fit = self._solved(hidden, target, among)
+        other = self.on_axis_of((found,), fit)
+        return (found, d, fit) if other is self else other._solved(found, target, among, found.strength)
 
+    def _solved(
+        self, hidden: Hidden, target: float, among: Sequence[str], start: float | None = None
+    ) -> tuple[Hidden, float, Fit]:
         def measure(x: Hidden, quick: bool = False) -> tuple[float, Fit]:
             d, fit = self.d_prime((x,), quick)
             return (min([d, *(self.against(fit, r) for r in among)]) if among else d), fit
 
-        found, seen, _ = _bracketed(hidden, target, partial(measure, quick=True))
+        found, seen, _ = _bracketed(hidden, target, partial(measure, quick=True), start)
         d, fit = measure(found)
         if abs(np.log(max(d, 1e-9) / seen)) < ALIKE:
             return found, d, fit
         return _bracketed(found, target, measure, found.strength)
+
+    def on_axis_of(self, hidden: tuple[Hidden, ...], fit: Fit) -> Detector:
+        """This one, or where the fire of the test does not last as long as on its axis, one on that of the test's fit.
+
+        Blocks are those of the axis: a phase that is longer there than in the test would tell more than was measured.
+        """
+        here, there = (_fire_after_liquid(true) for true in (self.observer.reference, observed(self.stand, hidden)[1]))
+        if here == there or abs(here - there) < LASTS_ALIKE * max(abs(here), abs(there)):
+            return self
+        axis = shifted(self.stand, fit.nuisances[: len(NUISANCES)])
+        return Detector(self.stand, self.instruments, list(self.rivals.values()), axis)
+
+
+def _fire_after_liquid(true: Histories) -> float:
+    """Seconds of fire without liquid (negative: of liquid without fire) until the fuel is gone; 0 if it is not."""
+    return float(true.t_fuel_out - true.t_v) if np.isfinite(true.t_fuel_out) else 0.0
 
 
 def _bracketed(

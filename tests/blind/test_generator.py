@@ -219,6 +219,18 @@ def test_calibration_swallows_most_of_what_a_nuisance_can_imitate(stand: st.Stan
     assert np.sqrt(detector.fit(other_injector).chi2) < 0.02 * np.linalg.norm(other_injector)
 
 
+def test_fire_that_the_test_does_not_have_tells_nothing() -> None:
+    """With the effect the fuel lasts 0.4 s after the liquid, without it 2.5 s: the blocks are those of the test."""
+    rng = np.random.default_rng(2_010_486)
+    brief = st.draw(rng, burns_out=True, purge=None)
+    detector = Detector(brief, se.draw(rng, "mixed"), rivals(rng))
+    grain, heat = (detector.rivals[name] for name in ("grain_pressure_regression", "tank_heat"))
+    d, fit = detector.d_prime((grain.at(0.7),))
+    own = detector.on_axis_of((grain.at(0.7),), fit)
+    assert own.d_prime((grain.at(0.7),))[0] < 0.7 * d
+    assert detector.on_axis_of((heat,), detector.d_prime((heat,))[1]) is detector
+
+
 def test_a_fit_follows_what_nuisances_imitate_along_a_bent_valley() -> None:
     lasting = st.draw(np.random.default_rng(11), burns_out=False, purge=True)
     rng = np.random.default_rng(2)

@@ -47,8 +47,8 @@ EFFECT = Effect(
     equation="sensor",
     meaning="the chamber's pressure transducer lags behind, at the end of a tap and tube",
     reference="Doebelin, Measurement Systems, chapters 3 and 6: first-order lag of transducer and tubing; Bergh and "
-    "Tijdeman, NLR-TR F.238 (1965), for the tube itself: a laminar one fills the slower the thinner the gas (k = 1), an "
-    "orifice by the root (k = 1/2), a transducer lags alike at any pressure (k = 0)",
+    "Tijdeman, NLR-TR F.238 (1965), for the tube itself: a laminar one fills the slower the thinner the gas (k = 1), "
+    "an orifice by the root (k = 1/2), a transducer lags alike at any pressure (k = 0)",
     formula="tau dp_read/dt = p_c - p_read,  tau = lag (10 bar / p_c)^k",
     sites=("p_chamber",),
     parameters=(

@@ -1,8 +1,8 @@
 """The course of a run: phases and events, step by step, in one compiled loop.
 
 Phase changes are events: the end of the liquid, the end of the fuel, a rocket that falls back onto its pad, a
-shock that enters the nozzle, a nozzle that unchokes, and the switches of effects. A step that passes one is shortened to end on it; equations
-change only between steps.
+shock that enters the nozzle, a nozzle that unchokes, and the switches of effects. A step that passes one is shortened
+to end on it; equations change only between steps.
 """
 
 from __future__ import annotations
