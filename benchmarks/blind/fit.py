@@ -26,7 +26,11 @@ Array = NDArray[np.float64]
 NAMES = ("ln_temperature", "named", "unknown", "unseen named", "unseen unknown", "per_leftover", "misled")
 PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 10.0, 0.1])
 """Of NAMES (the temperature is T0, per_leftover t1): wide, so that only what the cases leave open feels it."""
-BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * 4, (0.0, 50.0), (1e-4, 0.5))
+BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * 4, (0.0, 50.0))
+
+MOST_MISLED = 0.5
+"""The largest share; the least is one in so many cases as there are, and two: that none was misled does not say that
+none ever is (Laplace's rule of succession)."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +132,7 @@ def fit(samples: Sequence[Sample], with_leftover: bool) -> Fitted:
     if not samples:
         raise ValueError("no case has evidences for its right label: nothing can be fitted")
     t = _table(samples)
-    bounds = BOUNDS if with_leftover else (*BOUNDS[:5], (0.0, 0.0), BOUNDS[6])
+    bounds = (*BOUNDS[:5], BOUNDS[5] if with_leftover else (0.0, 0.0), (1.0 / (len(samples) + 2.0), MOST_MISLED))
     starts = [np.array([ln_t, 0.0, 0.0, -3.0, -3.0, 0.1 if with_leftover else 0.0, 0.05]) for ln_t in (0.0, 2.0, 4.0)]
     found = [minimize(_loss, x, (t,), method="L-BFGS-B", bounds=bounds, options={"ftol": 1e-13}) for x in starts]
     best = min(found, key=lambda r: r.fun)

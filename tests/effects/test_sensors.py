@@ -9,6 +9,7 @@ from tests.effects.runs import OF_SENSORS, base, only, typical, with_effects
 
 from hfanalysis.effects import effect
 from hfanalysis.effects.chamber_tap_lag import lagged
+from hfanalysis.effects.load_cell_drift import heat_clock
 from hfanalysis.engine.observe import CHANNELS, distorted, observe
 
 Array = NDArray[np.float64]
@@ -47,9 +48,10 @@ def test_readings_are_free_of_the_order_in_which_effects_are_named() -> None:
 
 def test_an_engines_own_effects_are_read_unless_others_are_given() -> None:
     found = only("load_cell_drift", drift=200.0)
-    assert observe(found, TIMES)["thrust"][-1] == pytest.approx(
-        observe(found, TIMES, [])["thrust"][-1] + 110.13, abs=0.1
-    )
+    heat = heat_clock(TIMES, observe(found, TIMES)["p_chamber"])[-1]
+    drift = 200.0 * (1.0 - np.exp(-heat / 10.0))
+    assert drift > 50.0
+    assert observe(found, TIMES)["thrust"][-1] == pytest.approx(observe(found, TIMES, [])["thrust"][-1] + drift)
 
 
 def test_the_tanks_scale_weighs_nitrogen_too() -> None:
@@ -61,10 +63,21 @@ def test_the_tanks_scale_weighs_nitrogen_too() -> None:
 
 
 def test_a_drift_is_nothing_at_ignition_and_whole_when_the_cell_is_warm() -> None:
-    drift = effect("load_cell_drift").at(drift=-300.0, time=2.0)
+    drift = effect("load_cell_drift").at(drift=-300.0, time=1.0)
     read, truth = observe(base(), TIMES, [drift])["thrust"], observe(base(), TIMES, [])["thrust"]
     assert read[0] == truth[0]
     assert read[-1] - truth[-1] == pytest.approx(-300.0, rel=0.02)
+
+
+def test_a_cell_warms_with_the_heat_of_the_chamber_and_by_time_where_its_pressure_is_not_known() -> None:
+    """Two seconds at 30 bar above the surroundings are six at 10, and once the fire is out nothing warms it."""
+    times = np.linspace(-1.0, 5.0, 6001)
+    pressure = np.where((times >= 0.0) & (times < 2.0), 31e5, 1e5)
+    clock = heat_clock(times, pressure)
+    assert clock[times < 0.0].max() == 0.0
+    assert clock[-1] == pytest.approx(6.0, rel=1e-3)
+    assert np.ptp(clock[times > 2.01]) == 0.0
+    assert heat_clock(times, np.zeros(times.size)) == pytest.approx(np.maximum(times, 0.0))
 
 
 def test_one_transducer_can_be_off_by_itself() -> None:

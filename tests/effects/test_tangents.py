@@ -13,6 +13,7 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect, library
 from hfanalysis.effects.chamber_tap_lag import lagged
+from hfanalysis.effects.load_cell_drift import REFERENCE, heat_clock
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.observe import CHANNELS, observe, observe_tangents
 from hfanalysis.engine.sensitivity import Tangents, run_with_tangents
@@ -113,7 +114,11 @@ def test_a_distortion_passes_on_the_engines_tangents() -> None:
     alone = observe_tangents(found, GRID, [])
     late = lagged(GRID, alone["p_chamber"][:, 0].copy(), np.full(GRID.size, 0.05))
     assert slopes["p_chamber"][:, 0] == pytest.approx(late, rel=1e-4)
-    assert slopes["thrust"][:, 0] == pytest.approx(alone["thrust"][:, 0], rel=1e-6)
-    expected = -200.0 * GRID / 10.0**2 * np.exp(-GRID / 10.0)
+    read = observe(found.burn, GRID, [lag])["p_chamber"]
+    heat = heat_clock(GRID, read)
+    more = np.concatenate([[0.0], np.cumsum(0.5 * (late[1:] + late[:-1]) * np.diff(GRID))]) / REFERENCE
+    warmer = 200.0 / 10.0 * np.exp(-heat / 10.0) * more
+    assert slopes["thrust"][:, 0] - alone["thrust"][:, 0] == pytest.approx(warmer, abs=0.01 * np.abs(warmer).max())
+    expected = -200.0 * heat / 10.0**2 * np.exp(-heat / 10.0)
     assert slopes["thrust"][:, 1] == pytest.approx(expected, rel=1e-3, abs=1e-3)
     assert not slopes["p_tank"][:, 1].any()

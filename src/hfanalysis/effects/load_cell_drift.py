@@ -8,9 +8,23 @@ import numpy as np
 
 from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
 
+REFERENCE = 10e5
+"""Pressure [Pa] of a chamber at which the warming time is stated."""
+
+
+def heat_clock(times: Array, pressure: Array) -> Array:
+    """Seconds at REFERENCE that bring as much heat as a chamber has brought since the opening (time 0).
+
+    Heat goes with its pressure over the surroundings'; it is the time itself where that was not recorded.
+    """
+    if not np.ptp(pressure) > 0.0:
+        return np.maximum(times, 0.0)
+    over = np.where(times >= 0.0, pressure - pressure.min(), 0.0) / REFERENCE
+    return np.concatenate([[0.0], np.cumsum(0.5 * (over[1:] + over[:-1]) * np.diff(times))])
+
 
 def _distort(times: Array, channels: Channels, values: Mapping[str, float]) -> dict[str, Array]:
-    warmed = -np.expm1(-np.maximum(times, 0.0) / values["time"])
+    warmed = -np.expm1(-heat_clock(times, channels["p_chamber"]) / values["time"])
     return {**channels, "thrust": channels["thrust"] + values["drift"] * warmed}
 
 
@@ -19,12 +33,15 @@ EFFECT = Effect(
     equation="sensor",
     meaning="the thrust cell's zero drifts from ignition on, as heat reaches it",
     reference="Doebelin, Measurement Systems, chapters 3 and 5: zero drift of strain-gauge cells with temperature; a "
-    "cell that warms as one body approaches its end exponentially",
-    formula="F_read = F + d (1 - exp(-t / tau))",
+    "cell that warms as one body approaches its end exponentially; what warms it goes with the chamber's pressure, to "
+    "the power of 0.8 by Bartz (1957), and here in proportion",
+    formula="F_read = F + d (1 - exp(-h / tau)),  dh/dt = (p_c - p_a) / 10 bar",
     sites=("thrust",),
     parameters=(
         Parameter("drift", "N", "where the zero ends", typical=100.0, low=-2000.0, high=2000.0),
-        Parameter("time", "s", "in which the cell warms", 5.0, center=10.0, low=1.0, high=100.0),
+        Parameter(
+            "time", "s", "in which the cell warms, at 10 bar in the chamber", 5.0, center=10.0, low=1.0, high=100.0
+        ),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     distort=_distort,

@@ -20,7 +20,16 @@ from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.diagnose.naming.candidate import (
+    CALM,
+    HOPELESS,
+    SHORT,
+    Bench,
+    Candidate,
+    attempted,
+    candidate,
+    more_probable,
+)
 from hfanalysis.diagnose.naming.fading import fades, fading_fit, held
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
@@ -154,17 +163,18 @@ def _same(one: Fit, other: Fit) -> bool:
 def _first_children(base: Candidate, search: Search, names: list[str]) -> list[Candidate]:
     """Each of the effects with what makes the base model's data most probable, at its form.
 
-    From the starts that score tests promise most of. Where the base model is far from the data those see little of an
-    effect; what they do not lead to anything starts from a moderate size.
+    From the starts that score tests promise most of. Where the base model is far from the data, or leaves much open,
+    those see little of an effect; what they do not lead to anything starts from a moderate size.
     """
     observed, done = search.bench.at(base.form), count()
+    far = base.form != FINEST or any(left > CALM for left in observed.left_open(base.fit.residual))
 
     def child(name: str) -> Candidate | None:
         search.progress(f"fitting {name}", 0.3 * next(done) / len(names))
         made, starts = _promising(base, search, name)
         fits = [attempted(made, observed, x, SHORT) for x in starts[:STARTS]]
         seen = any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
-        if base.form != FINEST and not seen:
+        if far and not seen:
             start = _moderate(base, search.catalogue.effects[name].strengths, made.size)
             fits.append(attempted(made, observed, start, SHORT))
         if not seen and fades(search, name):
