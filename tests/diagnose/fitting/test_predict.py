@@ -13,12 +13,13 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.diagnose.fitting.fit import LONGEST_STRIDE, Array, bounded_step, fit
 from hfanalysis.diagnose.fitting.hypothesis import FARTHEST, M_RANGE, Free, Hypothesis, free_parameters
-from hfanalysis.diagnose.fitting.predict import predict, signatures
+from hfanalysis.diagnose.fitting.predict import predict, readings, signatures
 from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.diagnose.fitting.pulse import Pulse, with_pulse
 from hfanalysis.diagnose.naming.localise import Smooth, linear_sources
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.effects import effect, library
+from hfanalysis.effects.load_cell_drift import heat_clock
 from hfanalysis.engine.unsteady import burn
 
 
@@ -172,8 +173,9 @@ def test_a_signature_is_what_an_effect_adds() -> None:
     values = hypothesis.values(x)
     thrust = test.channels[-1]
     burning = ~thrust.resting
-    time = thrust.time[burning]
-    expected = values["load_cell_drift.drift"] * -np.expm1(-time / values["load_cell_drift.time"])
+    pressure = readings(test, predict(hypothesis, test, x, tangents=False).burnt)["p_chamber"]
+    warmed = -np.expm1(-heat_clock(test.grid, pressure) / values["load_cell_drift.time"])
+    expected = values["load_cell_drift.drift"] * thrust.averaged(warmed)[burning]
     assert signature[-thrust.time.size :][burning] == pytest.approx(expected, rel=1e-6)
     assert not signature[: -thrust.time.size].any()
 

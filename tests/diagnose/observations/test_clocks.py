@@ -22,7 +22,9 @@ def start(delay: float = 0.0, lag: float = 0.0, step: float = STEP, noise: float
         # the smallest thrust is none: a nozzle of constant coefficient, less the ambient pressure
         return np.where(at > 0.0, 1.0 - np.exp(-np.maximum(at, 0.0) / 0.06) - 0.05 * np.maximum(at, 0.0), 0.0)
 
-    pressure = lagged(time, 1e5 + 20e5 * risen(time), lag) + 20e5 * noise * rng.standard_normal(time.size)
+    pressure = lagged(time, 1e5 + 20e5 * risen(time), np.full(time.size, lag)) + 20e5 * noise * rng.standard_normal(
+        time.size
+    )
     thrust = 3000.0 * (risen(time - delay) + noise * rng.standard_normal(time.size))
     return {"p_chamber": _signal("p_chamber", time, pressure), "thrust": _signal("thrust", time, thrust)}
 
