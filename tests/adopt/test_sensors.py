@@ -36,7 +36,7 @@ def log_with(*effects: Active, **change: Any) -> TestLog:
     [
         (effect("load_cell_drift").at(drift=120.0, time=4.0), "thrust", 1e-9),
         (effect("pressure_transducer_offset").at(p_tank=1e5), "p_tank", 1e-6),
-        (effect("chamber_tap_lag").at(lag=0.05, thinning=0.0), "p_chamber", 0.04),  # to first order
+        (effect("chamber_tap_lag").at(lag=0.05), "p_chamber", 0.04),  # to second order
     ],
 )
 def test_a_distortion_is_taken_off(active: Active, channel: str, left: float) -> None:

@@ -89,11 +89,8 @@ def _detectability(detector: Detector | None, hidden: tuple[Hidden, ...]) -> dic
     """d' of all that is hidden, left against every rival, and (of two) of each given the other."""
     if detector is None:
         return {"d_prime": 0.0, "against": {}, "given_others": {}, "after_best_of_library": None}
+    detector = detector.on_axis_of(hidden, detector.d_prime(hidden)[1])
     d, fit = detector.d_prime(hidden)
-    own = detector.on_axis_of(hidden, fit)
-    if own is not detector:
-        detector = own
-        d, fit = detector.d_prime(hidden)
     names = [h.effect.name for h in hidden]
     # a rival's column is at its nominal strength, its own shape; those of the hidden effects are the hidden ones
     against = {r: detector.against(fit, r) for r in detector.rivals if r not in names}

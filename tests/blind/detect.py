@@ -253,14 +253,14 @@ class Detector:
 
         Blocks are those of the axis: a phase that is longer there than in the test would tell more than was measured.
         """
-        here, there = (_fire_after_liquid(true) for true in (self.observer.reference, observed(self.stand, hidden)[1]))
+        here, there = (fire_after_liquid(true) for true in (self.observer.reference, observed(self.stand, hidden)[1]))
         if here == there or abs(here - there) < LASTS_ALIKE * max(abs(here), abs(there)):
             return self
         axis = shifted(self.stand, fit.nuisances[: len(NUISANCES)])
         return Detector(self.stand, self.instruments, list(self.rivals.values()), axis)
 
 
-def _fire_after_liquid(true: Histories) -> float:
+def fire_after_liquid(true: Histories) -> float:
     """Seconds of fire without liquid (negative: of liquid without fire) until the fuel is gone; 0 if it is not."""
     return float(true.t_fuel_out - true.t_v) if np.isfinite(true.t_fuel_out) else 0.0
 

@@ -235,6 +235,16 @@ def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
     assert abs(np.log(Constants().temperature / 4.0)) > 10.0 * e["ln_temperature"]  # the start was not the answer
 
 
+@pytest.mark.parametrize("number", [20, 200])
+def test_evidence_that_never_misled_may_still_mislead(number: int) -> None:
+    """That it misled in none of so many cases does not say that it never does: Laplace's rule of succession."""
+    truths = [LABELS[i % 4] for i in range(number)]
+    certain = [Sample({k: 60.0 * (k == truth) for k in LABELS}, 1.0, truth, f"g{i}") for i, truth in enumerate(truths)]
+    k = fit(certain, with_leftover=False).constants
+    assert k.misled == pytest.approx(1.0 / (number + 2))
+    assert max(k.probabilities(certain[0].evidences, 1.0).values()) < 1.0 - 0.5 / (number + 2)
+
+
 def test_tests_of_one_stand_stay_in_one_fold() -> None:
     fold = folds(drawn(Constants(), 100))
     assert (fold[::2] == fold[1::2]).all()

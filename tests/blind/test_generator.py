@@ -17,7 +17,7 @@ from tests.blind import sensors as se
 from tests.blind import slots as s
 from tests.blind import stand as st
 from tests.blind.build import answer, build
-from tests.blind.detect import Detector, observed, rivals
+from tests.blind.detect import Detector, fire_after_liquid, observed, rivals
 from tests.blind.effects import EFFECTS, EQUATIONS, LIBRARY, OUTSIDE, drawn, slots_of
 from tests.blind.observe import BLOCK, Observer, block_covariance
 from tests.blind.plan import MOST_CASES, MOST_SEEDS, SPLITS, Case, plan
@@ -220,13 +220,15 @@ def test_calibration_swallows_most_of_what_a_nuisance_can_imitate(stand: st.Stan
 
 
 def test_fire_that_the_test_does_not_have_tells_nothing() -> None:
-    """With the effect the fuel lasts 0.4 s after the liquid, without it 2.5 s: the blocks are those of the test."""
+    """With the effect the fuel lasts far shorter after the liquid than without it: the blocks are those of the test."""
     rng = np.random.default_rng(2_010_486)
     brief = st.draw(rng, burns_out=True, purge=None)
     detector = Detector(brief, se.draw(rng, "mixed"), rivals(rng))
     grain, heat = (detector.rivals[name] for name in ("grain_pressure_regression", "tank_heat"))
     d, fit = detector.d_prime((grain.at(0.7),))
     own = detector.on_axis_of((grain.at(0.7),), fit)
+    without, with_it = (fire_after_liquid(observed(brief, h)[1]) for h in ((), (grain.at(0.7),)))
+    assert 0.0 < with_it < 0.5 * without
     assert own.d_prime((grain.at(0.7),))[0] < 0.7 * d
     assert detector.on_axis_of((heat,), detector.d_prime((heat,))[1]) is detector
 

@@ -20,6 +20,7 @@ from hfanalysis.engine.unsteady import Burn, Engine, burn
 Array = NDArray[np.float64]
 
 SECONDS = 12.0
+SHIFT = 1e-4
 GRID = np.linspace(0.01, SECONDS, 1200)
 CHANNELS = ("tank_pressure", "run_pressure", "chamber_pressure", "thrust")
 OF_EFFECTS = ("tank_heat.power", "n2_purge.area", "n2_purge.supply_pressure", "n2_purge.cracking_pressure")
@@ -39,17 +40,21 @@ def tangents() -> Tangents:
     return run_with_tangents(heated_and_purged(), names, SECONDS, rtol=1e-6, run_on=True, times=GRID)
 
 
-def differences(name: str) -> tuple[Burn, Burn, float]:
+def differences(engine: Engine, name: str, times: Array = GRID) -> tuple[Burn, Burn, float]:
     """Two whole runs with the parameter moved up and down, and by how much they lie apart."""
-    step = 1e-4 * {**ENGINE_PARAMETERS, **TYPICAL}[name]
     runs = []
     for sign in (1.0, -1.0):
-        moved = replace(heated_and_purged())
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(sensitivity, "SHIFT", sign * 1e-4)
-            moved, _ = sensitivity.shifted(moved, name)
-        runs.append(burn(moved, SECONDS, rtol=1e-8, run_on=True, times=GRID))
-    return runs[0], runs[1], 2.0 * step
+            patch.setattr(sensitivity, "SHIFT", sign * SHIFT)
+            moved, _ = sensitivity.shifted(engine, name)
+        runs.append(burn(moved, SECONDS, rtol=1e-8, run_on=True, times=times))
+    return runs[0], runs[1], 2.0 * SHIFT * {**ENGINE_PARAMETERS, **TYPICAL}[name]
+
+
+def quotients(engine: Engine, name: str, channel: str, times: Array = GRID) -> Array:
+    """Their slope in a channel."""
+    up, down, apart = differences(engine, name, times)
+    return (up.output(channel) - down.output(channel)) / apart
 
 
 def away_from_events() -> Array:
@@ -63,7 +68,7 @@ def away_from_events() -> Array:
 
 @pytest.mark.parametrize("name", [*ENGINE_PARAMETERS, *OF_EFFECTS])
 def test_tangents_are_the_differences_of_runs(name: str) -> None:
-    up, down, apart = differences(name)
+    up, down, apart = differences(heated_and_purged(), name)
     column, quiet = tangents().parameters.index(name), away_from_events()
     for channel in CHANNELS:
         quotient = ((up.output(channel) - down.output(channel)) / apart)[quiet]
@@ -75,7 +80,7 @@ def test_tangents_are_the_differences_of_runs(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["area", "oxidizer_mass", "temperature", "a", "n", "tank_heat.power"])
 def test_the_times_of_events_move_as_tangents_say(name: str) -> None:
-    up, down, apart = differences(name)
+    up, down, apart = differences(heated_and_purged(), name)
     column = tangents().parameters.index(name)
     assert up.liquid_out is not None
     assert down.liquid_out is not None
@@ -86,19 +91,14 @@ def test_the_times_of_events_move_as_tangents_say(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["area", "a", "tank_heat.power"])
 def test_a_fire_that_is_out_at_a_given_time_has_tangents_beyond_it(name: str) -> None:
-    out, step = 4.0, 1e-4 * {**ENGINE_PARAMETERS, **TYPICAL}[name]
+    out = 4.0
     engine = replace(heated_and_purged(), spare_web=0.05, fuel_end=out)
     found = run_with_tangents(engine, [name], SECONDS, rtol=1e-6, run_on=True, times=GRID)
     assert found.burn.burn_time == pytest.approx(out, abs=1e-9)
     assert found.event(FUEL_OUT)[0] == 0.0
     assert np.ptp(found.burn.state("port_radius")[out < GRID]) < 1e-12
-    runs = []
-    for sign in (1.0, -1.0):
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(sensitivity, "SHIFT", sign * 1e-4)
-            runs.append(burn(sensitivity.shifted(engine, name)[0], SECONDS, 1e-8, True, times=GRID))
     for channel in ("tank_pressure", "run_pressure"):
-        quotient = (runs[0].output(channel) - runs[1].output(channel)) / (2.0 * step)
+        quotient = quotients(engine, name, channel)
         beyond = out + 0.06 < GRID
         beyond &= np.abs(GRID - (found.burn.liquid_out or 0.0)) > 0.06
         tangent = found.output(channel, GRID)[:, 0]
@@ -113,12 +113,7 @@ def test_thrust_has_exact_tangents_on_either_side_of_a_shock_that_enters_the_noz
     enters = float(steps.times[steps.events == SHOCK, 1][-1])
     beside = enters + np.array([-0.1, -0.05, -0.02, -0.01, 0.01, 0.02, 0.05, 0.1])
     found = run_with_tangents(engine, [name], SECONDS, rtol=1e-6, run_on=True, times=beside)
-    runs, step = [], 1e-4 * ENGINE_PARAMETERS[name]
-    for sign in (1.0, -1.0):
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(sensitivity, "SHIFT", sign * 1e-4)
-            runs.append(burn(sensitivity.shifted(engine, name)[0], SECONDS, 1e-8, True, times=beside))
-    quotient = (runs[0].output("thrust") - runs[1].output("thrust")) / (2.0 * step)
+    quotient = quotients(engine, name, "thrust", beside)
     assert abs(quotient[3] - quotient[4]) > 0.3 * abs(quotient[3])
     assert found.output("thrust", beside)[:, 0] == pytest.approx(quotient, rel=0.01)
 

@@ -1,7 +1,8 @@
 """A log with what adopted sensor effects did to its readings taken off again.
 
-A distortion says what a sensor reads of the truth. Its change to what was read is taken off: exactly for what adds to a
-reading (an offset, a drift), to first order for a lag (p + tau dp/dt of the reading).
+A distortion says what a sensor reads of the truth. What it changes is taken off the reading: exactly for what adds to a
+reading (an offset, a drift), to second order for a lag: its change is first that of the reading (tau dp/dt of it), then
+that of the truth found with it.
 """
 
 from __future__ import annotations
@@ -14,6 +15,9 @@ import numpy as np
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.observe import CHANNELS, Array, distorted
 from hfanalysis.testdata.log import Channel, TestLog
+
+TURNS = 2
+"""Times that what a distortion changes is taken at the truth as far as it is known."""
 
 
 def corrected(log: TestLog, origin: float, effects: Sequence[Active]) -> TestLog:
@@ -36,7 +40,10 @@ def _corrected(log: TestLog, name: str, origin: float, effects: Sequence[Active]
         return channel
     time = channel.time[good]
     read = {other: _on(log, other, time) for other in CHANNELS}
-    change = distorted(read, time - origin, effects)[name] - read[name]
+    true = dict(read)
+    for _ in range(TURNS):
+        true[name] = true[name] + read[name] - distorted(true, time - origin, effects)[name]
+    change = read[name] - true[name]
     change = np.interp(channel.time, time, change)
     raw = None if channel.raw is None else channel.raw - change
     said = f"corrected for {', '.join(sorted(a.effect.name for a in effects if name in a.effect.sites))}"

@@ -16,10 +16,11 @@ from hfanalysis.diagnose.answer.verdict import of_unknown, places, verdict_of
 from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.fitting.fit import fit, promised
 from hfanalysis.diagnose.fitting.form import COARSEST, FINEST, Form
-from hfanalysis.diagnose.fitting.hypothesis import mid_flux
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, mid_flux
 from hfanalysis.diagnose.fitting.late import late
 from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.diagnose.fitting.pulse import OWN, pulse_effect
+from hfanalysis.diagnose.naming import singles
 from hfanalysis.diagnose.naming.candidate import Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.course import course_of
@@ -30,7 +31,7 @@ from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
-from hfanalysis.diagnose.naming.singles import base_and_singles
+from hfanalysis.diagnose.naming.singles import Array, _first_children, _promising, base_and_singles
 from hfanalysis.diagnose.naming.slack import slack_gain
 from hfanalysis.diagnose.observations.clocks import Delay
 from hfanalysis.diagnose.observations.observed import Observed
@@ -127,6 +128,25 @@ def test_two_effects_are_both_in_the_model() -> None:
     for truth in HIDDEN["two"]:
         strength = f"{truth.effect.name}.{truth.effect.strength.name}"
         assert abs(found.values[strength] - truth.values[0]) < 3.5 * found.stds[strength]
+
+
+@pytest.mark.parametrize("hidden", ["nozzle_throat_erosion", "none"])
+def test_what_no_score_test_sees_starts_from_a_moderate_size_where_much_is_left_open(
+    hidden: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench = Bench(made.observed(*HIDDEN[hidden]))
+    fitted = attempted(made.hypothesis(), bench.at(FINEST), np.zeros(made.hypothesis().size))
+    assert fitted is not None
+    base = candidate((), fitted, FINEST)
+    name = "nozzle_throat_erosion"
+
+    def blind(base: Candidate, search: Search, name: str) -> tuple[Hypothesis, list[Array]]:
+        return _promising(base, search, name)[0], []
+
+    monkeypatch.setattr(singles, "_promising", blind)
+    found = _first_children(base, Search(bench, catalogue((name,))), [name])
+    assert [c.names for c in found] == ([(name,)] if HIDDEN[hidden] else [])
+    assert all(c.log_evidence > base.log_evidence + 20.0 for c in found)
 
 
 def objective_at(candidate: Candidate, bench: Bench, form: Form) -> float:
