@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -90,7 +91,8 @@ def _detectability(detector: Detector | None, hidden: tuple[Hidden, ...]) -> dic
     if detector is None:
         return {"d_prime": 0.0, "against": {}, "given_others": {}, "after_best_of_library": None}
     detector = detector.on_axis_of(hidden, detector.d_prime(hidden)[1])
-    d, fit = detector.d_prime(hidden)
+    fit = detector.lowest(hidden)
+    d = sqrt(fit.chi2)
     names = [h.effect.name for h in hidden]
     # a rival's column is at its nominal strength, its own shape; those of the hidden effects are the hidden ones
     against = {r: detector.against(fit, r) for r in detector.rivals if r not in names}

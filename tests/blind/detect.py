@@ -53,6 +53,14 @@ def shifted(stand: Stand, q: Array) -> Stand:
     return replace(stand, **changes)
 
 
+EXPONENT = [n[0] for n in NUISANCES].index("n")
+
+VALLEYS = (-0.1, -0.05, 0.05, 0.1)
+"""How far from where a fit has ended n is tried as well."""
+
+NOT_HOPELESS = 2.0
+"""How many times the least chi-square a start there may have to be followed."""
+
 OPENING = 5e-3
 """Standard deviation of the instant of opening [s]; the log does not state it."""
 
@@ -158,15 +166,45 @@ class Detector:
                 break
         return best
 
-    def fit(self, target: Array, most: int = 25) -> Fit:
-        """The base model fitted to a response to the end: every step on tangents of its own."""
-        best = self.quick_fit(target)
+    def fit(self, target: Array) -> Fit:
+        """The base model fitted to a response to the end."""
+        return self._ended(target, self.quick_fit(target))
+
+    def _ended(self, target: Array, fit: Fit, most: int = 25) -> Fit:
+        """A fit followed to the end: every step on tangents of its own."""
         for _ in range(most):
-            before = replace(best, slopes=self._slopes_at(best.nuisances[: len(NUISANCES)]))
-            best = self._stepped(target, before, (1.0, 0.5, 0.2, 0.05))
-            if before.chi2 - best.chi2 < CONVERGED * best.chi2:
+            before = replace(fit, slopes=self._slopes_at(fit.nuisances[: len(NUISANCES)]))
+            fit = self._stepped(target, before, (1.0, 0.5, 0.2, 0.05))
+            if before.chi2 - fit.chi2 < CONVERGED * fit.chi2:
                 break
+        return fit
+
+    def lowest(self, hidden: tuple[Hidden, ...]) -> Fit:
+        """The best of the fits that start at other exponents of regression, too.
+
+        a and n may have a second valley, which no step leads to (seen where regression depends on pressure).
+        """
+        target = self.response(hidden)
+        first = best = self.fit(target)
+        for away in VALLEYS:
+            try:
+                start = self._at_exponent(target, first, away)
+                if start.chi2 < NOT_HOPELESS * best.chi2:
+                    best = min(best, self._ended(target, start), key=lambda f: f.chi2)
+            except ArithmeticError:  # there the engine does not run
+                continue
         return best
+
+    def _at_exponent(self, target: Array, fit: Fit, away: float) -> Fit:
+        """A fit with n elsewhere; what else is uncertain has followed as far as tangents tell."""
+        columns = fit.slopes.q @ fit.slopes.r
+        moved = fit.nuisances / self.priors
+        shift = away / self.priors[EXPONENT]
+        moved[EXPONENT] += shift
+        others = np.delete(np.arange(moved.size), EXPONENT)
+        right = self._right(fit) - columns[:, EXPONENT] * shift
+        moved[others] += np.linalg.lstsq(columns[:, others], right, rcond=None)[0]
+        return self._at(target, fit.slopes, moved * self.priors)
 
     def _stepped(self, target: Array, fit: Fit, shares: Sequence[float]) -> Fit:
         """The first share of a step that fits better; the fit itself where none does."""

@@ -233,6 +233,19 @@ def test_fire_that_the_test_does_not_have_tells_nothing() -> None:
     assert detector.on_axis_of((heat,), detector.d_prime((heat,))[1]) is detector
 
 
+def test_another_exponent_of_regression_may_imitate_what_no_step_from_here_leads_to(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A regression that depends on pressure a little, where the pressure falls to a quarter: a and n do the same."""
+    case = next(c for c in plan(600, "calibration") if c.id == "C000039")
+    monkeypatch.setattr(
+        "tests.blind.build._set_strengths", lambda detector, hidden, case: tuple(h.at(0.315) for h in hidden)
+    )
+    made = build(case)
+    one_start, _ = Detector(made.stand, made.instruments).d_prime(made.hidden)
+    assert made.detectability["d_prime"] < 2.0 < 8.0 < one_start
+
+
 def test_a_fit_follows_what_nuisances_imitate_along_a_bent_valley() -> None:
     lasting = st.draw(np.random.default_rng(11), burns_out=False, purge=True)
     rng = np.random.default_rng(2)

@@ -9,7 +9,7 @@ from tests.effects.runs import OF_SENSORS, base, only, typical, with_effects
 
 from hfanalysis.effects import effect
 from hfanalysis.effects.chamber_tap_lag import lagged
-from hfanalysis.effects.load_cell_drift import heat_clock
+from hfanalysis.effects.load_cell_drift import FAINT, heat_clock
 from hfanalysis.engine.observe import CHANNELS, distorted, observe
 
 Array = NDArray[np.float64]
@@ -48,7 +48,7 @@ def test_readings_are_free_of_the_order_in_which_effects_are_named() -> None:
 
 def test_an_engines_own_effects_are_read_unless_others_are_given() -> None:
     found = only("load_cell_drift", drift=200.0)
-    heat = heat_clock(TIMES, observe(found, TIMES)["p_chamber"])[-1]
+    heat = heat_clock(TIMES, observe(found, TIMES)["p_chamber"], 0.5)[-1]
     drift = 200.0 * (1.0 - np.exp(-heat / 10.0))
     assert drift > 50.0
     assert observe(found, TIMES)["thrust"][-1] == pytest.approx(observe(found, TIMES, [])["thrust"][-1] + drift)
@@ -69,15 +69,20 @@ def test_a_drift_is_nothing_at_ignition_and_whole_when_the_cell_is_warm() -> Non
     assert read[-1] - truth[-1] == pytest.approx(-300.0, rel=0.02)
 
 
-def test_a_cell_warms_with_the_heat_of_the_chamber_and_by_time_where_its_pressure_is_not_known() -> None:
-    """Two seconds at 30 bar above the surroundings are six at 10, and once the fire is out nothing warms it."""
+@pytest.mark.parametrize(("power", "warmed"), [(0.0, 5.0), (0.5, 2.0 * 3.0**0.5), (1.0, 6.0)])
+def test_a_cell_warms_with_a_power_of_the_pressure_and_by_time_where_that_is_not_known(
+    power: float, warmed: float
+) -> None:
+    """Two seconds at 30 bar above the surroundings are six at 10, and once the fire is out nothing warms it; to the
+    power of nothing all five seconds count."""
     times = np.linspace(-1.0, 5.0, 6001)
     pressure = np.where((times >= 0.0) & (times < 2.0), 31e5, 1e5)
-    clock = heat_clock(times, pressure)
+    clock = heat_clock(times, pressure, power)
     assert clock[times < 0.0].max() == 0.0
-    assert clock[-1] == pytest.approx(6.0, rel=1e-3)
-    assert np.ptp(clock[times > 2.01]) == 0.0
-    assert heat_clock(times, np.zeros(times.size)) == pytest.approx(np.maximum(times, 0.0))
+    soaked = 3.0 * FAINT**power
+    assert clock[-1] == pytest.approx(warmed + (soaked if power > 0.0 else 0.0), rel=1e-3)
+    assert np.ptp(clock[times > 2.001]) == pytest.approx(soaked, rel=0.01)
+    assert heat_clock(times, np.zeros(times.size), power) == pytest.approx(np.maximum(times, 0.0))
 
 
 def test_one_transducer_can_be_off_by_itself() -> None:

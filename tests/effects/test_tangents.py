@@ -107,7 +107,10 @@ def test_tangents_at_strength_zero_are_the_one_sided_differences_of_runs(name: s
 
 def test_a_distortion_passes_on_the_engines_tangents() -> None:
     """What a lagging sensor sees of a larger injector is the lagged change, to which its own lag adds nothing."""
-    lag, drift = effect("chamber_tap_lag").at(lag=0.05, thinning=0.0), effect("load_cell_drift").at(drift=200.0)
+    lag, drift = (
+        effect("chamber_tap_lag").at(lag=0.05, thinning=0.0),
+        effect("load_cell_drift").at(drift=200.0, power=1.0),
+    )
     engine = engine_on_stand(effects=(lag, drift))
     found = run_with_tangents(engine, ["area", "load_cell_drift.time"], SECONDS, rtol=1e-6, run_on=True, times=GRID)
     slopes = observe_tangents(found, GRID)
@@ -115,7 +118,7 @@ def test_a_distortion_passes_on_the_engines_tangents() -> None:
     late = lagged(GRID, alone["p_chamber"][:, 0].copy(), np.full(GRID.size, 0.05))
     assert slopes["p_chamber"][:, 0] == pytest.approx(late, rel=1e-4)
     read = observe(found.burn, GRID, [lag])["p_chamber"]
-    heat = heat_clock(GRID, read)
+    heat = heat_clock(GRID, read, 1.0)
     more = np.concatenate([[0.0], np.cumsum(0.5 * (late[1:] + late[:-1]) * np.diff(GRID))]) / REFERENCE
     warmer = 200.0 / 10.0 * np.exp(-heat / 10.0) * more
     assert slopes["thrust"][:, 0] - alone["thrust"][:, 0] == pytest.approx(warmer, abs=3e-3 * np.abs(warmer).max())

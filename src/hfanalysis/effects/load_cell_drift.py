@@ -12,19 +12,25 @@ REFERENCE = 10e5
 """Pressure [Pa] of a chamber at which the warming time is stated."""
 
 
-def heat_clock(times: Array, pressure: Array) -> Array:
+FAINT = 1e-3
+"""Least pressure over the surroundings' that counts, in REFERENCE: noise goes below, and has no power there."""
+
+
+def heat_clock(times: Array, pressure: Array, power: float) -> Array:
     """Seconds at REFERENCE that bring as much heat as a chamber has brought since the opening (time 0).
 
-    Heat goes with its pressure over the surroundings'; it is the time itself where that was not recorded.
+    Heat goes with a power of its pressure over the surroundings': from 0 (a cell that goes on warming by what soaks
+    into it) to 1. It is the time itself where the pressure was not recorded.
     """
     if not np.ptp(pressure) > 0.0:
         return np.maximum(times, 0.0)
-    over = np.where(times >= 0.0, pressure - pressure.min(), 0.0) / REFERENCE
-    return np.concatenate([[0.0], np.cumsum(0.5 * (over[1:] + over[:-1]) * np.diff(times))])
+    over = np.maximum((pressure - pressure.min()) / REFERENCE, FAINT)
+    rate = np.where(times >= 0.0, over**power, 0.0)
+    return np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(times))])
 
 
 def _distort(times: Array, channels: Channels, values: Mapping[str, float]) -> dict[str, Array]:
-    warmed = -np.expm1(-heat_clock(times, channels["p_chamber"]) / values["time"])
+    warmed = -np.expm1(-heat_clock(times, channels["p_chamber"], values["power"]) / values["time"])
     return {**channels, "thrust": channels["thrust"] + values["drift"] * warmed}
 
 
@@ -33,15 +39,16 @@ EFFECT = Effect(
     equation="sensor",
     meaning="the thrust cell's zero drifts from ignition on, as heat reaches it",
     reference="Doebelin, Measurement Systems, chapters 3 and 5: zero drift of strain-gauge cells with temperature; a "
-    "cell that warms as one body approaches its end exponentially; what warms it goes with the chamber's pressure, to "
-    "the power of 0.8 by Bartz (1957), and here in proportion",
-    formula="F_read = F + d (1 - exp(-h / tau)),  dh/dt = (p_c - p_a) / 10 bar",
+    "cell that warms as one body approaches its end exponentially; the hot gas brings heat with the chamber's pressure "
+    "to the power of 0.8 (Bartz, 1957), and what has soaked into the stand goes on without it",
+    formula="F_read = F + d (1 - exp(-h / tau)),  dh/dt = ((p_c - p_a) / 10 bar)^k",
     sites=("thrust",),
     parameters=(
         Parameter("drift", "N", "where the zero ends", typical=100.0, low=-2000.0, high=2000.0),
         Parameter(
             "time", "s", "in which the cell warms, at 10 bar in the chamber", 5.0, center=10.0, low=1.0, high=100.0
         ),
+        Parameter("power", "-", "of the pressure with which it warms", 0.35, center=0.5, low=0.0, high=1.0),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     distort=_distort,

@@ -168,13 +168,15 @@ def test_a_throat_measured_after_the_test_tells_of_erosion() -> None:
 def test_a_signature_is_what_an_effect_adds() -> None:
     test = made.observed()
     hypothesis = made.hypothesis().with_effect(effect("load_cell_drift"))
-    x = np.concatenate([made.truth(), [0.7, 0.0]])
+    x = np.concatenate([made.truth(), [0.7, 0.0, 0.0]])
     signature = signatures(hypothesis, test, x)[:, 0]
     values = hypothesis.values(x)
     thrust = test.channels[-1]
     burning = ~thrust.resting
     pressure = readings(test, predict(hypothesis, test, x, tangents=False).burnt)["p_chamber"]
-    warmed = -np.expm1(-heat_clock(test.grid, pressure) / values["load_cell_drift.time"])
+    warmed = -np.expm1(
+        -heat_clock(test.grid, pressure, values["load_cell_drift.power"]) / values["load_cell_drift.time"]
+    )
     expected = values["load_cell_drift.drift"] * thrust.averaged(warmed)[burning]
     assert signature[-thrust.time.size :][burning] == pytest.approx(expected, rel=1e-6)
     assert not signature[: -thrust.time.size].any()

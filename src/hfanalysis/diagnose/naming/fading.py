@@ -29,10 +29,7 @@ def fades(search: Search, name: str) -> bool:
 
 
 def fading_fit(parent: Fit, search: Search, name: str, observed: Observed) -> Fit | None:
-    """A fit with a surface that fades besides; None where it cannot be run.
-
-    The constants follow first: far from what suits them they would take the surface along on their way.
-    """
+    """A fit with a surface that fades besides; None where it cannot be run."""
     made = search.catalogue.add(parent.hypothesis, name)
     own, strengths = slice(parent.x.size, None), search.catalogue.effects[name].strengths
 
@@ -42,8 +39,16 @@ def fading_fit(parent: Fit, search: Search, name: str, observed: Observed) -> Fi
         return x
 
     nearest = min(map(start, SHAPES.tolist()), key=lambda x: abs(faded(observed, parent.burnt, made.at(x))))
-    followed = attempted(held(made, own, nearest), observed, nearest, SHORT)
-    return None if followed is None else attempted(made, observed, followed.x, SHORT)
+    return followed(made, own, observed, nearest)
+
+
+def followed(made: Hypothesis, own: slice, observed: Observed, start: Array) -> Fit | None:
+    """A fit in which the constants follow to an effect of a given size before its ``own`` parameters are free.
+
+    Far from what suits them they would take the effect along on their way. None where it cannot be run.
+    """
+    near = attempted(held(made, own, start), observed, start, SHORT)
+    return None if near is None else attempted(made, observed, near.x, SHORT)
 
 
 def held(hypothesis: Hypothesis, places: slice, x: Array) -> Hypothesis:

@@ -30,7 +30,7 @@ from hfanalysis.diagnose.naming.candidate import (
     candidate,
     more_probable,
 )
-from hfanalysis.diagnose.naming.fading import fades, fading_fit, held
+from hfanalysis.diagnose.naming.fading import fades, fading_fit, followed, held
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.observations.observed import Observed
@@ -164,22 +164,28 @@ def _first_children(base: Candidate, search: Search, names: list[str]) -> list[C
     """Each of the effects with what makes the base model's data most probable, at its form.
 
     From the starts that score tests promise most of. Where the base model is far from the data, or leaves much open,
-    those see little of an effect; what they do not lead to anything starts from a moderate size.
+    those see little of an effect; what they do not lead to anything starts from a moderate size. The constants follow
+    first where a fit of all at once leads to nothing.
     """
     observed, done = search.bench.at(base.form), count()
     far = base.form != FINEST or any(left > CALM for left in observed.left_open(base.fit.residual))
 
     def child(name: str) -> Candidate | None:
         search.progress(f"fitting {name}", 0.3 * next(done) / len(names))
-        made, starts = _promising(base, search, name)
-        fits = [attempted(made, observed, x, SHORT) for x in starts[:STARTS]]
-        seen = any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
-        if far and not seen:
-            start = _moderate(base, search.catalogue.effects[name].strengths, made.size)
-            fits.append(attempted(made, observed, start, SHORT))
-        if not seen and fades(search, name):
+        made, promising = _promising(base, search, name)
+        starts = promising[:STARTS]
+        fits = [attempted(made, observed, x, SHORT) for x in starts]
+        if not seen(fits) and far:
+            starts = [*starts, _moderate(base, search.catalogue.effects[name].strengths, made.size)]
+            fits.append(attempted(made, observed, starts[-1], SHORT))
+        if not seen(fits):
+            fits += [followed(made, slice(base.fit.x.size, None), observed, x) for x in starts]
+        if not seen(fits) and fades(search, name):
             fits.append(fading_fit(base.fit, search, name, observed))
         return _best((name,), fits, base.form)
+
+    def seen(fits: list[Fit | None]) -> bool:
+        return any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
 
     return [c for c in each(child, names) if c is not None]
 
