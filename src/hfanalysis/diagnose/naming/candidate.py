@@ -7,7 +7,7 @@ the size that makes the data most probable, at a price per step: an explanation 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -191,3 +191,19 @@ def attempted(hypothesis: Hypothesis, observed: Observed, start: Array, most: in
         return fit(hypothesis, observed, start, most)
     except (ValueError, ArithmeticError):
         return None
+
+
+def followed(made: Hypothesis, own: slice, observed: Observed, start: Array) -> Fit | None:
+    """A fit in which the constants follow to an effect of a given size before its ``own`` parameters are free.
+
+    Far from what suits them they would take the effect along on their way. None where it cannot be run.
+    """
+    near = attempted(held(made, own, start), observed, start, SHORT)
+    return None if near is None else attempted(made, observed, near.x, SHORT)
+
+
+def held(hypothesis: Hypothesis, places: slice, x: Array) -> Hypothesis:
+    """The same with some of its free parameters held where they are."""
+    free = list(hypothesis.free)
+    free[places] = [replace(f, least=at, most=at) for f, at in zip(free[places], x[places].tolist(), strict=True)]
+    return replace(hypothesis, free=tuple(free))

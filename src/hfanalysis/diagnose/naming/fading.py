@@ -5,15 +5,12 @@ The slopes at a small one do not lead there: no score test sees it.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.predict import faded
-from hfanalysis.diagnose.naming.candidate import SHORT, attempted
+from hfanalysis.diagnose.naming.candidate import followed
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.observations.observed import FADE, Observed
 
@@ -40,19 +37,3 @@ def fading_fit(parent: Fit, search: Search, name: str, observed: Observed) -> Fi
 
     nearest = min(map(start, SHAPES.tolist()), key=lambda x: abs(faded(observed, parent.burnt, made.at(x))))
     return followed(made, own, observed, nearest)
-
-
-def followed(made: Hypothesis, own: slice, observed: Observed, start: Array) -> Fit | None:
-    """A fit in which the constants follow to an effect of a given size before its ``own`` parameters are free.
-
-    Far from what suits them they would take the effect along on their way. None where it cannot be run.
-    """
-    near = attempted(held(made, own, start), observed, start, SHORT)
-    return None if near is None else attempted(made, observed, near.x, SHORT)
-
-
-def held(hypothesis: Hypothesis, places: slice, x: Array) -> Hypothesis:
-    """The same with some of its free parameters held where they are."""
-    free = list(hypothesis.free)
-    free[places] = [replace(f, least=at, most=at) for f, at in zip(free[places], x[places].tolist(), strict=True)]
-    return replace(hypothesis, free=tuple(free))

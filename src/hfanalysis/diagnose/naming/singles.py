@@ -28,9 +28,11 @@ from hfanalysis.diagnose.naming.candidate import (
     Candidate,
     attempted,
     candidate,
+    followed,
+    held,
     more_probable,
 )
-from hfanalysis.diagnose.naming.fading import fades, fading_fit, followed, held
+from hfanalysis.diagnose.naming.fading import fades, fading_fit
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.observations.observed import Observed
