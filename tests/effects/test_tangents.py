@@ -109,7 +109,7 @@ def test_a_distortion_passes_on_the_engines_tangents() -> None:
     """What a lagging sensor sees of a larger injector is the lagged change, to which its own lag adds nothing."""
     lag, drift = (
         effect("chamber_tap_lag").at(lag=0.05, thinning=0.0),
-        effect("load_cell_drift").at(drift=200.0, power=1.0),
+        effect("load_cell_drift").at(drift=200.0, exponent=1.0),
     )
     engine = engine_on_stand(effects=(lag, drift))
     found = run_with_tangents(engine, ["area", "load_cell_drift.time"], SECONDS, rtol=1e-6, run_on=True, times=GRID)

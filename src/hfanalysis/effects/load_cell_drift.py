@@ -30,7 +30,7 @@ def heat_clock(times: Array, pressure: Array, power: float) -> Array:
 
 
 def _distort(times: Array, channels: Channels, values: Mapping[str, float]) -> dict[str, Array]:
-    warmed = -np.expm1(-heat_clock(times, channels["p_chamber"], values["power"]) / values["time"])
+    warmed = -np.expm1(-heat_clock(times, channels["p_chamber"], values["exponent"]) / values["time"])
     return {**channels, "thrust": channels["thrust"] + values["drift"] * warmed}
 
 
@@ -48,7 +48,9 @@ EFFECT = Effect(
         Parameter(
             "time", "s", "in which the cell warms, at 10 bar in the chamber", 5.0, center=10.0, low=1.0, high=100.0
         ),
-        Parameter("power", "-", "of the pressure with which it warms", 0.35, center=0.5, low=0.0, high=1.0),
+        Parameter(
+            "exponent", "-", "power of the chamber pressure with which it warms", 0.35, center=0.5, low=0.0, high=1.0
+        ),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     distort=_distort,

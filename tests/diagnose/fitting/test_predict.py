@@ -175,7 +175,7 @@ def test_a_signature_is_what_an_effect_adds() -> None:
     burning = ~thrust.resting
     pressure = readings(test, predict(hypothesis, test, x, tangents=False).burnt)["p_chamber"]
     warmed = -np.expm1(
-        -heat_clock(test.grid, pressure, values["load_cell_drift.power"]) / values["load_cell_drift.time"]
+        -heat_clock(test.grid, pressure, values["load_cell_drift.exponent"]) / values["load_cell_drift.time"]
     )
     expected = values["load_cell_drift.drift"] * thrust.averaged(warmed)[burning]
     assert signature[-thrust.time.size :][burning] == pytest.approx(expected, rel=1e-6)

@@ -149,6 +149,19 @@ def test_what_no_score_test_sees_starts_from_a_moderate_size_where_much_is_left_
     assert all(c.log_evidence > base.log_evidence + 20.0 for c in found)
 
 
+def test_constants_follow_to_an_effect_where_a_fit_of_all_at_once_leads_to_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bench = Bench(made.observed(*HIDDEN["tank_heat"]))
+    fitted = attempted(made.hypothesis(), bench.at(FINEST), np.zeros(made.hypothesis().size))
+    assert fitted is not None
+    base = candidate((), fitted, FINEST)
+    monkeypatch.setattr(singles, "attempted", lambda *_: None)
+    (found,) = _first_children(base, Search(bench, catalogue(("tank_heat",))), ["tank_heat"])
+    assert found.log_evidence > base.log_evidence + 20.0
+    assert found.fit.hypothesis.free[-1].most > found.fit.hypothesis.free[-1].least  # it is free again in the end
+
+
 def objective_at(candidate: Candidate, bench: Bench, form: Form) -> float:
     """Minus the log of posterior density of a candidate, fitted at a model-form error until nothing moves any more."""
     found = candidate.fit

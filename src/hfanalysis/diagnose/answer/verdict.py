@@ -35,9 +35,9 @@ FEWER = 0.3
 """Probability of fewer effects from which on no more of them are claimed; more have paid a price before."""
 
 LEAST_EVIDENCE = {"named": 5.0, "unknown": 10.0}
-"""Log evidence that a claim needs besides. Of 36 simulated tests that hide nothing (calibration split, seed 1)
-`make blind-calibrate` printed 7.7, 3.3, 2.4 and 1.9 as the largest of names, and 6.5, 5.0, 3.3 and 0.6 as those of
-unknown sources; those need more, for a source that explains little is what two tables of nitrous oxide differ by."""
+"""Log evidence that a claim needs besides. Of 36 simulated tests that hide nothing (docs/blind.md names the run)
+`benchmarks.blind calibrate` printed 7.7, 3.3, 2.4 and 1.9 as the largest of names, and 6.5, 5.0, 3.3 and 0.6 as those
+of unknown sources; those need more, for a source that explains little is what two tables of nitrous oxide differ by."""
 
 NAMED_FROM = 0.5
 """Probability from which on one name is the verdict; below, several are."""
