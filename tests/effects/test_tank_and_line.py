@@ -127,13 +127,30 @@ def test_a_hot_ullage_is_spent_by_what_flows_out_not_by_time() -> None:
 
 
 def test_an_empty_rigid_line_takes_its_fill_from_the_tank_and_holds_back_the_chamber() -> None:
-    found = only("feed_line_fill", volume=3e-4, steepness=1.0, boiling=0.0)
+    found = only("feed_line_fill", volume=3e-4, steepness=1.0, boiling=0.0, throttled=0.0)
     density = LIQUID_DENSITY
     assert own_state(found, 0, 2.0) == pytest.approx(3e-4 * density, rel=0.01)
     missing = channel(plain(), "tank_mass", 1.0) - channel(found, "tank_mass", 1.0)
     assert 0.3 * 3e-4 * density < missing < 3e-4 * density
     assert channel(found, "run_pressure", 0.02) < 0.6 * channel(found, "run_pressure", 1.0)
     assert channel(found, "chamber_pressure", 0.02) < 0.7 * channel(plain(), "chamber_pressure", 0.02)
+
+
+def test_behind_a_valve_that_throttles_the_injector_goes_without_what_fills_the_line() -> None:
+    """The tank gives hardly more than into a full line: the chamber comes up later, which draws a little. Where the
+    valve is open at once it gives the fill besides."""
+    throttled, open_ = (
+        only("feed_line_fill", volume=1e-4, steepness=1.0, boiling=0.0, throttled=share) for share in (1.0, 0.0)
+    )
+    held = 1e-4 * LIQUID_DENSITY
+    for found in (throttled, open_):
+        assert own_state(found, 0, 1.0) == pytest.approx(held, rel=0.01)
+    at_once, besides = (
+        channel(plain(), "tank_mass", 1.0) - channel(found, "tank_mass", 1.0) for found in (throttled, open_)
+    )
+    assert 0.0 < at_once < 0.2 * held
+    assert besides > 0.5 * held
+    assert channel(throttled, "run_pressure", 0.04) < channel(open_, "run_pressure", 0.04) - 1e5
 
 
 @pytest.mark.parametrize("boiling", [0.0, 0.5, 1.0])
@@ -145,7 +162,7 @@ def test_a_larger_line_takes_longer_to_fill_within_a_second(boiling: float) -> N
 
 def filling_time(volume: float, boiling: float) -> float:
     """When the run line first reaches 98 % of its highest pressure [s]."""
-    found = only("feed_line_fill", volume=volume, steepness=1.0, boiling=boiling)
+    found = only("feed_line_fill", volume=volume, steepness=1.0, boiling=boiling, throttled=0.0)
     pressure = found.output("run_pressure")
     return float(found.time[np.argmax(pressure > 0.98 * pressure.max())])
 

@@ -3,6 +3,9 @@
 A rigid line is full once it is filled, and follows the tank at once. One whose content boils holds as much as its
 pressure says: it fills more slowly the fuller it is, its pressure cannot leap as the liquid ends, and while the tank's
 falls it feeds the injector from what it holds. Real lines lie between: a share of the line boils.
+
+What fills the line comes from the tank, over and above what flows on, where the valve is open at once. A valve that
+still opens lets the tank give no more than into a full line: the injector lacks what the line takes.
 """
 
 from __future__ import annotations
@@ -27,7 +30,7 @@ from hfanalysis.engine.sites import (
     term,
 )
 
-VOLUME, STEEPNESS, BOILING = range(3)
+VOLUME, STEEPNESS, BOILING, THROTTLED = range(4)
 CONTENT, EMPTY, PRESSURE = range(3)
 LIQUID_DENSITY = 880.0
 """Of what fills the line [kg/m^3]: nitrous oxide saturated at 278 K."""
@@ -43,6 +46,12 @@ LEAST_FLOW = 1e-6
 
 LEAST_VOLUME = 4e-6
 """Of any valve and fitting [m^3]: a line much smaller than that changes nothing."""
+
+MOST_LACKING = 0.99
+"""Of the pressure over line and injector: what a valve takes does not become infinite."""
+
+LEAST_PRESSURE = 1e3
+"""Over line and injector [Pa]: what a line takes of none does not become infinite."""
 
 LEAST_RESISTANCE = 0.05
 """Of the line over that of the injector, where the engine states none: filling does not become infinitely fast."""
@@ -69,6 +78,19 @@ def grown(onward: float, spare: float) -> float:
     return sqrt(max(onward * onward + spare, 0.0))
 
 
+@compiled
+def held_back(onward: float, lacking: float, part: float) -> float:
+    """Flow [kg/s] through the line that the injector does not get for what its pressure lacks, over ``part``.
+
+    Both flows go by the root of the pressure over line and injector, of which ``lacking`` times ``part`` is missing.
+
+    >>> held_back(1.0, 0.75, 1.0)
+    1.0
+    """
+    root = sqrt(1.0 - min(lacking * part, MOST_LACKING))
+    return onward * lacking / (root * (1.0 + root))
+
+
 @term
 def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     room = p[VOLUME] + LEAST_VOLUME
@@ -92,7 +114,10 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
         per_drop = env[RHO_FEED] / resistance
         # grown(onward, V spare) - onward, over the volume: a small line fills at once, none not at all
         spare = lacking * per_drop
-        filling = spare / (grown(onward, p[VOLUME] * spare) + onward + LEAST_FLOW)
+        inrush = spare / (grown(onward, p[VOLUME] * spare) + onward + LEAST_FLOW)
+        # where the valve is still opening, what the injector does not get fills the line, and no more
+        over_both = max(env[P_TANK] - env[P_CHAMBER] - (lost if stated else 0.0), LEAST_PRESSURE)
+        filling = inrush + p[THROTTLED] * (held_back(onward, lacking / over_both, rigid) - inrush)
         # what boils holds as much as its pressure says
         loss = lost if stated else line * onward * onward / env[RHO_FEED]
         into = grown(onward, (env[P_TANK] - loss - x[PRESSURE]) * per_drop)
@@ -111,7 +136,8 @@ EFFECT = Effect(
     "eq. 3.2. What boils is a lumped capacitance: in HF4 and HF5 the line's pressure does not leap as the liquid ends",
     formula="p_run = b p_L + (1 - b) p_r;  boiling: V (880 kg/m^3 / 40 bar) dp_L/dt = mdot_T - mdot_inj,  "
     "mdot_T = sqrt(rho (p_T - p_L) / K),  p_L(0) = p_a;  rigid: p_T - p_r = K mdot_inj^2 / rho + g (p_T - p_c),  "
-    "g = e^k V / (V + 4 mL),  rho V de/dt = mdot_inj - sqrt(mdot_inj^2 + g (p_T - p_c) rho / K),  e(0) = 1",
+    "g = e^k V / (V + 4 mL),  rho V de/dt = mdot_inj - (1 - s) sqrt(mdot_inj^2 + g (p_T - p_c) rho / K) "
+    "- s mdot_inj / sqrt(1 - g),  e(0) = 1",
     sites=("feed_loss", "tank_leak"),
     parameters=(
         Parameter("volume", "m^3", "of the line between valve and injector", typical=2e-4, low=0.0, high=3e-3),
@@ -128,6 +154,15 @@ EFFECT = Effect(
             "boiling",
             "-",
             "share of the line whose content boils: it holds as much as its pressure says, rising and falling",
+            0.5,
+            center=0.5,
+            low=0.0,
+            high=1.0,
+        ),
+        Parameter(
+            "throttled",
+            "-",
+            "by the valve while a rigid line fills: 0, the tank gives that besides; 1, the injector goes without it",
             0.5,
             center=0.5,
             low=0.0,

@@ -121,7 +121,7 @@ def test_a_wider_throat_is_lacking_in_chamber_and_nozzle() -> None:
 
 def test_a_filling_line_is_lacking_in_the_feed_and_as_mass() -> None:
     """Of the feed's pressure e^k V / (V + 4 mL) (p_T - p_c), e the share of the line that is empty."""
-    fill = effect("feed_line_fill").at(volume=4e-4, steepness=1.5, boiling=0.0)
+    fill = effect("feed_line_fill").at(volume=4e-4, steepness=1.5, boiling=0.0, throttled=0.0)
     run, found = run_of(fill), of(fill)
     feed = found["feed"]
     states, outputs = run.steps.at(feed.time)
