@@ -17,20 +17,24 @@ BLOCK = re.compile(
 )
 
 
-def sample(match: re.Match[str]) -> str:
-    """The block with the command's present output."""
-    arguments = match["command"].split()[1:]
-    hfa = [sys.executable, "-m", "hfanalysis", *arguments]
-    wide = {**os.environ, "COLUMNS": str(WIDTH)}
-    ended = subprocess.run(hfa, cwd=ROOT, env=wide, capture_output=True, text=True, check=True)
-    lines = "\n".join(line.rstrip() for line in ended.stdout.splitlines())
-    return f"{match[1]}\n```text\n{lines}\n```\n\n{match[3]}"
+def renewed(text: str, folder: Path) -> tuple[str, int]:
+    """The text with what its commands print about the tests in a folder, and the number of its samples."""
+
+    def sample(match: re.Match[str]) -> str:
+        arguments = match["command"].split()[1:]
+        hfa = [sys.executable, "-m", "hfanalysis", *arguments]
+        wide = {**os.environ, "COLUMNS": str(WIDTH)}
+        ended = subprocess.run(hfa, cwd=folder, env=wide, capture_output=True, text=True, check=True)
+        lines = "\n".join(line.rstrip() for line in ended.stdout.splitlines())
+        return f"{match[1]}\n```text\n{lines}\n```\n\n{match[3]}"
+
+    return BLOCK.subn(sample, text)
 
 
 def main() -> None:
     readme = ROOT / "README.md"
     before = readme.read_text(encoding="utf-8")
-    after, count = BLOCK.subn(sample, before)
+    after, count = renewed(before, ROOT)
     if not count:
         sys.exit("README.md has no sample block")
     readme.write_text(after, encoding="utf-8")

@@ -5,6 +5,7 @@ Those are what the report's reductions give on the noise-free traces of the repl
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import shutil
 from pathlib import Path
@@ -256,3 +257,15 @@ def _write(
         text = text.replace(old, new)
     text += f'\n[channels.T_tank]\ncolumn = "T"\nunit = "{temperature}"\n'
     (folder / "test.toml").write_text(text)
+
+
+def test_the_sample_of_the_readme_is_what_is_printed(products: dict[str, Any]) -> None:
+    spec = importlib.util.spec_from_file_location("readme", ROOT / "pipeline" / "readme.py")
+    assert spec is not None
+    assert spec.loader is not None
+    readme = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(readme)
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    renewed, samples = readme.renewed(text, products["HF5"]["folder"].parents[1])
+    assert samples == 1
+    assert renewed.splitlines() == text.splitlines(), "the sample is of older code: `make readme` writes it anew"
