@@ -155,10 +155,9 @@ def slow_noise(rng: np.random.Generator, slow: tuple[tuple[float, float], ...], 
 
 
 def rest(stand: Stand, true: Histories) -> Array:
-    """The channels before the valve opens."""
-    return np.array(
-        [true.traces[0, s.P_TANK], stand.ambient, stand.ambient, stand.supply or stand.ambient, 0.0, stand.mass]
-    )
+    """The channels before the valve opens: of the tank that is true, not of the stand as it was thought to be."""
+    p_tank, m_tank = true.traces[0, [s.P_TANK, s.M_TANK]]
+    return np.array([p_tank, stand.ambient, stand.ambient, stand.supply or stand.ambient, 0.0, m_tank])
 
 
 def envelope(true: Histories, ambient: float) -> Array:

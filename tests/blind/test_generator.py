@@ -173,6 +173,17 @@ def test_what_the_test_excludes_after_the_valve_has_closed_is_no_evidence() -> N
     assert not np.array_equal(observer.whitened(shifted, base), same)
 
 
+def test_a_heavier_tank_is_heavier_at_rest_too(stand: st.Stand, base: st.Histories) -> None:
+    """As for the log, so for what calibration may make of it: else its cell at rest would tell the mass to grams."""
+    observer = Observer.of(stand, base, se.draw(np.random.default_rng(9), "ar1"))
+    heavier = st.simulate(replace(stand, mass=stand.mass + 0.1))
+    means = [observer.means(run.traces[:, : len(s.CHANNELS)], run)[:, s.M_TANK] for run in (base, heavier)]
+    resting = observer.centers[observer.used] < -0.1
+    assert resting.sum() > 10
+    assert means[0][resting] == pytest.approx(stand.mass)
+    assert means[1][resting] == pytest.approx(stand.mass + 0.1)
+
+
 @pytest.mark.parametrize("family", se.FAMILIES)
 def test_whitened_noise_of_a_whole_log_is_white_and_of_unit_size(
     family: str, stand: st.Stand, base: st.Histories
