@@ -80,9 +80,10 @@ def grown(onward: float, spare: float) -> float:
 
 @compiled
 def held_back(onward: float, lacking: float, part: float) -> float:
-    """Flow [kg/s] through the line that the injector does not get for what its pressure lacks, over ``part``.
+    """Flow [kg/s] that the injector does not get, for ``part`` of ``lacking`` is missing of the pressure over line and
+    injector; divided by ``part``, so that a line of no volume has one, too.
 
-    Both flows go by the root of the pressure over line and injector, of which ``lacking`` times ``part`` is missing.
+    ``onward``: what it gets. Either goes by the root of the pressure.
 
     >>> held_back(1.0, 0.75, 1.0)
     1.0
