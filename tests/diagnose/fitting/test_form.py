@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 from tests.diagnose import made
 
 from hfanalysis.diagnose.fitting.form import COARSEST, FINEST, RATIO, STEPS, Form
+from hfanalysis.diagnose.naming.base_model import base_model
 from hfanalysis.diagnose.naming.candidate import SHORT, Bench, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.naming.singles import base_and_singles
+from hfanalysis.diagnose.naming.singles import singles_of
 from hfanalysis.diagnose.observations.recorded import TOGETHER
 from hfanalysis.effects import effect
 
@@ -65,7 +66,7 @@ def test_a_tank_that_is_badly_understood_hides_nothing_in_the_chamber() -> None:
     hidden = effect("tank_heat").at(power=6000.0), effect("nozzle_throat_erosion").at(rate=1.5e-4)
     bench = Bench(made.observed(*hidden))
     library = Catalogue({"nozzle_throat_erosion": effect("nozzle_throat_erosion")}, {})
-    base, singles = base_and_singles(made.hypothesis(), Search(bench, library))
+    base, singles = singles_of(*base_model(made.hypothesis(), bench), Search(bench, library))
     assert base.form.tank > 0
     assert singles[0].form.chamber < singles[0].form.tank
     coarse = Form(singles[0].form.tank, singles[0].form.tank)

@@ -20,7 +20,9 @@ from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, mid_flux
 from hfanalysis.diagnose.fitting.late import late
 from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.diagnose.fitting.pulse import OWN, pulse_effect
+from hfanalysis.diagnose.naming import base_model as valley
 from hfanalysis.diagnose.naming import singles
+from hfanalysis.diagnose.naming.base_model import base_model
 from hfanalysis.diagnose.naming.candidate import Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.course import course_of
@@ -31,12 +33,13 @@ from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
-from hfanalysis.diagnose.naming.singles import Array, _first_children, _promising, base_and_singles
+from hfanalysis.diagnose.naming.singles import Array, _first_children, _promising
 from hfanalysis.diagnose.naming.slack import slack_gain
 from hfanalysis.diagnose.observations.clocks import Delay
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
+from hfanalysis.engine.unsteady import Engine
 
 TRIED = ("injector_choked_vapor", "load_cell_drift", "nozzle_throat_erosion", "tank_heat")
 
@@ -432,29 +435,39 @@ def test_observations_of_the_truth_are_calm() -> None:
     assert name_effects(made.hypothesis(), test, catalogue(())).base.leftover < 1.15
 
 
-def test_the_base_model_finds_the_deepest_of_its_valleys() -> None:
-    """A rate that goes with the flux to 0.8, and no instant at which the fuel is gone: one start ends at n = 0.55."""
-    engine = engine_on_stand()
+def steep(*effects: Active) -> tuple[Engine, Hypothesis, Observed]:
+    """An engine whose rate goes with the flux to 0.8, and no instant at which the fuel is gone."""
+    engine = engine_on_stand(effects=effects)
     steep = replace(
         engine, n=0.8, a=engine.a * mid_flux(engine) ** (engine.n - 0.8), outer_radius=1.15 * engine.outer_radius
     )
     seen = made.observed(engine=steep)
     seen = replace(seen, events={"t_v": seen.events["t_v"]})
     calibrated = made.hypothesis()
-    hypothesis = replace(calibrated, engine=replace(calibrated.engine, outer_radius=steep.outer_radius))
-    true = {f.name: float(getattr(steep.feed, f.name, getattr(steep, f.name, np.nan))) for f in hypothesis.free}
+    return steep, replace(calibrated, engine=replace(calibrated.engine, outer_radius=steep.outer_radius)), seen
+
+
+def test_the_base_model_finds_the_deepest_of_its_valleys() -> None:
+    """One start ends at n = 0.55."""
+    engine, hypothesis, seen = steep()
+    true = {f.name: float(getattr(engine.feed, f.name, getattr(engine, f.name, np.nan))) for f in hypothesis.free}
     from_truth = fit(hypothesis, seen, np.array([f.place(true[f.name]) for f in hypothesis.free]))
-    found, _ = base_and_singles(hypothesis, Search(Bench(seen), Catalogue({}, {})))
+    found, valleys = base_model(hypothesis, Bench(seen))
     assert found.log_evidence > from_truth.log_evidence - 3.0
     assert found.fit.values["n"] > 0.65
+    assert any(v.fit.values["n"] < 0.6 for v in valleys)
+    for v in valleys:
+        assert v.form == found.form
+        assert found.log_evidence - valley.FAR_BEHIND < v.log_evidence <= found.log_evidence
+        assert np.abs(v.fit.x - found.fit.x).max() >= valley.SAME
 
 
 def test_a_source_that_a_coarse_form_hides_is_found_at_the_next_finer_one() -> None:
     bench = Bench(made.observed(leak(0.02)))
-    base, _ = base_and_singles(made.hypothesis(), Search(bench, Catalogue({}, {})))
+    base, _ = base_model(made.hypothesis(), bench)
     coarse = bench.refitted(base, Form(2, 2))
     assert coarse is not None
     assert max(s.log_evidence for s in linear_sources(coarse.fit, bench.at(coarse.form))) < LEAST
-    found = unknown_sources(coarse, coarse, bench)
+    found = unknown_sources(coarse, [], coarse, bench)
     assert found[0].names[0] in ("tank_heat", "nitrogen_inflow", "tank_leak", "tank_pressure")
     assert found[0].form == FINEST

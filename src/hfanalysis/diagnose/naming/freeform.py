@@ -53,9 +53,11 @@ STRIDES = (1.0, 0.5, 0.2)
 """Parts of the way to the linear estimate from which a full fit may start: a large source is not linear."""
 
 
-def unknown_sources(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
-    """Sources instead of any name, and beside the best name, where either is worth it; the best first."""
+def unknown_sources(base: Candidate, valleys: list[Candidate], named: Candidate, bench: Bench) -> list[Candidate]:
+    """Sources instead of any name, from the base model or its other ``valleys``, and beside the best name, where either
+    is worth it; the best first."""
     sides = [partial(side, base, named, bench) for side in (_instead, _at_finest, plain_sources)]
+    sides += [partial(_instead, valley, named, bench) for valley in valleys]
     if named.names:
         sides += [partial(_beside, base, named, bench), partial(plain_sources, named, named, bench)]
     instead, at_finest, *others = each(lambda side: side(), sides)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.naming.base_model import base_model
 from hfanalysis.diagnose.naming.candidate import Bench, Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import unknown_sources
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import sets_of
-from hfanalysis.diagnose.naming.singles import base_and_singles, polished
+from hfanalysis.diagnose.naming.singles import polished, singles_of
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.stages.base import Progress, silent
@@ -52,11 +53,13 @@ def name_effects(
     settings = settings or Settings()
     bench = Bench(observed if settings.coloured else observed.with_white_noise(), settings.tempering)
     search = Search(bench, catalogue, settings, progress)
-    base, singles = base_and_singles(hypothesis, search)
+    progress("fitting the base model", 0.0)
+    base, valleys = base_model(hypothesis, bench)
+    base, singles = singles_of(base, valleys, search)
     singles, sets = sets_of(base, singles, search)
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
-    unknown = unknown_sources(base, named, bench)
+    unknown = unknown_sources(base, valleys, named, bench)
     if settings.polishing:
         base = polished(base, [*sets, *unknown], bench)
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, tuple(catalogue.effects))

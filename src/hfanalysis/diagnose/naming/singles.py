@@ -1,10 +1,10 @@
-"""The base model, and every effect of the library alone.
+"""Every effect of the library alone.
 
-The base model comes down from the coarsest model-form error as long as that makes the data more probable. There every
-effect is fitted with all calibrated constants free, from the start at which a score test with the constants projected
-out sees most of it. From there all go down together: at each finer form those that have fallen far behind are left
-out, and each stays at the form at which it has most evidence. The base model is fitted again from its children's
-constants, for an unconverged base poses as evidence for a wrong effect.
+At the form of the base model every effect is fitted with all calibrated constants free, from the start at which a score
+test with the constants projected out sees most of it; the same from where the base model has other valleys, for the
+effect may be what bent it into its own. From there all go down together: at each finer form those that have fallen far
+behind are left out, and each stays at the form at which it has most evidence. The base model is fitted again from its
+children's constants, for an unconverged base poses as evidence for a wrong effect.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.form import FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.threads import each
+from hfanalysis.diagnose.naming.base_model import FAR_BEHIND
 from hfanalysis.diagnose.naming.candidate import (
     CALM,
     HOPELESS,
@@ -53,21 +54,11 @@ MODERATE = 0.6
 STARTS = 2
 """Starts of an effect's fit."""
 
-FROM_EXPONENTS = (0.0, -1.5, 1.5)
-"""Where the base model's fit starts in n, in standard deviations of its prior."""
-
 ELSEWHERE = (-1.0, 1.0)
 """How far from the base model's n effects are looked for besides, in standard deviations of its prior."""
 
-FAR_BEHIND = 300.0
-"""Log evidence behind the base model from which on it is not looked there: not even an effect leads back. In a blind
-case n followed what a loss of thrust of 3 % does; from where the base model had 160 less it was found."""
-
 CHAMBER_SIDE = ("grain", "chamber_mass", "chamber_energy", "nozzle")
 """Equations whose effects a and n may be bent to."""
-
-SAME = 0.1
-"""Standard deviations of a prior within which two fits are one."""
 
 WORSE = 0.05
 """Log of posterior density by which a child may fit worse than its parent: fits end within as much."""
@@ -76,16 +67,11 @@ POLISHING = 3
 """Children whose constants a parent is fitted again from."""
 
 
-def base_and_singles(hypothesis: Hypothesis, search: Search) -> tuple[Candidate, list[Candidate]]:
-    """The base model and every effect that is seen at all, the best first.
-
-    Raises ArithmeticError where the base model cannot be run.
-    """
+def singles_of(base: Candidate, valleys: list[Candidate], search: Search) -> tuple[Candidate, list[Candidate]]:
+    """The base model, polished, and every effect that is seen from it or its other ``valleys``, the best first."""
     bench, names = search.bench, list(search.catalogue.effects)
-    search.progress("fitting the base model", 0.0)
-    base = _descended(hypothesis, bench)
     best: dict[str, Candidate] = {}
-    _keep(best, _raced([*_first_children(base, search, names), *_from_other_exponents(base, search, names)], bench))
+    _keep(best, _raced([*_first_children(base, search, names), *_from_elsewhere(base, valleys, search, names)], bench))
     if search.settings.polishing and best:
         base = _second_turn(base, best, search)
     found = each(partial(_no_worse, parent=base, bench=bench), each(bench.converged, list(best.values())))
@@ -138,30 +124,6 @@ def polished(parent: Candidate, children: list[Candidate], bench: Bench) -> Cand
     return bench.judged(best) if best is not parent else parent
 
 
-def _descended(hypothesis: Hypothesis, bench: Bench) -> Candidate:
-    """The base model at the form that suits it, from the coarsest on, and there from other exponents of regression.
-
-    Where no instant tells when the fuel is gone a and n have more than one valley; coarse forms do not tell them apart.
-    """
-    best = bench.settled(hypothesis)
-    if best is None:
-        raise ArithmeticError("the base model cannot be fitted to this test")
-    place, found = [f.name for f in hypothesis.free].index("n"), best
-    for exponent in FROM_EXPONENTS:
-        start = found.fit.x.copy()
-        start[place] = exponent
-        other = attempted(hypothesis, bench.at(found.form), start, SHORT)
-        if other is None or other.log_evidence < found.fit.log_evidence - FAR or _same(other, found.fit):
-            continue
-        best = max(best, bench.converged(bench.judged(candidate((), other, found.form))), key=lambda c: c.log_evidence)
-    return best
-
-
-def _same(one: Fit, other: Fit) -> bool:
-    """Whether two fits are in the same valley."""
-    return bool(np.abs(one.x - other.x).max() < SAME)
-
-
 def _first_children(base: Candidate, search: Search, names: list[str]) -> list[Candidate]:
     """Each of the effects with what makes the base model's data most probable, at its form.
 
@@ -192,21 +154,22 @@ def _first_children(base: Candidate, search: Search, names: list[str]) -> list[C
     return [c for c in each(child, names) if c is not None]
 
 
-def _from_other_exponents(base: Candidate, search: Search, names: list[str]) -> list[Candidate]:
-    """Effects on the chamber's side, from the base model with n held elsewhere.
+def _from_elsewhere(base: Candidate, valleys: list[Candidate], search: Search, names: list[str]) -> list[Candidate]:
+    """Effects from where the base model is not: from its other valleys, and those on the chamber's side also from it
+    with n held elsewhere.
 
     Where the base model has bent a and n to what an effect does, that effect explains little from there, and most of it
     in another valley.
     """
     observed, place = search.bench.at(base.form), [f.name for f in base.fit.hypothesis.free].index("n")
-    parents = [
+    bent = [
         parent
         for away in ELSEWHERE
         if (parent := _with_exponent(base, place, base.fit.x[place] + away, observed)) is not None
         and parent.log_evidence > base.fit.log_evidence - FAR_BEHIND
     ]
-    effects = search.catalogue.effects
-    tried = [(name, parent) for parent in parents for name in names if _on_chamber_side(effects[name])]
+    tried = [(name, valley.fit) for valley in valleys for name in names]
+    tried += [(name, parent) for parent in bent for name in names if _on_chamber_side(search.catalogue.effects[name])]
 
     def child(one: tuple[str, Fit]) -> Candidate | None:
         name, parent = one

@@ -1,0 +1,74 @@
+"""The base model: the report's, with the constants that suit a test best, and the other valleys that it has.
+
+It comes down from the coarsest model-form error as long as that makes the data more probable. Where no instant tells
+when the fuel is gone a and n have more than one valley; coarse forms do not tell them apart, so the fit is made again
+from other exponents. The deepest is the base model. The others are kept: what a hidden effect does may have bent a and
+n into a valley from which that effect explains little, while it explains most from another.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hfanalysis.diagnose.fitting.fit import Fit
+from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
+from hfanalysis.diagnose.fitting.threads import each
+from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
+
+FROM_EXPONENTS = (0.0, -1.5, 1.5)
+"""Where the base model's fit starts in n, in standard deviations of its prior."""
+
+NEARLY = 3.0
+"""Log evidence behind the best valley, after a short fit, up to which another may yet turn out deeper."""
+
+FAR_BEHIND = 300.0
+"""Log evidence behind the base model from which on it is not looked there: not even an effect leads back. In a blind
+case n followed what a loss of thrust of 3 % does; from where the base model had 160 less it was found."""
+
+SAME = 0.1
+"""Standard deviations of a prior within which two fits are one."""
+
+
+def base_model(hypothesis: Hypothesis, bench: Bench) -> tuple[Candidate, list[Candidate]]:
+    """The base model at the form that suits it, and its other valleys at that form, the best first.
+
+    Raises ArithmeticError where it cannot be run.
+    """
+    best = bench.settled(hypothesis)
+    if best is None:
+        raise ArithmeticError("the base model cannot be fitted to this test")
+    place, first, seen = [f.name for f in hypothesis.free].index("n"), best, [best]
+    for exponent in FROM_EXPONENTS:
+        start = first.fit.x.copy()
+        start[place] = exponent
+        other = attempted(hypothesis, bench.at(first.form), start, SHORT)
+        if other is None or _same(other, first.fit):
+            continue
+        found = candidate((), other, first.form)
+        if found.log_evidence > first.log_evidence - NEARLY:
+            found = bench.converged(bench.judged(found))
+        seen.append(found)
+        best = max(best, found, key=lambda c: c.log_evidence)
+    return best, _elsewhere(best, seen, bench)
+
+
+def _elsewhere(base: Candidate, seen: list[Candidate], bench: Bench) -> list[Candidate]:
+    """Those of the fits that are in another valley than the base model, brought to their end at its form, each once."""
+    ended = each(lambda c: _ended(c, base, bench), [c for c in seen if c is not base])
+    valleys: list[Candidate] = []
+    for one in sorted((c for c in ended if c is not None), key=lambda c: -c.log_evidence):
+        far = one.log_evidence < base.log_evidence - FAR_BEHIND
+        if not far and not any(_same(one.fit, other.fit) for other in (base, *valleys)):
+            valleys.append(one)
+    return valleys
+
+
+def _ended(found: Candidate, base: Candidate, bench: Bench) -> Candidate | None:
+    """A fit at the base model's form, gone on with to its end; None where it cannot be run there."""
+    there = found if found.form == base.form else bench.refitted(found, base.form)
+    return None if there is None else bench.converged(there)
+
+
+def _same(one: Fit, other: Fit) -> bool:
+    """Whether two fits are in the same valley."""
+    return bool(np.abs(one.x - other.x).max() < SAME)
