@@ -33,7 +33,7 @@ from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
-from hfanalysis.diagnose.naming.singles import Array, _first_children, _promising
+from hfanalysis.diagnose.naming.singles import Array, _first_children, _promising, singles_of
 from hfanalysis.diagnose.naming.slack import slack_gain
 from hfanalysis.diagnose.observations.clocks import Delay
 from hfanalysis.diagnose.observations.observed import Observed
@@ -460,6 +460,18 @@ def test_the_base_model_finds_the_deepest_of_its_valleys() -> None:
         assert v.form == found.form
         assert found.log_evidence - valley.FAR_BEHIND < v.log_evidence <= found.log_evidence
         assert np.abs(v.fit.x - found.fit.x).max() >= valley.SAME
+
+
+def test_an_effect_is_found_from_a_valley_that_the_base_model_is_not_in() -> None:
+    """What the liquid's flashing does is explained by a and n there, and by little of the effect."""
+    _, hypothesis, seen = steep(effect("injector_two_phase").at(weight=0.05))
+    bench = Bench(seen)
+    deepest, valleys = base_model(hypothesis, bench)
+    search = Search(bench, catalogue(("injector_two_phase",)))
+    _, (alone,) = singles_of(valleys[0], [], search)
+    _, (found,) = singles_of(valleys[0], [deepest], search)
+    assert alone.log_evidence < deepest.log_evidence + 20.0
+    assert found.log_evidence > deepest.log_evidence + 50.0
 
 
 def test_a_source_that_a_coarse_form_hides_is_found_at_the_next_finer_one() -> None:
