@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import sys
 from pathlib import Path
@@ -28,6 +29,7 @@ def _arguments(given: list[str] | None) -> argparse.Namespace:
     parsers["calibrate"].add_argument(
         "--write", type=Path, help="instead of src/hfanalysis/diagnose/answer/probabilities.json"
     )
+    parsers["calibrate"].add_argument("--only", metavar="OFFSET", help="fit this one alone and hold the others")
     parsers["calibrate"].add_argument("--mixed", action="store_true", help="even if several versions of the code ran")
     return parser.parse_args(given)
 
@@ -38,6 +40,8 @@ def _run_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument("--jobs", type=int, default=1, help="processes")
     p.add_argument("--limit", type=int, help="only the first so many of the plan")
     p.add_argument("--kind", choices=KINDS, help="only the tests of one kind")
+    p.add_argument("--targets", type=_numbers, default=(), metavar="D,D", help="only tests with these d' asked for")
+    p.add_argument("--each", type=int, help="only the first so many of every effect and d'")
     p.add_argument("--variant", help="write to processed-NAME/; the diagnosis gets its parameter variant, or --set")
     p.add_argument("--set", action="append", default=[], metavar="diagnose.NAME=VALUE", help="parameter of a variant")
     p.add_argument("--keep", action="store_true", help="keep what another version of the code found")
@@ -46,10 +50,12 @@ def _run_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument("--every", type=int, default=10, help="cases between two lines of progress")
 
 
+def _numbers(text: str) -> tuple[float, ...]:
+    return tuple(float(part) for part in text.split(","))
+
+
 def _value(text: str) -> Any:
     """A number or a truth value where it reads as one."""
-    import json
-
     try:
         return json.loads(text)
     except ValueError:
@@ -61,8 +67,9 @@ def _run(a: argparse.Namespace, folder: Any) -> int:
 
     settings = {key: _value(text) for key, _, text in (s.partition("=") for s in a.set)}
     request = Request(
-        a.split, a.n, folder, a.jobs, a.seed, a.limit, settings, a.keep, a.retry, a.seconds, a.every, a.kind
-    )
+        a.split, a.n, folder, a.jobs, a.seed, a.limit, settings, a.keep, a.retry, a.seconds, a.every, a.kind,
+        a.targets, a.each,
+    )  # fmt: skip
     try:
         return run(request)
     except Refused as error:
@@ -95,14 +102,19 @@ def _table(a: argparse.Namespace, folder: Any) -> int:
 
 
 def _calibrate(a: argparse.Namespace, folder: Any) -> int:
-    from .calibrate import Unfit, calibrate, save
+    from .calibrate import Unfit, calibrate, calibrate_only, save
+    from .folder import PROBABILITIES
     from .results import WrongSplit, results
 
     if a.split == "scored":
         print("nothing is fitted to the scored split", file=sys.stderr)
         return 2
     try:
-        lines, data = calibrate(results(folder, a.split), a.split, a.mixed)
+        found = results(folder, a.split)
+        if a.only:
+            lines, data = calibrate_only(found, a.only, json.loads(PROBABILITIES.read_text(encoding="utf-8")))
+        else:
+            lines, data = calibrate(found, a.split, a.mixed)
         print("\n".join(lines))
         save(data, a.write) if a.write else save(data)
     except (Unfit, WrongSplit) as error:

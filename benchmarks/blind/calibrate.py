@@ -13,7 +13,7 @@ from tests.blind.judged import Case, of_kind
 from tests.blind.outcomes import LEAST
 from tests.blind.score import reliability
 
-from .fit import Constants, Fitted, Sample, fit, out_of_fold, sample
+from .fit import Constants, Fitted, Sample, constants_of, fit, out_of_fold, sample
 from .folder import PROBABILITIES, write_json
 from .results import Results
 
@@ -68,6 +68,32 @@ def calibrate(
     grows = bool(gain.mean() > gain.std(ddof=1) / sqrt(len(gain)))
     lines = [*_report(cases, samples, fits, held_out, grows, without), "", *forms(cases), "", *alarms(cases)]
     return lines, to_json(fits[grows], len(samples), split, codes)
+
+
+def calibrate_only(found: Results, which: str, present: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
+    """Fit one offset with all other constants ``present`` held: what there is to say, and what is to be written.
+
+    For cases that are no fair sample of the plan but hold many of the kind that the offset is for.
+    """
+    cases, samples, without = usable(found)
+    if len(samples) < FEWEST:
+        raise Unfit(f"only {len(samples)} cases state evidences for their right label; {FEWEST} are needed")
+    before = constants_of(present)
+    one = fit(samples, present["temperature_per_leftover"] > 0.0, before, which)
+    lines = [f"{len(samples)} cases; {without} more state no evidence for the right label and are left out",
+             f"{which}: {one.constants.scale.offsets[which]:.4g} +- {_pm(one, which)}", ""]  # fmt: skip
+    for text, constants in (("before", before), ("with it", one.constants)):
+        all_of = [constants] * len(samples)
+        said, scores = stated(cases, samples, all_of), log_scores(samples, all_of)
+        for kind, name in (("single", "names"), ("outside", "outsiders")):
+            own = of_kind(said, kind)
+            lines.append(f"{text:8s} {name}: {sum(c.stated == c.truth for c in own)} of {len(own)} right")
+        lines.append(f"{text:8s} log score {scores.mean():+.4f}")
+    data = {**present, "offsets": {**present["offsets"], which: one.constants.scale.offsets[which]}}
+    codes = sorted({note.code for i, note in found.notes.items() if i in found.cases})
+    data["standard_errors"] = {**present["standard_errors"], which: one.errors[which]}
+    data["fitted_alone"] = {which: {"cases": len(samples), "code": codes}}
+    return lines, data
 
 
 def _report(

@@ -3,8 +3,9 @@
 In a share ``misled`` of the cases the evidence misleads altogether, and the labels have the probabilities from before.
 T = T0 (1 + t1 max(0, leftover - 1)) with the chi-square per degree of freedom that the best named model leaves; one
 offset b for the names and one for ``unknown``, that of ``none`` is 0. A label of which nothing was seen has an offset
-of its kind instead, and no evidence. Fitted by penalised likelihood of the right label
-(temperature scaling: Guo, Pleiss, Sun, Weinberger: On Calibration of Modern Neural Networks, 2017).
+of its kind instead, and no evidence; ``unknown`` has another one where a name explains nearly as much. Fitted by
+penalised likelihood of the right label (temperature scaling: Guo, Pleiss, Sun, Weinberger: On Calibration of Modern
+Neural Networks, 2017).
 """
 
 from __future__ import annotations
@@ -19,14 +20,18 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.answer.posterior import BEFORE, UNSEEN, Scale
+from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, detailed_kinds
 
 Array = NDArray[np.float64]
 
-NAMES = ("ln_temperature", "named", "unknown", "unseen named", "unseen unknown", "per_leftover", "misled")
-PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 10.0, 0.1])
-"""Of NAMES (the temperature is T0, per_leftover t1): wide, so that only what the cases leave open feels it."""
-BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * 4, (0.0, 50.0))
+OFFSETS = ("named", "unknown", "unseen named", "unseen unknown", "imitated unknown")
+"""Kinds of labels that have an offset; that of none is 0."""
+NAMES = ("ln_temperature", *OFFSETS, "per_leftover", "misled")
+PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 3.0, 10.0, 0.1])
+"""Of NAMES (the temperature is T0, per_leftover t1; what is imitated counts from what is not): wide, so that only what
+the cases leave open feels it."""
+UNKNOWN, IMITATED = NAMES.index("unknown"), NAMES.index("imitated unknown")
+BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * len(OFFSETS), (0.0, 50.0))
 
 MOST_MISLED = 0.5
 """The largest share; the least is one in so many cases as there are, and two: that none was misled does not say that
@@ -54,6 +59,7 @@ class Constants:
     misled: float = 0.0
     unseen_named: float | None = None
     unseen_unknown: float | None = None
+    imitated_unknown: float | None = None
 
     def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
         """The stated probabilities.
@@ -68,8 +74,8 @@ class Constants:
     def scale(self) -> Scale:
         """The constants as the diagnosis takes them."""
         offsets = {"none": 0.0, "named": self.named, "unknown": self.unknown}
-        unseen = {"unseen named": self.unseen_named, "unseen unknown": self.unseen_unknown}
-        offsets |= {k: v for k, v in unseen.items() if v is not None}
+        special = {name: getattr(self, name.replace(" ", "_")) for name in OFFSETS[2:]}
+        offsets |= {k: v for k, v in special.items() if v is not None}
         return Scale(self.temperature, self.per_leftover, offsets, self.misled)
 
 
@@ -85,8 +91,8 @@ def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
 
 @dataclass(frozen=True)
 class _Table:
-    """Samples as arrays: ``evidence`` [case, label] (-inf where not stated), its class (none, named, unknown, and those
-    unseen), the truth."""
+    """Samples as arrays: ``evidence`` [case, label] (-inf where not stated), its kind (0 for none, else the number in
+    OFFSETS and 1), the truth."""
 
     evidence: Array
     kind: NDArray[np.int64]
@@ -99,21 +105,25 @@ def _table(samples: Sequence[Sample]) -> _Table:
     labels = sorted({k for s in samples for k in s.evidences})
     evidence = np.array([[s.evidences.get(k, -inf) for k in labels] for s in samples])
     kind = np.array([{"none": 0, "unknown": 2}.get(k, 1) for k in labels])
-    unseen = np.isfinite(evidence) & (evidence <= UNSEEN) & (kind > 0)
+    before = np.array([list(BEFORE.values())[k] / np.sum(kind == k) for k in kind])
+    number = {"none": 0} | {name: i for i, name in enumerate(OFFSETS, 1)}
+    detailed = [detailed_kinds(s.evidences) for s in samples]
+    kinds = np.array([[number[of.get(label, "none")] for label in labels] for of in detailed])
+    unseen = np.array([[of.get(label, "").startswith("unseen") for label in labels] for of in detailed])
     evidence[unseen] = 0.0
     excess = np.maximum([s.leftover - 1.0 for s in samples], 0.0)
-    before = np.array([list(BEFORE.values())[k] / np.sum(kind == k) for k in kind])
-    kinds = np.where(unseen, kind + 2, kind)
     return _Table(evidence, kinds, np.array([labels.index(s.truth) for s in samples]), excess, before / before.sum())
 
 
 def _loss(x: Array, t: _Table) -> float:
     """Negative penalised log likelihood at NAMES."""
-    temperature = exp(x[0]) * (1.0 + x[5] * t.excess)
-    logits = np.array([0.0, *x[1:5]])[t.kind] + t.evidence / temperature[:, None]
+    per_leftover, misled = x[-2:]
+    temperature = exp(x[0]) * (1.0 + per_leftover * t.excess)
+    logits = np.array([0.0, *x[1:-2]])[t.kind] + t.evidence / temperature[:, None]
     shares = np.exp(logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1))
-    right = np.log((1.0 - x[6]) * shares + x[6] * t.before[t.truth])
-    return float(-right.sum() + 0.5 * np.sum((x / PRIOR_STD) ** 2))
+    right = np.log((1.0 - misled) * shares + misled * t.before[t.truth])
+    moved = x - np.where(np.arange(x.size) == IMITATED, x[UNKNOWN], 0.0)
+    return float(-right.sum() + 0.5 * np.sum((moved / PRIOR_STD) ** 2))
 
 
 @dataclass(frozen=True)
@@ -124,22 +134,45 @@ class Fitted:
     errors: dict[str, float | None]
 
 
-def fit(samples: Sequence[Sample], with_leftover: bool) -> Fitted:
+def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None = None, only: str = "") -> Fitted:
     """The most probable constants; from several starts, for far-off evidences make the likelihood flat.
 
-    Raises ValueError where there is nothing to fit.
+    ``held``: constants of which ``only`` one of OFFSETS is fitted. Raises ValueError where there is nothing to fit.
     """
     if not samples:
         raise ValueError("no case has evidences for its right label: nothing can be fitted")
     t = _table(samples)
-    bounds = (*BOUNDS[:5], BOUNDS[5] if with_leftover else (0.0, 0.0), (1.0 / (len(samples) + 2.0), MOST_MISLED))
-    starts = [np.array([ln_t, 0.0, 0.0, -3.0, -3.0, 0.1 if with_leftover else 0.0, 0.05]) for ln_t in (0.0, 2.0, 4.0)]
-    found = [minimize(_loss, x, (t,), method="L-BFGS-B", bounds=bounds, options={"ftol": 1e-13}) for x in starts]
-    best = min(found, key=lambda r: r.fun)
-    x = np.asarray(best.x, dtype=float)
-    temperature, named, unknown, unseen_named, unseen_unknown, per_leftover, misled = x.tolist()
-    constants = Constants(exp(temperature), per_leftover, named, unknown, misled, unseen_named, unseen_unknown)
+    bounds = [*BOUNDS[:-1], BOUNDS[-1] if with_leftover else (0.0, 0.0), (1.0 / (len(samples) + 2.0), MOST_MISLED)]
+    if held is not None:
+        at = _vector(held)
+        bounds = [BOUNDS[i] if name == only else (at[i], at[i]) for i, name in enumerate(NAMES)]
+    first = {"unseen named": -3.0, "unseen unknown": -3.0, "misled": 0.05}
+    first["per_leftover"] = 0.1 if with_leftover else 0.0
+    starts = [[ln_t, *(first.get(name, 0.0) for name in NAMES[1:])] for ln_t in (0.0, 2.0, 4.0)]
+    low, high = np.array(bounds).T
+    found = [
+        minimize(_loss, np.clip(x, low, high), (t,), method="L-BFGS-B", bounds=bounds, options={"ftol": 1e-13})
+        for x in starts
+    ]
+    x = np.asarray(min(found, key=lambda r: r.fun).x, dtype=float)
+    of = dict(zip(NAMES, x.tolist(), strict=True))
+    constants = Constants(
+        exp(of.pop("ln_temperature")), **{name.replace(" ", "_"): value for name, value in of.items()}
+    )
     return Fitted(constants, _errors(x, t, bounds))
+
+
+def constants_of(data: Mapping[str, Any]) -> Constants:
+    """Constants as the data file holds them."""
+    offsets = {name.replace(" ", "_"): value for name, value in data["offsets"].items() if name != "none"}
+    return Constants(data["temperature"], data["temperature_per_leftover"], misled=data["misled"], **offsets)
+
+
+def _vector(constants: Constants) -> Array:
+    """Constants in the order of NAMES; an offset that there is not yet is that of its kind."""
+    offsets = constants.scale.offsets
+    own = [offsets.get(name, offsets[name.split()[-1]]) for name in OFFSETS]
+    return np.array([np.log(constants.temperature), *own, constants.per_leftover, constants.misled])
 
 
 def _errors(x: Array, t: _Table, bounds: Sequence[tuple[float, float]]) -> dict[str, float | None]:

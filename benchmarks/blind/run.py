@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,6 +35,8 @@ class Request:
         jobs: processes.
         limit: of the plan, only the first so many.
         kind: of these, only the tests of one kind.
+        targets: only those with one of these d' asked for, if there are any.
+        each: only the first so many of every effect and d'.
         settings: parameters of stages by ``"stage.name"``.
         keep: keep products that another version of the code made.
         retry: try again what failed.
@@ -53,6 +56,8 @@ class Request:
     seconds: float = 300.0
     every: int = 10
     kind: str | None = None
+    targets: tuple[float, ...] = ()
+    each: int | None = None
 
 
 def variant_settings(variant: str | None, given: dict[str, Any], known: Iterable[str]) -> dict[str, Any]:
@@ -135,6 +140,25 @@ def written(cases: Sequence[Case], request: Request, now: tuple[str, str]) -> li
     return [c for c in cases if answer_path(c, root).exists()]
 
 
+def asked_for(request: Request) -> list[Case]:
+    """The cases of the plan that are asked for."""
+    cases = plan(request.total, request.split, request.seed)[: request.limit]
+    if request.kind is not None:
+        cases = [case for case in cases if case.kind == request.kind]
+    if request.targets:
+        cases = [case for case in cases if case.target in request.targets]
+    if request.each is None:
+        return cases
+    there = Counter[tuple[str, tuple[str, ...], float]]()
+    out = []
+    for case in cases:
+        cell = (case.kind, case.effects, case.target)
+        there[cell] += 1
+        if there[cell] <= request.each:
+            out.append(case)
+    return out
+
+
 def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) -> int:
     """Do what is not done yet.
 
@@ -143,13 +167,12 @@ def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) ->
     """
     folder = request.folder
     request = _checked(request)
-    cases = plan(request.total, request.split, request.seed)[: request.limit]
-    if request.kind is not None:
-        cases = [case for case in cases if case.kind == request.kind]
+    cases = asked_for(request)
     now = (code_digest(), probabilities_digest())
     there = written(cases, request, now)
     went_by = {"split": request.split, "n": request.total, "seed": request.seed, "limit": request.limit}
-    went_by |= {"kind": request.kind} if request.kind else {}
+    parts = {"kind": request.kind, "targets": request.targets, "each": request.each}
+    went_by |= {name: value for name, value in parts.items() if value}
     write_json(folder.plan_file, {**went_by, "jobs": request.jobs, "settings": request.settings})
     todo = [c for c in there if not is_done(folder.note(c.id), folder.product(c.id), request, now)]
     print(f"{len(cases)} cases, {len(there) - len(todo)} done, {len(todo)} to diagnose", file=sys.stderr, flush=True)

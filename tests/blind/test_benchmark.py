@@ -22,7 +22,7 @@ from benchmarks.blind.fit import Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
 from benchmarks.blind.pool import Outcome, Pool
 from benchmarks.blind.results import results
-from benchmarks.blind.run import Refused, Request, check_plan, is_done, variant_settings
+from benchmarks.blind.run import Refused, Request, asked_for, check_plan, is_done, variant_settings
 from benchmarks.blind.work import Job, settings_of
 from tests.blind.made_up import answer, broken, nothing, product, work
 from tests.blind.plan import SPLITS, plan
@@ -222,17 +222,36 @@ def drawn(true: Constants, number: int) -> list[Sample]:
 
 
 def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
-    true = Constants(4.0, per_leftover=0.8, named=-1.0, unknown=0.7, unseen_named=-2.5, unseen_unknown=-1.5)
+    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, imitated_unknown=-1.0)
     found = fit(drawn(true, 3000), with_leftover=True)
     k, e = found.constants, found.errors
     z = [(np.log(k.temperature / 4.0), e["ln_temperature"]), (k.per_leftover - 0.8, e["per_leftover"]),
          (k.named + 1.0, e["named"]), (k.unknown - 0.7, e["unknown"]),
-         (k.unseen_named + 2.5, e["unseen named"]), (k.unseen_unknown + 1.5, e["unseen unknown"])]  # fmt: skip
+         (k.unseen_named + 2.5, e["unseen named"]), (k.unseen_unknown + 1.5, e["unseen unknown"]),
+         (k.imitated_unknown + 1.0, e["imitated unknown"])]  # fmt: skip
     for off, std in z:
         assert std is not None
         assert std < 0.25
         assert abs(off) < 3.0 * std
     assert abs(np.log(Constants().temperature / 4.0)) > 10.0 * e["ln_temperature"]  # the start was not the answer
+
+
+def test_one_constant_may_be_fitted_alone() -> None:
+    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, imitated_unknown=-2.0)
+    held = replace(true, imitated_unknown=None)
+    found = fit(drawn(true, 3000), True, held, "imitated unknown")
+    std = found.errors["imitated unknown"]
+    assert std is not None
+    assert abs(found.constants.imitated_unknown + 2.0) < 3.0 * std < 1.0
+    assert replace(found.constants, imitated_unknown=None).scale.offsets == pytest.approx(held.scale.offsets)
+
+
+def test_a_run_may_ask_for_a_part_of_the_plan() -> None:
+    whole = asked_for(Request("development", 1500, Folder(Path("nowhere"))))
+    part = asked_for(Request("development", 1500, Folder(Path("nowhere")), kind="single", targets=(8.0, 16.0), each=2))
+    assert len(part) == 18 * 2 * 2
+    assert [case for case in whole if case in part] == part
+    assert {case.target for case in part} == {8.0, 16.0}
 
 
 @pytest.mark.parametrize("number", [20, 200])

@@ -105,6 +105,21 @@ def test_what_was_not_seen_is_as_good_as_none_but_for_its_own_offset() -> None:
     assert without["fuel_sliver"] < without["tank_heat"]
 
 
+def test_unknown_that_a_name_nearly_explains_has_an_offset_of_its_own() -> None:
+    offsets = {"none": 0.0, "named": 0.0, "unknown": -1.0, "imitated unknown": -4.0}
+    alone = {"none": 0.0, "tank_heat": 10.0, "unknown": 43.0}
+    nearly, hardly = alone | {"tank_heat": 40.0}, {"none": 0.0, "tank_heat": 4.0, "unknown": 4.5}
+
+    def odds(evidences: dict[str, float], offsets: dict[str, float]) -> float:
+        found = Scale(temperature=2.0, offsets=offsets).probabilities(evidences, 1.0)
+        return float(np.log(found["unknown"] / found["tank_heat"]))
+
+    assert odds(nearly, offsets) == pytest.approx(-4.0 + 3.0 / 2.0)
+    assert odds(alone, offsets) == pytest.approx(-1.0 + 33.0 / 2.0)
+    assert odds(hardly, offsets) == pytest.approx(-1.0 + 0.5 / 2.0)  # the name itself is not seen
+    assert odds(nearly, dict(list(offsets.items())[:3])) == pytest.approx(-1.0 + 3.0 / 2.0)
+
+
 @pytest.fixture
 def stored(monkeypatch: pytest.MonkeyPatch, tmp_path):  # type: ignore[no-untyped-def]
     """A folder in place of the package's, whose probabilities.json a test may write."""

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from tests.diagnose import made
 
 from hfanalysis.diagnose.fitting.fit import fit
-from hfanalysis.diagnose.fitting.noise_level import FARTHEST, UNSURE, louder_or_quieter
+from hfanalysis.diagnose.fitting.noise_level import FARTHEST, louder_or_quieter
 from hfanalysis.diagnose.observations.noise import MOST_SHARE, SlowNoise
 from hfanalysis.diagnose.observations.observed import Observed
 
 Array = NDArray[np.float64]
 
-N, PARAMETERS = 150, 3
+N, PARAMETERS, UNSURE = 150, 3, 0.4
 TIME = np.linspace(0.0, 10.0, N)
 SLOW = np.exp(-np.abs(TIME[:, None] - TIME[None, :]))
 WHITENING = np.linalg.inv(np.linalg.cholesky(0.5 * np.eye(N) + SLOW))
@@ -27,7 +27,7 @@ SLOPES = 3.0 * WHITENING @ np.stack([np.ones(N), TIME, TIME**2], axis=1)
 
 def slow_noise() -> SlowNoise:
     shares, patterns = np.linalg.eigh(WHITENING @ SLOW @ WHITENING.T)
-    return SlowNoise(patterns, shares[None, :])
+    return SlowNoise(patterns, shares[None, :], np.array([UNSURE]))
 
 
 def read_with(factor: float, seed: int) -> Array:

@@ -115,6 +115,7 @@ def test_a_clock_that_is_late_is_a_source_in_the_sensor_with_its_delay() -> None
     assert row["delay"].value == pytest.approx(0.05, abs=0.01)
     assert (row["t_start"].value, row["phase"]) == (0.0, "vapor")  # it shows most where the thrust falls
     assert max(row["history"]["mean"]) > 10.0 * abs(row["history"]["mean"][5])
+    assert row["source"].value < 0.5 * np.mean(row["history"]["mean"])  # what it lacks at the start is not drawn
     assert re.search(r"\(thrust\) is read (4\d|5\d)(\.\d)? ± \S+ ms late", place_sentence(row))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,7 +14,7 @@ from hfanalysis.diagnose.fitting.form import FINEST
 from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.naming.several import sets_of
+from hfanalysis.diagnose.naming.several import by_what_each_explains, sets_of
 from hfanalysis.effects import effect
 
 EROSION, LAG = (effect(name) for name in ("nozzle_throat_erosion", "chamber_tap_lag"))
@@ -43,3 +44,11 @@ def test_a_single_effect_that_was_stuck_goes_on_from_where_a_pair_led() -> None:
     (same,), _ = sets_of(base, [best], search)
     assert again.fit.log_evidence == pytest.approx(same.fit.log_evidence, abs=0.5)
     assert again.log_evidence == pytest.approx(same.log_evidence, abs=0.5)
+
+
+def test_a_set_is_named_for_what_explains_most_whichever_it_was_come_upon_from() -> None:
+    one = eroding(1, ())
+    erosion, lag = replace(one, log_evidence=75.0), replace(one, names=(LAG.name,), log_evidence=12.0)
+    both = replace(one, names=(LAG.name, EROSION.name), log_evidence=79.0)
+    assert by_what_each_explains(both, [erosion, lag]).names == (EROSION.name, LAG.name)
+    assert by_what_each_explains(both, [lag]).names == (LAG.name, EROSION.name)

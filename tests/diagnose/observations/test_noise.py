@@ -68,16 +68,25 @@ def test_the_longer_the_quiet_time_the_less_is_feared() -> None:
     assert sizes[0] > 4.0 * sizes[2]
 
 
-@pytest.mark.parametrize(
-    ("of", "truth"),
-    [
-        (forgetful, np.sqrt(2.0 * 2.0 * 0.1 / 2.0)),  # of an AR(1) process a mean over T has the variance 2 tau / T
-        (wandering, np.sqrt(4.0 * np.log(2.0) / np.log(20.0 / BLOCK))),  # twice Allan's variance of 1/f noise
-    ],
-)
+FORGETFUL = (forgetful, np.sqrt(2.0 * 2.0 * 0.1 / 2.0))
+"""And its truth: of an AR(1) process a mean over T has the variance 2 tau / T."""
+
+WANDERING = (wandering, np.sqrt(4.0 * np.log(2.0) / np.log(20.0 / BLOCK)))
+"""And its truth: twice Allan's variance of 1/f noise."""
+
+
+@pytest.mark.parametrize(("of", "truth"), [FORGETFUL, WANDERING])
 def test_slow_noise_is_not_taken_for_too_small(of: Callable[[int, float], Wander], truth: float) -> None:
     found = float(np.median([over_seconds(of(seed, 12.0)) for seed in SEEDS]))
     assert truth < found < 2.0 * truth
+
+
+@pytest.mark.parametrize("quiet", [4.0, 12.0, 50.0])
+def test_the_size_of_slow_noise_is_as_unsure_as_is_said(quiet: float) -> None:
+    """Over both kinds of sensors, the log of its amplitude over seconds."""
+    off = [np.log(over_seconds(of(seed, quiet)) / truth) for of, truth in (FORGETFUL, WANDERING) for seed in range(12)]
+    said = forgetful(0, quiet).unsure
+    assert 0.5 * said < float(np.sqrt(np.mean(np.square(off)))) < 1.7 * said
 
 
 def test_white_noise_is_no_wander() -> None:

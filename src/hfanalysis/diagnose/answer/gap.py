@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.noise_level import UNSURE
 from hfanalysis.diagnose.fitting.predict import added, readings
 from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.candidate import SHORT, attempted
@@ -104,7 +103,7 @@ def _chance(channel: Channel, mask: NDArray[np.bool_], noise: float) -> float:
     """Standard deviation of the mean square of noise over ``noise``: by chance, and for its slow part is known to a
     factor only, as the evidence has it."""
     slow = 0.0 if channel.slow is None else float(np.mean(channel.slow.diagonal()[mask])) / noise
-    return float(np.hypot(np.sqrt(2.0 * channel.coherence / mask.sum()), 2.0 * UNSURE * min(slow, 1.0)))
+    return float(np.hypot(np.sqrt(2.0 * channel.coherence / mask.sum()), 2.0 * channel.unsure * min(slow, 1.0)))
 
 
 def closed(before: float, after: float) -> float | None:

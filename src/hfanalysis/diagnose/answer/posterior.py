@@ -28,7 +28,9 @@ class Scale:
     """How log evidences become probabilities: p_k ~ exp(offset of its kind + evidence / T).
 
     A label of which a score test saw nothing (UNSEEN) is as good as none, but for an offset of its own: that an effect
-    is too small to be seen is no evidence against it. In a share ``misled`` of all tests the evidence misleads
+    is too small to be seen is no evidence against it. Unknown has one of its own as well where a name explains nearly
+    as much (IMITATED): what a closure gets wrong leaves that much, and few other effects look like one of the library.
+    In a share ``misled`` of all tests the evidence misleads
     altogether; there the labels have the probabilities that they have before a test.
     """
 
@@ -40,7 +42,8 @@ class Scale:
     def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
         """Of every label of ``evidences``; they sum to one."""
         heat, labels = self.heat(leftover), list(evidences)
-        logs = np.array([self._log(kind(label), evidences[label], heat) for label in labels])
+        kinds = detailed_kinds(evidences)
+        logs = np.array([self._log(kinds[label], evidences[label], heat) for label in labels])
         weights = np.exp(logs - logs.max())
         before = np.array([BEFORE[kind(label)] for label in labels])
         before[[kind(label) == "named" for label in labels]] /= max(sum(kind(k) == "named" for k in labels), 1)
@@ -52,8 +55,10 @@ class Scale:
         return self.temperature * (1.0 + self.temperature_per_leftover * max(0.0, leftover - 1.0))
 
     def _log(self, of: str, evidence: float, heat: float) -> float:
-        unseen = self.offsets.get(f"unseen {of}")
-        return unseen if unseen is not None and evidence <= UNSEEN else self.offsets[of] + evidence / heat
+        plain = of.split()[-1]
+        if of.startswith("unseen") and of in self.offsets:
+            return self.offsets[of]
+        return self.offsets.get(of, self.offsets[plain]) + evidence / heat
 
 
 BEFORE = {"none": 0.25, "named": 0.6, "unknown": 0.15}
@@ -63,6 +68,27 @@ BEFORE = {"none": 0.25, "named": 0.6, "unknown": 0.15}
 def kind(label: str) -> str:
     """none, unknown, or named."""
     return label if label in ("none", "unknown") else "named"
+
+
+IMITATED, SEEN = 0.8, 5.0
+"""Part of the log evidence of unknown that a name reaches, and the least of its own, for it to imitate unknown."""
+
+
+def detailed_kinds(evidences: Mapping[str, float]) -> dict[str, str]:
+    """Of every label none, named or unknown, each with "unseen" or "imitated" before it where that is so.
+
+    >>> detailed_kinds({"none": 0.0, "tank_heat": 40.0, "n2_purge": -5.0, "unknown": 43.0})["unknown"]
+    'imitated unknown'
+    """
+    best = max((e for label, e in evidences.items() if kind(label) == "named"), default=-np.inf)
+    out = {}
+    for label, evidence in evidences.items():
+        out[label] = kind(label)
+        if label != "none" and evidence <= UNSEEN:
+            out[label] = f"unseen {out[label]}"
+        elif label == "unknown" and best >= max(SEEN, IMITATED * evidence):
+            out[label] = "imitated unknown"
+    return out
 
 
 @lru_cache(maxsize=1)

@@ -1,4 +1,4 @@
-"""How large the slow noise of each sensor is: a quiet time of seconds tells it to a factor of 1.5.
+"""How large the slow noise of each sensor is: a quiet time of four seconds tells it to a factor of 1.4.
 
 Noise that is correlated over half a second shows a few independent values in the quiet time before the opening, and
 some ten times as many in a firing. So its size is an unknown of every hypothesis, one factor per channel with a
@@ -18,9 +18,6 @@ from scipy.linalg import cho_solve, cholesky, solve_triangular
 from hfanalysis.diagnose.observations.noise import SlowNoise
 
 Array = NDArray[np.float64]
-
-UNSURE = 0.4
-"""Standard deviation of the log of a factor of the slow noise's amplitude: how far quiet times of 2 to 5 s mislead."""
 
 FARTHEST = 1.2
 """Log of a factor beyond which none is thought of."""
@@ -48,6 +45,7 @@ def louder_or_quieter(residual: Array, slopes: Array, x: Array, noise: SlowNoise
         slopes.T @ slopes + np.eye(x.size),
         slopes.T @ residual + x,
         noise.shares,
+        noise.unsure,
     )
     log_factor = np.zeros(noise.shares.shape[0])
     here = level.at(log_factor)
@@ -63,7 +61,7 @@ def louder_or_quieter(residual: Array, slopes: Array, x: Array, noise: SlowNoise
         if moved is None:
             break
         here = moved
-    return here.gain - 0.5 * float(np.linalg.slogdet(UNSURE**2 * here.information)[1])
+    return here.gain - 0.5 * float(np.linalg.slogdet(here.information * noise.unsure[:, None] ** 2)[1])
 
 
 @dataclass(frozen=True)
@@ -79,13 +77,14 @@ class _At:
 class _Level:
     """What the patterns of slow noise hold: of the residual (patterns,), of its slopes (patterns, parameters), with the
     ``curvature`` that all observations give the parameters, the ``gradient`` there, which is none where a fit has come
-    to its end, and the ``shares`` of channels (channels, patterns)."""
+    to its end, the ``shares`` of channels (channels, patterns), and how ``unsure`` their factors are (channels,)."""
 
     left: Array
     slopes: Array
     curvature: Array
     gradient: Array
     shares: Array
+    unsure: Array
 
     @cached_property
     def _as_it_is(self) -> tuple[float, float]:
@@ -107,13 +106,13 @@ class _Level:
         size, lower = self._as_it_is
         grown = 2.0 * float(np.log(root.diagonal()).sum()) - size
         misfit = float(extra @ self.left**2 - np.sum((root.T @ step) ** 2)) + lower
-        prior = float(np.sum((log_factor / UNSURE) ** 2))
+        prior = float(np.sum((log_factor / self.unsure) ** 2))
         gain = -0.5 * (float(np.log(variance).sum()) + grown + misfit + prior)
         # R, the inverse of the marginal covariance, in the patterns: 1 / v less what the parameters take
         taken = solve_triangular(root, (self.slopes / variance[:, None]).T, lower=True)
         inverse = np.diag(1.0 / variance) - taken.T @ taken
         pull = (self.left + self.slopes @ step) / variance
         speed = 2.0 * squares[:, None] * self.shares
-        gradient = 0.5 * speed @ (pull**2 - inverse.diagonal()) - log_factor / UNSURE**2
+        gradient = 0.5 * speed @ (pull**2 - inverse.diagonal()) - log_factor / self.unsure**2
         information = speed @ inverse**2 @ speed.T  # traces of R dV/df R dV/dg
-        return _At(gain, gradient, 0.5 * information + np.eye(log_factor.size) / UNSURE**2)
+        return _At(gain, gradient, 0.5 * information + np.diag(self.unsure**-2.0))

@@ -94,15 +94,19 @@ def course_of(found: Fit, name: str, observed: Observed) -> Course:
 
 def _course_of_delay(found: Fit, site: Site, observed: Observed) -> Course:
     """What a sensor that is read late reads too much, but for the start, where the model leaps. It is late all the
-    time, though that shows where its reading changes."""
+    time, though that shows where its reading changes; what it lacks at the start is in the mean."""
     assert site.sensor is not None
     name, effect = delay_name(site.sensor), late(site.sensor).name
-    flowing = ~observed.resting & (observed.grid > START_UP)
+    flowing = ~observed.resting
     time, mean = observed.grid[flowing], misread(observed, found.burnt, effect)[site.sensor][flowing]
-    read = sensor_site(observed, site.sensor)
-    delay = {"delay": Quantity(found.values[name], "s", found.stds[name])}
-    whole = (0.0, float(time[-1]))
-    return Course(replace(site, unit=read.unit), time, mean, FORM * np.abs(mean), START_UP, delay, whole)
+    unit, whole = sensor_site(observed, site.sensor).unit, (0.0, float(time[-1]))
+    sizes = {
+        "source": Quantity(float(mean.mean()), unit, FORM * abs(float(mean.mean()))),
+        "delay": Quantity(found.values[name], "s", found.stds[name]),
+    }
+    drawn = time > START_UP
+    std = FORM * np.abs(mean[drawn])
+    return Course(replace(site, unit=unit), time[drawn], mean[drawn], std, START_UP, sizes, whole)
 
 
 def _course_of_valve(found: Fit, end: float) -> Course:

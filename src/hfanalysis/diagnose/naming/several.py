@@ -62,7 +62,17 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[
         last = front[0]
     if found and (other := swapped(last, search)) is not last:
         found += _loosened([other], bench)
-    return known[: len(singles)], sorted(_best_each(found), key=lambda c: -c.log_evidence)
+    best_first = sorted(_best_each(found), key=lambda c: -c.log_evidence)
+    return known[: len(singles)], [by_what_each_explains(c, singles) for c in best_first]
+
+
+def by_what_each_explains(found: Candidate, singles: list[Candidate]) -> Candidate:
+    """The set with its names in the order of what each explains alone: it is named for the first of them.
+
+    A set may have been come upon from the lesser one.
+    """
+    alone = {c.names[0]: c.log_evidence for c in singles}
+    return replace(found, names=tuple(sorted(found.names, key=lambda n: -alone.get(n, -np.inf))))
 
 
 def _shown_the_way(pairs: list[Candidate], singles: list[Candidate], bench: Bench) -> list[Candidate]:

@@ -29,8 +29,9 @@ class Channel:
     ``first`` and ``count`` say which points of the common grid are averaged into each block. ``covariance`` is that of
     sensor noise, oscillation, bias and gain. ``resting`` blocks lie before the opening or after the end of the flow.
     ``coherence``: blocks whose noise is worth one independent value. ``slow``: the part of the covariance that is slow
-    noise, whose size a quiet time of seconds does not tell exactly; None where there is none. ``span``: the range that
-    the model-form error is a part of, where it is not the channel's own.
+    noise, whose size a quiet time of seconds does not tell exactly, but to the standard deviation ``unsure`` of the log
+    of its amplitude; None where there is none. ``span``: the range that the model-form error is a part of, where it is
+    not the channel's own.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Channel:
     coherence: float = 1.0
     slow: Array | None = None
     span: float | None = None
+    unsure: float = 1.0
 
     def only(self, rows: Integers) -> Channel:
         """The same with some of its blocks."""

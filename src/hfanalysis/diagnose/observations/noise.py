@@ -25,10 +25,14 @@ LEAST_VARIANCE = 1e-3
 @dataclass(frozen=True)
 class SlowNoise:
     """Orthonormal ``patterns`` (blocks, patterns) of whitened noise, and the ``shares`` (channels, patterns) of the
-    variance in each that are the slow noise of a channel."""
+    variance in each that are the slow noise of a channel.
+
+    ``unsure`` (channels,): standard deviations of the log of its amplitude.
+    """
 
     patterns: Array
     shares: Array
+    unsure: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +117,7 @@ def slow_noise(groups: Sequence[Group], errors: tuple[float, float]) -> SlowNois
         patterns[group.place, columns] = clear
         shares[group.first : group.first + len(group.channels), columns] = share
         at = columns.stop
-    return SlowNoise(patterns, shares)
+    return SlowNoise(patterns, shares, np.array([c.unsure for group in groups for c in group.channels]))
 
 
 def _whitening(covariance: Array) -> Array:
