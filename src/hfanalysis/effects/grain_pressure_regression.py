@@ -42,6 +42,7 @@ EFFECT = Effect(
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,
+    far_starts=(0.6,),
     twins=(),
     decisive="the port's radius over time (ultrasound), or firings at two chamber pressures of one oxidizer flow",
 )

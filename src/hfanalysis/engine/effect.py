@@ -66,8 +66,9 @@ class Effect:
     the first ``strengths`` parameters are strengths of their own kind (one per transducer), it is the base model when
     all of them are 0. ``fading_web``: from its values, the web [m] over which the burning surface goes as the fuel
     ends; how fast the fire goes out is compared beside the channels. ``reads``: sites that others set and its term
-    asks for; it comes after them. An effect of the engine may have a distortion besides, where a channel that no
-    equation has shows it.
+    asks for; it comes after them. ``far_starts``: strengths [SI] from which a fit starts besides, where calibrated
+    constants take the effect's place so well that a small one leads elsewhere. An effect of the engine may have a
+    distortion besides, where a channel that no equation has shows it.
     """
 
     name: str
@@ -87,6 +88,7 @@ class Effect:
     strengths: int = 1
     fading_web: FadingWeb | None = None
     reads: tuple[str, ...] = ()
+    far_starts: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if self.equation not in EQUATIONS:

@@ -129,7 +129,7 @@ def _first_children(base: Candidate, search: Search, names: list[str]) -> list[C
 
     From the starts that score tests promise most of. Where the base model is far from the data, or leaves much open,
     those see little of an effect; what they do not lead to anything starts from a moderate size. The constants follow
-    first where a fit of all at once leads to nothing.
+    first where a fit of all at once leads to nothing, and where an effect starts far from nothing.
     """
     observed, done = search.bench.at(base.form), count()
     far = base.form != FINEST or any(left > CALM for left in observed.left_open(base.fit.residual))
@@ -142,8 +142,9 @@ def _first_children(base: Candidate, search: Search, names: list[str]) -> list[C
         if not seen(fits) and far:
             starts = [*starts, _moderate(base, search.catalogue.effects[name].strengths, made.size)]
             fits.append(attempted(made, observed, starts[-1], SHORT))
-        if not seen(fits):
-            fits += [followed(made, slice(base.fit.x.size, None), observed, x) for x in starts]
+        starts = [] if seen(fits) else starts
+        starts = [*starts, *_far(base, search.catalogue.effects[name], made)]
+        fits += [followed(made, slice(base.fit.x.size, None), observed, x) for x in starts]
         if not seen(fits) and fades(search, name):
             fits.append(fading_fit(base.fit, search, name, observed))
         return _best((name,), fits, base.form)
@@ -229,6 +230,16 @@ def _moderate(base: Candidate, strengths: int, size: int) -> Array:
     start[: base.fit.x.size] = base.fit.x
     start[base.fit.x.size : base.fit.x.size + strengths] = MODERATE
     return start
+
+
+def _far(base: Candidate, effect: Effect, made: Hypothesis) -> list[Array]:
+    """The base's constants with the strengths far from nothing that an effect wants to be started from."""
+    first, out = base.fit.x.size, []
+    for strength in effect.far_starts:
+        start = np.concatenate([base.fit.x, np.zeros(made.size - base.fit.x.size)])
+        start[first] = made.free[first].place(strength)
+        out.append(start)
+    return out
 
 
 def _raced(started: list[Candidate], bench: Bench) -> list[Candidate]:
