@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -64,6 +66,19 @@ def test_a_combustion_that_swings_is_not_the_feed() -> None:
     assert swing_of(logged(hidden, line=0.0), END) is None
     assert swing_of(logged(hidden, line=-0.2), END) is None
     assert swing_of(logged(hidden, chamber=0.0), END) is None
+
+
+def test_what_the_run_line_does_for_a_moment_at_the_combustions_frequency_is_no_swing_of_the_flow() -> None:
+    """A chamber that swings all the time, and a line that does so once, by chance against it."""
+    read = logged()
+    time = read["p_run"].time
+    turning = np.sin(2.0 * np.pi * 23.0 * time)
+    chance = np.where((time > 2.0) & (time < 3.0), -0.6 * NOISE * turning, 0.0)
+    swung = {"p_chamber": 0.01 * LEVEL["p_chamber"] * turning, "p_run": chance}
+    both = {n: Signal(n, s.time, s.value + swung.get(n, 0.0), s.noise, s.step) for n, s in read.items()}
+    assert swing_of(both, END) is None
+    once = {**both, "p_chamber": replace(both["p_chamber"], value=read["p_chamber"].value - 100.0 * chance)}
+    assert swing_of(once, END) is not None  # a chamber that swings with it is another matter
 
 
 def test_what_is_slower_than_that_is_left_to_the_means() -> None:

@@ -37,6 +37,9 @@ EACH = 6.0
 """Times the background that the power in run line and chamber has to reach, each: one in 400 does by chance, both at
 once one in 160,000."""
 
+LOUD = 3.0
+"""Times the background that the chamber's power reaches half of the time where its combustion swings by itself."""
+
 TURNS = 4.0
 """That a swing takes at least; what comes and goes at once has a broad spectrum of its own."""
 
@@ -82,6 +85,7 @@ def swing_of(signals: Mapping[str, Signal], end: float) -> Swing | None:
     if time.size * STEP < WINDOWS[0]:
         return None
     rough = {name: _rough(signals[name], time) for name in ("p_run", "p_chamber", "thrust") if name in signals}
+    combustion = _combustion(rough)
     found: list[_Peak] = []
     trials = 0
     for length in WINDOWS:
@@ -89,7 +93,7 @@ def swing_of(signals: Mapping[str, Signal], end: float) -> Swing | None:
         if count <= time.size:
             frequency, spectra = _spectra(rough, count)
             trials += spectra["p_run"].power.size
-            found += _peaks(frequency, spectra, time[:: count // 4], length)
+            found += _peaks(frequency, spectra, time[:: count // 4], length, combustion)
     if not found:
         return None
     best = max(found, key=lambda peak: peak.evidence)
@@ -118,14 +122,26 @@ class _Peak:
     evidence: float
 
 
-def _peaks(frequency: Array, spectra: Mapping[str, _Spectrum], starts: Array, length: float) -> list[_Peak]:
+def _combustion(rough: Mapping[str, Array]) -> Array:
+    """Frequencies [Hz] at which the chamber swings most of the time and the run line does not: what that does there by
+    chance, for a moment, is no swing of the flow."""
+    frequency, spectra = _spectra(rough, round(WINDOWS[0] / STEP))
+    line, chamber = (np.median(spectra[name].power, axis=0) for name in ("p_run", "p_chamber"))
+    return np.asarray(frequency[(chamber > LOUD) & (line < LOUD)])
+
+
+def _peaks(
+    frequency: Array, spectra: Mapping[str, _Spectrum], starts: Array, length: float, combustion: Array
+) -> list[_Peak]:
     """The strongest of the frequencies at which run line and chamber swing against each other; none where none does.
 
     Its foothills stand out of the background as well, and may do so more clearly: the largest swing counts.
+    ``combustion`` [Hz]: frequencies that the chamber has by itself.
     """
     line, chamber = spectra["p_run"], spectra["p_chamber"]
     cross = line.values * chamber.values.conj()
-    shared = (line.power > EACH) & (chamber.power > EACH) & (cross.real < 0.0)
+    own = np.abs(frequency[:, None] - combustion).min(axis=1, initial=np.inf) < 1.0 / WINDOWS[0]
+    shared = (line.power > EACH) & (chamber.power > EACH) & (cross.real < 0.0) & ~own
     if not shared.any():
         return []
     row, column = np.unravel_index(int(np.argmax(np.where(shared, np.abs(cross), 0.0))), cross.shape)
