@@ -165,6 +165,22 @@ def test_constants_follow_to_an_effect_where_a_fit_of_all_at_once_leads_to_nothi
     assert found.fit.hypothesis.free[-1].most > found.fit.hypothesis.free[-1].least  # it is free again in the end
 
 
+def test_an_effect_whose_place_the_constants_take_starts_far_from_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where small strengths lead nowhere."""
+    grain = effect("grain_pressure_regression")
+    bench = Bench(made.observed(grain.at(exponent=0.9, bend=0.6)))
+    fitted = attempted(made.hypothesis(), bench.at(FINEST), np.zeros(made.hypothesis().size))
+    assert fitted is not None
+    base = candidate((), fitted, FINEST)
+    promising = singles._promising
+    monkeypatch.setattr(singles, "_promising", lambda *of: (promising(*of)[0], []))
+    monkeypatch.setattr(singles, "CALM", np.inf)  # nor is a moderate size tried
+    for one, seen in ((grain, True), (replace(grain, far_starts=()), False)):
+        found = _first_children(base, Search(bench, Catalogue({grain.name: one}, {})), [grain.name])
+        assert [c.names for c in found] == [(grain.name,)] * seen
+        assert all(c.log_evidence > base.log_evidence + 5.0 for c in found)
+
+
 def objective_at(candidate: Candidate, bench: Bench, form: Form) -> float:
     """Minus the log of posterior density of a candidate, fitted at a model-form error until nothing moves any more."""
     found = candidate.fit

@@ -55,8 +55,8 @@ MOST = 6000
 
 UNSURE, LEAST_UNSURE = 0.65, 0.15
 """Standard deviation of the log of the slow noise's amplitude after a second of quiet, which falls with the root of its
-length, and what no length takes away. On simulated sensors of three families of noise it was 0.40, 0.30, 0.18, 0.12
-and 0.10 after 2, 4, 12, 30 and 60 s (between 0.1 and 1 Hz)."""
+length, and what no length takes away: a spectrum is not quite of any form that is thought of. Simulated sensors hold it
+(tests/diagnose/observations/test_noise.py)."""
 
 STILL = 1e-9
 """Part of a reading by which it has to move to have a spectrum: a coarse converter may stand on one count."""
