@@ -13,7 +13,7 @@ from tests.blind.judged import Case, of_kind
 from tests.blind.outcomes import LEAST
 from tests.blind.score import reliability
 
-from .fit import Constants, Fitted, Sample, constants_of, fit, out_of_fold, sample
+from .fit import OFFSETS, Constants, Fitted, Sample, constants_of, fit, out_of_fold, sample
 from .folder import PROBABILITIES, write_json
 from .results import Results
 
@@ -75,6 +75,8 @@ def calibrate_only(found: Results, which: str, present: dict[str, Any]) -> tuple
 
     For cases that are no fair sample of the plan but hold many of the kind that the offset is for.
     """
+    if which not in OFFSETS:
+        raise Unfit(f"there is no offset {which!r}; there are {', '.join(OFFSETS)}")
     cases, samples, without = usable(found)
     if len(samples) < FEWEST:
         raise Unfit(f"only {len(samples)} cases state evidences for their right label; {FEWEST} are needed")
