@@ -29,7 +29,7 @@ def _arguments(given: list[str] | None) -> argparse.Namespace:
     parsers["calibrate"].add_argument(
         "--write", type=Path, help="instead of src/hfanalysis/diagnose/answer/probabilities.json"
     )
-    parsers["calibrate"].add_argument("--only", metavar="OFFSET", help="fit this one alone and hold the others")
+    parsers["calibrate"].add_argument("--only", metavar="CONSTANT", help="fit this one alone and hold the others")
     parsers["calibrate"].add_argument("--mixed", action="store_true", help="even if several versions of the code ran")
     return parser.parse_args(given)
 

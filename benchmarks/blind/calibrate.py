@@ -17,6 +17,9 @@ from .fit import OFFSETS, Constants, Fitted, Sample, constants_of, fit, out_of_f
 from .folder import PROBABILITIES, write_json
 from .results import Results
 
+ALONE = (*OFFSETS, "unexplained")
+"""Constants that can be fitted alone."""
+
 FEWEST = 50
 """Cases below which the constants would be arbitrary."""
 
@@ -71,19 +74,19 @@ def calibrate(
 
 
 def calibrate_only(found: Results, which: str, present: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
-    """Fit one offset with all other constants ``present`` held: what there is to say, and what is to be written.
+    """Fit one constant with all others ``present`` held: what there is to say, and what is to be written.
 
-    For cases that are no fair sample of the plan but hold many of the kind that the offset is for.
+    For cases that are no fair sample of the plan but hold many of the kind that the constant is for.
     """
-    if which not in OFFSETS:
-        raise Unfit(f"there is no offset {which!r}; there are {', '.join(OFFSETS)}")
+    if which not in ALONE:
+        raise Unfit(f"there is no constant {which!r}; there are {', '.join(ALONE)}")
     cases, samples, without = usable(found)
     if len(samples) < FEWEST:
         raise Unfit(f"only {len(samples)} cases state evidences for their right label; {FEWEST} are needed")
     before = constants_of(present)
     one = fit(samples, present["temperature_per_leftover"] > 0.0, before, which)
     lines = [f"{len(samples)} cases; {without} more state no evidence for the right label and are left out",
-             f"{which}: {one.constants.scale.offsets[which]:.4g} +- {_pm(one, which)}", ""]  # fmt: skip
+             f"{which}: {value_of(one.constants, which):.4g} +- {_pm(one, which)}", ""]  # fmt: skip
     for text, constants in (("before", before), ("with it", one.constants)):
         all_of = [constants] * len(samples)
         said, scores = stated(cases, samples, all_of), log_scores(samples, all_of)
@@ -91,7 +94,7 @@ def calibrate_only(found: Results, which: str, present: dict[str, Any]) -> tuple
             own = of_kind(said, kind)
             lines.append(f"{text:8s} {name}: {sum(c.stated == c.truth for c in own)} of {len(own)} right")
         lines.append(f"{text:8s} log score {scores.mean():+.4f}")
-    data = {**present, "offsets": {**present["offsets"], which: one.constants.scale.offsets[which]}}
+    data = {**present, "offsets": dict(one.constants.scale.offsets), "unexplained": one.constants.unexplained}
     codes = sorted({note.code for i, note in found.notes.items() if i in found.cases})
     data["standard_errors"] = {**present["standard_errors"], which: one.errors[which]}
     data["fitted_alone"] = {which: {"cases": len(samples), "code": codes}}
@@ -140,6 +143,11 @@ def alarms(cases: Sequence[Case], most: int = 4) -> list[str]:
     return lines
 
 
+def value_of(constants: Constants, which: str) -> float:
+    """One of ALONE."""
+    return constants.unexplained if which == "unexplained" else constants.scale.offsets[which]
+
+
 def _constants(one: Fitted) -> str:
     k = one.constants
     return (
@@ -148,6 +156,7 @@ def _constants(one: Fitted) -> str:
         f"named = {k.named:.4g} +- {_pm(one, 'named')}, unknown = {k.unknown:.4g} +- {_pm(one, 'unknown')}, "
         f"unseen: named = {k.unseen_named:.4g} +- {_pm(one, 'unseen named')}, "
         f"unknown = {k.unseen_unknown:.4g} +- {_pm(one, 'unseen unknown')}, "
+        f"unexplained = {k.unexplained:.3g} +- {_pm(one, 'unexplained')}, "
         f"misled = {k.misled:.3g} +- {_pm(one, 'misled')}"
     )
 
@@ -165,6 +174,7 @@ def to_json(one: Fitted, number: int, split: str, codes: Sequence[str]) -> dict[
         "temperature_per_leftover": k.per_leftover,
         "offsets": dict(k.scale.offsets),
         "misled": k.misled,
+        "unexplained": k.unexplained,
         "standard_errors": one.errors,
         "cases": number,
         "split": split,

@@ -3,9 +3,9 @@
 In a share ``misled`` of the cases the evidence misleads altogether, and the labels have the probabilities from before.
 T = T0 (1 + t1 max(0, leftover - 1)) with the chi-square per degree of freedom that the best named model leaves; one
 offset b for the names and one for ``unknown``, that of ``none`` is 0. A label of which nothing was seen has an offset
-of its kind instead, and no evidence; ``unknown`` has another one where a name explains nearly as much. Fitted by
-penalised likelihood of the right label (temperature scaling: Guo, Pleiss, Sun, Weinberger: On Calibration of Modern
-Neural Networks, 2017).
+of its kind instead, and no evidence. e of ``unknown`` is without a share ``unexplained`` of the best name's, which
+closures get wrong. Fitted by penalised likelihood of the right label (temperature scaling: Guo, Pleiss, Sun,
+Weinberger: On Calibration of Modern Neural Networks, 2017).
 """
 
 from __future__ import annotations
@@ -24,14 +24,12 @@ from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, detailed_kinds
 
 Array = NDArray[np.float64]
 
-OFFSETS = ("named", "unknown", "unseen named", "unseen unknown", "imitated unknown")
+OFFSETS = ("named", "unknown", "unseen named", "unseen unknown")
 """Kinds of labels that have an offset; that of none is 0."""
-NAMES = ("ln_temperature", *OFFSETS, "per_leftover", "misled")
-PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 3.0, 10.0, 0.1])
-"""Of NAMES (the temperature is T0, per_leftover t1; what is imitated counts from what is not): wide, so that only what
-the cases leave open feels it."""
-UNKNOWN, IMITATED = NAMES.index("unknown"), NAMES.index("imitated unknown")
-BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * len(OFFSETS), (0.0, 50.0))
+NAMES = ("ln_temperature", *OFFSETS, "unexplained", "per_leftover", "misled")
+PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 0.2, 10.0, 0.1])
+"""Of NAMES (the temperature is T0, per_leftover t1): wide, so that only what the cases leave open feels it."""
+BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * len(OFFSETS), (0.0, 0.5), (0.0, 50.0))
 
 MOST_MISLED = 0.5
 """The largest share; the least is one in so many cases as there are, and two: that none was misled does not say that
@@ -59,7 +57,7 @@ class Constants:
     misled: float = 0.0
     unseen_named: float | None = None
     unseen_unknown: float | None = None
-    imitated_unknown: float | None = None
+    unexplained: float = 0.0
 
     def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
         """The stated probabilities.
@@ -76,7 +74,7 @@ class Constants:
         offsets = {"none": 0.0, "named": self.named, "unknown": self.unknown}
         special = {name: getattr(self, name.replace(" ", "_")) for name in OFFSETS[2:]}
         offsets |= {k: v for k, v in special.items() if v is not None}
-        return Scale(self.temperature, self.per_leftover, offsets, self.misled)
+        return Scale(self.temperature, self.per_leftover, offsets, self.misled, self.unexplained)
 
 
 def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
@@ -92,9 +90,11 @@ def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
 @dataclass(frozen=True)
 class _Table:
     """Samples as arrays: ``evidence`` [case, label] (-inf where not stated), its kind (0 for none, else the number in
-    OFFSETS and 1), the truth."""
+    OFFSETS and 1), the truth; ``imitated`` [case, label]: what the best name explains where the label is unknown, 0
+    elsewhere."""
 
     evidence: Array
+    imitated: Array
     kind: NDArray[np.int64]
     truth: NDArray[np.int64]
     excess: Array
@@ -110,20 +110,22 @@ def _table(samples: Sequence[Sample]) -> _Table:
     detailed = [detailed_kinds(s.evidences) for s in samples]
     kinds = np.array([[number[of.get(label, "none")] for label in labels] for of in detailed])
     unseen = np.array([[of.get(label, "").startswith("unseen") for label in labels] for of in detailed])
+    best = np.max(np.where(kind == 1, evidence, 0.0), axis=1, initial=0.0)
+    imitated = np.where(kinds == 2, best[:, None], 0.0)
     evidence[unseen] = 0.0
     excess = np.maximum([s.leftover - 1.0 for s in samples], 0.0)
-    return _Table(evidence, kinds, np.array([labels.index(s.truth) for s in samples]), excess, before / before.sum())
+    truth = np.array([labels.index(s.truth) for s in samples])
+    return _Table(evidence, imitated, kinds, truth, excess, before / before.sum())
 
 
 def _loss(x: Array, t: _Table) -> float:
     """Negative penalised log likelihood at NAMES."""
-    per_leftover, misled = x[-2:]
+    unexplained, per_leftover, misled = x[-3:]
     temperature = exp(x[0]) * (1.0 + per_leftover * t.excess)
-    logits = np.array([0.0, *x[1:-2]])[t.kind] + t.evidence / temperature[:, None]
+    logits = np.array([0.0, *x[1:-3]])[t.kind] + (t.evidence - unexplained * t.imitated) / temperature[:, None]
     shares = np.exp(logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1))
     right = np.log((1.0 - misled) * shares + misled * t.before[t.truth])
-    moved = x - np.where(np.arange(x.size) == IMITATED, x[UNKNOWN], 0.0)
-    return float(-right.sum() + 0.5 * np.sum((moved / PRIOR_STD) ** 2))
+    return float(-right.sum() + 0.5 * np.sum((x / PRIOR_STD) ** 2))
 
 
 @dataclass(frozen=True)
@@ -137,7 +139,7 @@ class Fitted:
 def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None = None, only: str = "") -> Fitted:
     """The most probable constants; from several starts, for far-off evidences make the likelihood flat.
 
-    ``held``: constants of which ``only`` one of OFFSETS is fitted. Raises ValueError where there is nothing to fit.
+    ``held``: constants of which ``only`` one of NAMES is fitted. Raises ValueError where there is nothing to fit.
     """
     if not samples:
         raise ValueError("no case has evidences for its right label: nothing can be fitted")
@@ -146,7 +148,7 @@ def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None =
     if held is not None:
         at = _vector(held)
         bounds = [BOUNDS[i] if name == only else (at[i], at[i]) for i, name in enumerate(NAMES)]
-    first = {"unseen named": -3.0, "unseen unknown": -3.0, "misled": 0.05}
+    first = {"unseen named": -3.0, "unseen unknown": -3.0, "unexplained": 0.03, "misled": 0.05}
     first["per_leftover"] = 0.1 if with_leftover else 0.0
     starts = [[ln_t, *(first.get(name, 0.0) for name in NAMES[1:])] for ln_t in (0.0, 2.0, 4.0)]
     low, high = np.array(bounds).T
@@ -165,14 +167,16 @@ def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None =
 def constants_of(data: Mapping[str, Any]) -> Constants:
     """Constants as the data file holds them."""
     offsets = {name.replace(" ", "_"): value for name, value in data["offsets"].items() if name != "none"}
-    return Constants(data["temperature"], data["temperature_per_leftover"], misled=data["misled"], **offsets)
+    shares = {name: data[name] for name in ("misled", "unexplained")}
+    return Constants(data["temperature"], data["temperature_per_leftover"], **shares, **offsets)
 
 
 def _vector(constants: Constants) -> Array:
     """Constants in the order of NAMES; an offset that there is not yet is that of its kind."""
     offsets = constants.scale.offsets
     own = [offsets.get(name, offsets[name.split()[-1]]) for name in OFFSETS]
-    return np.array([np.log(constants.temperature), *own, constants.per_leftover, constants.misled])
+    rest = (constants.unexplained, constants.per_leftover, constants.misled)
+    return np.array([np.log(constants.temperature), *own, *rest])
 
 
 def _errors(x: Array, t: _Table, bounds: Sequence[tuple[float, float]]) -> dict[str, float | None]:

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -222,13 +222,13 @@ def drawn(true: Constants, number: int) -> list[Sample]:
 
 
 def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
-    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, imitated_unknown=-1.0)
+    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.2)
     found = fit(drawn(true, 3000), with_leftover=True)
     k, e = found.constants, found.errors
     z = [(np.log(k.temperature / 4.0), e["ln_temperature"]), (k.per_leftover - 0.8, e["per_leftover"]),
          (k.named + 1.0, e["named"]), (k.unknown - 0.7, e["unknown"]),
          (k.unseen_named + 2.5, e["unseen named"]), (k.unseen_unknown + 1.5, e["unseen unknown"]),
-         (k.imitated_unknown + 1.0, e["imitated unknown"])]  # fmt: skip
+         (k.unexplained - 0.2, e["unexplained"])]  # fmt: skip
     for off, std in z:
         assert std is not None
         assert std < 0.25
@@ -236,14 +236,15 @@ def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
     assert abs(np.log(Constants().temperature / 4.0)) > 10.0 * e["ln_temperature"]  # the start was not the answer
 
 
-def test_one_constant_may_be_fitted_alone() -> None:
-    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, imitated_unknown=-2.0)
-    held = replace(true, imitated_unknown=None)
-    found = fit(drawn(true, 3000), True, held, "imitated unknown")
-    std = found.errors["imitated unknown"]
+@pytest.mark.parametrize("which", ["unexplained", "unseen unknown"])
+def test_one_constant_may_be_fitted_alone(which: str) -> None:
+    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.2)
+    own = which.replace(" ", "_")
+    found = fit(drawn(true, 3000), True, replace(true, **{own: 0.0}), which)
+    std = found.errors[which]
     assert std is not None
-    assert abs(found.constants.imitated_unknown + 2.0) < 3.0 * std < 1.0
-    assert replace(found.constants, imitated_unknown=None).scale.offsets == pytest.approx(held.scale.offsets)
+    assert abs(getattr(found.constants, own) - getattr(true, own)) < 3.0 * std < 0.6
+    assert asdict(replace(found.constants, **{own: getattr(true, own)})) == pytest.approx(asdict(true))
 
 
 def test_a_run_may_ask_for_a_part_of_the_plan() -> None:

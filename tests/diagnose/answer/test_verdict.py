@@ -105,19 +105,17 @@ def test_what_was_not_seen_is_as_good_as_none_but_for_its_own_offset() -> None:
     assert without["fuel_sliver"] < without["tank_heat"]
 
 
-def test_unknown_that_a_name_nearly_explains_has_an_offset_of_its_own() -> None:
-    offsets = {"none": 0.0, "named": 0.0, "unknown": -1.0, "imitated unknown": -4.0}
-    alone = {"none": 0.0, "tank_heat": 10.0, "unknown": 43.0}
-    nearly, hardly = alone | {"tank_heat": 40.0}, {"none": 0.0, "tank_heat": 4.0, "unknown": 4.5}
+def test_unknown_has_to_explain_more_than_closures_get_wrong() -> None:
+    offsets = {"none": 0.0, "named": 0.0, "unknown": -1.0}
 
-    def odds(evidences: dict[str, float], offsets: dict[str, float]) -> float:
-        found = Scale(temperature=2.0, offsets=offsets).probabilities(evidences, 1.0)
+    def odds(name: float, unknown: float) -> float:
+        evidences = {"none": 0.0, "tank_heat": name, "unknown": unknown}
+        found = Scale(2.0, offsets=offsets, unexplained=0.1).probabilities(evidences, 1.0)
         return float(np.log(found["unknown"] / found["tank_heat"]))
 
-    assert odds(nearly, offsets) == pytest.approx(-4.0 + 3.0 / 2.0)
-    assert odds(alone, offsets) == pytest.approx(-1.0 + 33.0 / 2.0)
-    assert odds(hardly, offsets) == pytest.approx(-1.0 + 0.5 / 2.0)  # the name itself is not seen
-    assert odds(nearly, dict(list(offsets.items())[:3])) == pytest.approx(-1.0 + 3.0 / 2.0)
+    assert odds(40.0, 43.0) == pytest.approx(-1.0 + (3.0 - 4.0) / 2.0)
+    assert odds(0.0, 10.0) == pytest.approx(-1.0 + 10.0 / 2.0)
+    assert odds(-3.0, 10.0) == pytest.approx(-1.0 + 13.0 / 2.0)  # a name that explains nothing leaves nothing
 
 
 @pytest.fixture
@@ -203,6 +201,8 @@ def probable(*gains: tuple[str, float]) -> Naming:
         ((("tank_heat", 5.2),), "named"),
         ((("tank_heat", 4.8),), "none"),
         ((("unknown", 9.8),), "none"),
+        ((("unknown", 9.8), ("tank_heat", 5.2)), "unknown"),
+        ((("unknown", 9.8), ("tank_heat", 4.8)), "none"),
         ((("unknown", 10.2),), "unknown"),
     ],
 )

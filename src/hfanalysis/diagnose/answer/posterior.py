@@ -28,22 +28,23 @@ class Scale:
     """How log evidences become probabilities: p_k ~ exp(offset of its kind + evidence / T).
 
     A label of which a score test saw nothing (UNSEEN) is as good as none, but for an offset of its own: that an effect
-    is too small to be seen is no evidence against it. Unknown has one of its own as well where a name explains nearly
-    as much (IMITATED): what a closure gets wrong leaves that much, and few other effects look like one of the library.
-    In a share ``misled`` of all tests the evidence misleads
-    altogether; there the labels have the probabilities that they have before a test.
+    is too small to be seen is no evidence against it. What a closure gets wrong of an effect is a part of what it
+    explains: unknown has that share ``unexplained`` of the best name's evidence less than it found. In a share
+    ``misled`` of all tests the evidence misleads altogether; there the labels have the probabilities that they have
+    before a test.
     """
 
     temperature: float = 1.0
     temperature_per_leftover: float = 0.0
     offsets: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(("none", "named", "unknown"), 0.0))
     misled: float = 0.0
+    unexplained: float = 0.0
 
     def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
         """Of every label of ``evidences``; they sum to one."""
         heat, labels = self.heat(leftover), list(evidences)
-        kinds = detailed_kinds(evidences)
-        logs = np.array([self._log(kinds[label], evidences[label], heat) for label in labels])
+        kinds, counted = detailed_kinds(evidences), beyond_closures(evidences, self.unexplained)
+        logs = np.array([self._log(kinds[label], counted[label], heat) for label in labels])
         weights = np.exp(logs - logs.max())
         before = np.array([BEFORE[kind(label)] for label in labels])
         before[[kind(label) == "named" for label in labels]] /= max(sum(kind(k) == "named" for k in labels), 1)
@@ -70,25 +71,24 @@ def kind(label: str) -> str:
     return label if label in ("none", "unknown") else "named"
 
 
-IMITATED, SEEN = 0.8, 5.0
-"""Part of the log evidence of unknown that a name reaches, and the least of its own, for it to imitate unknown."""
-
-
 def detailed_kinds(evidences: Mapping[str, float]) -> dict[str, str]:
-    """Of every label none, named or unknown, each with "unseen" or "imitated" before it where that is so.
+    """Of every label none, named or unknown, the last two with "unseen" before it where that is so.
 
-    >>> detailed_kinds({"none": 0.0, "tank_heat": 40.0, "n2_purge": -5.0, "unknown": 43.0})["unknown"]
-    'imitated unknown'
+    >>> detailed_kinds({"none": 0.0, "tank_heat": 40.0, "n2_purge": -5.0})["n2_purge"]
+    'unseen named'
     """
-    best = max((e for label, e in evidences.items() if kind(label) == "named"), default=-np.inf)
-    out = {}
-    for label, evidence in evidences.items():
-        out[label] = kind(label)
-        if label != "none" and evidence <= UNSEEN:
-            out[label] = f"unseen {out[label]}"
-        elif label == "unknown" and best >= max(SEEN, IMITATED * evidence):
-            out[label] = "imitated unknown"
-    return out
+    unseen = {label for label, e in evidences.items() if label != "none" and e <= UNSEEN}
+    return {label: f"unseen {kind(label)}" if label in unseen else kind(label) for label in evidences}
+
+
+def beyond_closures(evidences: Mapping[str, float], unexplained: float) -> dict[str, float]:
+    """The evidences, that of unknown without the share of the best name's that closures leave ``unexplained``.
+
+    >>> beyond_closures({"none": 0.0, "tank_heat": 100.0, "unknown": 104.0}, 0.05)["unknown"]
+    99.0
+    """
+    best = max((e for label, e in evidences.items() if kind(label) == "named"), default=0.0)
+    return {k: e - unexplained * max(best, 0.0) if k == "unknown" else e for k, e in evidences.items()}
 
 
 @lru_cache(maxsize=1)
@@ -98,9 +98,8 @@ def scale() -> Scale:
     if not source.is_file():
         return Scale()
     found = json.loads(source.read_text(encoding="utf-8"))
-    return Scale(
-        found["temperature"], found["temperature_per_leftover"], found["offsets"], float(found.get("misled", 0.0))
-    )
+    shares = {name: float(found.get(name, 0.0)) for name in ("misled", "unexplained")}
+    return Scale(found["temperature"], found["temperature_per_leftover"], found["offsets"], **shares)
 
 
 def evidences_of(found: Naming) -> dict[str, float]:
