@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from math import sqrt
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 from tests.blind.judged import Case, of_kind
 from tests.blind.outcomes import LEAST
+from tests.blind.plan import OUTSIDE_TARGETS, SHARES, TARGETS
 from tests.blind.score import reliability
 
 from .fit import OFFSETS, Constants, Fitted, Sample, constants_of, fit, out_of_fold, sample
@@ -34,6 +36,12 @@ def log_scores(samples: Sequence[Sample], constants: Sequence[Constants]) -> np.
     return np.log(np.maximum(list(right), LEAST))
 
 
+def weights_of(samples: Sequence[Sample]) -> np.ndarray:
+    """For how many each case counts, one on the average."""
+    own = np.array([s.weight for s in samples])
+    return np.asarray(own / own.mean())
+
+
 def stated(cases: Sequence[Case], samples: Sequence[Sample], constants: Sequence[Constants]) -> list[Case]:
     """The cases with the probabilities that the constants make of their evidences."""
     return [
@@ -47,7 +55,22 @@ def usable(found: Results) -> tuple[list[Case], list[Sample], int]:
     asked = of_kind(list(found.cases.values()), "single", "none", "outside")
     both = [(c, sample(c.product, c.truth, str(c.answer["stand"] or c.answer["id"]))) for c in asked]
     kept = [(c, s) for c, s in both if s is not None]
-    return [c for c, _ in kept], [s for _, s in kept], len(both) - len(kept)
+    cases = [c for c, _ in kept]
+    samples = [replace(s, weight=w) for (_, s), w in zip(kept, weights(cases), strict=True)]
+    return cases, samples, len(both) - len(kept)
+
+
+def weights(cases: Sequence[Case]) -> list[float]:
+    """For how many each case counts, so that every kind and d' has its share of the whole plan.
+
+    Parts of the plan that were sampled more or less densely may so be taken together. All cases count for as many as
+    they are worth: (sum w)^2 / sum w^2 (Kish: Survey Sampling, 1965, section 11.7).
+    """
+    cells = [(c.kind, c.answer["target_d_prime"]) for c in cases]
+    number = Counter(cells)
+    targets = {"single": len(TARGETS), "outside": len(OUTSIDE_TARGETS)}
+    raw = np.array([SHARES[kind] / targets.get(kind, 1) / number[kind, target] for kind, target in cells])
+    return list((raw * raw.sum() / np.sum(raw**2)).tolist()) if cells else []
 
 
 def calibrate(
@@ -67,7 +90,7 @@ def calibrate(
     held_out = {key: out_of_fold(samples, key) for key in fits}
     scores = {key: log_scores(samples, constants) for key, constants in held_out.items()}
     # t1 is kept where it pays beyond its own noise on cases that it was not fitted to
-    gain = scores[True] - scores[False]
+    gain = (scores[True] - scores[False]) * weights_of(samples)
     grows = bool(gain.mean() > gain.std(ddof=1) / sqrt(len(gain)))
     lines = [*_report(cases, samples, fits, held_out, grows, without), "", *forms(cases), "", *alarms(cases)]
     return lines, to_json(fits[grows], len(samples), split, codes)
@@ -93,7 +116,7 @@ def calibrate_only(found: Results, which: str, present: dict[str, Any]) -> tuple
         for kind, name in (("single", "names"), ("outside", "outsiders")):
             own = of_kind(said, kind)
             lines.append(f"{text:8s} {name}: {sum(c.stated == c.truth for c in own)} of {len(own)} right")
-        lines.append(f"{text:8s} log score {scores.mean():+.4f}")
+        lines.append(f"{text:8s} log score {(scores * weights_of(samples)).mean():+.4f}")
     data = {**present, "offsets": dict(one.constants.scale.offsets), "unexplained": one.constants.unexplained}
     codes = sorted({note.code for i, note in found.notes.items() if i in found.cases})
     data["standard_errors"] = {**present["standard_errors"], which: one.errors[which]}
@@ -113,7 +136,8 @@ def _report(
     rows = {"evidences as they are": raw, "fitted, same cases": [fits[grows].constants] * len(samples),
             "fitted, 5-fold": held_out[grows], "5-fold, other form": held_out[not grows]}  # fmt: skip
     for name, constants in rows.items():
-        s, error = log_scores(samples, constants), reliability(stated(cases, samples, constants))[0]
+        s = log_scores(samples, constants) * weights_of(samples)
+        error = reliability(stated(cases, samples, constants))[0]
         spread = s.std(ddof=1) / sqrt(len(s))
         lines.append(f"{name:22s}  {s.mean():+.4f} +- {spread:.4f}   {error.value:.4f} "
                      f"({error.low:.3f} to {error.high:.3f})")  # fmt: skip

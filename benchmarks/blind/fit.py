@@ -38,12 +38,16 @@ none ever is (Laplace's rule of succession)."""
 
 @dataclass(frozen=True)
 class Sample:
-    """One case: log evidences by label, the misfit left, the right label; samples of one group share a fold."""
+    """One case: log evidences by label, the misfit left, the right label; samples of one group share a fold.
+
+    ``weight``: for how many cases it counts.
+    """
 
     evidences: dict[str, float]
     leftover: float
     truth: str
     group: str
+    weight: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -99,6 +103,7 @@ class _Table:
     truth: NDArray[np.int64]
     excess: Array
     before: Array
+    weight: Array
 
 
 def _table(samples: Sequence[Sample]) -> _Table:
@@ -115,7 +120,8 @@ def _table(samples: Sequence[Sample]) -> _Table:
     evidence[unseen] = 0.0
     excess = np.maximum([s.leftover - 1.0 for s in samples], 0.0)
     truth = np.array([labels.index(s.truth) for s in samples])
-    return _Table(evidence, imitated, kinds, truth, excess, before / before.sum())
+    weight = np.array([s.weight for s in samples])
+    return _Table(evidence, imitated, kinds, truth, excess, before / before.sum(), weight)
 
 
 def _loss(x: Array, t: _Table) -> float:
@@ -125,7 +131,7 @@ def _loss(x: Array, t: _Table) -> float:
     logits = np.array([0.0, *x[1:-3]])[t.kind] + (t.evidence - unexplained * t.imitated) / temperature[:, None]
     shares = np.exp(logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1))
     right = np.log((1.0 - misled) * shares + misled * t.before[t.truth])
-    return float(-right.sum() + 0.5 * np.sum((x / PRIOR_STD) ** 2))
+    return float(-(t.weight @ right) + 0.5 * np.sum((x / PRIOR_STD) ** 2))
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -16,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.blind import folder as fo
-from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, save
+from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, save, weights
 from benchmarks.blind.document import document, without_effect, write
 from benchmarks.blind.fit import Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
@@ -24,8 +25,9 @@ from benchmarks.blind.pool import Outcome, Pool
 from benchmarks.blind.results import results
 from benchmarks.blind.run import Refused, Request, asked_for, check_plan, is_done, variant_settings
 from benchmarks.blind.work import Job, settings_of
+from tests.blind.judged import Case
 from tests.blind.made_up import answer, broken, nothing, product, work
-from tests.blind.plan import SPLITS, plan
+from tests.blind.plan import SHARES, SPLITS, plan
 
 ROOT = Path(__file__).parents[2]
 NOW = ("code", "constants")
@@ -245,6 +247,31 @@ def test_one_constant_may_be_fitted_alone(which: str) -> None:
     assert std is not None
     assert abs(getattr(found.constants, own) - getattr(true, own)) < 3.0 * std < 0.6
     assert asdict(replace(found.constants, **{own: getattr(true, own)})) == pytest.approx(asdict(true))
+
+
+def test_parts_of_the_plan_count_by_their_share_of_it() -> None:
+    sampled = {("none", 0.0): 5, ("single", 1.0): 1, ("single", 8.0): 12, ("outside", 32.0): 4}
+    cases = [
+        Case(answer(None if kind == "none" else "fuel_sliver", d, kind), {})
+        for (kind, d), number in sampled.items()
+        for _ in range(number)
+    ]
+    total: Counter[tuple[str, float]] = Counter()
+    for case, weight in zip(cases, weights(cases), strict=True):
+        total[case.kind, case.answer["target_d_prime"]] += weight
+    assert total["single", 1.0] == pytest.approx(total["single", 8.0])
+    assert total["single", 1.0] / total["none", 0.0] == pytest.approx(SHARES["single"] / 6 / SHARES["none"])
+    assert total["outside", 32.0] / total["none", 0.0] == pytest.approx(SHARES["outside"] / 5 / SHARES["none"])
+    assert sum(total.values()) < len(cases)
+    assert weights(cases[:5]) == pytest.approx([1.0] * 5)
+
+
+def test_a_case_counts_as_often_as_it_weighs() -> None:
+    samples = drawn(Constants(4.0, 0.0, -1.0, 0.7), 200)
+    heavy = [replace(s, weight=3.0) if i % 2 else s for i, s in enumerate(samples)]
+    often = samples + 2 * samples[1::2]
+    found, expected = (asdict(fit(cases, with_leftover=False).constants) for cases in (heavy, often))
+    assert found == pytest.approx(expected, rel=2e-2, abs=2e-2)
 
 
 def test_a_run_may_ask_for_a_part_of_the_plan() -> None:
