@@ -12,7 +12,7 @@ import pytest
 from tests.adopt.firing import make_root
 
 from hfanalysis.cli import main
-from hfanalysis.cli.adopt import adopt
+from hfanalysis.cli.adopt import adopt, proved_as_before
 from hfanalysis.cli.perform import Request
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages.base import Context
@@ -138,3 +138,24 @@ def test_a_stand_that_is_not_stated_cannot_adopt(root: Path) -> None:
     toml.write_text(toml.read_text(encoding="utf-8").replace('stand = "paper"\n', ""), encoding="utf-8")
     with pytest.raises(InputError, match=r"test\.stand: is missing"):
         adopt(opened(root), NAMED, stand=True)
+
+
+@pytest.mark.parametrize(
+    ("stored", "asked", "expected"),
+    [
+        ("T2", (), ('diagnose.proof_test="T2"',)),
+        ("T2", ('diagnose.proof_test="T3"',), ('diagnose.proof_test="T3"',)),
+        ("", ("calibrate.samples=40",), ("calibrate.samples=40",)),
+        (None, (), ()),
+    ],
+)
+def test_what_is_adopted_is_proved_on_the_test_that_it_was(
+    stored: str | None, asked: tuple[str, ...], expected: tuple[str, ...], root: Path
+) -> None:
+    """Or --apply would diagnose once more and lose the proof."""
+    if stored is not None:
+        context = opened(root)
+        context.out.mkdir(parents=True, exist_ok=True)
+        product = {**NAMED, "provenance": {"parameters": {"proof_test": stored}}}
+        context.product("diagnosis.json").write_text(json.dumps(product), encoding="utf-8")
+    assert proved_as_before(Request("T1", root, None, False, False, True, asked)).settings == expected

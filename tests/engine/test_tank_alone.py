@@ -29,7 +29,7 @@ def test_with_next_to_no_heat_it_is_the_blowdown() -> None:
 
 @pytest.mark.parametrize(
     "name", ["tank_heat", "tank_wall_heat_capacity", "n2_purge", "tank_stratification", "injector_choked_vapor",
-             "injector_two_phase", "tank_nonequilibrium"],
+             "injector_two_phase", "tank_nonequilibrium", "feed_line_fill"],
 )  # fmt: skip
 def test_on_the_engines_own_chamber_pressure_it_takes_the_engines_course(name: str) -> None:
     engine = engine_on_stand(effects=(typical(name),))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,16 +17,30 @@ from hfanalysis.effects import FOLDER, library
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.opening import open_test
+from hfanalysis.testdata.products import read_json
 
 MARK = "Adopted by hfa diagnose"
 """How a file begins that a diagnosis wrote, and another may write over."""
 
 
 def apply(request: Request, stand: bool) -> None:
-    """Diagnose, and adopt what is named. Raises AbsentError where nothing is."""
-    context = stage("diagnose", request)
+    """Diagnose, and adopt what is named, proved on the test that it was. Raises AbsentError where nothing is."""
+    context = stage("diagnose", proved_as_before(request))
     path = adopt(context, context.read_json("diagnosis.json"), stand)
     tell(f"{path}: written; every stage of {_whose(context, stand)} now has it in its model")
+
+
+def proved_as_before(request: Request) -> Request:
+    """The request with the proof test that the diagnosis on disk was asked for, unless it asks for one itself."""
+    if any(text.startswith("diagnose.proof_test=") for text in request.settings):
+        return request
+    path = open_test(request.root, request.test, request.out).product("diagnosis.json")
+    try:
+        other = read_json(path)["provenance"]["parameters"].get("proof_test", "")
+    except (OSError, ValueError, KeyError):
+        return request
+    asked = (f"diagnose.proof_test={json.dumps(other)}",) if other else ()
+    return replace(request, settings=(*request.settings, *asked))
 
 
 def retract(request: Request, stand: bool) -> None:

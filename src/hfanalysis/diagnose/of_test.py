@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from hfanalysis.diagnose.answer import gap
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import scale
@@ -127,7 +129,7 @@ LEVEL = 1.0
 
 def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue) -> dict[str, Any]:
     observed, chosen = found.bench.observed, verdict.chosen
-    compared = observed.channels[0].time
+    compared = np.concatenate([channel.time for channel in observed.channels])
     return {
         "verdict": verdict.label,
         "effects": effects_product(verdict),
@@ -144,7 +146,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "not_it": _not_it(verdict),
         "decisive_measurements": _decisive(verdict, catalogue),
         "plausibility": {
-            name: row for name, row in _plausibility(found, chosen).items() if name in (*verdict.set90, *chosen.names)
+            name: row for name, row in _plausibility(found, chosen).items() if name in (*verdict.set90, *verdict.added)
         },
         "constants": _constants(found, verdict),
         "weak_form": weak_product(
@@ -152,8 +154,8 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         ),
         "compared": {
             "channels": list(observed.names),
-            "start": float(compared[compared > 0.0][0]),
-            "end": observed.end,
+            "start": float(compared[compared > 0.0].min()),
+            "end": float(compared.max()),
             "model_form_error": _errors(chosen),
             "chi_square": chosen.leftover,
             "chi_square_without": found.base.leftover,
@@ -231,14 +233,18 @@ LIKELY = 0.02
 
 
 def _not_it(verdict: Verdict) -> list[str]:
-    """Listed effects that were tried and are not it."""
-    return sorted(n for n, p in verdict.posterior.items() if p < LIKELY and n not in ("none", "unknown"))
+    """Listed effects that were tried and are not it, nor beside it."""
+    return sorted(
+        n
+        for n, p in verdict.posterior.items()
+        if n not in ("none", "unknown", *verdict.added) and max(p, verdict.partners.get(n, 0.0)) < LIKELY
+    )
 
 
 def _twins(verdict: Verdict, catalogue: Catalogue) -> list[list[str]]:
     """Groups of names in the answer that these channels hardly tell apart, as the effects declare."""
     groups = []
-    for name in (*verdict.set90, *verdict.chosen.names):
+    for name in (*verdict.set90, *verdict.added):
         if name in catalogue.effects and catalogue.effects[name].twins:
             group = sorted({name, *catalogue.effects[name].twins})
             if group not in groups:
@@ -247,6 +253,7 @@ def _twins(verdict: Verdict, catalogue: Catalogue) -> list[list[str]]:
 
 
 def _decisive(verdict: Verdict, catalogue: Catalogue) -> list[str]:
-    """What would decide between the names that are left."""
-    names = [n for n in dict.fromkeys((*verdict.chosen.names, *verdict.set90)) if n in catalogue.effects]
+    """What would decide between the names that are left; nothing where none is claimed."""
+    left = () if verdict.label == "none" else dict.fromkeys((*verdict.added, *verdict.set90))
+    names = [n for n in left if n in catalogue.effects]
     return list(dict.fromkeys(f"{n}: {catalogue.effects[n].decisive}" for n in names if catalogue.effects[n].decisive))

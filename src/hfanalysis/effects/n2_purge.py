@@ -19,8 +19,8 @@ CHOKED = sqrt(GAMMA) * (2.0 / (GAMMA + 1.0)) ** (0.5 * (GAMMA + 1.0) / (GAMMA - 
 SMALL_SHARE = 1e-3
 """Share of the choked flow squared below which the flow falls linearly."""
 
-LEAST_AREA = 1e-9
-"""Effective area [m^2] of a leak that moves no valve."""
+LEAST_AREA = 1e-6
+"""Effective area [m^2] of a leak that opens its valve by half: what a smaller one loses in it grows with the leak."""
 
 CP = NITROGEN_CV + SPECIFIC_NITROGEN
 

@@ -66,13 +66,14 @@ def _impose(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 
 _IMPOSED = Effect(
-    name="~imposed",  # the last in canonical order
+    name="~imposed",
     equation="chamber_mass",
     meaning="what is measured behind the tank takes the place of what is modelled there",
     reference="report, section 4.2.3",
     parameters=tuple(Parameter(name, "", "imposed", 1.0) for name in GIVEN),
     phases=(),
     term=_impose,
+    reads=("temperature_factor", "feed_loss"),  # so that it is the last of all in canonical order
 )
 
 
@@ -160,7 +161,8 @@ class TankAlone:
         ``loss`` [Pa]: a given feed loss in place of the engine's own. ``vapor``: there is no liquid, and
         ``vapor_compressibility`` and ``vapor_exponent`` are in the state.
         """
-        imposed = int(self.composition.terms[-1, PARAMETERS_AT])
+        row = [a.effect.name for a in self.composition.active].index(_IMPOSED.name)
+        imposed = int(self.composition.terms[row, PARAMETERS_AT])
         self.equations.c[imposed + KIND] = CHAMBER_GIVEN if loss is None else LOSS_GIVEN
         columns = (time, chamber, chamber if loss is None else loss)
         t, p, given = (np.ascontiguousarray(column, dtype=np.float64) for column in columns)

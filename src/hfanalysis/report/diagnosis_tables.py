@@ -57,7 +57,8 @@ def probabilities(product: Product) -> Markup | None:
         )
         for name in kept
     ]
-    rest = len(ordered) - len(kept)
+    beside = {name for name, p in (product.get("partners") or {}).items() if p >= SHOWN}
+    rest = sum(name not in kept and name not in beside for name in ordered)
     others = f" {rest} other names are below {SHOWN:g} each." if rest else ""
     caption = f"Probability of each name.{others} {_trust(product)}"
     columns = ("name", ">probability", "", "in the 90 % set", "how plausible its size is")
@@ -73,6 +74,25 @@ def partners(product: Product) -> Markup | None:
     rows = [(name, _probability(found[name]), _bar(found[name]), "yes" if name in added else "") for name in kept]
     caption = f"Effects beside {added[0]}, by all sets of effects that were tried."
     return html.table("Beside it", caption, ("name", ">probability", "", "added to the model"), rows)
+
+
+def parameters(product: Product) -> Markup | None:
+    """The effects' own constants, as they were added to the model; None where there is no model, or nothing was."""
+    if not product.get("constants"):
+        return None
+    rows = [
+        (
+            Markup("<span>{}</span>").format(effect["name"]),
+            name.replace("_", " "),
+            html.value(found),
+            html.interval(found),
+        )
+        for effect in product["effects"]
+        for name, found in effect["parameters"].items()
+    ]
+    caption = "Constants of what was added to the model, ± one standard deviation, and between which bounds they are."
+    columns = ("effect", "constant", ">value", ">95 %")
+    return html.table("Constants of the effects", caption, columns, rows) if rows else None
 
 
 def _probability(value: float) -> str:

@@ -10,10 +10,11 @@ from markupsafe import Markup, escape
 
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
 from hfanalysis.report.scales import scale
-from hfanalysis.report.wording import Shown, fixed, in_words, shown, tidy
+from hfanalysis.report.wording import Shown, decimals_for, fixed, in_words, shown, tidy
 
 _UNITS_IN_TEXT = {"bar": ("Pa", 1e5), "Pa": ("Pa", 1.0), "N": ("N", 1.0), "N s": ("N s", 1.0)}
-_IN_TEXT = re.compile(r"(?<![\w.])([+\-−]?\d+(?:\.\d+)?) (bar|Pa|N s|N)(?![\w/^²·])")
+_NUMBER = r"[+\-−]?\d+(?:\.\d+)?"
+_IN_TEXT = re.compile(rf"(?<![\w.])({_NUMBER})((?: ± )\d+(?:\.\d+)?)? (bar|Pa|N s|N)(?![\w/^²·])")
 
 
 def both(si: str, team: str, style: str = "", value: float | None = None, unit: str = "") -> Markup:
@@ -42,17 +43,25 @@ def switchable(text: str) -> Markup:
     """A sentence of a product, its pressures and forces ready for the other system of units."""
     parts, last = [], 0
     for found in _IN_TEXT.finditer(text):
-        parts += [escape(text[last : found.start()]), _converted(found[1], found[2])]
+        parts += [
+            escape(text[last : found.start()]),
+            _converted(found[1], (found[2] or "").removeprefix(" ± "), found[3]),
+        ]
         last = found.end()
     return Markup("").join([*parts, escape(text[last:])])
 
 
-def _converted(number: str, unit: str) -> Markup:
+def _converted(number: str, std: str, unit: str) -> Markup:
+    """A number, and what it is uncertain by if that is there, in the other unit as well."""
     si, factor = _UNITS_IN_TEXT[unit]
-    value = float(number.replace("−", "-")) * factor
     team = scale(si, "team")
-    digits = max(3, len(re.sub(r"\D", "", number)))
-    return both(f"{number} {unit}", f"{tidy(team(value), digits)} {team.unit}")
+    value = team(float(number.replace("−", "-")) * factor)
+    if not std:
+        digits = sum(c.isdigit() for c in number)
+        return both(f"{number} {unit}", f"{tidy(value, max(3, digits))} {team.unit}")
+    spread = team.factor * float(std) * factor
+    decimals = decimals_for(value, spread)
+    return both(f"{number} ± {std} {unit}", f"{fixed(value, decimals)} ± {fixed(spread, decimals)} {team.unit}")
 
 
 def value(quantity: Mapping[str, Any], name: str = "", std_last: bool = False) -> Markup:

@@ -26,7 +26,8 @@ from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.course import Course, course_of
 from hfanalysis.diagnose.naming.naming import Naming
-from hfanalysis.quantity import Quantity
+from hfanalysis.engine.effect import Parameter
+from hfanalysis.quantity import NORMAL_95, Quantity
 
 CLAIM = 0.15
 """Probability of none from which on nothing is claimed: a wrong alarm costs more than an effect left unnamed."""
@@ -57,6 +58,11 @@ class Verdict:
     set90: list[str]
     chosen: Candidate
     partners: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def added(self) -> tuple[str, ...]:
+        """The effects in the answer; an unknown source has the name of its site and is none."""
+        return self.chosen.names[: -1 if self.chosen.unknown else None]
 
     @property
     def top(self) -> str:
@@ -127,7 +133,7 @@ def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
     for name in verdict.chosen.names:
         active = next(a for a in found.burnt.steps.engine.effects if a.effect.name == name)
         parameters = {
-            p.name: Quantity(values[full], "" if p.unit == "-" else p.unit, stds[full])
+            p.name: _within(p, values[full], stds[full])
             for p in active.effect.parameters
             if (full := f"{name}.{p.name}") in values
         }
@@ -144,6 +150,13 @@ def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
     return out
 
 
+def _within(parameter: Parameter, value: float, std: float) -> Quantity:
+    """A parameter of an effect, its interval inside its bounds."""
+    low, high = value - NORMAL_95 * std, value + NORMAL_95 * std
+    unit = "" if parameter.unit == "-" else parameter.unit
+    return Quantity(value, unit, std, (max(low, min(parameter.low, value)), min(high, max(parameter.high, value))))
+
+
 def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     """Where, when and how much: the source of every named effect, or the unknown one."""
     if verdict.label == "none":
@@ -153,7 +166,7 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     out = []
     if chosen.unknown:
         out.append(of_unknown(course_of(chosen.fit, chosen.names[-1], observed), gain, observed.phases))
-    for name in chosen.names[: -1 if chosen.unknown else None]:
+    for name in verdict.added:
         source = acting(chosen.fit, name, observed)
         out.append(of_acting(name, source, gain / (len(out) + 1), observed.phases))
     beside = next((c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]), None)
@@ -235,7 +248,12 @@ def _phase(source: Acting, phases: Mapping[str, float]) -> str:
 def upper_limits(verdict: Verdict, found: Naming, catalogue: Catalogue) -> dict[str, Quantity]:
     """The size below which each effect that is not in the model stays with 95 % probability."""
     return {
-        name: Quantity(value, unit, ci95=(0.0, abs(value)) if value >= 0 else (value, 0.0))
-        for name, (value, unit) in limits(verdict.chosen, found.bench, catalogue).items()
-        if np.isfinite(value)
+        name: Quantity.absent(UNLIMITED)
+        if value is None
+        else Quantity(value, unit, ci95=(0.0, abs(value)) if value >= 0 else (value, 0.0))
+        for name, (value, unit) in limits(verdict.chosen, verdict.added, found.bench, catalogue).items()
     }
+
+
+UNLIMITED = "these channels would not show it at any size that it can have"
+"""Why an effect has no upper limit."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hfanalysis.diagnose.observations.observed import FADE
@@ -21,6 +21,12 @@ EQUATIONS = {
 }
 """Where a model may lack something, in words."""
 
+_BY_UNIT = {
+    ("tank_volume", "kg/s"): "the flow into the tank",
+    ("tank_volume", "Pa"): "the tank's pressure at its temperature",
+}
+"""The same where the unit of what is lacking says more."""
+
 LIKELY = 0.1
 """Probability from which on an effect that may be beside the first is mentioned."""
 
@@ -32,6 +38,9 @@ MUCH = 1.3
 
 LITTLE = 0.2
 """Part of the gap below which its closing is not what speaks for an effect."""
+
+BEYOND_PLACEBO = 0.1
+"""Part of the gap that has to close beyond the placebo's to speak for an effect."""
 
 SLOW_FADE = 2.0
 """How many times longer than the chamber needs to empty the fire has to take to go out to be worth a sentence."""
@@ -78,14 +87,23 @@ def headline(product: Mapping[str, Any]) -> str:
             f"Nothing is claimed to be missing: {likeliest} ({posterior[likeliest]:.2f}) is more probable than none "
             f"({posterior['none']:.2f}), but too little in the data speaks for it."
         )
+    doubt = f"; {listed(others)} cannot be excluded" if others else ""
     if product["verdict"] == "unknown":
-        return f"Something is missing that is not in the library (unknown {posterior['unknown']:.2f})."
+        return f"Something is missing that is not in the library (unknown {posterior['unknown']:.2f}){doubt}."
     named = [row["name"] for row in product["effects"]]
-    names = " and ".join(f"{row['name']} ({row['probability']:.2f})" for row in product["effects"])
+    names = listed([f"{row['name']} ({row['probability']:.2f})" for row in product["effects"]])
     beside = [f"{n} ({p:.2f})" for n, p in product["partners"].items() if n not in named and p >= LIKELY]
-    doubt = f"; {', '.join(others)} cannot be excluded" if others else ""
     either = f"; in place of what is beside it: {', '.join(beside)}" if beside else ""
     return f"The model lacks {names}{doubt}{either}."
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as a sentence lists them.
+
+    >>> listed(["heat", "a wall", "a lag"])
+    'heat, a wall and a lag'
+    """
+    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else "".join(names)
 
 
 def left_over(product: Mapping[str, Any]) -> list[str]:
@@ -104,7 +122,8 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     """Where, from when to when and how much."""
     unit, factor = _UNITS.get(row["source"].unit, (row["source"].unit, 1.0))
     value, std = factor * (row["source"].value or 0.0), factor * (row["source"].std or 0.0)
-    where = EQUATIONS[row["equation"]] + (f" ({row['channel']})" if row.get("channel") else "")
+    where = _BY_UNIT.get((row["equation"], row["source"].unit), EQUATIONS[row["equation"]])
+    where += f" ({row['channel']})" if row.get("channel") else ""
     left = " Beside what is named, this is still open." if row.get("beside") else ""
     if "opens_in" in row:
         opens = row["opens_in"]
@@ -172,8 +191,12 @@ def proof_sentences(product: Mapping[str, Any]) -> list[str]:
     }
     found = product["gap"]["closed_fraction"]
     parts = [f"{100.0 * found[arm]:.0f} % {text}" for arm, text in arms.items() if found.get(arm) is not None]
-    same = found.get("same")
+    same, placebo = found.get("same"), found.get("placebo")
+    if placebo is not None and placebo < 0.0:
+        parts[-1] = f"the best wrong effect widens it by {-100.0 * placebo:.0f} %"
     said = [", ".join(parts) + "."] if parts else []
+    if same is not None and placebo is not None and same >= LITTLE and same - placebo < BEYOND_PLACEBO:
+        said.append("A wrong effect closes about as much: the gap that closes proves nothing here.")
     if product.get("effects") and (same is None or same < LITTLE):
         where = "No channel is off by more than its noise" if same is None else "The gap that is left is another one"
         what = "smaller than the noise of single means, or in instants and the filling of the line"

@@ -27,6 +27,7 @@ def render(material: Material) -> Iterator[Block]:
     yield from _story(product)
     yield tables.probabilities(product)
     yield tables.partners(product)
+    yield tables.parameters(product)
     yield from charts.sources(material, product)
     yield from _gap(material, product)
     yield from tables.constants(product)
@@ -63,7 +64,8 @@ def _story(product: Mapping[str, Any]) -> Iterator[Markup]:
         yield html.paragraph("What would decide:")
         yield html.bullets(map(html.switchable, untold), "said")
     for group in product["twins"]:
-        yield html.paragraph(f"These channels hardly tell apart: {', '.join(map(str, group))}.")
+        if not set(group) & set(product["not_it"]):
+            yield html.paragraph(f"These channels hardly tell apart: {', '.join(map(str, group))}.")
 
 
 def _told(product: Mapping[str, Any], text: str) -> bool:
