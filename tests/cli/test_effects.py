@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import sys
 from collections.abc import Callable
@@ -96,6 +97,23 @@ def test_people_see_what_a_test_can_tell_apart(run: Run, stand: Path) -> None:
     assert "HF5: what p_tank, p_purge, p_run, p_chamber, thrust, m_tank can show" in out
     assert "twins: tank_nonequilibrium and tank_stratification" in out
     assert "The library asks for: a thermocouple in the tank's liquid" in out
+
+
+def _rows(text: str) -> dict[str, tuple[float, str]]:
+    """d' and the closest rival of every effect in the table that people see."""
+    found = (re.match(r"(\w+) .*? {2,}([\d.]+)  +\S.*?  (\w+)? ?[\d.]*", line) for line in text.splitlines())
+    return {row[1]: (float(row[2]), row[3] or "") for row in found if row and row[1] in library()}
+
+
+def test_the_guide_shows_what_it_prints(run: Run, stand: Path) -> None:
+    guide = (Path(__file__).parents[2] / "docs" / "effects.md").read_text(encoding="utf-8")
+    told = _rows(guide.partition("HF5: what p_tank")[2].partition("```")[0])
+    _, out, _ = run("effects", "HF5", "--root", stand)
+    printed = _rows(out)
+    assert list(told) == list(printed) == list(library())
+    for name, (seen, rival) in printed.items():
+        assert told[name][0] == pytest.approx(seen, rel=0.02, abs=0.1), name
+        assert told[name][1] == rival, name
 
 
 def test_json_has_what_a_test_can_tell_apart_beside_the_library(run: Run, stand: Path) -> None:

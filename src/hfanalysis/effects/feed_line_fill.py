@@ -179,5 +179,5 @@ EFFECT = Effect(
         OwnState("line_pressure", "Pa", 1e3, lambda engine, values: engine.ambient),
     ),
     twins=(),
-    decisive="the run line's pressure at 1 kHz, and the line's length and bore",
+    decisive="the line's length and bore; and the run line's pressure at 1 kHz, where it is read more slowly",
 )
