@@ -24,6 +24,8 @@ NITROGEN = (0.0, 0.2, 0.5)
 PRESSURES = (0.5e5, 80e5, 12, 56)
 RATIOS = (0.35, 250.0, 170, 680)
 """From, to, nodes, points after refining; both in logarithms."""
+RICHER = (36, 144)
+"""Nodes and points below the least O/F, as far apart: late in a blowdown fuel goes on with hardly any oxidizer."""
 
 FUEL_MOLAR_MASS = 282.5475
 FUEL_ENTHALPY = -554e6 / FUEL_MOLAR_MASS
@@ -31,7 +33,9 @@ FUEL_ENTHALPY = -554e6 / FUEL_MOLAR_MASS
 
 def _grids(refined: bool) -> tuple[Array, Array]:
     k = 3 if refined else 2
-    return tuple(np.linspace(np.log(g[0]), np.log(g[1]), int(g[k])) for g in (PRESSURES, RATIOS))  # type: ignore[return-value]
+    pressures, ratios = (np.linspace(np.log(g[0]), np.log(g[1]), int(g[k])) for g in (PRESSURES, RATIOS))
+    richer = ratios[0] - (ratios[1] - ratios[0]) * np.arange(RICHER[k - 2], 0, -1)
+    return pressures, np.concatenate([richer, ratios])
 
 
 def _nodes() -> Array:
@@ -69,10 +73,11 @@ def _make() -> Array:
 @lru_cache(maxsize=1)
 def table() -> Array:
     """(ln RT, gamma) x enthalpy x nitrogen share x ln p x ln O/F."""
-    return kept("combustion-1", _make)
+    return kept("combustion-2", _make)
 
 
-P0, P1, R0, R1 = (float(np.log(v)) for v in (*PRESSURES[:2], *RATIOS[:2]))
+P0, P1 = (float(np.log(v)) for v in PRESSURES[:2])
+R0, R1 = (float(v) for v in _grids(True)[1][[0, -1]])
 
 
 @njit(cache=True)
