@@ -282,11 +282,14 @@ class _Work:
         out = {}
         for name, start, end in (("p_loss_liquid", self.t_feed, self.t_v), ("p_loss_vapor", self.t_v, self.t_end)):
             value = h.mean(h.tank - h.run, start, end) if np.isfinite(end) else np.nan
-            out[name] = (
-                Quantity(value, "Pa", error, verdict="identified")
-                if np.isfinite(value)
-                else Quantity.absent(self.end_reason or "no samples in this phase", verdict=NOT_IDENTIFIABLE)
-            )
+            lacking, gap = h.gap(start, end) if np.isfinite(value) else ("", 0.0)
+            if not np.isfinite(value):
+                out[name] = Quantity.absent(self.end_reason or "no samples in this phase", verdict=NOT_IDENTIFIABLE)
+            elif gap > LONGEST_GAP * (end - start):
+                why = f"{lacking} has no good samples for {gap:.2f} s of the {end - start:.2f} s of this phase"
+                out[name] = Quantity.absent(why, verdict=NOT_IDENTIFIABLE)
+            else:
+                out[name] = Quantity(value, "Pa", error, verdict="identified")
         return out
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -97,16 +97,43 @@ def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
     """All events of a log. Raises AbsentError where nothing opens: a log with no firing in it."""
     signals = live_signals(log)
     _check_stated(definition, signals)
-    opening = _opening(signals, definition)
+    opening, unsure = _beside_hole(_opening(signals, definition), signals)
     origin = opening.time
     shifted = {name: s.between(origin - 60.0, origin + LONGEST_RUN).shifted(origin) for name, s in signals.items()}
     dead = [f"{n} never changes or has no good samples: left out" for n in log.channels if n not in signals]
     search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std)
     result = search.run()
-    result = replace(result, warnings=(*dead, *result.warnings))
+    result = replace(result, warnings=(*dead, *unsure, *result.warnings))
     t_open = Quantity(opening.time, "s", max(opening.std, 1e-9), why=f"from {', '.join(opening.channels)}")
     engineer = tuple(name for name in ("t_open", *EVENTS) if name in definition.segments)
     return replace(result, t_open=t_open, engineer=engineer)
+
+
+SHOWN_BY = {"t_feed": "p_run", "t_v": "p_tank", "t_purge": "p_purge", "t_fuel_out": "p_chamber", "t_end": "p_chamber"}
+"""The channel that an event is looked for in first."""
+
+BESIDE = 0.1
+"""[s] before or after a hole of that channel in which an event found may be the hole's edge."""
+
+
+def _beside_hole(opening: Opening, signals: Mapping[str, Signal]) -> tuple[Opening, list[str]]:
+    """The opening, no surer than the hole of a channel that it was found in or beside; and what there is to say."""
+    for name in opening.channels:
+        found = signals[name].holes(opening.time - BESIDE, opening.time + BESIDE) if name in signals else ()
+        for start, end in found:
+            time, std = _within(opening.time, opening.std, start, end)
+            return replace(opening, time=time, std=std), [_unsure("t_open", name, start, end)]
+    return opening, []
+
+
+def _within(time: float, std: float, start: float, end: float) -> tuple[float, float]:
+    """An instant that lies anywhere in a hole [s], and its standard deviation."""
+    inside = start < time < end
+    return (time if inside else 0.5 * (start + end)), max(std, float((end - start) / np.sqrt(12.0)))
+
+
+def _unsure(event: str, channel: str, start: float, end: float) -> str:
+    return f"{event} lies in a hole of {channel}, which has no good samples from {start:.2f} to {end:.2f} s"
 
 
 def _check_stated(definition: TestDefinition, signals: Mapping[str, Signal]) -> None:
@@ -185,7 +212,9 @@ class _Search:
     def _take(self, name: str, found: tuple[float, float] | str) -> None:
         stated = self.definition.segments.get(name)
         if stated is None:
-            self.events[name] = Quantity.absent(found) if isinstance(found, str) else self._seconds(*found)
+            self.events[name] = (
+                Quantity.absent(self._why_not(name, found)) if isinstance(found, str) else self._seconds(name, *found)
+            )
             return
         self.events[name] = Quantity(stated.value, "s", stated.std or 1e-3, why=BY_HAND)
         if isinstance(found, str):
@@ -194,8 +223,24 @@ class _Search:
         self.found[name] = found[0]
         self.notes.append(f"{name} is {BY_HAND} at {stated.value:.3f} s; the search finds {found[0]:.3f} s")
 
-    def _seconds(self, time: float, std: float) -> Quantity:
+    def _seconds(self, name: str, time: float, std: float) -> Quantity:
+        """An event's instant, no surer than the hole of its channel that it was found in or beside."""
+        for start, end in self._holes(name, time - BESIDE, time + BESIDE):
+            time, std = _within(time, std, start, end)
+            self.warnings.append(_unsure(name, SHOWN_BY[name], start, end))
         return Quantity(time, "s", float(np.hypot(std, self.opening_std)))
+
+    def _why_not(self, name: str, reason: str) -> str:
+        """Why an event was not found; a hole of its channel may hide it."""
+        found = self._holes(name, 0.0, self.last)
+        if not len(found):
+            return reason
+        start, end = max(found, key=lambda hole: hole[1] - hole[0])
+        return f"{reason}; {SHOWN_BY[name]} has no good samples from {start:.2f} to {end:.2f} s, where it may be"
+
+    def _holes(self, name: str, start: float, end: float) -> Sequence[Sequence[float]]:
+        channel = self.signals.get(SHOWN_BY[name])
+        return [] if channel is None else channel.holes(start, end).tolist()
 
     def _liquid_end(self) -> tuple[float, float] | str:
         if "p_tank" not in self.signals:

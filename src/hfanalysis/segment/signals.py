@@ -7,10 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.testdata.holes import holes
 from hfanalysis.testdata.log import Channel, TestLog
 
 Array = NDArray[np.float64]
 MAD_TO_STD = 1.4826
+BRIDGE = 0.1
+"""[s] on either side of a hole over which a signal's mean is taken."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,26 @@ class Signal:
         """The samples with start <= time < end."""
         a, b = np.searchsorted(self.time, (start, end))
         return replace(self, time=self.time[a:b], value=self.value[a:b])
+
+    def holes(self, start: float = -np.inf, end: float = np.inf) -> Array:
+        """From when to when [s] (holes, 2) it has no samples, of holes that reach into a stretch."""
+        found = holes(self.time)
+        return found[(found[:, 1] > start) & (found[:, 0] < end)]
+
+    def bridged(self) -> Signal:
+        """The same, with the means on either side of every hole as its values at the hole's edges.
+
+        An interpolation across a hole then does not hang on two single samples.
+        """
+        found = holes(self.time)
+        if not found.size:
+            return self
+        before = [self.mean(a - BRIDGE, np.nextafter(a, np.inf)) for a in found[:, 0]]
+        after = [self.mean(b, b + BRIDGE) for b in found[:, 1]]
+        inside = np.column_stack([np.nextafter(found[:, 0], np.inf), np.nextafter(found[:, 1], -np.inf)])
+        places = np.repeat(np.searchsorted(self.time, found[:, 1]), 2)
+        time = np.insert(self.time, places, inside.ravel())
+        return replace(self, time=time, value=np.insert(self.value, places, np.column_stack([before, after]).ravel()))
 
     def shifted(self, origin: float) -> Signal:
         """The same samples with times counted from ``origin``."""

@@ -17,6 +17,7 @@ import numpy as np
 
 import hfanalysis
 from hfanalysis.errors import InputError
+from hfanalysis.testdata import holes
 from hfanalysis.testdata.channels import LONG_NAMES
 from hfanalysis.testdata.clocks import Clock, read_clock
 from hfanalysis.testdata.definition import TestDefinition
@@ -132,12 +133,14 @@ class _Ingest:
         names = {key: f"time_{i}" if i else "time" for i, key in enumerate(self.clocks)}
         for key, clock in self.clocks.items():
             store.clock(names[key], clock.time)
-        found, said = [], []
+        found, said, lacking = [], [], []
         for plan, (channel, warnings) in self._channels(firing):
             found += [(channel.name, what) for what in flagged(plan.file, channel.flags)]
             said += warnings
+            lacking.append((plan.file, channel.name, holes.unasked(channel)))
             store.channel(channel, names[plan.clock], LONG_NAMES.get(channel.name, channel.name))
-        self.warnings += [*told(found, Counter(plan.file for plan in self.plans)), *said]
+        count = Counter(plan.file for plan in self.plans)
+        self.warnings += [*told(found, count), *holes.told(lacking, count), *said]
 
     def _channels(self, firing: Firing | None) -> Iterator[tuple[Plan, tuple[Channel, list[str]]]]:
         """Channels in order, a few of them at work."""

@@ -154,19 +154,27 @@ function push(out, time, mean, low, high) {
   out.high.push(high);
 }
 
+// A column that holds a hole of the series is as many as the stretches beside it, or the line would go across.
 function column(one, out, from, to) {
-  let sum = 0, count = 0, low = Infinity, high = -Infinity;
+  let start = from;
+  for (let i = from; i <= to; i++) {
+    if (i < to && Number.isFinite(one.mean[i])) continue;
+    if (i > start) stretch(one, out, start, i);
+    if (i < to) push(out, one.time[i], NaN, NaN, NaN);
+    start = i + 1;
+  }
+}
+
+function stretch(one, out, from, to) {
+  let sum = 0, low = Infinity, high = -Infinity;
   for (let i = from; i < to; i++) {
-    if (!Number.isFinite(one.mean[i])) continue;
     sum += one.mean[i];
-    count += 1;
     if (one.low[i] < low) low = one.low[i];
     if (one.high[i] > high) high = one.high[i];
   }
-  const middle = 0.5 * (one.time[from] + one.time[to - 1]);
-  if (!count) push(out, middle, NaN, NaN, NaN);
-  else if (one.kind === "band") push(out, middle, sum / count, sum / count, high);
-  else push(out, middle, sum / count, low, high);
+  const middle = 0.5 * (one.time[from] + one.time[to - 1]), mean = sum / (to - from);
+  if (one.kind === "band") push(out, middle, mean, mean, high);
+  else push(out, middle, mean, low, high);
 }
 
 function runs(values) {
