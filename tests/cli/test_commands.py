@@ -157,6 +157,13 @@ def test_products_go_to_another_folder(run: Run, root: Path, tmp_path: Path) -> 
         (["calibrate", "."], "folder"),
         (["calibrate", "HF5", "--set", "calibrate.sample=3"], "calibrate.samples"),
         (["calibrate", "HF5", "--set", "calibrate.samples=many"], "400"),
+        (["calibrate", "HF5", "--set", "calibrate.samples=3"], "expected 10 or more"),
+        (["flight", "HF5", "--set", "flight.flights=0"], "expected 10 or more"),
+        (["flight", "HF5", "--set", "flight.seed=-1"], "expected 0 or more"),
+        (["flight", "HF5", "--set", "flight.winds=[2.0, -1.0]"], "expected 0 or more"),
+        (["flight", "HF5", "--set", "flight.winds=[]"], "list of numbers"),
+        (["flight", "HF5", "--set", 'flight.winds=["calm"]'], "list of numbers"),
+        (["ingest", "HF5", "--out", "/proc/nowhere"], "/proc/nowhere"),
         (["diagnose", "HF5", "--proof-test", "HF6"], "HF5"),
         (["diagnose", "HF5", "--proof-test", "HF5"], "the test itself"),
         (["diagnose", "HF5", "--proof-test", "../HF5"], "folder"),
@@ -187,7 +194,11 @@ def test_a_log_without_what_was_asked_ends_with_three(run: Run, root: Path, monk
 
     monkeypatch.setattr(performing, "run_to", absent)
     ended = run("calibrate", "HF5", "--root", root)
-    assert (ended.status, ended.out, ended.err) == (3, "", "hfa: the log holds no firing\n")
+    assert (ended.status, ended.out) == (3, "")
+    *warned, last = ended.err.splitlines()
+    assert last == "hfa: the log holds no firing"
+    assert warned, "what the log is warned of may say why"
+    assert all(line.startswith("hfa: warning: ") for line in warned)
 
 
 def test_ctrl_c_ends_without_a_traceback(run: Run, root: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -48,14 +49,31 @@ def bring(name: str, request: Request) -> Context:
 
 
 def stage(name: str, request: Request) -> Context:
-    """Bring a stage (or, for "run", all of them) up to date and show it; returns its context."""
-    context = bring(name, request)
+    """Bring a stage (or, for "run", all of them) up to date and show it; returns its context.
+
+    Where the test has no such thing, what its log is warned of may say why.
+    """
+    try:
+        context = bring(name, request)
+    except AbsentError:
+        for text in _log_warnings(request):
+            tell(f"warning: {text}")
+        raise
     _show(name, context, request)
     for text in _warnings(context, name):
         tell(f"warning: {text}")
     if name == "run":
         _check_spine(context)
     return context
+
+
+def _log_warnings(request: Request) -> list[str]:
+    """What ingest warned of, where it has been."""
+    try:
+        path = open_test(request.root, request.test, request.out).product("ingest.json")
+        return [str(text) for text in json.loads(path.read_text(encoding="utf-8"))["warnings"]]
+    except (OSError, ValueError, KeyError):
+        return []
 
 
 def _check_spine(context: Context) -> None:
@@ -84,7 +102,18 @@ def _setting(text: str) -> tuple[str, Any]:
     default = known[name]
     if type(found) is not type(default) and not (isinstance(default, float) and type(found) is int):
         raise InputError(f"--set {text}: found {value!r}, expected a value such as {default!r}")
+    stage, _, key = name.partition(".")
+    _check_least(text, found, default, load_stage(stage).least.get(key))
     return name, found
+
+
+def _check_least(text: str, found: Any, default: Any, least: float | None) -> None:
+    """Raise InputError where a number, or one of a list of them, is none or smaller than the stage can work with."""
+    numbers = found if isinstance(found, list) else [found]
+    if isinstance(default, list) and not (numbers and all(type(n) in (int, float) for n in numbers)):
+        raise InputError(f"--set {text}: found {found!r}, expected a list of numbers such as {default!r}")
+    if least is not None and not all(math.isfinite(n) and n >= least for n in numbers):
+        raise InputError(f"--set {text}: found {found!r}, expected {least:g} or more")
 
 
 def proof_test(root: Path, test: str, other: str) -> str:

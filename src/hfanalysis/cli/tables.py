@@ -16,14 +16,17 @@ from hfanalysis.report.wording import Shown, in_words, is_quantity, quantities, 
 from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context
 
-_NARROWEST = 124
+_NARROWEST = 140
 """Columns assumed where nobody says (a pipe), so that tables do not break."""
 
 _WIDE = 116
 """Columns from which on the quantities' names in words fit."""
 
-_MAY_WRAP = ("symbol", "", "flags", "column", "verdict", "closest rivals")
-"""Columns that give way where the terminal is narrow; numbers never do."""
+_ROOMY = 100
+"""Columns from which on the intervals fit beside the deviations."""
+
+_MAY_WRAP = ("", "flags", "column", "unit", "closest rivals")
+"""Columns that give way where the terminal is narrow; numbers and symbols never do."""
 
 _NUMBERS = (
     "value", "± std", "samples", "rate", "least", "largest", "rms", "bias", "noise", "d'", "typical", "seen from",
@@ -94,12 +97,15 @@ def new_table(*columns: str, title: str) -> Table:
     return table
 
 
-def _quantities(found: Mapping[str, Mapping[str, Any]], title: str, wide: bool) -> Table:
-    table = new_table("symbol", *[""] * wide, "value", "± std", "95 % interval", "unit", "verdict", title=title)
+def _quantities(found: Mapping[str, Mapping[str, Any]], title: str, width: int) -> Table:
+    wide, roomy = width >= _WIDE, width >= _ROOMY
+    columns = ("symbol", *[""] * wide, "value", "± std", *["95 % interval"] * roomy, "unit", "verdict")
+    table = new_table(*columns, title=title)
     for name, quantity in found.items():
         text = shown(quantity)
         verdict = Text(text.verdict, style=_STYLES.get(text.verdict, "yellow"))
-        table.add_row(name, *[in_words(name)] * wide, text.value, text.std, text.interval, text.unit, verdict)
+        numbers = (text.value, text.std, *[text.interval] * roomy, text.unit)
+        table.add_row(name, *[in_words(name)] * wide, *numbers, verdict)
     return table
 
 
@@ -112,7 +118,7 @@ def _notes(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
 
 
 def _print(console: Console, found: Mapping[str, Mapping[str, Any]], title: str) -> None:
-    console.print(_quantities(found, title, console.width >= _WIDE))
+    console.print(_quantities(found, title, console.width))
     for note in _notes(found):
         console.print(Text(f"  {note}"), soft_wrap=True)
 

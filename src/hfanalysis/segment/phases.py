@@ -169,12 +169,13 @@ def _opening(signals: Mapping[str, Signal], definition: TestDefinition) -> Openi
         )
     found = find_opening(signals)
     if found is None:
-        looked = (
-            ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals) or "no channel"
+        looked = ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals)
+        why = (
+            f"nothing in {looked} responds to an opening valve" if looked else "no channel has good samples that change"
         )
         raise AbsentError(
-            f"test {definition.test.id}: the log holds no firing and no flow: nothing in {looked} responds to an "
-            "opening valve; set [segments] t_open in test.toml if there is one"
+            f"test {definition.test.id}: the log holds no firing and no flow: {why}; "
+            "set [segments] t_open in test.toml if there is one"
         )
     return found
 

@@ -56,6 +56,7 @@ class Stage:
     run: Callable[[Context], None]
     wants: tuple[str, ...] = ()
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    least: Mapping[str, float] = field(default_factory=dict)
     adopts: bool = True
     tries_effects: bool = False
 

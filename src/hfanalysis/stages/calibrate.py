@@ -48,4 +48,5 @@ STAGE = Stage(
     products=("calibration.json", "base_calibration.json"),
     run=run,
     parameters={"samples": 400},
+    least={"samples": 10},
 )

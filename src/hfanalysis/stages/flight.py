@@ -49,4 +49,5 @@ STAGE = Stage(
     products=("flight.json", "flight.h5", "{test}.eng", "{test}.rse", "{test}_rocketpy.py"),
     run=run,
     parameters={"flights": 4000, "seed": 1, "raw_thrust": False, "winds": [2.235, 4.47, 6.706], "gust_seeds": 20},
+    least={"flights": 10, "seed": 0, "winds": 0.0, "gust_seeds": 1},
 )

@@ -8,6 +8,8 @@ import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from hfanalysis.errors import InputError
+
 NAME = ".lock"
 
 
@@ -26,7 +28,10 @@ def locked(folder: Path, waiting: Callable[[], None]) -> Iterator[None]:
 
 def _open(folder: Path, waiting: Callable[[], None]) -> int:
     while True:
-        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(f"{folder}: cannot be made ({error.strerror}); expected a folder for products") from None
         with contextlib.suppress(FileNotFoundError):
             descriptor = os.open(folder / NAME, os.O_RDWR | os.O_CREAT, 0o666)
             _take(descriptor, waiting)

@@ -119,7 +119,7 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
 
 def _across(signal: Signal, start: float, end: float) -> float:
     """What an integral across a hole may be off by: the change may come at any instant of it."""
-    first, last = signal.at(np.array([start, end]))
+    first, last = signal.at(np.array([np.nextafter(start, end), np.nextafter(end, start)]))
     return float(abs(last - first) * (end - start) / np.sqrt(12.0))
 
 

@@ -1,0 +1,101 @@
+"""Holes of a log: told with their place, no event in one is surer than it is long, and integrals bridge them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from stand import definition, fire, log_of
+
+from hfanalysis.segment.phases import find_phases
+from hfanalysis.segment.signals import Signal
+from hfanalysis.testdata.holes import holes, told, unasked
+from hfanalysis.testdata.log import Channel, Flag, TestLog
+from hfanalysis.validate.performance import Fire, _impulse
+from hfanalysis.validate.thrust import Thrust
+
+OPENED = 100.0
+
+
+def cut(log: TestLog, start: float, end: float, *names: str) -> TestLog:
+    """The log without its rows [log time], or with drop-outs of some channels in their place."""
+
+    def without(channel: Channel) -> Channel:
+        inside = (channel.time > start) & (channel.time < end)
+        if names:
+            lost = replace(channel, values=np.where(inside, np.nan, channel.values))
+            return lost if channel.name in names else channel
+        kept = ~inside
+        return replace(channel, time=channel.time[kept], values=channel.values[kept], flags=channel.flags[kept])
+
+    return replace(log, channels={n: without(c) for n, c in log.channels.items()})
+
+
+def test_a_log_without_holes_has_none_whatever_its_rate() -> None:
+    assert holes(np.arange(0.0, 10.0, 1e-3)).size == 0
+    assert holes(np.arange(0.0, 100.0, 2.0)).size == 0
+    assert holes(np.array([1.0])).size == 0
+
+
+def test_what_the_engineer_left_out_is_no_hole_to_tell() -> None:
+    channel = log_of(fire()).channels["p_tank"]
+    inside = (channel.time > 101.0) & (channel.time < 102.0)
+    assert unasked(replace(channel, flags=np.where(inside, Flag.EXCLUDED, 0).astype(np.uint8))).size == 0
+    assert unasked(replace(channel, flags=np.where(inside, Flag.DROPOUT, 0).astype(np.uint8))).shape == (1, 2)
+
+
+def test_one_hole_in_all_channels_is_told_once_and_of_many_the_longest() -> None:
+    hole = np.array([[2.0, 2.6]])
+    both = [("log.csv", "p_tank", hole), ("log.csv", "thrust", hole), ("slow.csv", "T_tank", hole)]
+    assert list(told(both, {"log.csv": 2, "slow.csv": 1})) == [
+        "log.csv: no good samples from 2.00 to 2.60 s of log time; what happens there is not known",
+        "T_tank: no good samples from 2.00 to 2.60 s of log time; what happens there is not known",
+    ]
+    many = np.array([[float(i), i + 0.1 * (i + 1)] for i in range(5)])
+    assert list(told([("log.csv", "p_run", many)], {"log.csv": 2})) == [
+        "p_run: no good samples from 2.00 to 2.30 s, 3.00 to 3.40 s, 4.00 to 4.50 s of log time and in 2 shorter "
+        "stretches; what happens there is not known"
+    ]
+
+
+def test_an_opening_in_a_hole_is_as_unsure_as_the_hole_is_long() -> None:
+    found = find_phases(cut(log_of(fire(), OPENED, white=5e3), OPENED - 0.4, OPENED + 0.3), definition())
+    assert found.t_open.std == pytest.approx(0.7 / np.sqrt(12.0), rel=0.05)
+    assert abs(found.t_open.value - OPENED) < 2.0 * found.t_open.std
+    assert any("t_open lies in a hole of" in text for text in found.warnings)
+
+
+def test_an_event_beside_a_hole_of_its_channel_is_unsure_and_one_far_from_it_is_not() -> None:
+    whole = log_of(fire(), OPENED, white=5e3)
+    t_v = find_phases(whole, definition()).events["t_v"]
+    near = find_phases(cut(whole, OPENED + t_v.value - 0.3, OPENED + t_v.value - 0.05, "p_tank"), definition())
+    far = find_phases(cut(whole, OPENED + 0.5 * t_v.value, OPENED + 0.5 * t_v.value + 0.25, "p_tank"), definition())
+    assert near.events["t_v"].std == pytest.approx(0.25 / np.sqrt(12.0), rel=0.05)
+    assert far.events["t_v"].std < 0.01
+    assert far.events["t_v"].value == pytest.approx(t_v.value, abs=0.01)
+
+
+def test_an_impulse_across_a_hole_hangs_on_means_and_is_less_sure() -> None:
+    time = np.arange(-1.0, 8.0, 1e-3)
+    clean = np.where((time > 0.0) & (time < 5.0), 5000.0 - 600.0 * time, 0.0)
+    rng = np.random.default_rng(3)
+
+    def impulse(hole: tuple[float, float] | None) -> tuple[float, float]:
+        kept = np.ones(time.size, dtype=bool) if hole is None else (time <= hole[0]) | (time >= hole[1])
+        read = clean + 300.0 * rng.standard_normal(time.size)
+        channel = Channel("thrust", "N", time[kept], read[kept], np.zeros(kept.sum(), np.uint8), 5.0, True, "")
+        found = _impulse(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 1e-3, ""))
+        assert found.value is not None
+        assert found.std is not None
+        assert ("bridged" in (found.why or "")) == (hole is not None)
+        return found.value, found.std
+
+    true = float(np.trapezoid(clean, time))
+    _, sure = impulse(None)
+    off = [impulse((2.0, 3.0)) for _ in range(20)]
+    # a line between single samples would be off by 300 N / sqrt(2) over the second
+    assert np.std([value - true for value, _ in off]) < 60.0
+    # the means lie 1.1 s apart; each of a hundred samples
+    expected = np.hypot(sure, 660.0 / np.sqrt(12.0))
+    assert np.mean([std for _, std in off]) == pytest.approx(expected, rel=0.05)
