@@ -36,8 +36,8 @@ FEWER = 0.3
 """Probability of fewer effects from which on no more of them are claimed; more have paid a price before."""
 
 LEAST_EVIDENCE = {"named": 5.0, "unknown": 10.0}
-"""Log evidence that any label of a claim has besides. Of 73 simulated tests that hide nothing (docs/blind.md names the
-run) `benchmarks.blind calibrate` printed 7.7, 3.3, 3.3 and 2.4 as the largest of names, and 14.3, 6.5, 5.0 and 3.3 as
+"""Log evidence that any label of a claim has besides. Of 62 simulated tests that hide nothing (docs/blind.md names the
+run) `benchmarks.blind calibrate` printed 4.1, 3.5, 3.3 and 3.1 as the largest of names, and 8.0, 5.3, 4.4 and 4.2 as
 those of unknown sources; those need more, for a source that explains little is what two tables of nitrous oxide differ
 by."""
 
