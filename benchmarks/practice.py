@@ -1,6 +1,6 @@
 """Diagnosis of tests whose truth is known: what is named, with which probability, and what of the gap closes.
 
-python benchmarks/practice.py --cases ../shared/blind [--write docs/diagnosis.md]
+python benchmarks/practice.py --cases DIR [--write docs/diagnosis.md]
 
 CASES holds ``raw_tests/`` and ``answers/``; products go to a temporary folder. The answers are read only after all
 verdicts are there.
