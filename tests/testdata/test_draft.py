@@ -9,7 +9,7 @@ import pytest
 
 from hfanalysis.errors import InputError
 from hfanalysis.testdata.definition import load_definition
-from hfanalysis.testdata.draft import Column, draft, guess_channel, new_test
+from hfanalysis.testdata.draft import Column, draft, guess_channel, new_test, read_columns
 
 LOG = Path(__file__).parents[2] / "raw_tests" / "HF5" / "log.csv"
 
@@ -98,3 +98,37 @@ def test_hostile_names_stay_text(tmp_path: Path) -> None:
     log.write_text('time,"PT-TANK ""]\\ (psia)"\n0,1\n1,2\n2,3\n')
     definition = load_definition(new_test(tmp_path, "X", log))
     assert definition.channels["p_tank"].column == 'PT-TANK "]\\ (psia)'
+
+
+@pytest.mark.parametrize(
+    ("label", "name", "unit"),
+    [
+        ("tank psig", "tank", "psig"),
+        ("thrust_lbf", "thrust", "lbf"),
+        ("T_tank_K", "T_tank", "K"),
+        ("Zeit s", "Zeit", "s"),
+        ("p_c", "p_c", ""),
+        ("mass_flow", "mass_flow", ""),
+        ("PT-RUN", "PT-RUN", ""),
+    ],
+)
+def test_a_name_may_end_in_its_unit_without_brackets(label: str, name: str, unit: str, tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    log.write_text(f"time,{label}\n0.0,1.0\n0.1,2.0\n", encoding="utf-8")
+    found = read_columns(log)[1]
+    assert (found.name, found.unit) == (name, unit)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [
+        ("time,p\n2024-05-01T12:00:00.001,7\n2024-05-01T12:00:00.002,7\n", "datetime"),
+        ("time;p\n01.05.2024 12:00:00,001;7,5\n01.05.2024 12:00:00,002;7,5\n", "datetime"),
+        ("time;p\n12:03:04,120;50,1\n12:03:04,130;50,2\n", "clock"),
+        ("begun,12:03:04\ntime,p\n0.1,3\n0.2,4\n", "s"),
+    ],
+)
+def test_stamps_that_are_written_as_dates_or_times_of_day_are_drafted_so(text: str, unit: str, tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    log.write_text(text, encoding="utf-8")
+    assert f'column = "time", unit = "{unit}"' in draft("T1", log)

@@ -17,6 +17,25 @@ from hfanalysis.units import dimension_of, unit_factor
 _ID = re.compile(r"\w[\w.+-]*")
 _UNIT = re.compile(r"^(?P<name>.*?)\s*[\[({](?P<unit>[^\])}]*)[\])}]\s*$")
 
+_LAST_WORD = re.compile(r"^(?P<name>.*[^\s_])[\s_]+(?P<unit>[^\s_\d][^\s_]*)$")
+_IN_NAMES = ("pressure", "force", "mass", "temperature", "time")
+"""Dimensions of units that a name may end in without brackets."""
+
+_LETTERS = ("N", "s", "K")
+"""Units of one letter that are taken for one at the end of a name."""
+
+_STAMPS = (
+    (
+        "datetime",
+        re.compile(r"\d{2,4}[-./]\d{1,2}[-./]\d{2,4}[ T]\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?(Z|[+-]\d{2}:?\d{2})?"),
+    ),
+    ("clock", re.compile(r"\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?( ?[AaPp][Mm])?")),
+)
+"""How stamps are written that are no numbers."""
+
+_LOOKED_AT = 200
+"""Lines of a log that are looked at for stamps."""
+
 _HINTS: tuple[tuple[str, str], ...] = (
     ("p_fill", r"\bp.*fill"),
     ("p_purge", r"\bp.*(purge|n2|nitrogen|press?uri)"),
@@ -144,7 +163,7 @@ def draft(test_id: str, log: Path) -> str:
         log=log.name,
         id_text=_quoted(test_id),
         log_text=_quoted(log.name),
-        time=_time_line(time, columns),
+        time=_time_line(time, columns, _written_stamps(log)),
         channels=channels,
     )
 
@@ -170,15 +189,31 @@ def _column(label: str, unit: str) -> Column:
     bracketed = _UNIT.match(label)
     if bracketed:
         return Column(label, bracketed["name"], unit or bracketed["unit"].strip())
+    last = None if unit else _LAST_WORD.match(label.strip())
+    if last and (len(last["unit"]) > 1 or last["unit"] in _LETTERS) and any(_fits(last["unit"], d) for d in _IN_NAMES):
+        return Column(label, last["name"], last["unit"])
     return Column(label, label, unit)
 
 
-def _time_line(time: Column | None, columns: list[Column]) -> str:
+def _written_stamps(log: Path) -> str:
+    """ "datetime" or "clock" where a log of text has stamps that are written so; "" where it has none."""
+    with log.open("rb") as file:
+        head = b"".join(line for _, line in zip(range(_LOOKED_AT), file, strict=False))
+    text = head.decode("utf-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8", errors="replace")
+    for name, form in _STAMPS:
+        # a comma may be a column's end or a decimal point; one stamp alone may stand above the columns
+        for ends in (r"[\n\t;|]", r"[\n\t;|,]"):
+            if sum(form.fullmatch(cell.strip().strip('"')) is not None for cell in re.split(ends, text)) > 1:
+                return name
+    return ""
+
+
+def _time_line(time: Column | None, columns: list[Column], written: str) -> str:
     if time is None:
         there = ", ".join(_quoted(column.label) for column in columns[:8])
         return f'# time = {{ column = "…", unit = "s" }}   # the column of time stamps; none recognised among {there}'
-    unit = time.unit if _fits(time.unit, "time") else "s"
-    sure = "" if time.unit == unit else "   # unit not stated in the log: check"
+    unit = time.unit if _fits(time.unit, "time") else written or "s"
+    sure = "" if unit in (time.unit, written) else "   # unit not stated in the log: check"
     return f"time = {{ column = {_quoted(time.label)}, unit = {_quoted(unit)} }}{sure}"
 
 

@@ -99,7 +99,7 @@ class _Ingest:
         spool, path = self.spools[plan.file], self.definition.folder / plan.file
         rows = spool.rows(plan.column)
         if rows < 2:
-            raise InputError(f"{path}: found {rows} rows of data; expected a log")
+            raise InputError(f"{path}: found {rows} row{'' if rows == 1 else 's'} of data; expected a log")
         clock = read_clock(spool, plan.stamps, plan.time, rows, str(path))
         self.warnings += clock.warnings
         return clock

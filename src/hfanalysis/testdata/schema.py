@@ -101,12 +101,18 @@ def quantity(dimension: str, allowed: Range = ANY) -> PlainValidator:
     return PlainValidator(lambda found: read_quantity(found, dimension, allowed))
 
 
+def _a(dimension: str) -> str:
+    """A dimension with its article."""
+    words = dimension.replace("_", " ")
+    return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
+
+
 def read_quantity(found: Any, dimension: str, allowed: Range, *keys: str) -> Value:
     """What :func:`quantity` does, for a key whose dimension another key decides."""
     with refusing(*keys):
         value = found if isinstance(found, Value) else parse(found, dimension, "")
     if not allowed.holds(value.value):
-        raise Refused(f"found {found!r}; expected a {dimension.replace('_', ' ')} that is {allowed.words}", *keys)
+        raise Refused(f"found {found!r}; expected {_a(dimension)} that is {allowed.words}", *keys)
     return value
 
 

@@ -68,8 +68,8 @@ def _zero(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fi
     where = f"with the chamber back at ambient ({thrust.since:.1f} s)" if thrust.since > 0.0 else "after the burn"
     text = (
         f"the thrust cell does not return to zero: it reads {error:+.0f} N {where}, "
-        f"{100.0 * abs(error) / peak:.0f} % of the peak; left in, up to {abs(error) * fire.end:.0f} N s of impulse are "
-        "its drift"
+        f"{100.0 * abs(error) / peak:.0f} % of the peak; where it is left in, up to {abs(error) * fire.end:.0f} N s of "
+        "impulse are its drift"
     )
     return Finding(("thrust",), ZERO, text, Quantity(error, "N", std))
 
