@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from benchmarks.virtual_stand import noise
@@ -127,3 +129,13 @@ def test_a_log_without_a_telling_channel_says_so() -> None:
     log = log_of(fire(), without=("p_run", "p_chamber", "p_tank", "thrust"))
     with pytest.raises(AbsentError, match="no channel has good samples that change"):
         find_phases(TestLog(log.channels), definition())
+
+
+@pytest.mark.parametrize(("scale", "strange"), [(1.0, False), (1.6, False), (6.895, True), (0.0689, True)])
+def test_a_tank_that_no_nitrous_oxide_is_in_is_asked_for_its_unit(scale: float, strange: bool) -> None:
+    """Scales of kPa read as psi, and of bar read as psi."""
+    log = log_of(fire(), white=5e3)
+    tank = log.channels["p_tank"]
+    read = dict(log.channels, p_tank=replace(tank, values=scale * tank.values))
+    found = find_phases(TestLog(read), definition())
+    assert any("is its unit right?" in text for text in found.warnings) == strange

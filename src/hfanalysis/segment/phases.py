@@ -101,6 +101,7 @@ def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
     origin = opening.time
     shifted = {name: s.between(origin - 60.0, origin + LONGEST_RUN).shifted(origin) for name, s in signals.items()}
     dead = [f"{n} never changes or has no good samples: left out" for n in log.channels if n not in signals]
+    unsure += _strange_tank(shifted.get("p_tank"))
     search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std)
     result = search.run()
     result = replace(result, warnings=(*dead, *unsure, *result.warnings))
@@ -134,6 +135,21 @@ def _within(time: float, std: float, start: float, end: float) -> tuple[float, f
 
 def _unsure(event: str, channel: str, start: float, end: float) -> str:
     return f"{event} lies in a hole of {channel}, which has no good samples from {start:.2f} to {end:.2f} s"
+
+
+IN_TANKS = (8e5, 130e5)
+"""Pressure [Pa] of any tank of nitrous oxide at rest, supercharged or not; another one is another unit's."""
+
+
+def _strange_tank(tank: Signal | None) -> list[str]:
+    """That the tank's pressure at rest is none of nitrous oxide."""
+    rest = tank.mean(-2.0, -0.1) if tank is not None else IN_TANKS[0]
+    if not np.isfinite(rest) or IN_TANKS[0] <= rest <= IN_TANKS[1]:
+        return []
+    return [
+        f"p_tank reads {rest / 1e5:.4g} bar before the opening, where a tank of nitrous oxide has "
+        f"{IN_TANKS[0] / 1e5:.0f} to {IN_TANKS[1] / 1e5:.0f} bar: is its unit right?"
+    ]
 
 
 def _check_stated(definition: TestDefinition, signals: Mapping[str, Signal]) -> None:

@@ -33,6 +33,8 @@ from hfanalysis.testdata.store import Store
 
 Progress = Callable[[str, float], None]
 """Called now and then with the file's name and the share of it that has been read."""
+SHORTEST = 0.5
+"""[s] of a log below which no firing fits into it."""
 WORKERS = 2
 """Channels converted at a time: bounds the memory."""
 
@@ -102,6 +104,9 @@ class _Ingest:
             raise InputError(f"{path}: found {rows} row{'' if rows == 1 else 's'} of data; expected a log")
         clock = read_clock(spool, plan.stamps, plan.time, rows, str(path))
         self.warnings += clock.warnings
+        span = float(np.ptp(clock.time))
+        if span < SHORTEST:
+            self.warnings.append(f"{path.name}: the whole log lasts {span:.3g} s: is the unit of its time right?")
         return clock
 
     def _fits(self, plan: Plan, stamps: int) -> None:
