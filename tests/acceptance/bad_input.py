@@ -315,7 +315,7 @@ CASES = [
     logged("an empty log", lambda text: "", "empty"),
     logged("blanks only", lambda text: "\n\n   \n", "empty"),
     logged("a header only", lambda text: text.splitlines()[0] + "\n", "no data"),
-    logged("a single row", lambda text: "\n".join(text.splitlines()[:2]) + "\n", "1 rows"),
+    logged("a single row", lambda text: "\n".join(text.splitlines()[:2]) + "\n", "1 row of data"),
     logged("prose", lambda text: "The firing went well.\nWe were happy.\n" * 30, "no data"),
     logged("a column of text", lambda text: column(text, 1, "OK"), "PT-TANK", "line 2", "'OK'"),
     logged("a column of NaN", lambda text: column(text, 1, "NaN"), "PT-TANK", "not one number"),

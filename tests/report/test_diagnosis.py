@@ -14,6 +14,8 @@ from sample import material, without
 from test_page import HOSTILE, Reader
 
 from hfanalysis.report.chart import Chart
+from hfanalysis.report.diagnosis_tables import parameters, probabilities
+from hfanalysis.report.html import switchable
 from hfanalysis.report.page import page
 from hfanalysis.report.sections import Laid, lay_out
 
@@ -255,3 +257,25 @@ def test_no_texts_of_a_page_depend_on_a_diagnosis_that_is_not_there(tmp_path: Pa
     text = page(bare)
     assert "Diagnosis" in text[text.index('id="absent"') :]
     assert Reader(text).open == []
+
+
+def test_a_number_and_what_it_is_unsure_of_change_units_together() -> None:
+    found = str(switchable("It differs by -3.91 ± 0.8 bar, at most 16.6 bar; 12 ± 3 N."))
+    assert 'data-si="-3.91 ± 0.8 bar" data-team="−57 ± 12 psi"' in found
+    assert 'data-si="16.6 bar" data-team="241 psi"' in found
+    assert 'data-si="12 ± 3 N" data-team="2.70 ± 0.67 lbf"' in found
+
+
+def test_effects_beside_the_first_do_not_count_among_the_improbable(tmp_path: Path) -> None:
+    odds = {**DIAGNOSIS["posterior"], "load_cell_drift": 1e-4, "chamber_tap_lag": 1e-4}
+    alone = str(probabilities({**DIAGNOSIS, "posterior": odds, "partners": {}}))
+    beside = str(probabilities({**DIAGNOSIS, "posterior": odds, "partners": {"load_cell_drift": 0.98}}))
+    count = [int(re.search(r"(\d+) other names are below", text)[1]) for text in (alone, beside)]  # type: ignore[index]
+    assert count[0] == count[1] + 1
+
+
+def test_the_effects_own_constants_are_on_the_page() -> None:
+    found = str(parameters(DIAGNOSIS))
+    for name in DIAGNOSIS["effects"][0]["parameters"]:
+        assert f"<td>{name.replace('_', ' ')}</td>" in found
+    assert "±" in found

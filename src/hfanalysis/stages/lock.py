@@ -30,8 +30,8 @@ def _open(folder: Path, waiting: Callable[[], None]) -> int:
     while True:
         try:
             folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(f"{folder}: cannot be made ({error.strerror}); expected a folder for products") from None
+        except FileNotFoundError:  # not for want of a parent: the file system takes no folders
+            raise InputError(f"{folder}: cannot be made; choose another place with --out DIR") from None
         with contextlib.suppress(FileNotFoundError):
             descriptor = os.open(folder / NAME, os.O_RDWR | os.O_CREAT, 0o666)
             _take(descriptor, waiting)

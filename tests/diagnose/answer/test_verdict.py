@@ -21,11 +21,13 @@ from hfanalysis.diagnose.answer.acting import acting
 from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judged, lost
 from hfanalysis.diagnose.answer.posterior import BEFORE, SET, UNSEEN, Scale, evidences_of, kind, scale, smallest_set
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
-from hfanalysis.diagnose.answer.verdict import effects_product, verdict_of
+from hfanalysis.diagnose.answer.verdict import _within, effects_product, verdict_of
 from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.naming.candidate import Candidate
+from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.variants import VARIANTS, settings_of
+from hfanalysis.diagnose.of_test import LIKELY, _decisive, _not_it
 from hfanalysis.effects import effect, library
 from hfanalysis.errors import InputError
 
@@ -372,3 +374,38 @@ def test_what_slow_noise_may_be_larger_by_is_no_gap() -> None:
     assert gap.total_gap(found, replace(test, channels=hardly)) > 0.5
     far = tuple(replace(c, noise_std=0.5 * c.noise_std, slow=0.2 * np.diag(c.noise_std**2)) for c in test.channels)
     assert gap.total_gap(found, replace(test, channels=far)) > 0.5
+
+
+def test_what_is_named_beside_the_first_is_not_said_to_be_excluded(monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(verdict_module, "scale", Scale)
+    monkeypatch.setattr(posterior, "scale", Scale)
+    found = replace(with_set(10.0), names=(*with_set(10.0).names, "load_cell_drift", "chamber_tap_lag"))
+    verdict = verdict_of(found)
+    assert verdict.added == ("nozzle_throat_erosion", "load_cell_drift")
+    assert verdict.posterior["load_cell_drift"] < LIKELY
+    excluded = _not_it(verdict)
+    assert "chamber_tap_lag" in excluded
+    assert not set(excluded) & set(verdict.added)
+
+
+def test_an_unknown_source_is_no_effect_of_the_name_of_its_site(monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(verdict_module, "scale", Scale)
+    found = probable(("nozzle_throat_erosion", 3.0), ("unknown", 40.0))
+    at_heat = replace(found.unknown[0], names=("tank_heat",))
+    verdict = verdict_of(replace(found, unknown=(at_heat,), names=(*found.names, "tank_heat")))
+    assert verdict.label == "unknown"
+    assert verdict.chosen.names == ("tank_heat",)
+    assert verdict.added == ()
+    assert _decisive(verdict, Catalogue(library(), {})) == []
+    assert "tank_heat" in _not_it(verdict)
+
+
+def test_nothing_is_to_be_measured_where_nothing_is_claimed() -> None:
+    assert _decisive(verdict_of(probable(("tank_heat", -20.0))), Catalogue(library(), {})) == []
+    assert _decisive(verdict_of(probable(("tank_heat", 40.0))), Catalogue(library(), {}))
+
+
+def test_an_interval_of_a_parameter_stays_within_its_bounds() -> None:
+    share = next(p for p in effect("tank_nonequilibrium").parameters if p.name == "sustained")
+    assert _within(share, 0.9, 0.2).ci95 == pytest.approx((0.9 - 1.96 * 0.2, 1.0), abs=1e-3)
+    assert _within(share, 0.1, 0.2).ci95 == pytest.approx((0.0, 0.1 + 1.96 * 0.2), abs=1e-3)

@@ -126,3 +126,20 @@ def test_an_impossible_size_is_said() -> None:
 
 def test_the_headline_is_of_the_most_probable() -> None:
     assert "nozzle_throat_erosion" in headline(product("named"))
+
+
+def test_names_that_an_unknown_does_not_exclude_are_in_the_headline() -> None:
+    odds = {"unknown": 0.7, "tank_heat": 0.25, "none": 0.05}
+    said = headline(product("unknown", posterior=odds, set90=["unknown", "tank_heat"]))
+    assert said.endswith("(unknown 0.70); tank_heat (0.25) cannot be excluded.")
+
+
+def test_a_gap_that_a_wrong_effect_closes_as_well_proves_nothing() -> None:
+    gap = product("named")["gap"]
+    alike, wider = ({"same": 0.9, "held_out": 0.8, "other_test": None, "placebo": p} for p in (0.85, -0.16))
+    said = " ".join(proof_sentences(product("named", gap={**gap, "closed_fraction": alike})))
+    assert "85 % with the best wrong effect" in said
+    assert "proves nothing here" in said
+    said = " ".join(proof_sentences(product("named", gap={**gap, "closed_fraction": wider})))
+    assert "the best wrong effect widens it by 16 %" in said
+    assert "proves nothing" not in said

@@ -348,13 +348,13 @@ def test_parameters_of_the_parent_keep_their_values_in_the_child() -> None:
 
 def test_upper_limits_hold_the_truth() -> None:
     none = named("none")
-    stay = limits(none.base, none.bench, catalogue())
+    stay = limits(none.base, (), none.bench, catalogue())
     assert set(stay) == set(TRIED)
     assert 100.0 < stay["tank_heat"][0] < 2000.0
     assert stay["tank_heat"][1] == "W"
     assert 0.0 < stay["nozzle_throat_erosion"][0] < 1e-4
-    heated = verdict_of(named("tank_heat")).chosen
-    assert "tank_heat" not in limits(heated, named("tank_heat").bench, catalogue())
+    heated = verdict_of(named("tank_heat"))
+    assert "tank_heat" not in limits(heated.chosen, heated.added, named("tank_heat").bench, catalogue())
 
 
 def test_slack_takes_what_a_closure_gets_wrong() -> None:
