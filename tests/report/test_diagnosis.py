@@ -261,9 +261,14 @@ def test_no_texts_of_a_page_depend_on_a_diagnosis_that_is_not_there(tmp_path: Pa
 
 def test_a_number_and_what_it_is_unsure_of_change_units_together() -> None:
     found = str(switchable("It differs by -3.91 ± 0.8 bar, at most 16.6 bar; 12 ± 3 N."))
-    assert 'data-si="-3.91 ± 0.8 bar" data-team="−57 ± 12 psi"' in found
+    assert 'data-si="−3.91 ± 0.8 bar" data-team="−57 ± 12 psi"' in found
     assert 'data-si="16.6 bar" data-team="241 psi"' in found
     assert 'data-si="12 ± 3 N" data-team="2.70 ± 0.67 lbf"' in found
+
+
+def test_sentences_are_set_like_the_rest_of_the_page() -> None:
+    found = str(switchable("From 0.1 to -85 it is 36.2 mm^2 or 4e-05 (kg/m^2/s)^-1 of HF-5."))
+    assert found == "From 0.1 to −85 it is 36.2 mm² or 4e-05 (kg/m²/s)⁻¹ of HF-5."
 
 
 def test_effects_beside_the_first_do_not_count_among_the_improbable(tmp_path: Path) -> None:

@@ -9,10 +9,11 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
-from hfanalysis.report.scales import scale
-from hfanalysis.report.wording import Shown, decimals_for, fixed, in_words, shown, tidy
+from hfanalysis.report.scales import scale, superscript
+from hfanalysis.report.wording import MINUS, Shown, decimals_for, fixed, in_words, shown, tidy
 
 _UNITS_IN_TEXT = {"bar": ("Pa", 1e5), "Pa": ("Pa", 1.0), "N": ("N", 1.0), "N s": ("N s", 1.0)}
+_NEGATIVE, _POWER = re.compile(r"(?<![\w.)])-(?=\d)"), re.compile(r"(?<=[A-Za-z)])\^(-?\d)(?![\d.])")
 _NUMBER = r"[+\-−]?\d+(?:\.\d+)?"
 _IN_TEXT = re.compile(rf"(?<![\w.])({_NUMBER})((?: ± )\d+(?:\.\d+)?)? (bar|Pa|N s|N)(?![\w/^²·])")
 
@@ -40,7 +41,8 @@ def amount(value: float | None, unit: str, digits: int = 4, difference: bool = F
 
 
 def switchable(text: str) -> Markup:
-    """A sentence of a product, its pressures and forces ready for the other system of units."""
+    """A sentence of a product as pages are set, its pressures and forces ready for the other system of units."""
+    text = _NEGATIVE.sub(MINUS, _POWER.sub(lambda found: superscript(int(found[1])), text))
     parts, last = [], 0
     for found in _IN_TEXT.finditer(text):
         parts += [
