@@ -10,10 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.blind import combustion
 from tests.blind import slots as s
 from tests.blind import stand as st
 from tests.blind.plan import Case
 from tests.blind.write import write_case
+
+from hfanalysis.thermo.combustion import equilibrium
 
 
 def test_a_test_without_an_effect_is_accepted_and_calibrates_to_its_truth(tmp_path: Path) -> None:
@@ -87,3 +90,12 @@ def test_two_independent_engines_agree_on_a_test_without_an_effect(seed: int, tm
     assert theirs["peak_chamber_pressure"]["value"] == pytest.approx(ours.trace(s.P_CHAMBER).max(), rel=1e-3)
     assert theirs["peak_thrust"]["value"] == pytest.approx(ours.trace(s.THRUST).max(), rel=1e-3)
     assert theirs["total_impulse"]["value"] == pytest.approx(ours.trace(s.THRUST).sum() * 1e-3, rel=3e-3)
+
+
+@pytest.mark.parametrize("ratio", [0.09, 0.15, 0.3, 0.5, 2.0, 6.0, 40.0])
+@pytest.mark.parametrize("pressure", [1.1e5, 20e5])
+def test_their_gases_agree_down_to_where_fuel_burns_on_with_hardly_any_oxidizer(ratio: float, pressure: float) -> None:
+    ours = equilibrium(pressure, ratio, 1.7e6, 0.0)
+    rt, gamma = combustion.gas(combustion.table(), 1.7e6, 0.0, pressure, ratio)
+    assert rt == pytest.approx(ours.gas_constant * ours.temperature, rel=0.01)
+    assert gamma == pytest.approx(ours.gamma, rel=0.01)
