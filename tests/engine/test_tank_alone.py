@@ -48,6 +48,25 @@ def test_a_given_loss_takes_the_place_of_the_modelled_one() -> None:
     assert found.pressure - found.run_pressure == pytest.approx(3e5)
 
 
+@pytest.mark.parametrize("name", ["feed_line_fill", "injector_choked_vapor"])
+def test_with_the_engines_own_loss_given_the_vapour_phase_is_the_engines(name: str) -> None:
+    """A line that gives away what it holds goes by its own loss, whatever else is lost between tank and injector."""
+    engine = engine_on_stand(effects=(typical(name),))
+    done = burn(engine, TIME[-1], rtol=1e-7, run_on=True, times=TIME)
+    assert done.liquid_out is not None
+    tank = TankAlone.of(engine)
+    whole = tank.run(TIME, done.output("chamber_pressure"))
+    dry = whole.time > whole.t_v + 0.01
+    first = int(np.flatnonzero(dry)[0])
+    state = dict(zip(STATES, whole.states[first], strict=False))
+    kept = ("tank_mass", "tank_temperature", "tank_nitrogen", "vapor_compressibility", "vapor_exponent")
+    begun = tank.at(own=whole.states[first, len(STATES) :], **{k: state[k] for k in kept})
+    loss = (whole.pressure - whole.run_pressure)[dry]
+    again = begun.run(TIME[dry], done.output("chamber_pressure")[dry], loss, vapor=True)
+    assert again.pressure == pytest.approx(whole.pressure[dry], rel=2e-3)
+    assert again.leak == pytest.approx(whole.leak[dry], abs=0.02)
+
+
 def test_it_starts_where_it_is_told() -> None:
     tank = TankAlone.of(engine_on_stand(effects=(typical("tank_stratification"),)))
     moved = tank.at(tank_temperature=285.0, own=np.array([0.5, 4e4]))  # half of the layer is left

@@ -18,6 +18,8 @@ from hfanalysis.engine.model import (
     AREA,
     COMPRESSIBILITY,
     EXPONENT,
+    LIQUID_LOSS,
+    LOSS_FACTOR,
     NITROGEN,
     O_CHAMBER_PRESSURE,
     O_OUTFLOW,
@@ -29,6 +31,7 @@ from hfanalysis.engine.model import (
     STATES,
     TANK,
     TEMPERATURE,
+    VAPOR_LOSS,
     VOLUME,
     Array,
     Equations,
@@ -41,7 +44,10 @@ from hfanalysis.engine.sites import (
     AT_FLOW,
     FEED_FACTOR,
     FEED_LOSS,
+    INJECTOR_FACTOR,
+    IS_LIQUID,
     P_CHAMBER,
+    P_TANK,
     PARAMETERS_AT,
     TEMPERATURE_FACTOR,
     term,
@@ -62,7 +68,14 @@ def _impose(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
         # the model multiplies by the factor next
         env[P_CHAMBER] = (p[PRESSURE] + p[SLOPE] * (t - p[SINCE])) / site[TEMPERATURE_FACTOR]
     elif hook == AT_FLOW and p[KIND] >= LOSS_GIVEN:
-        site[FEED_LOSS], site[FEED_FACTOR] = p[LOSS] + p[LOSS_SLOPE] * (t - p[SINCE]), 0.0
+        # beside the line's own loss, which effects may ask for, as much as makes up what is given
+        given, drop = p[LOSS] + p[LOSS_SLOPE] * (t - p[SINCE]), env[P_TANK] - env[P_CHAMBER]
+        if c[LIQUID_LOSS] >= 0.0:
+            site[FEED_LOSS] = given - (c[LIQUID_LOSS] if env[IS_LIQUID] > 0.0 else c[VAPOR_LOSS])
+        else:
+            line = 2.0 * c[AREA] * c[AREA] * c[LOSS_FACTOR] * site[FEED_FACTOR]
+            share = line / (1.0 + line) * site[INJECTOR_FACTOR] * site[INJECTOR_FACTOR]
+            site[FEED_LOSS] = (given - share * drop) / (1.0 - share)
 
 
 _IMPOSED = Effect(
