@@ -13,6 +13,7 @@ from benchmarks.engines import hf5_like
 from stand import AMBIENT, THROAT, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.quantity import Quantity
+from hfanalysis.segment.signals import Signal
 from hfanalysis.testdata.log import Channel, TestLog
 from hfanalysis.testdata.sections import Grain, Observed
 from hfanalysis.units import Value
@@ -25,8 +26,9 @@ from hfanalysis.validate.histories import (
     measured_histories,
     write_histories,
 )
-from hfanalysis.validate.performance import Fire, fire_of, measured
+from hfanalysis.validate.performance import Fire, _impulse, fire_of, measured
 from hfanalysis.validate.sensors import findings
+from hfanalysis.validate.thrust import Thrust
 
 BURN = Observed(burn_time=Value(9.0, 0.1))
 GRAIN = Grain(mass=Value(1.6, 0.01))
@@ -165,3 +167,28 @@ def test_c_star_ends_where_nitrogen_enters_and_the_thrust_coefficient_does_not()
     assert np.isnan(told["c_star"][after]).all()
     assert np.isnan(told["c_star_efficiency"][after]).all()
     assert np.isfinite(told["thrust_coefficient_efficiency"][after]).all()
+
+
+def test_an_impulse_across_a_hole_hangs_on_means_and_is_less_sure() -> None:
+    time = np.arange(-1.0, 8.0, 1e-3)
+    clean = np.where((time > 0.0) & (time < 5.0), 5000.0 - 600.0 * time, 0.0)
+    rng = np.random.default_rng(3)
+
+    def impulse(hole: tuple[float, float] | None) -> tuple[float, float]:
+        kept = np.ones(time.size, dtype=bool) if hole is None else (time <= hole[0]) | (time >= hole[1])
+        read = clean + 300.0 * rng.standard_normal(time.size)
+        channel = Channel("thrust", "N", time[kept], read[kept], np.zeros(kept.sum(), np.uint8), 5.0, True, "")
+        found = _impulse(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 1e-3, ""))
+        assert found.value is not None
+        assert found.std is not None
+        assert ("bridged" in (found.why or "")) == (hole is not None)
+        return found.value, found.std
+
+    true = float(np.trapezoid(clean, time))
+    _, sure = impulse(None)
+    off = [impulse((2.0, 3.0)) for _ in range(20)]
+    # a line between single samples would be off by 300 N / sqrt(2) over the second
+    assert np.std([value - true for value, _ in off]) < 60.0
+    # the means lie 1.1 s apart; each of a hundred samples
+    expected = np.hypot(sure, 660.0 / np.sqrt(12.0))
+    assert np.mean([std for _, std in off]) == pytest.approx(expected, rel=0.05)

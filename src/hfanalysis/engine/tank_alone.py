@@ -86,7 +86,7 @@ _IMPOSED = Effect(
     parameters=tuple(Parameter(name, "", "imposed", 1.0) for name in GIVEN),
     phases=(),
     term=_impose,
-    reads=("temperature_factor", "feed_loss"),  # so that it is the last of all in canonical order
+    reads=("temperature_factor", "feed_factor", "injector_factor"),  # so that it is the last of all in canonical order
 )
 
 

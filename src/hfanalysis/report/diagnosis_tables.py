@@ -90,7 +90,7 @@ def parameters(product: Product) -> Markup | None:
         for effect in product["effects"]
         for name, found in effect["parameters"].items()
     ]
-    caption = "Constants of what was added to the model, ± one standard deviation, and between which bounds they are."
+    caption = "Constants of what was added to the model, ± one standard deviation, and within which 95 % lie."
     columns = ("effect", "constant", ">value", ">95 %")
     return html.table("Constants of the effects", caption, columns, rows) if rows else None
 

@@ -17,6 +17,7 @@ from hfanalysis.segment.kind import Kind, recognise
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
+from hfanalysis.segment.sanity import BESIDE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
 from hfanalysis.segment.signals import Signal, live_signals
 from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.testdata.log import TestLog
@@ -97,59 +98,17 @@ def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
     """All events of a log. Raises AbsentError where nothing opens: a log with no firing in it."""
     signals = live_signals(log)
     _check_stated(definition, signals)
-    opening, unsure = _beside_hole(_opening(signals, definition), signals)
+    opening, unsure = beside_hole(_opening(signals, definition), signals)
     origin = opening.time
     shifted = {name: s.between(origin - 60.0, origin + LONGEST_RUN).shifted(origin) for name, s in signals.items()}
     dead = [f"{n} never changes or has no good samples: left out" for n in log.channels if n not in signals]
-    unsure += _strange_tank(shifted.get("p_tank"))
+    unsure += strange_tank(shifted.get("p_tank"))
     search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std)
     result = search.run()
     result = replace(result, warnings=(*dead, *unsure, *result.warnings))
     t_open = Quantity(opening.time, "s", max(opening.std, 1e-9), why=f"from {', '.join(opening.channels)}")
     engineer = tuple(name for name in ("t_open", *EVENTS) if name in definition.segments)
     return replace(result, t_open=t_open, engineer=engineer)
-
-
-SHOWN_BY = {"t_feed": "p_run", "t_v": "p_tank", "t_purge": "p_purge", "t_fuel_out": "p_chamber", "t_end": "p_chamber"}
-"""The channel that an event is looked for in first."""
-
-BESIDE = 0.1
-"""[s] before or after a hole of that channel in which an event found may be the hole's edge."""
-
-
-def _beside_hole(opening: Opening, signals: Mapping[str, Signal]) -> tuple[Opening, list[str]]:
-    """The opening, no surer than the hole of a channel that it was found in or beside; and what there is to say."""
-    for name in opening.channels:
-        found = signals[name].holes(opening.time - BESIDE, opening.time + BESIDE) if name in signals else ()
-        for start, end in found:
-            time, std = _within(opening.time, opening.std, start, end)
-            return replace(opening, time=time, std=std), [_unsure("t_open", name, start, end)]
-    return opening, []
-
-
-def _within(time: float, std: float, start: float, end: float) -> tuple[float, float]:
-    """An instant that lies anywhere in a hole [s], and its standard deviation."""
-    inside = start < time < end
-    return (time if inside else 0.5 * (start + end)), max(std, float((end - start) / np.sqrt(12.0)))
-
-
-def _unsure(event: str, channel: str, start: float, end: float) -> str:
-    return f"{event} lies in a hole of {channel}, which has no good samples from {start:.2f} to {end:.2f} s"
-
-
-IN_TANKS = (8e5, 130e5)
-"""Pressure [Pa] of any tank of nitrous oxide at rest, supercharged or not; another one is another unit's."""
-
-
-def _strange_tank(tank: Signal | None) -> list[str]:
-    """That the tank's pressure at rest is none of nitrous oxide."""
-    rest = tank.mean(-2.0, -0.1) if tank is not None else IN_TANKS[0]
-    if not np.isfinite(rest) or IN_TANKS[0] <= rest <= IN_TANKS[1]:
-        return []
-    return [
-        f"p_tank reads {rest / 1e5:.4g} bar before the opening, where a tank of nitrous oxide has "
-        f"{IN_TANKS[0] / 1e5:.0f} to {IN_TANKS[1] / 1e5:.0f} bar: is its unit right?"
-    ]
 
 
 def _check_stated(definition: TestDefinition, signals: Mapping[str, Signal]) -> None:
@@ -243,8 +202,8 @@ class _Search:
     def _seconds(self, name: str, time: float, std: float) -> Quantity:
         """An event's instant, no surer than the hole of its channel that it was found in or beside."""
         for start, end in self._holes(name, time - BESIDE, time + BESIDE):
-            time, std = _within(time, std, start, end)
-            self.warnings.append(_unsure(name, SHOWN_BY[name], start, end))
+            time, std = anywhere_in(time, std, start, end)
+            self.warnings.append(lies_in_hole(name, SHOWN_BY[name], start, end))
         return Quantity(time, "s", float(np.hypot(std, self.opening_std)))
 
     def _why_not(self, name: str, reason: str) -> str:

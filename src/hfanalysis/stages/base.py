@@ -13,7 +13,8 @@ A stage is a module of this package that says what it needs, what it writes and 
 Products that are not JSON are written to ``context.scratch("residuals.h5")``, a temporary name in the product folder.
 Nothing appears under its final name before ``run`` has returned. Optional fields: ``wants`` (stages to run first whose
 absence, AbsentError, does not stop this one: ask ``context.absent``), ``parameters`` (settings with their defaults,
-read with ``context.parameter("name")``; they are part of what decides whether a product is up to date) and ``adopts``
+read with ``context.parameter("name")``; they are part of what decides whether a product is up to date), ``least`` (the
+smallest value of those that have one) and ``adopts``
 (False for a stage that adopted effects do not change: neither their file nor products made with them are its input),
 ``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input).
 """

@@ -1,0 +1,56 @@
+"""Whether what was found can be so: events in holes of the log, and a tank's pressure that no nitrous oxide has."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from hfanalysis.segment.opening import Opening
+from hfanalysis.segment.signals import Signal
+
+SHOWN_BY = {"t_feed": "p_run", "t_v": "p_tank", "t_purge": "p_purge", "t_fuel_out": "p_chamber", "t_end": "p_chamber"}
+"""The channel that an event is looked for in first."""
+
+BESIDE = 0.1
+"""[s] before or after a hole of that channel in which an event found may be the hole's edge."""
+
+IN_TANKS = (8e5, 130e5)
+"""Pressure [Pa] of any tank of nitrous oxide at rest, supercharged or not; another one is another unit's."""
+
+
+def beside_hole(opening: Opening, signals: Mapping[str, Signal]) -> tuple[Opening, list[str]]:
+    """The opening, no surer than the hole of a channel that it was found in or beside; and what there is to say."""
+    for name in opening.channels:
+        found = signals[name].holes(opening.time - BESIDE, opening.time + BESIDE) if name in signals else ()
+        for start, end in found:
+            time, std = anywhere_in(opening.time, opening.std, start, end)
+            return replace(opening, time=time, std=std), [lies_in_hole("t_open", name, start, end)]
+    return opening, []
+
+
+def anywhere_in(time: float, std: float, start: float, end: float) -> tuple[float, float]:
+    """An instant [s] that may lie anywhere in a hole, and its standard deviation.
+
+    >>> anywhere_in(1.9, 0.01, 2.0, 3.2)[0]
+    2.6
+    """
+    inside = start < time < end
+    return (time if inside else 0.5 * (start + end)), max(std, float((end - start) / np.sqrt(12.0)))
+
+
+def lies_in_hole(event: str, channel: str, start: float, end: float) -> str:
+    """What is said of an event in a hole of its channel."""
+    return f"{event} lies in a hole of {channel}, which has no good samples from {start:.2f} to {end:.2f} s"
+
+
+def strange_tank(tank: Signal | None) -> list[str]:
+    """That the tank's pressure at rest is none of nitrous oxide, where it is none."""
+    rest = tank.mean(-2.0, -0.1) if tank is not None else IN_TANKS[0]
+    if not np.isfinite(rest) or IN_TANKS[0] <= rest <= IN_TANKS[1]:
+        return []
+    return [
+        f"p_tank reads {rest / 1e5:.4g} bar before the opening, where a tank of nitrous oxide has "
+        f"{IN_TANKS[0] / 1e5:.0f} to {IN_TANKS[1] / 1e5:.0f} bar: is its unit right?"
+    ]
