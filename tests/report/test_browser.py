@@ -9,6 +9,7 @@ import json
 import os
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,7 @@ from hfanalysis.campaign.page import page as campaign_page
 from hfanalysis.report.compare import compare
 from hfanalysis.report.page import page
 from hfanalysis.report.pdf import print_page
+from hfanalysis.testdata.log import Channel
 
 PRESSURES = '[data-chart="pressures"]'
 
@@ -455,3 +457,34 @@ def test_the_command_prints_the_page(tab: Page, path: Path, tmp_path: Path) -> N
     printed = print_page(path, tmp_path / "report.pdf")
     assert printed.read_bytes().startswith(b"%PDF")
     assert printed.stat().st_size > 50_000
+
+
+def test_no_line_goes_across_a_hole_of_the_log(tab: Page, tmp_path: Path) -> None:
+    made = material(tmp_path)
+    start, end = 1.5, 4.0
+
+    def without_rows(channel: Channel) -> Channel:
+        seconds = channel.time - made.opening
+        kept = (seconds <= start) | (seconds >= end)
+        parts = {name: getattr(channel, name)[kept] for name in ("time", "values", "flags")}
+        return replace(channel, **parts, raw=None if channel.raw is None else channel.raw[kept])
+
+    channels = {name: without_rows(channel) for name, channel in made.log.channels.items()}
+    holed = replace(made, log=replace(made.log, channels=channels))
+    (tmp_path / "report.html").write_text(page(holed), encoding="utf-8")
+    tab.forget()
+    opened = tab.open(tmp_path / "report.html")
+    seen, middle = ticks(opened), 0.5 * (start + end)
+    crossing = opened.ask(
+        f"""(() => {{
+            const at = [...document.querySelectorAll('{PRESSURES} .x-tick')].map((tick) => +tick.getAttribute('x'));
+            const [low, high] = [{seen[0]}, {seen[-1]}];
+            const x = at[0] + ({middle} - low) / (high - low) * (at[at.length - 1] - at[0]);
+            const paths = [...document.querySelectorAll('{PRESSURES} path.line')].map((p) => p.getAttribute('d'));
+            const runs = paths.flatMap((d) => d.split('M').filter(Boolean));
+            const spans = runs.map((run) => run.split('L').map((point) => parseFloat(point)));
+            return [paths.length, spans.filter((s) => Math.min(...s) < x && Math.max(...s) > x).length];
+        }})()"""
+    )
+    assert crossing[0] > 1
+    assert crossing[1] == 0
