@@ -203,6 +203,59 @@ def test_both_together_have_one_rate_but_not_one_law(products: dict[str, Any]) -
     assert together["n"]["value"] == pytest.approx(0.14, abs=0.05)
 
 
+EFFECTS = """
+[feed_line_fill]
+volume = "0.686 L"
+steepness = 1.27
+boiling = 0.982
+throttled = 0.665
+[injector_choked_vapor]
+weight = 0.368
+gamma = 1.223
+[n2_purge]
+area = "36.24 mm^2"
+supply_pressure = "38.23 bar"
+cracking_pressure = "4.276 bar"
+temperature = "293.6 K"
+line_to_valve = 0.07
+[tank_nonequilibrium]
+depth = "9.86 bar"
+delay = "0.203 s"
+sustained = 0.639
+"""
+"""What `hfa diagnose HF5 --apply` adopts."""
+
+
+@pytest.fixture(scope="module")
+def explained(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """HF5's products with the effects that its diagnosis names."""
+    root = tmp_path_factory.mktemp("explained")
+    shutil.copytree(ROOT / "raw_tests" / "HF5", root / "raw_tests" / "HF5")
+    (root / "engines").mkdir()
+    (root / "engines" / "HF5.effects.toml").write_text(EFFECTS, encoding="utf-8")
+    out = _run(root, "HF5", "validate")
+    return {name: json.loads((out / f"{name}.json").read_text()) for name in ("calibration", "validation", "segments")}
+
+
+def test_with_what_is_missing_m_is_that_of_nitrous_oxide(explained: dict[str, Any]) -> None:
+    m = explained["calibration"]["m"]
+    assert m["verdict"] == "identified"
+    assert 1.2 < m["value"] < 1.32
+    assert explained["calibration"]["one_by_one"]["m"]["value"] < 1.0
+
+
+def test_with_what_is_missing_every_channel_of_the_whole_engine_is_nearer(
+    products: dict[str, Any], explained: dict[str, Any]
+) -> None:
+    before, after = (p["validation"]["gap"]["full"] for p in (products["HF5"], explained))
+    for channel in ("p_tank", "p_run", "p_chamber", "thrust"):
+        for phase, left in after[channel].items():
+            assert left["rms"] < before[channel][phase]["rms"], (channel, phase)
+    assert after["p_tank"]["nitrogen"]["rms"] < 0.02 * before["p_tank"]["nitrogen"]["rms"]
+    measured, model = (explained["validation"]["performance"][arm]["total_impulse"] for arm in ("measured", "model"))
+    assert abs(model["value"] - measured["value"]) < 2.0 * np.hypot(measured["std"], model["std"])
+
+
 @pytest.mark.parametrize("name", ["HF4", "HF5"])
 def test_replicas_are_called_replicas(products: dict[str, Any], name: str) -> None:
     assert all(products[name][p]["source"] == "replica" for p in ("segments", "calibration", "validation"))

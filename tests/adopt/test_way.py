@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.adopt.firing import make_root
+from tests.adopt.firing import NOISE, make_root
+from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
@@ -99,12 +100,45 @@ def test_m_returns_to_what_it_is_once_the_heat_is_known(root: Path, base: dict[s
     swallowed, back = base["calibration"]["m"], found["m"]
     assert abs(back["value"] - 1.1) < 0.5 * abs(swallowed["value"] - 1.1)
     assert back["value"] == pytest.approx(1.1, abs=0.03)
-    assert any("adopted effects acting" in note for note in found["notes"])
+    assert any("fitted together" in note for note in found["notes"])
+
+
+def test_what_is_fitted_together_is_true_and_the_engine_meets_every_channel(root: Path) -> None:
+    """Load and temperature are those of the stand, the liquid ends when it did, and nothing is left in the chamber."""
+    adopted = f'[tank_heat]\npower = "{HEAT} W"\n[load_cell_drift]\ndrift = "80 N"\ntime = "3 s"\n'
+    found = done(root, ALL, adopted)
+    calibration, stand = found["calibration"], engine_on_stand()
+    true = {
+        "C_i": C_I, "m": stand.polytropic_exponent, "oxidizer_mass_fitted": stand.oxidizer_mass,
+        "tank_temperature": stand.temperature, "a": stand.a, "n": stand.n,
+    }  # fmt: skip
+    for name, value in true.items():
+        assert abs(calibration[name]["value"] - value) < 4.0 * calibration[name]["std"], name
+        assert calibration[name]["std"] < 0.1 * value, name
+    assert calibration["oxidizer_mass"]["value"] == 8.35  # as weighed
+    rate = calibration["regression_rate_reference"]
+    flux = calibration["regression"]["reference_flux"]["value"]
+    assert rate["value"] == pytest.approx(stand.a * flux**stand.n, rel=0.01)
+    gaps = found["validation"]["gap"]["full"]
+    for channel, phases in gaps.items():
+        for phase, left in phases.items():
+            assert left["rms"] < 4.0 * NOISE[channel], (channel, phase)
+
+
+def test_constants_found_one_by_one_are_kept_beside(root: Path) -> None:
+    found = done(root, "calibrate", f'[tank_heat]\npower = "{HEAT} W"\n')["calibration"]
+    assert {"C_i", "K_loss", "m", "a", "n"} <= set(found["one_by_one"])
+    assert found["one_by_one"]["m"]["value"] != found["m"]["value"]
+
+
+def test_a_sensors_effect_alone_leaves_the_constants_one_by_one(root: Path) -> None:
+    found = done(root, "calibrate", '[load_cell_drift]\ndrift = "80 N"\ntime = "3 s"\n')["calibration"]
+    assert "one_by_one" not in found
 
 
 def test_next_to_no_heat_is_next_to_no_change(root: Path, base: dict[str, dict[str, Any]]) -> None:
-    """The vapour phase on the engine's equations is the report's, but for the order of its steps."""
-    found = done(root, "calibrate", '[tank_heat]\npower = "1e-6 W"\n')["calibration"]
+    """One by one, the vapour phase on the engine's equations is the report's, but for the order of its steps."""
+    found = done(root, "calibrate", '[tank_heat]\npower = "1e-6 W"\n')["calibration"]["one_by_one"]
     for name, off in (("m", 2e-3), ("C_i", 1e-6), ("K_loss", 1e-6)):
         assert found[name]["value"] == pytest.approx(base["calibration"][name]["value"], rel=off)
     # this burn tells little of n: its fit ends within a hundredth of n's deviation, and starts elsewhere as m differs

@@ -26,7 +26,7 @@ class Calibration:
     def to_json(self) -> dict[str, Any]:
         """The content of calibration.json."""
         return {
-            **self.quantities,
+            **{name: quantity.to_json() for name, quantity in self.quantities.items()},
             "rest": self.rest.to_json() if self.rest else None,
             "C_i_history": self.history.to_json() if self.history else None,
             "tank_history": self.tank_history.to_json() if self.tank_history else None,

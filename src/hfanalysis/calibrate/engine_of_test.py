@@ -153,12 +153,31 @@ def loss_factor(calibration: Mapping[str, Any]) -> float:
     return max(float(calibration["K_loss"]["value"] or 0.0), 0.0)
 
 
+FITTED_MASS, FITTED_TEMPERATURE = "oxidizer_mass_fitted", "tank_temperature"
+"""In calibration.json with adopted effects: the load, and its temperature at the opening, fitted with all else."""
+
+ONE_BY_ONE = "one_by_one"
+"""There too: the constants that are fitted together as they are one after the other, the load as it was weighed."""
+
+
 def loaded_mass(definition: TestDefinition, calibration: Mapping[str, Any]) -> float:
     """The oxidizer that the calibration worked with [kg]."""
-    found = calibration.get("oxidizer_mass") or {"value": None, "reason": "not calibrated"}
+    found = mass_of(calibration)
     if found["value"] is None:
         raise AbsentError(f"test {definition.test.id}: the loaded oxidizer is not known ({found['reason']})")
     return float(found["value"])
+
+
+def mass_of(calibration: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The load of calibration.json, as a quantity: fitted with adopted effects, else as stated."""
+    found = calibration.get(FITTED_MASS) or calibration.get("oxidizer_mass")
+    return found or {"value": None, "reason": "not calibrated"}
+
+
+def one_by_one(calibration: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The constants as they are one after the other, which close the balance of the load as it was weighed."""
+    found: Mapping[str, Any] = calibration.get(ONE_BY_ONE) or calibration
+    return found
 
 
 def exponent(calibration: Mapping[str, Any]) -> tuple[float, float]:

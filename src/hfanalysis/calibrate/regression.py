@@ -247,9 +247,8 @@ def result(found: Fitted) -> RegressionResult:
     n_low, n_high = found.surface.interval(np.array([0.0, 1.0]))
     a_low, a_high = found.surface.interval(np.array([1.0, -log(found.flux)]))
     n_std = 0.5 * (n_high - n_low) / NORMAL_95
-    apart = found.surface.bounded and n_std <= WIDEST_N
     law = found.law
-    verdict, why = _judged(apart, (n_low, n_high), n_std, flux, spread)
+    verdict, why = judge_regression(found.surface.bounded, (n_low, n_high), n_std, flux, spread)
     known = spread <= WIDEST_RATE
     a_std = law.a * 0.5 * (a_high - a_low) / NORMAL_95
     quantities = {
@@ -258,14 +257,25 @@ def result(found: Fitted) -> RegressionResult:
         "regression_rate_reference": Quantity(
             exp(ln_rate), "m/s", exp(ln_rate) * spread, (exp(low), exp(high)),
             verdict=IDENTIFIED if known else NOT_IDENTIFIABLE,
-            why=f"rate at an oxidizer flux of {flux:.0f} kg/(m^2 s), where the test tells it best: ln a + n ln G_ref",
+            why=rate_at(flux),
         ),
     }  # fmt: skip
     return RegressionResult(quantities, _about(found, flux))
 
 
-def _judged(apart: bool, interval: tuple[float, float], std: float, flux: float, spread: float) -> tuple[str, str]:
-    if not apart:
+def rate_at(flux: float) -> str:
+    """What the rate at the reference flux [kg/m^2/s] is."""
+    return f"rate at an oxidizer flux of {flux:.0f} kg/(m^2 s), where the test tells it best: ln a + n ln G_ref"
+
+
+def judge_regression(
+    bounded: bool, interval: tuple[float, float], std: float, flux: float, spread: float
+) -> tuple[str, str]:
+    """Verdict on a and n, and why, from the interval and deviation of n and the relative one of the rate at ``flux``.
+
+    ``bounded``: whether the interval is one, and not the end of where it was looked.
+    """
+    if not bounded or std > WIDEST_N:
         return NOT_IDENTIFIABLE, (
             f"a and n are not told apart (n to +/- {std:.2f} or worse); what is identified is their combination, the "
             f"rate at {flux:.0f} kg/(m^2 s), to {100.0 * spread:.1f} %"

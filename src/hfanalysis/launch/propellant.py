@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.calibrate.engine_of_test import one_by_one
 from hfanalysis.calibrate.histories import Histories
 from hfanalysis.calibrate.loaded_mass import load_cell_mass
 from hfanalysis.errors import AbsentError
@@ -172,7 +173,8 @@ def _through_injector(
     assert definition.tank.volume is not None
     assert definition.injector is not None
     assert definition.injector.area is not None
-    volume, area = definition.tank.volume.value, calibration["C_i"]["value"] * definition.injector.area.value
+    discharge = one_by_one(calibration)["C_i"]["value"]  # which empties the tank of what was weighed
+    volume, area = definition.tank.volume.value, discharge * definition.injector.area.value
     source = saturation_of(definition.model.properties)
     histories = Histories.of(log, segments, definition, float(time[-1]))
     t_v = segments.time("t_v") or float(time[-1])
@@ -235,7 +237,7 @@ def _exponent(definition: TestDefinition, calibration: Mapping[str, Any] | None)
     grain = definition.grain
     if grain is not None and grain.n is not None:
         return grain.n, "[grain] n"
-    found = (calibration or {}).get("n") or {}
+    found = one_by_one(calibration or {}).get("n") or {}
     if found.get("value") is not None and 0.0 < found["value"] <= 2.0:
         return float(found["value"]), "calibrated n"
     return PARAFFIN_EXPONENT, "no n is known: taken as for paraffin"

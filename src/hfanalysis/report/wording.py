@@ -37,6 +37,8 @@ NAMES: dict[str, str] = {
     "peak_thrust": "peak thrust",
     "average_thrust": "average thrust",
     "oxidizer_mass": "oxidizer used",
+    "oxidizer_mass_fitted": "load that the model needs",
+    "tank_temperature": "oxidizer's temperature at the opening",
     "fuel_mass": "fuel burned",
     "total_impulse_of_file": "the file's whole integral",
     "apogee": "apogee above ground",

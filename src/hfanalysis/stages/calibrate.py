@@ -7,9 +7,10 @@ the same.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from hfanalysis.errors import AbsentError
 from hfanalysis.stages.base import Context, Stage
 
 if TYPE_CHECKING:
@@ -20,9 +21,29 @@ def run(context: Context) -> None:
     """Calibrate the test's tank, then the regression with that tank's flow; with adopted effects both once more."""
     adopted = context.adopted()
     base = _calibration(context, ())
-    found = _calibration(context, adopted.acting) if adopted.acting else base
+    found = _with_effects(context, base, adopted.acting) if adopted.acting else base
     context.write_json("base_calibration.json", {**base, "effects": []})
     context.write_json("calibration.json", {**found, "effects": adopted.to_json()})
+
+
+def _with_effects(context: Context, base: Mapping[str, Any], effects: Sequence[Active]) -> dict[str, Any]:
+    """The same with adopted effects; where one acts on the engine, its constants are fitted together."""
+    from hfanalysis.adopt.together import fitted_together
+    from hfanalysis.diagnose.of_test import Subject
+    from hfanalysis.segment.phases import Segments
+    from hfanalysis.testdata.log import read_log
+
+    found = _calibration(context, effects)
+    if all(active.effect.of_sensor for active in effects):
+        return found
+    context.progress("fitting all constants together, adopted effects in", None)
+    segments = Segments.from_json(context.read_json("segments.json"))
+    subject = Subject(read_log(context.product("ingest.h5")), segments, base, context.definition)
+    try:
+        return fitted_together(subject, effects, found)
+    except AbsentError as missing:
+        alone = f"constants were found one by one, not together with the adopted effects: {missing}"
+        return {**found, "warnings": [*found["warnings"], alone]}
 
 
 def _calibration(context: Context, effects: Sequence[Active]) -> dict[str, Any]:
@@ -39,7 +60,7 @@ def _calibration(context: Context, effects: Sequence[Active]) -> dict[str, Any]:
     result = calibrate(log, segments, context.definition, int(context.parameter("samples")), effects)
     context.progress("fitting the regression", None)
     regression = regress(log, segments, context.definition, result, effects)
-    return {**regression.quantities, **result.to_json(), "regression": regression.about}
+    return {**regression.to_json(), **result.to_json()}
 
 
 STAGE = Stage(

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.engine_of_test import Regression, engine_of_test, starting_for
+from hfanalysis.calibrate.engine_of_test import FITTED_TEMPERATURE, Regression, engine_of_test, starting_for
 from hfanalysis.calibrate.histories import line_at
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.model import OUTPUTS, evaluate_rates
@@ -38,10 +38,19 @@ TANK_CELL = 0.05
 
 @dataclass(frozen=True)
 class FullRun:
-    """The engine as started, and its burn."""
+    """The engine as started, and its burn.
+
+    ``follows``: in the burn the oxidizer enters the chamber with the enthalpy that the tank's content has at that
+    moment, as where constants were fitted with adopted effects; else with that of the opening, which ``engine`` has.
+    """
 
     engine: Engine
     burnt: Burn
+    follows: bool = False
+
+    def burn(self, engine: Engine) -> Burn:
+        """Another engine's burn, like this one's."""
+        return _burn(engine, self.follows)
 
     def factor(self, site: str, times: Array) -> Array:
         """What effects make of one of the model's factors along the run, at ``times`` [s]; 1 without effects."""
@@ -92,12 +101,21 @@ def run_full(
     Raises AbsentError where the test does not state it or it is not calibrated.
     """
     law = Regression.of(calibration)
+    fitted = calibration.get(FITTED_TEMPERATURE)
+    if fitted is not None:  # with adopted effects, together with all else
+        engine = engine_of_test(definition, calibration, float(fitted["value"]), law, effects)
+        follows = definition.model.conventions != "report"
+        return FullRun(engine, _burn(engine, follows), follows)
     tank = Signal.of(log["p_tank"]).shifted(segments.t_open.value or 0.0)
     instant = segments.time("t_feed") or min(0.1, 0.1 * (segments.time("t_v") or 1.0))
     pressure = line_at(tank, instant)
     engine = engine_of_test(definition, calibration, _temperature(definition, pressure), law, effects)
     started = starting_for(engine, instant, pressure)
     return FullRun(started, burn(started, longest=LONGEST))
+
+
+def _burn(engine: Engine, follows: bool) -> Burn:
+    return burn(replace(engine, oxidizer_enthalpy=None) if follows else engine, longest=LONGEST)
 
 
 def _temperature(definition: TestDefinition, pressure: float) -> float:
@@ -115,7 +133,7 @@ def moved(full: FullRun, change: Mapping[str, float]) -> Burn:
     parts: dict[str, Any] = dict(change)
     feed: dict[str, Any] = {name: parts.pop(name) for name in ("area", "loss_factor") if name in parts}
     engine = replace(full.engine, feed=replace(full.engine.feed, **feed), **parts)
-    return burn(engine, longest=LONGEST)
+    return full.burn(engine)
 
 
 def compare_full(log: TestLog, segments: Segments, full: FullRun) -> list[Residual]:

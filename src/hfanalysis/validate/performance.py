@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.calibrate.engine_of_test import mass_of
 from hfanalysis.calibrate.evidence_of_test import VIDEO
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.engine.unsteady import Burn
@@ -257,10 +258,10 @@ def modelled(full: FullRun, calibration: Mapping[str, Any]) -> dict[str, Quantit
 
 def _changes(full: FullRun, calibration: Mapping[str, Any]) -> list[dict[str, float]]:
     """One standard deviation of each calibrated constant; a and n along and across their combination."""
-    engine, std = full.engine, {k: (calibration[k].get("std") or 0.0) for k in ("C_i", "m", "K_loss", "oxidizer_mass")}
+    engine, std = full.engine, {k: (calibration[k].get("std") or 0.0) for k in ("C_i", "m", "K_loss")}
     area = engine.feed.area * (1.0 + std["C_i"] / calibration["C_i"]["value"])
     changes = [{"area": area}, {"loss_factor": engine.feed.loss_factor + std["K_loss"]}]
-    changes.append({"oxidizer_mass": engine.oxidizer_mass + std["oxidizer_mass"]})
+    changes.append({"oxidizer_mass": engine.oxidizer_mass + (mass_of(calibration).get("std") or 0.0)})
     if engine.polytropic_exponent is not None and std["m"] > 0.0:
         changes.append({"polytropic_exponent": engine.polytropic_exponent + std["m"]})
     rate, flux = calibration["regression_rate_reference"], calibration["regression"]["reference_flux"]["value"]
