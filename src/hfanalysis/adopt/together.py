@@ -127,7 +127,7 @@ class _Constants:
             out["K_loss"] = self._quantity("loss_factor", "1/m^4", verdict=IDENTIFIED)
         out["m"] = self._exponent()
         stated = self.one_by_one["oxidizer_mass"]
-        said = f"fitted with all else; as weighed {stated['value']:.3f} kg ± {stated['std'] or 0.0:.3f} kg"
+        said = f"fitted with all else, from {stated['value']:.3f} kg, which is believed to 1 % at best"
         out[FITTED_MASS] = self._quantity("oxidizer_mass", "kg", verdict=IDENTIFIED, why=said)
         out[FITTED_TEMPERATURE] = self._quantity("temperature", "K", verdict=IDENTIFIED)
         return out

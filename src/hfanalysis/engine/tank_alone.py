@@ -25,6 +25,7 @@ from hfanalysis.engine.model import (
     O_OUTFLOW,
     O_OXIDIZER_FLOW,
     O_RUN_PRESSURE,
+    O_SHARE,
     O_TANK_PRESSURE,
     OUTPUTS,
     POLYTROPIC_EXPONENT,
@@ -113,6 +114,11 @@ class TankRun:
     def flow(self) -> Array:
         """Through the injector [kg/s]."""
         return self.outputs[:, O_OXIDIZER_FLOW]
+
+    @property
+    def nitrogen_share(self) -> Array:
+        """Of nitrogen in the flow, by mass."""
+        return self.outputs[:, O_SHARE]
 
     @property
     def leak(self) -> Array:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
+
+import numpy as np
 
 from hfanalysis.adopt.sensors import corrected
 from hfanalysis.calibrate.engine_of_test import Regression
@@ -143,9 +145,12 @@ class _Work:
             self.true, self.segments, self.calibration, self.definition, constant=False, effects=self.effects
         )
         time = histories_of.clock(self.log, self.segments, self.fire.end)
-        oxidizer = oxidizer_flow(self.true, self.segments, self.calibration, self.definition, alone, time)
+        flow = oxidizer_flow(self.true, self.segments, self.calibration, self.definition, alone, time)
         factor = full.factor("regression_factor", time)
-        return burn_fuel(full.engine, Regression.of(self.calibration), time, oxidizer, factor)
+        burnt = burn_fuel(full.engine, Regression.of(self.calibration), time, flow, factor)
+        # all that flows drives the regression, as in the engine; what of it is nitrogen is no oxidizer
+        nitrogen = np.interp(time, alone.measured.time, alone.nitrogen, left=0.0)
+        return replace(burnt, oxidizer=flow * (1.0 - nitrogen))
 
     def _chamber_forced(self, full: FullRun | None, flows: Flows | None) -> list[Residual]:
         if full is None or flows is None or isinstance(self.fire, str):

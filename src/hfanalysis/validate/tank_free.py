@@ -43,7 +43,8 @@ class TankAlone:
     through the injector [kg/s], ``mass`` [kg], liquid gone at ``t_v`` [s] (NaN: not).
 
     ``start`` is where it starts [s after the opening], ``exponent`` the calibrated one of the vapour (None: there is
-    none); ``factor``: what effects make of the injector's flow.
+    none); ``factor``: what effects make of the injector's flow; ``nitrogen``: its share of
+    the flow, by mass.
     """
 
     measured: Signal
@@ -56,6 +57,7 @@ class TankAlone:
     exponent: float | None
     run_pressure: Array
     factor: Array
+    nitrogen: Array
 
 
 def run_tank_alone(
@@ -96,7 +98,8 @@ def run_tank_alone(
     )
     run_pressure = chamber + 0.5 * run.flow**2 / (density * feed.area**2)  # report, eq. 3.2
     factor = np.ones(part.time.size)
-    return TankAlone(part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run_pressure, factor)
+    pure = np.zeros(part.time.size)
+    return TankAlone(part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run_pressure, factor, pure)
 
 
 def _with_effects(
@@ -125,7 +128,10 @@ def _with_effects(
     wet = ~(part.time >= run.t_v)
     liquid = saturation.liquid_density(np.where(wet, run.temperature, temperature))
     factor = run.injector_factor(feed.area, np.where(wet, liquid, run.mass / feed.volume))
-    return TankAlone(part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run.run_pressure, factor)
+    return TankAlone(
+        part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run.run_pressure, factor,
+        run.nitrogen_share,
+    )  # fmt: skip
 
 
 def run_tank_free(
