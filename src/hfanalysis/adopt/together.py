@@ -31,11 +31,9 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+from hfanalysis.validate.full import LONGEST
 
 Array = NDArray[np.float64]
-
-LONGEST = 60.0
-"""Seconds after which a burn that does not end is cut off."""
 
 TOLD = 0.8
 """Standard deviation of m, over what is known of it before, from which on the channels do not tell it."""
@@ -54,9 +52,12 @@ def fitted_together(subject: Subject, effects: Sequence[Active], one_by_one: Map
     """The content of calibration.json, its constants fitted together with ``effects`` in the model.
 
     ``subject``: the test with its base calibration, from which the fit starts; ``one_by_one``: the calibration with the
-    effects acting, whose other entries stay. Raises AbsentError where the test has no engine, or none that runs.
+    effects acting, whose other entries stay. Raises AbsentError where the test has no engine that runs, or no chamber
+    pressure to compare.
     """
     hypothesis, observed = subject.compared()
+    if "p_chamber" not in observed.names:
+        raise AbsentError("nothing of p_chamber is left to fit a and n to")
     engine = replace(hypothesis.engine, effects=(*hypothesis.engine.effects, *effects))
     found = Bench(observed).settled(replace(hypothesis, engine=engine))
     if found is None:
@@ -77,12 +78,14 @@ class _Constants:
         """The content of calibration.json."""
         mine = {**self._of_tank(), **self._derived(), **self._law()}
         kept = {name: self.one_by_one[name] for name in mine if name in self.one_by_one}
-        notes = [note for note in self.one_by_one["notes"] if not note.startswith("C_i and m:")]
         about = "C_i, K_loss, m, the load and its temperature, a and n: fitted together to all channels, with the "
         return {
             **self.one_by_one,
             **{name: quantity.to_json() for name, quantity in mine.items()},
-            "notes": [*notes, about + f"adopted effects held; one by one they are under {ONE_BY_ONE}"],
+            "notes": [
+                *self.one_by_one["notes"],
+                about + f"adopted effects held; one by one they are under {ONE_BY_ONE}",
+            ],
             "regression": self._about(),
             ONE_BY_ONE: kept,
         }
@@ -126,8 +129,8 @@ class _Constants:
         if any(free.name == "loss_factor" for free in self.found.fit.hypothesis.free):
             out["K_loss"] = self._quantity("loss_factor", "1/m^4", verdict=IDENTIFIED)
         out["m"] = self._exponent()
-        stated = self.one_by_one["oxidizer_mass"]
-        said = f"fitted with all else, from {stated['value']:.3f} kg, which is believed to 1 % at best"
+        before = self._free("oxidizer_mass")[0].center
+        said = f"fitted with all else, from {before:.3f} kg, which is believed to 1 % at best"
         out[FITTED_MASS] = self._quantity("oxidizer_mass", "kg", verdict=IDENTIFIED, why=said)
         out[FITTED_TEMPERATURE] = self._quantity("temperature", "K", verdict=IDENTIFIED)
         return out
@@ -143,10 +146,8 @@ class _Constants:
             return replace(found, verdict=NOT_IDENTIFIABLE, why=why)
         low, high = found.ci95
         if high < PHYSICAL_M[0] or low > PHYSICAL_M[1]:
-            lead = (
-                f"outside {PHYSICAL_M[0]} to {PHYSICAL_M[1]}, no property of nitrous oxide, as far as it may go from "
-            )
-            return replace(found, verdict=UNPHYSICAL, why=lead + before)
+            outside = f"outside {PHYSICAL_M[0]} to {PHYSICAL_M[1]}, no property of nitrous oxide"
+            return replace(found, verdict=UNPHYSICAL, why=f"{outside}, though drawn to {before}")
         return replace(found, verdict=IDENTIFIED, why="told by all channels together")
 
     def _derived(self) -> dict[str, Quantity]:
@@ -254,11 +255,9 @@ class _Constants:
             "tests": [test],
         }
 
-    def _of_chamber(self) -> dict[str, float | None]:
-        """How well the chamber's pressure is met, and by how many independent values; none where it was not logged."""
-        chamber = next((c for c in self.observed.channels if c.name == "p_chamber"), None)
-        if chamber is None:
-            return {"p_chamber_rms": None, "p_chamber_bias": None, "independent_samples": None}
+    def _of_chamber(self) -> dict[str, float]:
+        """How well the chamber's pressure is met, and by how many independent values."""
+        chamber = next(c for c in self.observed.channels if c.name == "p_chamber")
         left = residuals_of(self.found.fit, self.observed)["p_chamber"][flowing(chamber, self.observed)]
         return {
             "p_chamber_rms": float(np.sqrt(np.mean(left**2))),

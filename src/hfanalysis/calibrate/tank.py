@@ -119,7 +119,7 @@ class _Work:
         except (ArithmeticError, ValueError) as error:
             self.warnings.append(f"C_i and m were found without the adopted effects: {error}")
             return inputs, None
-        self.notes.append("C_i and m: found with the adopted effects acting on the tank, feed line and injector")
+        self.notes.append("C_i and m one by one: with the adopted effects acting on the tank, feed line and injector")
         return found
 
     def _check_fit(self, inputs: Inputs) -> None:

@@ -140,7 +140,7 @@ def _oxidizer(
     time: Array,
     loaded: float,
 ) -> Oxidizer:
-    if calibration is not None and segments is not None and calibration["C_i"]["value"]:
+    if calibration is not None and segments is not None and one_by_one(calibration)["C_i"]["value"]:
         return _through_injector(log, segments, calibration, definition, time, loaded)
     unknown = np.full(time.size, np.nan)
     cell = log.get("m_tank")

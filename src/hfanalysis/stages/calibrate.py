@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def run(context: Context) -> None:
-    """Calibrate the test's tank, then the regression with that tank's flow; with adopted effects both once more."""
+    """Calibrate the test's tank, then the regression with that tank's flow; with adopted effects all together."""
     adopted = context.adopted()
     base = _calibration(context, ())
     found = _with_effects(context, base, adopted.acting) if adopted.acting else base

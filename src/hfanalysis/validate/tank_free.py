@@ -43,8 +43,7 @@ class TankAlone:
     through the injector [kg/s], ``mass`` [kg], liquid gone at ``t_v`` [s] (NaN: not).
 
     ``start`` is where it starts [s after the opening], ``exponent`` the calibrated one of the vapour (None: there is
-    none); ``factor``: what effects make of the injector's flow; ``nitrogen``: its share of
-    the flow, by mass.
+    none); ``factor``: what effects make of the injector's flow; ``nitrogen``: its share of it.
     """
 
     measured: Signal
