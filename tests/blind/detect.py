@@ -55,10 +55,10 @@ def shifted(stand: Stand, q: Array) -> Stand:
 
 EXPONENT = [n[0] for n in NUISANCES].index("n")
 
-VALLEYS = (-0.1, -0.05, 0.05, 0.1)
+VALLEYS = (-0.2, -0.1, -0.05, 0.05, 0.1, 0.2)
 """How far from where a fit has ended n is tried as well."""
 
-NOT_HOPELESS = 2.0
+NOT_HOPELESS = 4.0
 """How many times the least chi-square a start there may have to be followed."""
 
 OPENING = 5e-3

@@ -27,6 +27,9 @@ SIGMA_EVENT = 4e-3
 """How well an instant can be seen [s]."""
 BEFORE = 1.0
 """Quiet time before the opening that is looked at [s]."""
+UNCHOKED = 1.8
+"""Ambient pressures below which no hot gas chokes a throat: ((k + 1) / 2)^(k / (k - 1)), 1.77 to 1.83 for k of 1.2 to
+1.3."""
 POINTS = (0.125, 0.375, 0.625, 0.875)
 """Where in a block the noise-free traces are evaluated."""
 
@@ -49,13 +52,16 @@ def _noise_covariance(sensor: se.Sensor, blocks: int) -> Array:
 
 @dataclass(frozen=True)
 class Observer:
-    """Compares runs with a reference run of the same test."""
+    """Compares runs with a reference run of the same test.
+
+    ``told``: for every channel, which of the ``used`` blocks count.
+    """
 
     stand: Stand
     reference: Histories
     centers: Array
     used: NDArray[np.bool_]
-    flowing: NDArray[np.bool_]
+    told: tuple[NDArray[np.bool_], ...]
     factors: tuple[Array, ...]
 
     @classmethod
@@ -68,8 +74,10 @@ class Observer:
             if np.isfinite(instant):
                 used &= (edges > instant + BLIND) | (edges + width < instant - BLIND)
         flowing = edges + width <= stand.closing
-        factors = _factors(stand, reference, instruments, edges, used, flowing)
-        return cls(stand, reference, edges, used, flowing[used], factors)
+        dying = (edges + width > _fire_out(stand, reference)) & (edges < stand.closing + BLIND)
+        told = tuple((flowing if i in TANK_SIDE else ~dying)[used] for i in range(len(s.CHANNELS)))
+        factors = _factors(stand, reference, instruments, edges, used, told)
+        return cls(stand, reference, edges, used, told, factors)
 
     def means(self, channels: Array, true: Histories) -> Array:
         """Block means (blocks, channels) of noise-free channels, at the reference's phase."""
@@ -91,7 +99,7 @@ class Observer:
 
     def whitened(self, means: Array, true: Histories) -> Array:
         """Block means over their noise, uncorrelated, and the instants over their uncertainty."""
-        parts = [np.concatenate([means[self.flowing | (i not in TANK_SIDE), i] for i in group]) for group in GROUPS]
+        parts = [np.concatenate([means[self.told[i], i] for i in group]) for group in GROUPS]
         white = [
             solve_triangular(f, p, lower=True, check_finite=False) for f, p in zip(self.factors, parts, strict=True)
         ]
@@ -109,16 +117,30 @@ TANK_SIDE = (s.P_TANK, s.P_RUN, s.P_PURGE, s.M_TANK)
 """Channels that test.toml excludes once the valve has closed: what is not in the test is no evidence."""
 
 
+def _fire_out(stand: Stand, true: Histories) -> float:
+    """When the fuel is gone or the nozzle has unchoked [s], whichever is first: the test's end for chamber and thrust.
+
+    How a chamber flushes then, and what a cold flow or a smouldering grain makes of it, no model knows to the per mille
+    that a sensor would show.
+    """
+    choked = np.flatnonzero(true.trace(s.P_CHAMBER) > UNCHOKED * stand.ambient)
+    unchoked = float(true.time[choked[-1]]) if choked.size else 0.0
+    return min(unchoked, true.t_fuel_out) if np.isfinite(true.t_fuel_out) else unchoked
+
+
 def _factors(
     stand: Stand,
     reference: Histories,
     instruments: se.Instruments,
     edges: Array,
     used: NDArray[np.bool_],
-    flowing: NDArray[np.bool_],
+    told: tuple[NDArray[np.bool_], ...],
 ) -> tuple[Array, ...]:
     n = len(edges)
-    kept = [used & flowing if i in TANK_SIDE else used for i in range(len(instruments.sensors))]
+    kept = []
+    for own in told:
+        kept.append(used.copy())
+        kept[-1][used] = own
     one = {
         i: toeplitz(_noise_covariance(x, n))[np.ix_(k, k)]
         for i, (x, k) in enumerate(zip(instruments.sensors, kept, strict=True))
@@ -127,15 +149,15 @@ def _factors(
     shake = se.narrow_band_covariance(
         (float(np.exp(-0.01)), 2.0 * np.pi * instruments.shake_frequency / se.RATE), (n + 1) * BLOCK
     )
-    swing = np.interp(edges + 0.5 * BLOCK / se.RATE, reference.time, se.envelope(reference, stand.ambient), left=0.0)[
-        used
-    ]
-    level = instruments.shake * np.where(swing[flowing[used]] > 0.0, 1.0, 0.1)
+    swing = np.interp(edges + 0.5 * BLOCK / se.RATE, reference.time, se.envelope(reference, stand.ambient), left=0.0)
+    level = instruments.shake * np.where(swing[kept[s.M_TANK]] > 0.0, 1.0, 0.1)
     weighed = np.ix_(kept[s.M_TANK], kept[s.M_TANK])
     one[s.M_TANK] = one[s.M_TANK] + toeplitz(block_covariance(shake, n))[weighed] * np.outer(level, level)
     joint = block_diag(one[s.P_CHAMBER], one[s.THRUST])
     o = instruments.oscillation
-    wave = toeplitz(block_covariance(se.narrow_band_covariance(o.poles, (n + 1) * BLOCK), n))[np.ix_(used, used)]
+    burning = kept[s.P_CHAMBER]
+    wave = toeplitz(block_covariance(se.narrow_band_covariance(o.poles, (n + 1) * BLOCK), n))[np.ix_(burning, burning)]
+    swing = swing[burning]
     amplitude = np.concatenate([swing, swing * o.coupling * np.pi * stand.throat_radius**2]) * o.relative
     joint += np.tile(wave, (2, 2)) * np.outer(amplitude, amplitude)
     blocks = [joint if len(g) > 1 else one[g[0]] for g in GROUPS]

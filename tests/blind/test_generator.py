@@ -173,6 +173,39 @@ def test_what_the_test_excludes_after_the_valve_has_closed_is_no_evidence() -> N
     assert not np.array_equal(observer.whitened(shifted, base), same)
 
 
+@pytest.mark.parametrize("seed", [7, 11])
+def test_how_a_chamber_flushes_after_its_fire_is_no_evidence(seed: int) -> None:
+    """A model of the flush to the per mille would see slivers of a hundredth of a millimetre in it."""
+    rng = np.random.default_rng(seed)
+    stand = st.draw(rng, burns_out=True)
+    channels, base = observed(stand, ())
+    observer = Observer.of(stand, base, se.draw(rng, "ar1"))
+    means, at = observer.means(channels, base), observer.centers[observer.used]
+    out = base.t_fuel_out
+    same = observer.whitened(means, base)
+    for first, last, counts in ((out, stand.closing, False), (out - 0.3, out - 0.1, True), (stand.closing, 99.0, True)):
+        moved, there = means.copy(), (at > first) & (at < last)
+        assert there.any()
+        moved[there, s.P_CHAMBER] += 1e4
+        moved[there, s.THRUST] += 10.0
+        assert np.array_equal(observer.whitened(moved, base), same) is not counts
+
+
+def test_a_nozzle_that_has_unchoked_ends_what_chamber_and_thrust_tell() -> None:
+    rng = np.random.default_rng(5)
+    stand = st.draw(rng, burns_out=False)
+    channels, base = observed(stand, ())
+    observer = Observer.of(stand, base, se.draw(rng, "ar1"))
+    means, at = observer.means(channels, base), observer.centers[observer.used]
+    ratio = np.interp(at, base.time, base.trace(s.P_CHAMBER)) / stand.ambient
+    unchoked, moved = (ratio < 1.7) & (at > base.t_v) & (at < stand.closing), means.copy()
+    assert unchoked.sum() > 20
+    moved[unchoked, s.P_CHAMBER] += 1e4
+    assert np.array_equal(observer.whitened(moved, base), observer.whitened(means, base))
+    moved[(ratio > 1.9) & (at > base.t_v), s.P_CHAMBER] += 1e4
+    assert not np.array_equal(observer.whitened(moved, base), observer.whitened(means, base))
+
+
 def test_a_heavier_tank_is_heavier_at_rest_too(stand: st.Stand, base: st.Histories) -> None:
     """As for the log, so for what calibration may make of it: else its cell at rest would tell the mass to grams."""
     observer = Observer.of(stand, base, se.draw(np.random.default_rng(9), "ar1"))

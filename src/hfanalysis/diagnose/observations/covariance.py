@@ -16,7 +16,7 @@ from hfanalysis.diagnose.observations.alignment import share
 from hfanalysis.diagnose.observations.blocks import TANK_AT_REST, Blocks
 from hfanalysis.diagnose.observations.channel import SHARE, Channel, averaged, range_of
 from hfanalysis.diagnose.observations.flow_end import WITHOUT_FIRE
-from hfanalysis.diagnose.observations.frame import BLOCK, EVENT_STD, Frame
+from hfanalysis.diagnose.observations.frame import BLOCK, Frame
 from hfanalysis.diagnose.observations.oscillation import oscillation
 from hfanalysis.diagnose.observations.recorded import LONGEST, TOGETHER, accuracy_of
 from hfanalysis.diagnose.observations.wander import Wander, roughness, wander_of
@@ -31,6 +31,10 @@ FILLING_ERROR, FILLING_TIME = 0.1, 0.1
 UNSTEADY_ZERO = 0.03
 """Part of its accuracy by which the zero of a sensor may move within a test, beside the wander that its quiet time
 shows. A zero that moves further is an effect, and has to be found as one."""
+
+LEAST_SHIFT = 1e-3
+"""Least standard deviation [s] of the seen end of the liquid, on which a run is laid over the measurement: a sample of a
+fast log. By how much a model's liquid may end at another instant is a matter of that instant, not of the channels."""
 
 SPEED_ORDER = 3
 """Order of the polynomials whose slope is a channel's speed on either side of the knee."""
@@ -130,7 +134,7 @@ def _moved_by_knee(blocks: Blocks, frame: Frame) -> Array:
             t = blocks.time[part] - instant
             speed = np.polyval(np.polyder(np.polyfit(t, blocks.value[part], SPEED_ORDER)), t)
             out[part] = speed * share(blocks.time[part], instant, instant, frame.fuel_out)
-    return np.asarray(out * max(deviation, EVENT_STD))
+    return np.asarray(out * max(deviation, LEAST_SHIFT))
 
 
 def _without_fire(blocks: Blocks, frame: Frame) -> tuple[Array, ...]:
