@@ -33,8 +33,8 @@ UNSTEADY_ZERO = 0.03
 shows. A zero that moves further is an effect, and has to be found as one."""
 
 LEAST_SHIFT = 1e-3
-"""Least standard deviation [s] of the seen end of the liquid, on which a run is laid over the measurement: a sample of a
-fast log. By how much a model's liquid may end at another instant is a matter of that instant, not of the channels."""
+"""Least standard deviation [s] of the seen end of the liquid, on which a run is laid over the measurement: a sample of
+a fast log. By how much a model's liquid may end at another instant is a matter of that instant, not of the channels."""
 
 SPEED_ORDER = 3
 """Order of the polynomials whose slope is a channel's speed on either side of the knee."""
