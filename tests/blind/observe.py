@@ -30,6 +30,8 @@ BEFORE = 1.0
 UNCHOKED = 1.8
 """Ambient pressures below which no hot gas chokes a throat: ((k + 1) / 2)^(k / (k - 1)), 1.77 to 1.83 for k of 1.2 to
 1.3."""
+FLUSHED = 0.5
+"""Time after the fire's end in which the run line feels the chamber flush [s]."""
 POINTS = (0.125, 0.375, 0.625, 0.875)
 """Where in a block the noise-free traces are evaluated."""
 
@@ -74,8 +76,12 @@ class Observer:
             if np.isfinite(instant):
                 used &= (edges > instant + BLIND) | (edges + width < instant - BLIND)
         flowing = edges + width <= stand.closing
-        dying = (edges + width > _fire_out(stand, reference)) & (edges < stand.closing + BLIND)
-        told = tuple((flowing if i in TANK_SIDE else ~dying)[used] for i in range(len(s.CHANNELS)))
+        fire_out = _fire_out(stand, reference)
+        dying = (edges + width > fire_out) & (edges < stand.closing + BLIND)
+        flushing = (edges + width > fire_out) & (edges < fire_out + FLUSHED)
+        # the tank side counts up to the closing: what test.toml excludes is no evidence
+        counts = {s.P_CHAMBER: ~dying, s.THRUST: ~dying, s.P_RUN: flowing & ~flushing}
+        told = tuple(counts.get(i, flowing)[used] for i in range(len(s.CHANNELS)))
         factors = _factors(stand, reference, instruments, edges, used, told)
         return cls(stand, reference, edges, used, told, factors)
 
@@ -113,15 +119,13 @@ class Observer:
 
 GROUPS = ((s.P_TANK,), (s.P_RUN,), (s.P_CHAMBER, s.THRUST), (s.P_PURGE,), (s.M_TANK,))
 """Channels whose noise goes together."""
-TANK_SIDE = (s.P_TANK, s.P_RUN, s.P_PURGE, s.M_TANK)
-"""Channels that test.toml excludes once the valve has closed: what is not in the test is no evidence."""
 
 
 def _fire_out(stand: Stand, true: Histories) -> float:
     """When the fuel is gone or the nozzle has unchoked [s], whichever is first: the test's end for chamber and thrust.
 
     How a chamber flushes then, and what a cold flow or a smouldering grain makes of it, no model knows to the per mille
-    that a sensor would show.
+    that a sensor would show; at first the run line, whose flow the chamber's pressure holds back, shows it as well.
     """
     choked = np.flatnonzero(true.trace(s.P_CHAMBER) > UNCHOKED * stand.ambient)
     unchoked = float(true.time[choked[-1]]) if choked.size else 0.0

@@ -191,6 +191,20 @@ def test_how_a_chamber_flushes_after_its_fire_is_no_evidence(seed: int) -> None:
         assert np.array_equal(observer.whitened(moved, base), same) is not counts
 
 
+def test_a_run_line_that_feels_the_flush_is_none_either() -> None:
+    rng = np.random.default_rng(7)
+    stand = st.draw(rng, burns_out=True)
+    channels, base = observed(stand, ())
+    observer = Observer.of(stand, base, se.draw(rng, "ar1"))
+    means, at = observer.means(channels, base), observer.centers[observer.used]
+    out = base.t_fuel_out
+    for first, last, counts in ((out, out + 0.45, False), (out - 0.3, out - 0.1, True), (out + 0.55, out + 0.8, True)):
+        moved, there = means.copy(), (at > first) & (at < last)
+        assert there.any()
+        moved[there, s.P_RUN] += 1e4
+        assert np.array_equal(observer.whitened(moved, base), observer.whitened(means, base)) is not counts
+
+
 def test_a_nozzle_that_has_unchoked_ends_what_chamber_and_thrust_tell() -> None:
     rng = np.random.default_rng(5)
     stand = st.draw(rng, burns_out=False)

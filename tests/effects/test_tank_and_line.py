@@ -18,14 +18,14 @@ AT_REST = float(engine_on_stand().saturation.pressure(engine_on_stand().temperat
 """The tank's pressure before anything flows [Pa]."""
 
 
-@pytest.mark.parametrize("lag", [0.02, 0.1, 2.0])
-def test_heat_keeps_the_tank_warmer_by_the_energy_it_brings(lag: float) -> None:
-    """Before anything flows or fades much: m c dT = P (t - tau (1 - exp(-t/tau))), with the saturated tank's own heat
-    capacity."""
-    warm = only("tank_heat", power=2000.0, lag=lag, fade=500.0)
+@pytest.mark.parametrize(("lag", "begun"), [(0.02, 0.0), (0.1, 0.0), (2.0, 0.0), (2.0, 0.4), (2.0, 1.0)])
+def test_heat_keeps_the_tank_warmer_by_the_energy_it_brings(lag: float, begun: float) -> None:
+    """Before anything flows or fades much: m c dT = P (t - (1 - s) tau (1 - exp(-t/tau))), with the saturated tank's
+    own heat capacity."""
+    warm = only("tank_heat", power=2000.0, lag=lag, fade=500.0, begun=begun)
     gain = channel(warm, "tank_temperature", 0.2) - channel(plain(), "tank_temperature", 0.2)
     _, by_temperature, _ = energy_derivatives(engine_on_stand().saturation.kernel_table, 16.5e-3, 8.2, 292.6)
-    brought = 2000.0 * (0.2 - lag * (1.0 - np.exp(-0.2 / lag)))
+    brought = 2000.0 * (0.2 - (1.0 - begun) * lag * (1.0 - np.exp(-0.2 / lag)))
     assert gain == pytest.approx(brought / by_temperature, rel=0.02)
 
 
@@ -39,6 +39,21 @@ def test_nitrogen_enters_from_the_opening_on_and_is_conserved() -> None:
     left = np.trapezoid(found.output("oxidizer_flow") * found.output("nitrogen_share"), found.time)
     assert held + left == pytest.approx(entered, rel=2e-3)
     assert held > 0.0
+
+
+def test_nitrogen_is_choked_below_the_critical_ratio_of_its_line() -> None:
+    """ISO 6358: mdot is that of the choked flow below p_2 / p_1 = b, and falls by an ellipse to nothing above."""
+    flows = {}
+    for b in (0.2, 0.5):
+        found = with_effects(effect("n2_purge").at(area=4e-7, supply_pressure=80e5, critical_ratio=b))
+        ratio = (found.output("tank_pressure") + 4.27e5) / 80e5
+        flow = found.output("nitrogen_inflow") / (4e-7 * 0.6847 * 80e5 / np.sqrt(296.8 * 293.15))
+        between = (ratio > b + 0.01) & (ratio < 0.95)
+        assert between.sum() > 10
+        assert flow[between] == pytest.approx(np.sqrt(1.0 - ((ratio[between] - b) / (1.0 - b)) ** 2), rel=2e-3)
+        flows[b] = flow[ratio < b]
+    assert flows[0.5].size > 10
+    assert flows[0.5] == pytest.approx(1.0, rel=2e-3)
 
 
 def test_the_wall_gives_what_it_loses_and_cools_behind_the_oxidizer() -> None:

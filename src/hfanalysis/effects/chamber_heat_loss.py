@@ -19,8 +19,8 @@ from hfanalysis.engine.sites import (
 )
 
 LOSS, EXPONENT, WARMING = range(3)
-REFERENCE_PRESSURE = 20e5
-"""Chamber pressure [Pa] at which the loss is stated."""
+REFERENCE_PRESSURE = 10e5
+"""Chamber pressure [Pa] at which the loss is stated: about the mean of a firing."""
 
 
 LATE = 5.0
@@ -58,17 +58,17 @@ EFFECT = Effect(
     reference="report, section 5.1 (sources of error: adiabatic combustion chamber); turbulent convection goes with "
     "p^0.8: Bartz, Jet Propulsion 27 (1957) 49; a thick wall takes the less "
     "the warmer it is: Carslaw and Jaeger, Conduction of Heat in Solids, 1959, section 2.7",
-    formula="T = T_ad / (1 + Q / (mdot c_p T_ad)),  Q = Q_20 (p_c / 20 bar)^k exp(t/tau) erfc(sqrt(t/tau))",
+    formula="T = T_ad / (1 + Q / (mdot c_p T_ad)),  Q = Q_10 (p_c / 10 bar)^k exp(t/tau) erfc(sqrt(t/tau))",
     sites=("temperature_factor",),
     parameters=(
-        Parameter("loss", "W", "heat flow into the cold walls at 20 bar", typical=1e5, low=0.0, high=2e6),
+        Parameter("loss", "W", "heat flow into the cold walls at 10 bar", typical=1e5, low=0.0, high=2e6),
         Parameter("exponent", "-", "power of the chamber pressure", 0.2, center=0.8, low=0.0, high=1.0, given=True),
         Parameter(
             "warming",
             "s",
             "k rho c of a thick wall over the gas's heat transfer coefficient squared",
-            150.0,
-            center=50.0,
+            300.0,
+            center=100.0,
             low=0.3,
             high=1e4,
         ),

@@ -46,7 +46,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("drift", "N", "where the zero ends", typical=100.0, low=-2000.0, high=2000.0),
         Parameter(
-            "time", "s", "in which the cell warms, at 10 bar in the chamber", 5.0, center=10.0, low=1.0, high=100.0
+            "time", "s", "in which the cell warms, at 10 bar in the chamber", 15.0, center=10.0, low=1.0, high=100.0
         ),
         Parameter(
             "exponent", "-", "power of the chamber pressure with which it warms", 0.35, center=0.5, low=0.0, high=1.0

@@ -12,9 +12,8 @@ from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
 from hfanalysis.engine.model import NITROGEN_CV, SPECIFIC_NITROGEN
 from hfanalysis.engine.sites import NITROGEN_INFLOW, P_TANK, RATES, T_TANK, TANK_HEAT, switch, term
 
-AREA, SUPPLY, CRACKING, TEMPERATURE, LINE_TO_VALVE = range(5)
+AREA, SUPPLY, CRACKING, TEMPERATURE, LINE_TO_VALVE, CRITICAL = range(6)
 GAMMA = 1.4
-CRITICAL = (2.0 / (GAMMA + 1.0)) ** (GAMMA / (GAMMA - 1.0))
 CHOKED = sqrt(GAMMA) * (2.0 / (GAMMA + 1.0)) ** (0.5 * (GAMMA + 1.0) / (GAMMA - 1.0))
 SMALL_SHARE = 1e-3
 """Share of the choked flow squared below which the flow falls linearly."""
@@ -38,7 +37,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if ratio >= 1.0:
         return
     # choked below the critical ratio, an ellipse above it (ISO 6358), bent to a finite slope where the valve closes
-    beyond = max((ratio - CRITICAL) / (1.0 - CRITICAL), 0.0)
+    beyond = max((ratio - p[CRITICAL]) / (1.0 - p[CRITICAL]), 0.0)
     share = 1.0 - beyond * beyond
     x = min(share / SMALL_SHARE, 1.0)
     bent = sqrt(share) * 0.5 * sqrt(x) * (3.0 - x)
@@ -54,7 +53,8 @@ def _line(times: Array, channels: Channels, values: Mapping[str, float]) -> dict
         return dict(channels)
     opens_at = values["supply_pressure"] - values["cracking_pressure"]
     driving = np.maximum(opens_at - channels["p_tank"], 1.0)
-    beyond = np.maximum((1.0 - driving / values["supply_pressure"] - CRITICAL) / (1.0 - CRITICAL), 0.0)
+    critical = values["critical_ratio"]
+    beyond = np.maximum((1.0 - driving / values["supply_pressure"] - critical) / (1.0 - critical), 0.0)
     share, at_valve = np.maximum(1.0 - beyond**2, 0.0), channels["p_tank"] + values["cracking_pressure"]
     dynamic = 0.5 * CHOKED**2 * values["supply_pressure"] ** 2 * share / np.maximum(at_valve, 1.0)
     dropped = values["line_to_valve"] ** 2 * dynamic * values["area"] / (values["area"] + LEAST_AREA)
@@ -85,6 +85,15 @@ EFFECT = Effect(
         ),
         Parameter(
             "line_to_valve", "-", "effective area of line and valve over that of the open valve", 0.6, 0.3, 0.01, 3.0
+        ),
+        Parameter(
+            "critical_ratio",
+            "-",
+            "pressure ratio below which the flow is choked: 0.53 in an ideal nozzle, 0.2 to 0.5 in valves",
+            0.12,
+            center=0.35,
+            low=0.0,
+            high=0.53,
         ),
     ),
     phases=("liquid", "vapor", "nitrogen"),

@@ -34,7 +34,7 @@ EFFECT = Effect(
     sites=("tank_pressure",),
     parameters=(
         Parameter("depth", "Pa", "lowest pressure below saturation", typical=2e5, low=0.0, high=2e6),
-        Parameter("delay", "s", "when it is lowest", 0.15, center=0.25, low=0.02, high=3.0),
+        Parameter("delay", "s", "when it is lowest", 0.35, center=0.25, low=0.02, high=3.0),
         Parameter("sustained", "-", "part of the depth that does not rebound", 0.3, center=0.2, low=0.0, high=1.0),
     ),
     phases=("liquid", "vapor"),

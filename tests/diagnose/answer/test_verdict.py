@@ -21,7 +21,8 @@ from hfanalysis.diagnose.answer.acting import acting
 from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judged, lost
 from hfanalysis.diagnose.answer.posterior import BEFORE, SET, UNSEEN, Scale, evidences_of, kind, scale, smallest_set
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
-from hfanalysis.diagnose.answer.verdict import _within, effects_product, verdict_of
+from hfanalysis.diagnose.answer.verdict import _within, effects_product, places, verdict_of
+from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
@@ -217,6 +218,28 @@ def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> No
         assert verdict.chosen.names == ()
     if label == "named":
         assert verdict.chosen.names == (verdict.top,)
+
+
+@pytest.mark.parametrize(("gain", "hinted"), [(3.9, False), (4.5, True), (20.0, False)])
+def test_what_is_too_little_for_a_claim_is_a_hint_of_the_place(gain: float, hinted: bool, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(verdict_module, "scale", Scale)
+    found = probable(("nozzle_throat_erosion", gain))
+    verdict = verdict_of(found)
+    rows = places(verdict, found)
+    assert (verdict.hint is not None) == hinted
+    if verdict.label == "none":
+        assert verdict.chosen.names == ()
+        assert [(row["equation"], row["hint"]) for row in rows] == ([("nozzle", True)] if hinted else [])
+    else:
+        assert not any("hint" in row for row in rows)
+    sentences = [place_sentence(row) for row in rows]
+    assert ("hint" in " ".join(sentences)) == hinted
+
+
+def test_no_hint_of_what_is_no_likelier_than_none(monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    doubtful = Scale(offsets={"none": 0.0, "named": -4.3, "unknown": 0.0})
+    monkeypatch.setattr(verdict_module, "scale", lambda: doubtful)
+    assert verdict_of(probable(("nozzle_throat_erosion", 4.5))).hint is None
 
 
 def with_set(gain: float, further: str = "load_cell_drift") -> Naming:

@@ -41,6 +41,13 @@ run) `benchmarks.blind calibrate` printed 4.1, 3.5, 3.3 and 3.1 as the largest o
 those of unknown sources; those need more, for a source that explains little is what two tables of nitrous oxide differ
 by."""
 
+LIKELIER = 1.5
+"""How much more probable than none a label has to be to be mentioned where nothing is claimed."""
+
+HINT = 4.0
+"""Log evidence from which on the place of a name that is likelier than none is given where nothing is claimed: where
+model and measurement differ may show before it can be said by what."""
+
 NAMED_FROM = 0.5
 """Probability from which on one name is the verdict; below, several are."""
 
@@ -49,7 +56,8 @@ NAMED_FROM = 0.5
 class Verdict:
     """``label``: none, named, ambiguous or unknown; probabilities of all labels; the candidate that is the answer.
 
-    ``partners``: probabilities of effects beside the first that is named.
+    ``partners``: probabilities of effects beside the first that is named. ``hint``: where nothing is claimed, what the
+    model differs by all the same if it does.
     """
 
     label: str
@@ -58,6 +66,7 @@ class Verdict:
     set90: list[str]
     chosen: Candidate
     partners: dict[str, float] = field(default_factory=dict)
+    hint: Candidate | None = None
 
     @property
     def added(self) -> tuple[str, ...]:
@@ -85,13 +94,25 @@ def verdict_of(found: Naming) -> Verdict:
     seen = any(evidences[k] >= LEAST_EVIDENCE[kind(k)] for k in claimed)
     top = max(claimed, key=lambda k: (claimed[k], k)) if seen and posterior["none"] < CLAIM else "none"
     chosen = _chosen(weighed, top)
-    if top in ("none", "unknown"):
+    if top == "none":
+        return Verdict(top, posterior, evidences, set90, chosen, hint=_hint(weighed, posterior, evidences))
+    if top == "unknown":
         return Verdict(top, posterior, evidences, set90, chosen)
     partners = partners_of(top, weighed)
     rivals = [name for name in set90 if name not in (top, "none")]
     sure = posterior[top] >= NAMED_FROM and not rivals and all(partners[n] >= SET for n in chosen.names[1:])
     beside = {name: posterior[top] * p for name, p in partners.items()}
     return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
+
+
+def _hint(found: Naming, posterior: Mapping[str, float], evidences: Mapping[str, float]) -> Candidate | None:
+    """The single effect that is likelier than none and has some evidence, though too little for a claim."""
+    likeliest = max(posterior, key=lambda k: (posterior[k], k))
+    if kind(likeliest) != "named" or evidences[likeliest] < HINT:
+        return None
+    if posterior[likeliest] < LIKELIER * posterior["none"]:
+        return None
+    return next((c for c in found.singles if c.names == (likeliest,)), None)
 
 
 def _believed(candidate: Candidate) -> Candidate:
@@ -159,9 +180,9 @@ def _within(parameter: Parameter, value: float, std: float) -> Quantity:
 
 def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     """Where, when and how much: the source of every named effect, or the unknown one."""
-    if verdict.label == "none":
-        return []
     observed, chosen = found.bench.observed, verdict.chosen
+    if verdict.label == "none":
+        return [] if verdict.hint is None else [_of_hint(verdict.hint, found)]
     gain = chosen.log_evidence - found.base.log_evidence
     out = []
     if chosen.unknown:
@@ -174,6 +195,13 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
         row = of_unknown(course_of(beside.fit, beside.names[-1], observed), rest, observed.phases)
         out.append({**row, "beside": True, "significance": min(rest, 0.5 * out[-1]["significance"])})
     return out
+
+
+def _of_hint(hint: Candidate, found: Naming) -> dict[str, Any]:
+    """The row of what is not claimed."""
+    source = acting(hint.fit, hint.names[0], found.bench.observed)
+    gain = hint.log_evidence - found.base.log_evidence
+    return {**of_acting(hint.names[0], source, gain, found.bench.observed.phases), "hint": True}
 
 
 def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:

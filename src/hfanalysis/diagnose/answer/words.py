@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.diagnose.observations.observed import FADE
 from hfanalysis.quantity import Quantity
 
@@ -29,9 +30,6 @@ _BY_UNIT = {
 
 LIKELY = 0.1
 """Probability from which on an effect that may be beside the first is mentioned."""
-
-LIKELIER = 1.5
-"""How much more probable than none a label has to be to be mentioned where nothing is claimed."""
 
 MUCH = 1.3
 """Chi-square per observation from which on more is left than noise that was estimated a little too small."""
@@ -125,6 +123,7 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     where = _BY_UNIT.get((row["equation"], row["source"].unit), EQUATIONS[row["equation"]])
     where += f" ({row['channel']})" if row.get("channel") else ""
     left = " Beside what is named, this is still open." if row.get("beside") else ""
+    left += " That is a hint, and no finding." if row.get("hint") else ""
     if "opens_in" in row:
         opens = row["opens_in"]
         return (

@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-SIZES = (1.0, 0.3, 0.1, 0.03, 0.01)
-"""Sizes relative to the typical one, each as probable as the others."""
+SIZES = (2.0, 1.0, 0.3, 0.1, 0.03, 0.01)
+"""Deviations of a strength (as x), each as probable as the others: 1 is about the typical size, 2 some four times as
+much, for a strength is the hyperbolic sine of its x."""
 
 HOW_MANY = (0.75, 0.15, 0.10)
 """Probability that one, two or three of an effect's strengths are not nothing."""
