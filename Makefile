@@ -73,12 +73,13 @@ lint: $(STAMP) ## ruff and mypy
 format: $(STAMP) ## format the code with ruff
 	$(BIN)/ruff format
 
-benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers, a 1 GB log beside pandas
+benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers, localisation, a 1 GB log beside pandas
 	$(BIN)/python benchmarks/startup.py
 	PYTHONPATH=. $(BIN)/python benchmarks/engine_speed.py
 	PYTHONPATH=. $(BIN)/python benchmarks/reference_engine.py
 	PYTHONPATH=. $(BIN)/python benchmarks/hrap_run.py
 	$(BIN)/python benchmarks/flights.py
+	$(BIN)/python benchmarks/localisation.py
 	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python benchmarks/ingest_1gb.py --gigabytes 1; fi
 
 # Only the tests and the benchmark use it: it has an environment of its own, and where it cannot be installed they go on

@@ -30,8 +30,6 @@ BEFORE = 1.0
 UNCHOKED = 1.8
 """Ambient pressures below which no hot gas chokes a throat: ((k + 1) / 2)^(k / (k - 1)), 1.77 to 1.83 for k of 1.2 to
 1.3."""
-FLUSHED = 0.5
-"""Time after the fire's end in which the run line feels the chamber flush [s]."""
 POINTS = (0.125, 0.375, 0.625, 0.875)
 """Where in a block the noise-free traces are evaluated."""
 
@@ -78,9 +76,8 @@ class Observer:
         flowing = edges + width <= stand.closing
         fire_out = _fire_out(stand, reference)
         dying = (edges + width > fire_out) & (edges < stand.closing + BLIND)
-        flushing = (edges + width > fire_out) & (edges < fire_out + FLUSHED)
         # the tank side counts up to the closing: what test.toml excludes is no evidence
-        counts = {s.P_CHAMBER: ~dying, s.THRUST: ~dying, s.P_RUN: flowing & ~flushing}
+        counts = {s.P_CHAMBER: ~dying, s.THRUST: ~dying, s.P_RUN: flowing & ~dying}
         told = tuple(counts.get(i, flowing)[used] for i in range(len(s.CHANNELS)))
         factors = _factors(stand, reference, instruments, edges, used, told)
         return cls(stand, reference, edges, used, told, factors)
@@ -122,10 +119,11 @@ GROUPS = ((s.P_TANK,), (s.P_RUN,), (s.P_CHAMBER, s.THRUST), (s.P_PURGE,), (s.M_T
 
 
 def _fire_out(stand: Stand, true: Histories) -> float:
-    """When the fuel is gone or the nozzle has unchoked [s], whichever is first: the test's end for chamber and thrust.
+    """When the fuel is gone or the nozzle has unchoked [s], whichever is first: the test's end for chamber, thrust and
+    the run line, whose flow the chamber's pressure holds back.
 
     How a chamber flushes then, and what a cold flow or a smouldering grain makes of it, no model knows to the per mille
-    that a sensor would show; at first the run line, whose flow the chamber's pressure holds back, shows it as well.
+    that a sensor would show.
     """
     choked = np.flatnonzero(true.trace(s.P_CHAMBER) > UNCHOKED * stand.ambient)
     unchoked = float(true.time[choked[-1]]) if choked.size else 0.0

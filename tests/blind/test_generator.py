@@ -198,7 +198,7 @@ def test_a_run_line_that_feels_the_flush_is_none_either() -> None:
     observer = Observer.of(stand, base, se.draw(rng, "ar1"))
     means, at = observer.means(channels, base), observer.centers[observer.used]
     out = base.t_fuel_out
-    for first, last, counts in ((out, out + 0.45, False), (out - 0.3, out - 0.1, True), (out + 0.55, out + 0.8, True)):
+    for first, last, counts in ((out, stand.closing, False), (out - 0.3, out - 0.1, True)):
         moved, there = means.copy(), (at > first) & (at < last)
         assert there.any()
         moved[there, s.P_RUN] += 1e4

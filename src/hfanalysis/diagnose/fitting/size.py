@@ -1,11 +1,11 @@
-"""How large an effect is, nobody knows beforehand: its typical size, or a tenth or a hundredth of it.
+"""How large an effect is, nobody knows beforehand: its typical size, four times that, or a tenth or a hundredth.
 
 A fit takes the strength of an effect for one of typical size, give or take. Where an effect turns out to be far
 smaller, that would cost it odds that it does not deserve, and the more so the finer the sensors see it; an unknown
-source, whose size is chosen, would win. So strengths have a mixture of priors, from the typical size down; where an
-effect has several strengths (one per transducer) most of its prior is that all but one of them are nothing. A fit's
-slopes tell what that changes in its evidence: the strengths' likelihood is Gaussian, with everything else integrated
-over.
+source, whose size is chosen, would win. So strengths have a mixture of priors, from four times the typical size down;
+where an effect has several strengths (one per transducer) most of its prior is that all but one of them are nothing. A
+fit's slopes tell what that changes in its evidence: the strengths' likelihood is Gaussian, with everything else
+integrated over.
 """
 
 from __future__ import annotations
