@@ -30,6 +30,9 @@ def _arguments(given: list[str] | None) -> argparse.Namespace:
         "--write", type=Path, help="instead of src/hfanalysis/diagnose/answer/probabilities.json"
     )
     parsers["calibrate"].add_argument("--only", metavar="CONSTANT", help="fit this one alone and hold the others")
+    parsers["calibrate"].add_argument(
+        "--pool", type=Path, metavar="FILE", help="with the constants of another fit, by their standard errors"
+    )
     parsers["calibrate"].add_argument("--mixed", action="store_true", help="even if several versions of the code ran")
     return parser.parse_args(given)
 
@@ -102,7 +105,7 @@ def _table(a: argparse.Namespace, folder: Any) -> int:
 
 
 def _calibrate(a: argparse.Namespace, folder: Any) -> int:
-    from .calibrate import Unfit, calibrate, calibrate_only, save
+    from .calibrate import Unfit, calibrate, calibrate_only, pooled, save
     from .folder import PROBABILITIES
     from .results import WrongSplit, results
 
@@ -115,6 +118,9 @@ def _calibrate(a: argparse.Namespace, folder: Any) -> int:
             lines, data = calibrate_only(found, a.only, json.loads(PROBABILITIES.read_text(encoding="utf-8")))
         else:
             lines, data = calibrate(found, a.split, a.mixed)
+        if a.pool:
+            data = pooled(data, json.loads(a.pool.read_text(encoding="utf-8")))
+            lines += ["", f"pooled with {a.pool}: T0 = {data['temperature']:.4g}, {data['offsets']}"]
         print("\n".join(lines))
         save(data, a.write) if a.write else save(data)
     except (Unfit, WrongSplit) as error:

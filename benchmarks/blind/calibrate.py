@@ -206,6 +206,40 @@ def to_json(one: Fitted, number: int, split: str, codes: Sequence[str]) -> dict[
     }
 
 
+def pooled(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
+    """Two fits to different cases as one, each constant by the inverse squares of its standard errors.
+
+    The temperature counts by its logarithm; that of the misfit left has to be none in both.
+    """
+    if one["temperature_per_leftover"] or other["temperature_per_leftover"]:
+        raise Unfit("constants of which the temperature goes with the misfit left are not pooled")
+    values, errors = {}, {}
+    for name in (*one["offsets"], "ln_temperature", "unexplained", "misled"):
+        if name == "none":
+            continue
+        both = [(_constant(data, name), data["standard_errors"][name]) for data in (one, other)]
+        if any(error is None for _, error in both):
+            raise Unfit(f"{name} has no standard error in one of the fits")
+        weight = np.array([error**-2 for _, error in both])
+        values[name] = float(weight @ [value for value, _ in both] / weight.sum())
+        errors[name] = float(weight.sum() ** -0.5)
+    return {
+        **one,
+        "temperature": float(np.exp(values.pop("ln_temperature"))),
+        **{name: values.pop(name) for name in ("unexplained", "misled")},
+        "offsets": {"none": 0.0, **values},
+        "standard_errors": {**one["standard_errors"], **errors},
+        "cases": one["cases"] + other["cases"],
+        "code": sorted({*one["code"], *other["code"]}),
+    }
+
+
+def _constant(data: dict[str, Any], name: str) -> float:
+    if name == "ln_temperature":
+        return float(np.log(data["temperature"]))
+    return float(data["offsets"].get(name, data.get(name)))
+
+
 def save(data: dict[str, Any], path: Path = PROBABILITIES) -> None:
     """Write the constants, whole; only those of the calibration split may go where the diagnosis reads them."""
     if path.resolve() == PROBABILITIES.resolve() and data["split"] != "calibration":

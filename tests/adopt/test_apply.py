@@ -40,6 +40,7 @@ NAMED = {
                 "power": {"value": 912.3456789, "unit": "W", "std": 152.1, "ci95": None},
                 "lag": {"value": 0.2345678, "unit": "s", "std": 0.1, "ci95": None},
                 "fade": {"value": 31.23456, "unit": "s", "std": 9.0, "ci95": None},
+                "begun": {"value": 0.4123456, "unit": "", "std": 0.2, "ci95": None},
             },
         }
     ],
@@ -52,7 +53,7 @@ def test_what_a_diagnosis_names_is_adopted(root: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert "tank_heat with probability 0.83" in text.splitlines()[1]
     assert "hfa diagnose T1 --retract" in text
-    assert opened(root).adopted().effects[0].values == (912.3456789, 0.2345678, 31.23456)
+    assert opened(root).adopted().effects[0].values == (912.3456789, 0.2345678, 31.23456, 0.4123456)
     adopt(opened(root), NAMED)  # a diagnosis may write over a diagnosis
     path.write_text('[tank_heat]\npower = "1 kW"\n', encoding="utf-8")
     with pytest.raises(InputError, match="found a file that no diagnosis wrote"):

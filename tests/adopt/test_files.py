@@ -58,7 +58,8 @@ def test_values_have_units_and_deviations(root: Path) -> None:
     )
     assert [a.effect.name for a in found.effects] == ["n2_purge", "tank_heat"]
     purge, heat = found.effects
-    assert heat.named == {"power": 900.0, "lag": 0.1, "fade": 20.0}  # what is not stated: its prior's center
+    # what is not stated: its prior's center
+    assert heat.named == {"power": 900.0, "lag": 2.0, "fade": 40.0, "begun": 0.5}
     assert purge.named["area"] == pytest.approx(8e-6)
     assert purge.named["temperature"] == pytest.approx(293.15)
     assert purge.named["supply_pressure"] == 38e5
@@ -79,7 +80,7 @@ def test_a_tests_own_file_takes_the_place_of_its_stands(root: Path) -> None:
     of_stand = adopted(root, '[tank_heat]\npower = "1 kW"\n[chamber_tap_lag]\nlag = "30 ms"\n', "paper")
     assert {a.effect.name for a in of_stand.effects} == {"tank_heat", "chamber_tap_lag"}
     own = adopted(root, '[tank_heat]\npower = "2 kW"\nlag = "500 ms"\n')
-    assert [(a.effect.name, a.values) for a in own.effects] == [("tank_heat", (2000.0, 0.5, 20.0))]
+    assert [(a.effect.name, a.values) for a in own.effects] == [("tank_heat", (2000.0, 0.5, 40.0, 0.5))]
 
 
 def test_a_teams_own_effect_is_adopted_in_the_unit_that_it_has(root: Path) -> None:
@@ -98,7 +99,7 @@ def test_a_teams_own_effect_is_adopted_in_the_unit_that_it_has(root: Path) -> No
         ('[tank_haet]\npower = "1 kW"', r"found 'tank_haet'; expected an effect; did you mean 'tank_heat'"),
         (
             '[tank_heat]\npwoer = "1 kW"',
-            r", tank_heat: found 'pwoer'; expected one of power, lag, fade; did you mean 'power'",
+            r", tank_heat: found 'pwoer'; expected one of power, lag, fade, begun; did you mean 'power'",
         ),
         ('[tank_heat]\npower = "1 bar"', r", tank_heat\.power: unit 'bar' is a unit of pressure"),
         ('[tank_heat]\npower = "1 kw_"', r", tank_heat\.power: unit 'kw_' is not a known unit"),

@@ -24,6 +24,12 @@ ALL = "all"
 HEAT = 4000.0
 """[W] that the log's tank received and the base model does not know of."""
 
+SHAPE = {"lag": 0.1, "fade": 20.0, "begun": 0.0}
+"""Of that heat: lag and fade [s], and the share that is there at once."""
+
+HEATED = f'[tank_heat]\npower = "{HEAT} W"\nlag = "0.1 s"\nfade = "20 s"\nbegun = 0\n'
+"""All of it, as it is adopted."""
+
 C_I = 0.2926
 """Of the stand's injector."""
 
@@ -33,7 +39,7 @@ SETTINGS = {"calibrate.samples": 40, "flight.flights": 50, "flight.gust_seeds": 
 @pytest.fixture(scope="module")
 def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A log with heat into the tank and a drift of the thrust cell."""
-    hidden = (effect("tank_heat").at(power=HEAT), effect("load_cell_drift").at(drift=80.0, time=3.0))
+    hidden = (effect("tank_heat").at(power=HEAT, **SHAPE), effect("load_cell_drift").at(drift=80.0, time=3.0))
     return make_root(tmp_path_factory.mktemp("root"), *hidden)
 
 
@@ -80,7 +86,7 @@ def test_the_hidden_heat_is_in_the_model_once_adopted_and_out_again_once_removed
     root: Path, base: dict[str, dict[str, Any]]
 ) -> None:
     before = hashes(root)
-    found = done(root, ALL, '[tank_heat]\npower = "4 +/- 0.3 kW"\n')
+    found = done(root, ALL, HEATED.replace(f"{HEAT} W", "4 +/- 0.3 kW"))
     # what the tank lacked is there: its pressure is explained to a fraction of what it was off by
     for mode in ("full", "tank_free"):
         assert gap(base, mode) > 0.5e5
@@ -96,7 +102,7 @@ def test_the_hidden_heat_is_in_the_model_once_adopted_and_out_again_once_removed
 
 
 def test_m_returns_to_what_it_is_once_the_heat_is_known(root: Path, base: dict[str, dict[str, Any]]) -> None:
-    found = done(root, "calibrate", f'[tank_heat]\npower = "{HEAT} W"\n')["calibration"]
+    found = done(root, "calibrate", HEATED)["calibration"]
     swallowed, back = base["calibration"]["m"], found["m"]
     assert abs(back["value"] - 1.1) < 0.5 * abs(swallowed["value"] - 1.1)
     assert back["value"] == pytest.approx(1.1, abs=0.03)
@@ -105,7 +111,7 @@ def test_m_returns_to_what_it_is_once_the_heat_is_known(root: Path, base: dict[s
 
 def test_what_is_fitted_together_is_true_and_the_engine_meets_every_channel(root: Path) -> None:
     """Load and temperature are those of the stand, the liquid ends when it did, and nothing is left in the chamber."""
-    adopted = f'[tank_heat]\npower = "{HEAT} W"\n[load_cell_drift]\ndrift = "80 N"\ntime = "3 s"\n'
+    adopted = HEATED + '[load_cell_drift]\ndrift = "80 N"\ntime = "3 s"\n'
     found = done(root, ALL, adopted)
     calibration, stand = found["calibration"], engine_on_stand()
     true = {
@@ -126,7 +132,7 @@ def test_what_is_fitted_together_is_true_and_the_engine_meets_every_channel(root
 
 
 def test_constants_found_one_by_one_are_kept_beside(root: Path) -> None:
-    found = done(root, "calibrate", f'[tank_heat]\npower = "{HEAT} W"\n')["calibration"]
+    found = done(root, "calibrate", HEATED)["calibration"]
     assert {"C_i", "K_loss", "m", "a", "n"} <= set(found["one_by_one"])
     assert found["one_by_one"]["m"]["value"] == pytest.approx(1.1, abs=0.03)
     assert "oxidizer_mass_fitted" not in found["one_by_one"]
@@ -205,7 +211,7 @@ def test_only_what_has_the_effect_in_it_is_redone(root: Path) -> None:
 def test_the_base_model_is_what_a_diagnosis_starts_from(root: Path, base: dict[str, dict[str, Any]]) -> None:
     done(root, "calibrate")
     before = hashes(root, "base_calibration.json", "ingest.h5", "segments.json")
-    found = done(root, "calibrate", '[tank_heat]\npower = "4 kW"\n')
+    found = done(root, "calibrate", HEATED)
     assert hashes(root, *before) == before
     assert numbers(found["base_calibration"]) == numbers(base["calibration"])
     assert found["calibration"]["m"] != found["base_calibration"]["m"]

@@ -149,7 +149,7 @@ def ratio_of_fuel_flows(throat: float, exponent: float) -> float:
 
 
 def test_a_sliver_burns_longer_with_less_thrust_and_all_of_it_goes() -> None:
-    found = only("fuel_sliver", depth=0.8, width=3e-3)
+    found = only("fuel_sliver", depth=0.8, width=3e-3, tail=0.5)
     assert found.fuel_out
     assert found.burn_time > plain().burn_time + 0.3
     assert channel(found, "port_radius", 9.9) == pytest.approx(engine_on_stand().outer_radius, rel=1e-6)
@@ -158,8 +158,19 @@ def test_a_sliver_burns_longer_with_less_thrust_and_all_of_it_goes() -> None:
     assert channel(found, "fuel_flow", last) < 0.4 * channel(plain(), "fuel_flow", plain().burn_time - 0.01)
 
 
-def test_even_a_grain_that_shows_the_wall_all_over_burns_out() -> None:
-    assert only("fuel_sliver", depth=0.95, width=2e-2).time[-1] == pytest.approx(10.0)
+@pytest.mark.parametrize("tail", [0.5, 0.95])
+def test_even_a_grain_that_shows_the_wall_all_over_burns_out(tail: float) -> None:
+    assert only("fuel_sliver", depth=0.95, width=2e-2, tail=tail).time[-1] == pytest.approx(10.0)
+
+
+def test_remainders_of_any_thinness_fade_exponentially() -> None:
+    """k = 1 and all walls seen in the end: dr/dt = r' (R - r) / w."""
+    slow, even = (only("fuel_sliver", depth=1.0, width=6e-3, tail=k) for k in (0.97, 0.5))
+    left = [engine_on_stand().outer_radius - channel(slow, "port_radius", t) for t in (4.0, 5.0, 6.0)]
+    assert left[0] < 6e-3
+    # the flow of the vapour falls: so does the rate, but by less than half
+    assert 1.0 < np.log(left[0] / left[1]) / np.log(left[1] / left[2]) < 2.0
+    assert channel(slow, "port_radius", 9.9) < channel(even, "port_radius", 9.9)
 
 
 def test_an_igniter_gives_its_mass_and_lifts_the_chamber_for_its_duration() -> None:

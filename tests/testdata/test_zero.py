@@ -16,11 +16,19 @@ SITE = '[site]\nambient_pressure = "1.000 +/- 0.005 bar"\n'
 
 
 def ingested(
-    root: Path, *, bias: float = 0.1, drift: float = 0.0, tare: str = "auto", tail: float = 0.0, more: str = ""
+    root: Path,
+    *,
+    bias: float = 0.1,
+    drift: float = 0.0,
+    tare: str = "auto",
+    tail: float = 0.0,
+    shift: float = 0.0,
+    more: str = "",
 ) -> TestLog:
-    """A firing from 4 s to 8 s with a chamber pressure ``bias`` [bar] off and a cell that drifts [N]."""
+    """A firing from 4 s to 8 s: chamber pressure ``bias`` [bar] off, ``shift`` [bar] more from ignition on, and
+    a cell that drifts [N]."""
     rng = np.random.default_rng(5)
-    p = 1.0 + bias + 20.0 * ON + rng.normal(scale=0.02, size=len(T))
+    p = 1.0 + bias + shift * (T > 4.0) + 20.0 * ON + rng.normal(scale=0.02, size=len(T))
     rest = 30.0 + drift * np.clip((T - 4.0) / 4.0, 0.0, 1.0)
     f = rest + 2000.0 * ON + tail * np.exp(-(T - 8.0) / 3.0) * (T >= 8.0) + rng.normal(scale=2.0, size=len(T))
     toml = make.LOG + SITE + make.channel("p_chamber", "bar", 'zero = "ambient"', 'accuracy = "0.05 bar"')
@@ -34,6 +42,15 @@ def test_a_pressure_is_zeroed_to_ambient(tmp_path: Path) -> None:
     assert np.median(channel.values[T < 3.5]) == pytest.approx(1e5, abs=300)
     assert channel.zero_std == pytest.approx(500, rel=0.1)
     np.testing.assert_allclose(channel.raw - channel.values, channel.zero)
+
+
+@pytest.mark.parametrize("shift", [-6.0, -1.5, 0.5, 3.0])
+def test_a_transducer_that_ignition_shifts_is_zeroed_before_it(tmp_path: Path, shift: float) -> None:
+    """Down: it rests lower in the end than in the beginning, which is no firing."""
+    log = ingested(tmp_path, shift=shift)
+    assert log["p_chamber"].zero == pytest.approx(0.1e5, abs=300)
+    assert log["thrust"].zero == pytest.approx(30.0, abs=0.5)
+    assert np.median(log["p_chamber"].values[T > 9.0]) == pytest.approx(1e5 + 1e5 * shift, abs=600)
 
 
 def test_a_zero_far_from_ambient_is_refused_with_a_warning(tmp_path: Path) -> None:

@@ -23,6 +23,8 @@ SETTLED = 1.0
 """[s] of settled level needed after the firing."""
 SETTLING = 0.5
 """[s] after the firing before a zero may be taken."""
+SHIFTED = 0.4
+"""Part of the range of a channel by which its level may be shifted between the beginning and the end of a log."""
 LEAST = {"thrust": 10.0}
 """[SI] a departure must reach to be a firing (pressures: 0.3 bar)."""
 REFERENCES = ("p_chamber", "thrust", "p_run", "p_tank")
@@ -80,12 +82,21 @@ def _departure(trace: Trace, least: float) -> tuple[float, float] | None:
     threshold = base + max(0.05 * (top - base), 6.0 * noise)
     away = blocks.values > threshold
     step = float(np.median(np.diff(blocks.time)))
-    first = _first_run(away, max(3, round(SUSTAINED / step)))
+    base = max(base, _at_first(blocks, low + SHIFTED * (top - low), step))
+    threshold = base + max(0.05 * (top - base), 6.0 * noise)
+    first = _first_run(blocks.values > threshold, max(3, round(SUSTAINED / step)))
     if first is None:
         return None
     while first > 0 and blocks.values[first - 1] > base + 3.0 * noise:
         first -= 1
     return float(blocks.time[first]), float(blocks.time[np.flatnonzero(away)[-1]])
+
+
+def _at_first(blocks: Trace, most: float, step: float) -> float:
+    """The level that a log begins at, where it is one of rest, at ``most`` so high: a sensor that ignition has shifted
+    down rests lower in the end. Minus infinity where it begins higher."""
+    level = float(np.median(blocks.values[: max(3, round(SHORTEST / step))]))
+    return level if level < most else -np.inf
 
 
 def _first_run(mask: NDArray[np.bool_], length: int) -> int | None:

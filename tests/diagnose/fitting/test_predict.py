@@ -226,7 +226,7 @@ def test_a_probe_adds_its_splines_to_its_site() -> None:
     assert splines.at(dense) @ fitted == pytest.approx(heat, abs=0.02)
     coefficients = {f"c{i}": float(c) for i, c in enumerate(fitted)}
     probed = engine_on_stand(effects=(probe("tank_heat", splines, 1000.0).at(on=1.0, **coefficients),))
-    heated = engine_on_stand(effects=(effect("tank_heat").at(power=700.0, lag=1.0, fade=8.0),))
+    heated = engine_on_stand(effects=(effect("tank_heat").at(power=700.0, lag=1.0, fade=8.0, begun=0.0),))
     times = np.linspace(0.1, 3.9, 20)
     theirs, ours = (burn(e, 4.0, 1e-7, times=times).output("tank_pressure") for e in (heated, probed))
     assert ours == pytest.approx(theirs, rel=1e-6)

@@ -58,8 +58,17 @@ def test_what_does_not_tell() -> None:
     assert fade_of(both, logged.segments(t_fuel_out=Quantity.absent("not seen"))) is None
 
 
-def sliver(depth: float, width: float) -> Active:
-    return effect("fuel_sliver").at(depth=depth, width=width)
+def sliver(depth: float, width: float, tail: float = 0.5) -> Active:
+    return effect("fuel_sliver").at(depth=depth, width=width, tail=tail)
+
+
+@pytest.mark.parametrize("depth", [0.5, 0.8, 1.0])
+def test_webs_that_are_spread_evenly_fade_over_twice_their_mean_or_less(depth: float) -> None:
+    web = effect("fuel_sliver").fading_web
+    assert web is not None
+    found, thinner = (web(sliver(depth, 1e-3, tail).named) for tail in (0.5, 0.95))
+    assert found == pytest.approx(1e-3 / (1.0 - 0.5 * depth) * (1.0 - ((1.0 - depth) / 0.6) ** 2), rel=0.01)
+    assert found < thinner < 2.0 * found
 
 
 def test_a_fall_as_fast_as_a_chamber_empties_is_what_the_base_model_has() -> None:
@@ -80,9 +89,14 @@ def test_an_abrupt_end_takes_longer_in_a_roomier_chamber() -> None:
     assert with_abrupt_end(made.observed(), roomy).abrupt is None
 
 
-@given(some.floats(0.45, 0.9), some.floats(5e-5, 5e-3), some.sampled_from(["depth", "width"]))
-def test_slopes_of_a_fade_are_its_derivatives(depth: float, width: float, moved: str) -> None:
-    at = {"depth": depth, "width": width}
+@given(
+    some.floats(0.45, 0.98).filter(lambda depth: abs(depth - 0.9) > 1e-3),  # a surface that goes to a tenth: a corner
+    some.floats(5e-5, 5e-3),
+    some.floats(0.51, 0.95),
+    some.sampled_from(["depth", "width", "tail"]),
+)
+def test_slopes_of_a_fade_are_its_derivatives(depth: float, width: float, tail: float, moved: str) -> None:
+    at = {"depth": depth, "width": width, "tail": tail}
     step = 1e-4 * at[moved]
     ahead, behind = (
         fade_misfit(0.5, 0.012, engine_on_stand(effects=(sliver(**(at | {moved: at[moved] + side * step})),)), SPEED)
@@ -112,7 +126,7 @@ def test_a_fire_that_dies_slowly_speaks_for_slivers() -> None:
         [fit(h, test, x).log_evidence for test in (quick, slow)]
         for h, x in (
             (made.hypothesis(), made.truth()),
-            (made.hypothesis().with_effect(effect("fuel_sliver")), np.append(made.truth(), [1.2, -1.5])),
+            (made.hypothesis().with_effect(effect("fuel_sliver")), np.append(made.truth(), [1.2, -1.5, 0.0])),
         )
     )
     assert with_slivers[1] - base[1] > with_slivers[0] - base[0] + 8.0
@@ -121,7 +135,7 @@ def test_a_fire_that_dies_slowly_speaks_for_slivers() -> None:
 def test_slivers_are_a_source_where_the_fuel_ends() -> None:
     """As much fuel burns as in a fire that is out at once: less of it before, what is left after."""
     slow = made.replace(made.observed(), stated={FADE: (8.0 * abrupt_end(engine_on_stand()), UNSURE)})
-    found = fit(made.hypothesis().with_effect(effect("fuel_sliver")), slow, np.append(made.truth(), [1.2, -1.5]))
+    found = fit(made.hypothesis().with_effect(effect("fuel_sliver")), slow, np.append(made.truth(), [1.2, -1.5, 0.0]))
     source, gone = acting(found, "fuel_sliver", slow), slow.events["t_fuel_out"][0]
     there = source.mean != 0.0
     assert (source.equation, source.unit) == ("grain", "kg/s")

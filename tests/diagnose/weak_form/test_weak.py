@@ -68,7 +68,7 @@ def test_chi_square_is_as_large_as_its_degrees_of_freedom() -> None:
     ("power", "lag", "fade"), [(2000.0, 0.02, 500.0), (6000.0, 0.02, 8.0), (-3000.0, 0.02, 30.0), (6000.0, 2.0, 20.0)]
 )
 def test_heat_is_read_in_watts(power: float, lag: float, fade: float) -> None:
-    found = of(effect("tank_heat").at(power=power, lag=lag, fade=fade))
+    found = of(effect("tank_heat").at(power=power, lag=lag, fade=fade, begun=0.0))
     energy = found["tank_energy"]
     heat, liquid = power * (1.0 - np.exp(-energy.time / lag)) * np.exp(-energy.time / fade), wet(energy)
     assert energy.value[liquid] == pytest.approx(heat[liquid], rel=0.02, abs=20.0)
@@ -79,7 +79,7 @@ def test_heat_is_read_in_watts(power: float, lag: float, fade: float) -> None:
 
 def test_one_channel_cannot_tell_heat_from_flow() -> None:
     """The adiabatic tank reads heat as flow that does not leave: both residuals move."""
-    found = of(effect("tank_heat").at(power=6000.0))
+    found = of(effect("tank_heat").at(power=6000.0, begun=1.0))
     injector = found["injector"].value[wet(found["injector"])]
     assert (injector < -0.08).all()
 
@@ -189,7 +189,7 @@ def test_test_functions_stay_out_of_gaps() -> None:
 
 
 def test_the_engines_own_effects_explain_what_they_do() -> None:
-    heat = effect("tank_heat").at(power=6000.0)
+    heat = effect("tank_heat").at(power=6000.0, begun=1.0)
     test = recorded(run_of(heat))
     found = residuals(test, engine_on_stand(effects=(heat,)))
     energy = found["tank_energy"]
@@ -198,7 +198,7 @@ def test_the_engines_own_effects_explain_what_they_do() -> None:
 
 
 def test_the_product_says_where_and_how_much() -> None:
-    heat = effect("tank_heat").at(power=6000.0)
+    heat = effect("tank_heat").at(power=6000.0, begun=1.0)
     entries = weak_product(tuple(residuals(recorded(run_of(heat), seed=5)).values()))
     entry = entries["tank_energy"]
     mean, start = entry["mean"], entry["t_start"]

@@ -17,7 +17,7 @@ from hfanalysis.diagnose.observations.observed import FADE, Observed
 Array = NDArray[np.float64]
 
 STRENGTH, SHAPES = 1.2, np.linspace(-4.0, 2.0, 25)
-"""Strength and shapes (as x) of the surfaces of which the one is taken that fades as long as measured."""
+"""Strength and first shape (as x) of the surfaces of which the one is taken that fades as long as measured."""
 
 
 def fades(search: Search, name: str) -> bool:
@@ -31,8 +31,9 @@ def fading_fit(parent: Fit, search: Search, name: str, observed: Observed) -> Fi
     own, strengths = slice(parent.x.size, None), search.catalogue.effects[name].strengths
 
     def start(shape: float) -> Array:
-        x = np.concatenate([parent.x, np.full(made.size - parent.x.size, shape)])
+        x = np.concatenate([parent.x, np.zeros(made.size - parent.x.size)])
         x[parent.x.size : parent.x.size + strengths] = STRENGTH
+        x[parent.x.size + strengths] = shape
         return x
 
     nearest = min(map(start, SHAPES.tolist()), key=lambda x: abs(faded(observed, parent.burnt, made.at(x))))
