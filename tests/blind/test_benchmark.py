@@ -13,11 +13,12 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from benchmarks.blind import folder as fo
-from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, save, weights
+from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, pooled, save, weights
 from benchmarks.blind.document import document, without_effect, write
 from benchmarks.blind.fit import Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
@@ -321,6 +322,31 @@ def test_calibration_betters_the_stated_probabilities_and_keeps_to_its_split(
     mixed = results(folder, "calibration")
     with pytest.raises(Unfit, match="versions of the code"):
         calibrate(mixed, "calibration")
+
+
+def constants_with(temperature: float, named: float, error: float | None) -> dict[str, Any]:
+    names = ("ln_temperature", "named", "unknown", "unseen named", "unseen unknown", "unexplained", "misled")
+    return {
+        "temperature": temperature, "temperature_per_leftover": 0.0, "misled": 0.02, "unexplained": 0.0, "cases": 100,
+        "offsets": {"none": 0.0, "named": named, "unknown": -3.0, "unseen named": -4.0, "unseen unknown": -2.0},
+        "standard_errors": {**dict.fromkeys(names, error), "per_leftover": None}, "split": "calibration", "code": ["a"],
+    }  # fmt: skip
+
+
+def test_two_fits_count_by_their_standard_errors() -> None:
+    one, other = constants_with(1.0, -2.0, 0.1), constants_with(4.0, -4.0, 0.2)
+    found = pooled(one, other)
+    assert found["temperature"] == pytest.approx(4.0**0.2)
+    assert found["offsets"] == pytest.approx(
+        {"none": 0.0, "named": -2.4, "unknown": -3.0, "unseen named": -4.0, "unseen unknown": -2.0}
+    )
+    assert (found["misled"], found["unexplained"]) == pytest.approx((0.02, 0.0))
+    assert found["standard_errors"]["named"] == pytest.approx(1.0 / np.sqrt(125.0))
+    assert (found["cases"], found["code"], found["split"]) == (200, ["a"], "calibration")
+    with pytest.raises(Unfit, match="no standard error"):
+        pooled(one, constants_with(1.0, -2.0, None))
+    with pytest.raises(Unfit, match="misfit left"):
+        pooled(one, {**other, "temperature_per_leftover": 0.1})
 
 
 def command(*arguments: str) -> list[str]:
