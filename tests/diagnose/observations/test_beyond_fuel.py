@@ -174,8 +174,8 @@ def test_the_truth_leaves_noise_and_a_fire_that_burns_on_does_not(late: bool) ->
 @pytest.mark.parametrize("late", [True, False])
 def test_slopes_are_differences_of_predictions(late: bool) -> None:
     made, test = hypothesis(late).with_effect(effect("tank_heat")), reduced(late)
-    assert made.names[-3:] == ("tank_heat.power", "tank_heat.lag", "tank_heat.fade")
-    x = np.concatenate([truth(late), [0.4, 1.0, -0.5]])
+    assert made.names[-4:] == ("tank_heat.power", "tank_heat.lag", "tank_heat.fade", "tank_heat.begun")
+    x = np.concatenate([truth(late), [0.4, 1.0, -0.5, 0.3]])
     here = predict(made, test, x, tangents=True)
     assert here.slopes is not None
     for k, name in enumerate(made.names):
