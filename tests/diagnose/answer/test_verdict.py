@@ -220,7 +220,7 @@ def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> No
         assert verdict.chosen.names == (verdict.top,)
 
 
-@pytest.mark.parametrize(("gain", "hinted"), [(3.9, False), (4.5, True), (20.0, False)])
+@pytest.mark.parametrize(("gain", "hinted"), [(4.4, False), (4.8, True), (20.0, False)])
 def test_what_is_too_little_for_a_claim_is_a_hint_of_the_place(gain: float, hinted: bool, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.setattr(verdict_module, "scale", Scale)
     found = probable(("nozzle_throat_erosion", gain))
@@ -239,7 +239,7 @@ def test_what_is_too_little_for_a_claim_is_a_hint_of_the_place(gain: float, hint
 def test_no_hint_of_what_is_no_likelier_than_none(monkeypatch) -> None:  # type: ignore[no-untyped-def]
     doubtful = Scale(offsets={"none": 0.0, "named": -4.3, "unknown": 0.0})
     monkeypatch.setattr(verdict_module, "scale", lambda: doubtful)
-    assert verdict_of(probable(("nozzle_throat_erosion", 4.5))).hint is None
+    assert verdict_of(probable(("nozzle_throat_erosion", 4.8))).hint is None
 
 
 def with_set(gain: float, further: str = "load_cell_drift") -> Naming:

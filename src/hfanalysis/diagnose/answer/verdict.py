@@ -44,9 +44,10 @@ by."""
 LIKELIER = 1.5
 """How much more probable than none a label has to be to be mentioned where nothing is claimed."""
 
-HINT = 4.0
+HINT = 4.5
 """Log evidence from which on the place of a name that is likelier than none is given where nothing is claimed: where
-model and measurement differ may show before it can be said by what."""
+model and measurement differ may show before it can be said by what. In 126 simulated tests that hide nothing the largest
+of a name that was not claimed was 4.2."""
 
 NAMED_FROM = 0.5
 """Probability from which on one name is the verdict; below, several are."""
