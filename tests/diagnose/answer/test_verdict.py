@@ -237,7 +237,7 @@ def test_what_is_too_little_for_a_claim_is_a_hint_of_the_place(gain: float, hint
 
 
 def test_no_hint_of_what_is_no_likelier_than_none(monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    doubtful = Scale(offsets={"none": 0.0, "named": -4.3, "unknown": 0.0})
+    doubtful = Scale(offsets={"none": 0.0, "named": -4.6, "unknown": 0.0})
     monkeypatch.setattr(verdict_module, "scale", lambda: doubtful)
     assert verdict_of(probable(("nozzle_throat_erosion", 4.8))).hint is None
 

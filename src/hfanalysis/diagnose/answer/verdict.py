@@ -46,8 +46,8 @@ LIKELIER = 1.5
 
 HINT = 4.5
 """Log evidence from which on the place of a name that is likelier than none is given where nothing is claimed: where
-model and measurement differ may show before it can be said by what. In 126 simulated tests that hide nothing the largest
-of a name that was not claimed was 4.2."""
+model and measurement differ may show before it can be said by what. In 126 simulated tests that hide nothing 4.2 was
+the largest of a name that was not claimed."""
 
 NAMED_FROM = 0.5
 """Probability from which on one name is the verdict; below, several are."""
