@@ -79,7 +79,7 @@ benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers
 	PYTHONPATH=. $(BIN)/python benchmarks/reference_engine.py
 	PYTHONPATH=. $(BIN)/python benchmarks/hrap_run.py
 	$(BIN)/python benchmarks/flights.py
-	$(BIN)/python benchmarks/localisation.py
+	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/localisation.py
 	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python benchmarks/ingest_1gb.py --gigabytes 1; fi
 
 # Only the tests and the benchmark use it: it has an environment of its own, and where it cannot be installed they go on
