@@ -1,7 +1,8 @@
-"""How long localisation takes: which equation, from when to when and how much, beside the whole diagnosis.
+"""How long it takes to search for the place where model and measurement disagree, beside the whole diagnosis.
 
-After loading: the base model is fitted, an unknown source is tried at every site of the model, and the channels' own
-balances are taken. Medians, in one process whose compiled code is warm.
+After loading: the base model is fitted, an unknown source is tried at every site, linear about that fit, and the
+channels' own balances are taken. Not in it is what a diagnosis goes on with: the best sources, fitted with the whole
+model. Medians, in one process whose compiled code is warm.
 
 Usage: localisation.py [--test HF5] [--repeat 3]
 """
@@ -67,7 +68,7 @@ def main() -> None:
             start = time.perf_counter()
             diagnose(subject, library())
             wholes.append(time.perf_counter() - start)
-    print(f"localisation of {options.test} after loading, median of {options.repeat}")
+    print(f"linear localisation of {options.test} after loading, median of {options.repeat}")
     for step in runs[0]:
         print(f"  {step:<28} {statistics.median(run[step] for run in runs[1:]):7.2f} s")
     total = statistics.median(sum(run.values()) for run in runs[1:])

@@ -79,17 +79,20 @@ def _departure(trace: Trace, least: float) -> tuple[float, float] | None:
         return None
     rest = blocks.values[blocks.values < low + 0.1 * (top - low)]
     base, noise = float(np.median(rest)), spread(rest)
-    threshold = base + max(0.05 * (top - base), 6.0 * noise)
-    away = blocks.values > threshold
+    away = blocks.values > _threshold(base, top, noise)
     step = float(np.median(np.diff(blocks.time)))
     base = max(base, _at_first(blocks, low + SHIFTED * (top - low), step))
-    threshold = base + max(0.05 * (top - base), 6.0 * noise)
-    first = _first_run(blocks.values > threshold, max(3, round(SUSTAINED / step)))
+    first = _first_run(blocks.values > _threshold(base, top, noise), max(3, round(SUSTAINED / step)))
     if first is None:
         return None
     while first > 0 and blocks.values[first - 1] > base + 3.0 * noise:
         first -= 1
     return float(blocks.time[first]), float(blocks.time[np.flatnonzero(away)[-1]])
+
+
+def _threshold(base: float, top: float, noise: float) -> float:
+    """What a channel that rests at ``base`` and reaches ``top`` has to exceed to be away from rest."""
+    return base + max(0.05 * (top - base), 6.0 * noise)
 
 
 def _at_first(blocks: Trace, most: float, step: float) -> float:
