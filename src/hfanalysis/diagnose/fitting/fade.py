@@ -80,9 +80,11 @@ def fade_slope(name: str, abrupt: float, engine: Engine, speed: float) -> float:
     for active in engine.effects:
         if active.effect.name == effect and active.effect.fading_web is not None:
             step = 1e-4 * next(p.typical for p in active.effect.parameters if p.name == parameter)
-            more = active.named | {parameter: active.named[parameter] + step}
-            wider = active.effect.fading_web(more) - active.effect.fading_web(active.named)
-            return -wider / step / speed / _modelled(abrupt, engine, speed)
+            less, more = (
+                active.effect.fading_web(active.named | {parameter: active.named[parameter] + side * step})
+                for side in (-1.0, 1.0)
+            )
+            return -(more - less) / (2.0 * step) / speed / _modelled(abrupt, engine, speed)
     return 0.0
 
 
