@@ -58,8 +58,10 @@ EXPONENT = [n[0] for n in NUISANCES].index("n")
 VALLEYS = (-0.2, -0.1, -0.05, 0.05, 0.1, 0.2)
 """How far from where a fit has ended n is tried as well."""
 
-NOT_HOPELESS = 4.0
-"""How many times the least chi-square a start there may have to be followed."""
+NOT_HOPELESS, FIRST_STEPS = 4.0, 3
+"""How many times the least chi-square a start there may have to be followed; what is hidden in the grain's equation, in
+which a and n are, is first followed for so many steps: the valley bends away from the straight line that leads
+there."""
 
 OPENING = 5e-3
 """Standard deviation of the instant of opening [s]; the log does not state it."""
@@ -186,9 +188,12 @@ class Detector:
         """
         target = self.response(hidden)
         first = best = self.fit(target)
+        of_grain = any("grain" in h.effect.equations for h in hidden)
         for away in VALLEYS:
             try:
                 start = self._at_exponent(target, first, away)
+                if of_grain:
+                    start = self._ended(target, start, FIRST_STEPS)
                 if start.chi2 < NOT_HOPELESS * best.chi2:
                     best = min(best, self._ended(target, start), key=lambda f: f.chi2)
             except ArithmeticError:  # there the engine does not run

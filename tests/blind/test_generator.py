@@ -17,7 +17,7 @@ from tests.blind import sensors as se
 from tests.blind import slots as s
 from tests.blind import stand as st
 from tests.blind.build import answer, build
-from tests.blind.detect import Detector, fire_after_liquid, observed, rivals
+from tests.blind.detect import VALLEYS, Detector, fire_after_liquid, observed, rivals
 from tests.blind.effects import EFFECTS, EQUATIONS, LIBRARY, OUTSIDE, drawn, slots_of
 from tests.blind.observe import BLOCK, Observer, block_covariance
 from tests.blind.plan import MOST_CASES, MOST_SEEDS, SPLITS, Case, plan
@@ -285,17 +285,33 @@ def test_fire_that_the_test_does_not_have_tells_nothing() -> None:
     assert detector.on_axis_of((heat,), detector.d_prime((heat,))[1]) is detector
 
 
+@pytest.mark.parametrize(
+    ("seed", "number", "strength", "starts", "found", "of_one_start"),
+    [
+        # a little, where the pressure falls to a quarter: a and n do the same
+        (0, "C000039", 0.315, VALLEYS, 2.0, 8.0),
+        # the straight line to the other valley ends at d' 180: whether a start is hopeless shows after some steps
+        (9, "C090337", 0.17, (0.1,), 6.0, 14.0),
+    ],
+)
 def test_another_exponent_of_regression_may_imitate_what_no_step_from_here_leads_to(
+    seed: int,
+    number: str,
+    strength: float,
+    starts: tuple[float, ...],
+    found: float,
+    of_one_start: float,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A regression that depends on pressure a little, where the pressure falls to a quarter: a and n do the same."""
-    case = next(c for c in plan(600, "calibration") if c.id == "C000039")
+    """Both are regressions that depend on pressure."""
+    case = next(c for c in plan(600 if seed == 0 else 1500, "calibration", seed) if c.id == number)
     monkeypatch.setattr(
-        "tests.blind.build._set_strengths", lambda detector, hidden, case: tuple(h.at(0.315) for h in hidden)
+        "tests.blind.build._set_strengths", lambda detector, hidden, case: tuple(h.at(strength) for h in hidden)
     )
+    monkeypatch.setattr("tests.blind.detect.VALLEYS", starts)
     made = build(case)
     one_start, _ = Detector(made.stand, made.instruments).d_prime(made.hidden)
-    assert made.detectability["d_prime"] < 2.0 < 8.0 < one_start
+    assert made.detectability["d_prime"] < found < of_one_start < one_start
 
 
 def test_a_fit_follows_what_nuisances_imitate_along_a_bent_valley() -> None:
