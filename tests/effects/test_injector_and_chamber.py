@@ -158,6 +158,20 @@ def test_a_sliver_burns_longer_with_less_thrust_and_all_of_it_goes() -> None:
     assert channel(found, "fuel_flow", last) < 0.4 * channel(plain(), "fuel_flow", plain().burn_time - 0.01)
 
 
+def test_walls_show_one_after_another() -> None:
+    """What burns of the surface leaves 1 without a corner: A^2 = 1 - exp(-2 (R - r) / w) for k = 1/2 and d = 1."""
+    found, e = only("fuel_sliver", depth=1.0, width=3e-3, tail=0.5), engine_on_stand()
+    webs = []
+    for t in np.arange(1.0, found.burn_time - 0.3, 0.25):
+        radius, flow = channel(found, "port_radius", t), channel(found, "oxidizer_flow", t)
+        surface = 2.0 * np.pi * radius * e.grain_length
+        whole = e.fuel_density * surface * e.a * (flow / (np.pi * radius**2)) ** e.n
+        webs.append((e.outer_radius - radius) / 3e-3)
+        share = channel(found, "fuel_flow", t) / whole
+        assert share == pytest.approx(sqrt(1.0 - (1.0 - 0.005**2) * np.exp(-2.0 * webs[-1])), rel=1e-3)
+    assert webs[0] > 2.0 > 0.5 > webs[-1]
+
+
 @pytest.mark.parametrize("tail", [0.5, 0.95])
 def test_even_a_grain_that_shows_the_wall_all_over_burns_out(tail: float) -> None:
     assert only("fuel_sliver", depth=0.95, width=2e-2, tail=tail).time[-1] == pytest.approx(10.0)
