@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hfanalysis.diagnose.answer.acting import Acting, acting
 from hfanalysis.diagnose.answer.limits import limits
@@ -28,6 +29,8 @@ from hfanalysis.diagnose.naming.course import Course, course_of
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.engine.effect import Parameter
 from hfanalysis.quantity import NORMAL_95, Quantity
+
+Array = NDArray[np.float64]
 
 CLAIM = 0.15
 """Probability of none from which on nothing is claimed: a wrong alarm costs more than an effect left unnamed."""
@@ -209,7 +212,8 @@ def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> dict
     """A row for an unknown source."""
     site = course.site
     made = Acting(course.equation, site.unit, course.time, course.mean, course.std, site.sensor)
-    return {**of_acting(site.name, made, gain, phases, course.blur, course.stretch), **course.sizes}
+    row = of_acting(site.name, made, gain, phases, course.blur, course.stretch)
+    return {**row, "phase": _phase(course.time, course.of_equation, phases), **course.sizes}
 
 
 SEEN = 0.05
@@ -242,7 +246,7 @@ def of_acting(
     return {
         "equation": source.equation,
         "site": name,
-        "phase": _phase(source, phases),
+        "phase": _phase(source.time, source.mean, phases),
         "t_start": Quantity(first, "s", max(blur or 0.0, step)),
         "t_end": Quantity(last, "s", max(blur or 0.0, step)),
         "source": Quantity(float(source.mean[inside].mean()), source.unit, AVERAGED * float(source.std[inside].mean())),
@@ -263,14 +267,14 @@ PHASE_NAMES = {"filling": "liquid", "nitrogen": "purge"}
 """Phases as products call them: the filling is part of the liquid phase; from t_purge on nitrogen could enter."""
 
 
-def _phase(source: Acting, phases: Mapping[str, float]) -> str:
+def _phase(time: Array, source: Array, phases: Mapping[str, float]) -> str:
     """The phase that holds most of the squared source."""
     names = [n for n in phases if n != "end"]
-    number = np.searchsorted([phases[n] for n in names], source.time, side="right") - 1
+    number = np.searchsorted([phases[n] for n in names], time, side="right") - 1
     weight: dict[str, float] = {}
     for i, name in enumerate(names):
         label = PHASE_NAMES.get(name, name)
-        weight[label] = weight.get(label, 0.0) + float((source.mean[number == i] ** 2).sum())
+        weight[label] = weight.get(label, 0.0) + float((source[number == i] ** 2).sum())
     return max(weight, key=lambda n: weight[n])
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hfanalysis.diagnose.fitting.failing import LIQUID_LEFT, SHARE_OF_FLOW, flow_before, lost_at
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.late import delay_name, late
-from hfanalysis.diagnose.fitting.predict import misread
+from hfanalysis.diagnose.fitting.predict import aligned, misread
 from hfanalysis.diagnose.fitting.pulse import START, has_pulse, parameters_of, pulse_in
 from hfanalysis.diagnose.fitting.swing import EDGE, PHASE_OF_SWING, SHARE_OF_SWING, SURE, swing_at
 from hfanalysis.diagnose.fitting.valve import SECONDS_OF_VALVE, loss_share
@@ -36,6 +36,15 @@ FORM = 0.3
 STEP = 1e-3
 """Of x, for the slopes of a pulse."""
 
+FACTOR_OF = {
+    "injector_factor": "oxidizer_flow",
+    "regression_factor": "fuel_flow",
+    "throat_factor": "thrust",
+    "thrust_factor": "thrust",
+    "temperature_factor": "nozzle_flow",
+}
+"""What sources that are factors multiply; for the chamber's temperature, the flow in whose enthalpy it is."""
+
 GONE, ONE_SIDED = 0.2, 0.4
 """Part of its largest size below which a source is gone, and goes to one side."""
 
@@ -45,7 +54,8 @@ class Course:
     """A source over time as a fit has it: ``mean`` and ``std`` at ``time`` [s] in the site's unit.
 
     ``blur``: the standard deviation of the instants at which it begins and ends [s]. ``sizes``: what else it is known
-    by. ``stretch``: from when to when it acts [s], where its size over time does not tell.
+    by. ``stretch``: from when to when it acts [s], where its size over time does not tell. ``whole``: what it is a
+    factor of, in the unit of its equation.
     """
 
     site: Site
@@ -55,19 +65,26 @@ class Course:
     blur: float
     sizes: Mapping[str, Quantity] = field(default_factory=dict)
     stretch: tuple[float, float] | None = None
+    whole: Array | None = None
+
+    @property
+    def of_equation(self) -> Array:
+        """Its mean in the unit of its equation: a tenth of a large flow is more than a tenth of a small one."""
+        return self.mean if self.whole is None else self.mean / (1.0 + self.mean) * self.whole
 
     @property
     def equation(self) -> str:
         """The equation that the source is in.
 
-        What the thrust departs by to one side and is gone as the flow ends is the nozzle's: a cell that has drifted
-        does not come back at that instant, and gusts blow to and fro.
+        What the thrust departs by to one side and is gone, or not seen any more, as the flow ends is the nozzle's: a
+        cell that has drifted does not come back at that instant, and gusts blow to and fro.
         """
         if self.site.name != f"{OFFSET}thrust":
             return self.site.equation
         low, high, last = float(self.mean.min()), float(self.mean.max()), abs(float(self.mean[-1]))
         largest, other = max(high, -low), min(max(high, 0.0), max(-low, 0.0))
-        return "nozzle" if last < GONE * largest and other < ONE_SIDED * largest else self.site.equation
+        gone = last < max(GONE * largest, float(self.std[-1]))
+        return "nozzle" if gone and other < ONE_SIDED * largest else self.site.equation
 
 
 def course_of(found: Fit, name: str, observed: Observed) -> Course:
@@ -82,13 +99,14 @@ def course_of(found: Fit, name: str, observed: Observed) -> Course:
     if site == SWING:
         return _course_of_swing(found, float(time[-1]), observed)
     if has_pulse(found.hypothesis, name):
-        return _course_of_pulse(found, site, time)
+        return _course_of_pulse(found, site, time, observed)
     for block, place in found.hypothesis.places():
         if block.names[0].startswith(_prefix(site)):
             basis = block.splines.at(time) @ block.matrix
             covariance = found.covariance[place, place]
             std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, covariance, basis), 0.0))
-            return Course(site, time, basis @ found.x[place], std, 0.5 * block.splines.spacing)
+            whole = _whole(found, site, time, observed)
+            return Course(site, time, basis @ found.x[place], std, 0.5 * block.splines.spacing, whole=whole)
     raise ValueError(f"the fit has no source at {name}")
 
 
@@ -134,7 +152,15 @@ def _course_of_swing(found: Fit, end: float, observed: Observed) -> Course:
     return Course(SWING, time, mean, std, EDGE, {"source": share, "frequency": Quantity(given.frequency, "Hz")})
 
 
-def _course_of_pulse(found: Fit, site: Site, time: Array) -> Course:
+def _whole(found: Fit, site: Site, time: Array, observed: Observed) -> Array | None:
+    """What a site's source is a factor of, in the fit's run with it."""
+    if site.name not in FACTOR_OF:
+        return None
+    outputs = found.burnt.steps.at(aligned(observed, found.burnt, time))[1]
+    return np.asarray(outputs[:, OUTPUTS.index(FACTOR_OF[site.name])])
+
+
+def _course_of_pulse(found: Fit, site: Site, time: Array, observed: Observed) -> Course:
     names = [f.name for f in found.hypothesis.free]
     own = [names.index(name) for name in parameters_of(site.name)]
     mean = pulse_in(found.hypothesis, found.x, site.name, time)
@@ -145,7 +171,8 @@ def _course_of_pulse(found: Fit, site: Site, time: Array) -> Course:
         slopes[:, column] = (pulse_in(found.hypothesis, moved, site.name, time) - mean) / STEP
     covariance = found.covariance[np.ix_(own, own)]
     std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", slopes, covariance, slopes), 0.0))
-    return Course(site, time, mean, std, found.stds[parameters_of(site.name)[START]])
+    blur, whole = found.stds[parameters_of(site.name)[START]], _whole(found, site, time, observed)
+    return Course(site, time, mean, std, blur, whole=whole)
 
 
 def _course_of_failing(found: Fit, end: float, observed: Observed) -> Course:
