@@ -21,7 +21,7 @@ from hfanalysis.diagnose.fitting.valve import slow_valve
 from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
 from hfanalysis.diagnose.naming.course import Course, course_of
 from hfanalysis.diagnose.naming.plain import FILLING, plain_sources
-from hfanalysis.diagnose.naming.sites import FAILING, sensor_site
+from hfanalysis.diagnose.naming.sites import FAILING, sensor_site, site_of
 from hfanalysis.diagnose.observations.clocks import Delay
 from hfanalysis.diagnose.observations.failing import FailingFlow
 from hfanalysis.diagnose.observations.observed import Plain
@@ -120,16 +120,27 @@ def test_a_clock_that_is_late_is_a_source_in_the_sensor_with_its_delay() -> None
 
 
 @pytest.mark.parametrize(
-    ("course", "equation"),
+    ("course", "std", "equation"),
     [
-        (lambda t: 20.0 * np.sin(np.pi * t), "nozzle"),  # gone as the flow ends
-        (lambda t: -20.0 * np.sin(np.pi * t), "nozzle"),
-        (lambda t: 20.0 * t, "sensor"),  # a cell that does not come back
-        (lambda t: 20.0 * np.sin(4.0 * np.pi * t), "sensor"),  # to and fro
+        (lambda t: 20.0 * np.sin(np.pi * t), 1.0, "nozzle"),  # gone as the flow ends
+        (lambda t: -20.0 * np.sin(np.pi * t), 1.0, "nozzle"),
+        (lambda t: 20.0 * np.sin(0.9 * np.pi * t), 1.0, "sensor"),  # a cell that comes back by two thirds
+        (lambda t: 20.0 * np.sin(0.9 * np.pi * t), 8.0, "nozzle"),  # not seen any more
+        (lambda t: 20.0 * t, 1.0, "sensor"),  # a cell that does not come back
+        (lambda t: 20.0 * np.sin(4.0 * np.pi * t), 1.0, "sensor"),  # to and fro
     ],
 )
-def test_a_thrust_that_departs_until_the_flow_ends_is_the_nozzles(course, equation: str) -> None:  # type: ignore[no-untyped-def]
+def test_a_thrust_that_departs_until_the_flow_ends_is_the_nozzles(course, std: float, equation: str) -> None:  # type: ignore[no-untyped-def]
     time = np.linspace(0.0, 1.0, 50)
-    made_up = Course(sensor_site(made.observed(), "thrust"), time, course(time), np.ones(50), 0.1)
+    made_up = Course(sensor_site(made.observed(), "thrust"), time, course(time), np.full(50, std), 0.1)
     assert made_up.equation == equation
     assert of_unknown(made_up, 1.0, {"liquid": 0.0})["equation"] == equation
+
+
+def test_a_factor_acts_most_where_what_it_multiplies_is_large() -> None:
+    """A flow that is 5 and then 10 % less lacks most while it is large."""
+    time, flow = np.linspace(0.0, 2.0, 100), np.repeat([1.0, 0.1], 50)
+    less = Course(site_of("injector_factor", made.observed()), time, np.repeat([-0.05, -0.1], 50), np.ones(100), 0.1)
+    phases = {"liquid": 0.0, "vapor": 1.0, "end": 2.0}
+    assert of_unknown(less, 1.0, phases)["phase"] == "vapor"
+    assert of_unknown(made.replace(less, whole=flow), 1.0, phases)["phase"] == "liquid"
