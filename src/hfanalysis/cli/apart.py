@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -75,7 +74,7 @@ def _visibility(name: str, outlook: Outlook) -> dict[str, Any]:
         "unit": effect.strength.unit,
         "typical": effect.strength.typical,
         "detectability": outlook.now.detectability(name),
-        "seen_at": strength if isfinite(strength) else None,
+        "seen_at": strength if outlook.in_reach(name) else None,
         "in_reach": outlook.in_reach(name),
         "decisive": effect.decisive,
         "rivals": [{"name": n, "apart": d, "correlation": outlook.now.correlation(name, n)} for d, n in closest],
