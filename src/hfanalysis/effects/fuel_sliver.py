@@ -72,7 +72,15 @@ EFFECT = Effect(
     sites=("regression_factor",),
     parameters=(
         Parameter("depth", "-", "share of the surface burnt through when the last fuel goes", 0.5, low=0.0, high=1.0),
-        Parameter("width", "m", "mean web left as the walls show", 6e-3, center=1e-3, low=3e-6, high=2e-2),
+        Parameter(
+            "width",
+            "m",
+            "web left, over the whole surface, at which many walls show",
+            6e-3,
+            center=1e-3,
+            low=3e-6,
+            high=2e-2,
+        ),
         Parameter("tail", "-", "power with which the surface falls as the fuel left", 0.2, 0.65, low=0.5, high=0.97),
     ),
     phases=("liquid", "vapor", "nitrogen"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as some
+from scipy.integrate import quad
 from tests.diagnose import logged, made
 from tests.engine.stand import engine_on_stand
 
@@ -63,16 +64,19 @@ def sliver(depth: float, width: float, tail: float = 0.5) -> Active:
 
 
 @pytest.mark.parametrize("depth", [0.5, 0.8, 1.0])
-def test_webs_that_are_spread_evenly_fade_over_about_twice_their_mean(depth: float) -> None:
-    """For k = 1/2, dA/dt is (1 - A^2) / w: the time between two shares is a difference of inverse hyperbolic
-    tangents."""
+def test_the_surface_fades_as_it_burns(depth: float) -> None:
+    """dw/dt is the share A that burns, and A^2 = 1 - d (2 - d) exp(-2 w^(2 k)): from a share of 0.8 to the last, or a
+    tenth, as a ramp. For k = 1/2 that is a difference of inverse hyperbolic tangents."""
     web = effect("fuel_sliver").fading_web
     assert web is not None
-    found, thinner = (web(sliver(depth, 1e-3, tail).named) for tail in (0.5, 0.95))
-    low = max(0.1, 1.0 - depth)
-    ramp = 1e-3 * (np.arctanh(0.8) - np.arctanh(low)) / (0.8 - low) * depth
-    assert found == pytest.approx(ramp * (1.0 - ((1.0 - depth) / 0.6) ** 2), rel=0.01)
-    assert found < thinner < 2.5 * found
+    shown, low = 1.0 - max(1.0 - depth, 0.005) ** 2, max(0.1, 1.0 - depth)
+    seen = depth / (0.8 - low) * (1.0 - ((1.0 - depth) / 0.6) ** 2)
+    even = 1e-3 * (np.arctanh(0.8) - np.arctanh(low)) * seen
+    assert web(sliver(depth, 1e-3, 0.5).named) == pytest.approx(even, rel=0.01)
+    first, last = ((0.5 * np.log(max(shown / (1.0 - a**2), 1.0))) ** (1.0 / 1.9) for a in (low, 0.8))
+    seconds = quad(lambda w: (1.0 - shown * np.exp(-2.0 * w**1.9)) ** -0.5, first, last)[0]
+    assert web(sliver(depth, 1e-3, 0.95).named) == pytest.approx(1e-3 * seconds * seen, rel=0.01)
+    assert seconds > np.arctanh(0.8) - np.arctanh(low)
 
 
 def test_a_fall_as_fast_as_a_chamber_empties_is_what_the_base_model_has() -> None:

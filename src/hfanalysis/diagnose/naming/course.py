@@ -55,7 +55,7 @@ class Course:
 
     ``blur``: the standard deviation of the instants at which it begins and ends [s]. ``sizes``: what else it is known
     by. ``stretch``: from when to when it acts [s], where its size over time does not tell. ``whole``: what it is a
-    factor of, in the unit of its equation.
+    factor of, or what that goes with, by the unit of its equation.
     """
 
     site: Site
@@ -69,7 +69,7 @@ class Course:
 
     @property
     def of_equation(self) -> Array:
-        """Its mean in the unit of its equation: a tenth of a large flow is more than a tenth of a small one."""
+        """Its mean by the unit of its equation: a tenth of a large flow is more than a tenth of a small one."""
         return self.mean if self.whole is None else self.mean / (1.0 + self.mean) * self.whole
 
     @property
