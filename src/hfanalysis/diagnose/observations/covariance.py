@@ -33,8 +33,9 @@ UNSTEADY_ZERO = 0.03
 shows. A zero that moves further is an effect, and has to be found as one."""
 
 LEAST_SHIFT = 1e-3
-"""Least standard deviation [s] of the seen end of the liquid, on which a run is laid over the measurement: a sample of
-a fast log. By how much a model's liquid may end at another instant is a matter of that instant, not of the channels."""
+"""Least standard deviation [s] of the instants on which a run is laid over the measurement, the opening and the seen
+end of the liquid: a sample of a fast log. By how much a model's liquid may end at another instant is a matter of that
+instant, not of the channels."""
 
 SPEED_ORDER = 3
 """Order of the polynomials whose slope is a channel's speed on either side of the knee."""
@@ -62,9 +63,10 @@ def channel_of(
 
 
 def of_the_model(blocks: Blocks, frame: Frame) -> Array:
-    """What a channel differs by (blocks, errors) if the end of the liquid was seen a standard deviation late, and if
-    more flows without fire than the model says."""
-    return np.stack([_moved_by_knee(blocks, frame), *_without_fire(blocks, frame)], axis=1)
+    """What a channel differs by (blocks, errors) if the opening or the end of the liquid was seen a standard deviation
+    late, and if more flows without fire than the model says."""
+    moved = _moved_by_opening(blocks, frame), _moved_by_knee(blocks, frame)
+    return np.stack([*moved, *_without_fire(blocks, frame)], axis=1)
 
 
 def coherence_of(own: Array) -> float:
@@ -115,6 +117,21 @@ def _filling(blocks: Blocks, frame: Frame, resting: NDArray[np.bool_]) -> Array:
     filling = np.where((blocks.time < frame.filled) & ~resting, size, 0.0)
     lag = np.abs(blocks.time[:, None] - blocks.time[None, :])
     return np.asarray(np.exp(-lag / FILLING_TIME) * np.outer(filling, filling))
+
+
+def _moved_by_opening(blocks: Blocks, frame: Frame) -> Array:
+    """What a channel differs by if the opening was seen one standard deviation late.
+
+    Times count from it: all that comes early is shifted, and what comes later less and less, up to the next instant on
+    which the model is laid. A chamber that fills in tenths of a second shows a millisecond.
+    """
+    out = np.zeros(blocks.time.size)
+    later = [instant for instant, _ in frame.changes.values()] or [frame.ends["chamber"]]
+    part = ~frame.resting[blocks.first] & (blocks.time < min(later))
+    if part.sum() > 2:
+        t = blocks.time[part]
+        out[part] = np.gradient(blocks.value[part], t, edge_order=2) * (1.0 - t / min(later))
+    return np.asarray(out * max(frame.opening, LEAST_SHIFT))
 
 
 def _moved_by_knee(blocks: Blocks, frame: Frame) -> Array:

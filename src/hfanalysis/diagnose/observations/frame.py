@@ -58,7 +58,8 @@ class Frame:
     The grid has ``before`` wide blocks of the rest before the opening, the opening itself, points while something
     flows, and wide blocks of the rest after it; ``width`` [s] of the wide ones, 0 of points. ``filled``: the feed line
     is; ``ends`` of "chamber" (and thrust) and "tank"; ``fuel_out``: the end of the fuel where the tank is compared
-    beyond it; ``failing``: seconds before the end of the liquid in which the flow fails.
+    beyond it; ``failing``: seconds before the end of the liquid in which the flow fails; ``opening``: the deviation of
+    the opening's instant.
     """
 
     grid: Array
@@ -71,6 +72,7 @@ class Frame:
     ends: Mapping[str, float]
     fuel_out: float | None = None
     failing: float = 0.0
+    opening: float = 0.0
 
     def end(self, channel: str) -> float:
         """Where the comparison of a channel ends [s]."""
@@ -113,8 +115,8 @@ def frame_of(
     grid, width = np.concatenate([before, opening, points, after], axis=1)
     resting = np.ones(grid.size, dtype=bool)
     resting[before.shape[1] + 1 : grid.size - after.shape[1]] = False
-    filled = segments.time("t_feed") or 0.0
-    return Frame(grid, resting, width, before.shape[1], changes, FIRST, filled, ends, fuel_out, failing)
+    filled, opened = segments.time("t_feed") or 0.0, segments.t_open.std or 0.0
+    return Frame(grid, resting, width, before.shape[1], changes, FIRST, filled, ends, fuel_out, failing, opened)
 
 
 def _blocks(first: float, last: float, count: int) -> Array:
