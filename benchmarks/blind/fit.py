@@ -4,8 +4,8 @@ In a share ``misled`` of the cases the evidence misleads altogether, and the lab
 T = T0 (1 + t1 max(0, leftover - 1)) with the chi-square per degree of freedom that the best named model leaves; one
 offset b for the names and one for ``unknown``, that of ``none`` is 0. A label of which nothing was seen has an offset
 of its kind instead, and no evidence. e of ``unknown`` is without a share ``unexplained`` of the best name's, which
-closures get wrong. Fitted by penalised likelihood of the right label (temperature scaling: Guo, Pleiss, Sun,
-Weinberger: On Calibration of Modern Neural Networks, 2017).
+closures get wrong; ``unknown`` is at most as probable as none where nothing is seen. Fitted by penalised likelihood of
+the right label (temperature scaling: Guo, Pleiss, Sun, Weinberger: On Calibration of Modern Neural Networks, 2017).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, detailed_kinds
+from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, detailed_kinds, seen
 
 Array = NDArray[np.float64]
 
@@ -95,10 +95,12 @@ def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
 class _Table:
     """Samples as arrays: ``evidence`` [case, label] (-inf where not stated), its kind (0 for none, else the number in
     OFFSETS and 1), the truth; ``imitated`` [case, label]: what the best name explains where the label is unknown, 0
-    elsewhere."""
+    elsewhere; ``capped`` [case, label]: whether a label is at most as probable as ``none``, the place of that label."""
 
     evidence: Array
     imitated: Array
+    capped: NDArray[np.bool_]
+    none: int
     kind: NDArray[np.int64]
     truth: NDArray[np.int64]
     excess: Array
@@ -117,11 +119,13 @@ def _table(samples: Sequence[Sample]) -> _Table:
     unseen = np.array([[of.get(label, "").startswith("unseen") for label in labels] for of in detailed])
     best = np.max(np.where(kind == 1, evidence, 0.0), axis=1, initial=0.0)
     imitated = np.where(kinds == 2, best[:, None], 0.0)
+    capped = (kind == 2) & ~np.array([seen(s.evidences) for s in samples])[:, None]
+    none = labels.index("none") if "none" in labels else 0
     evidence[unseen] = 0.0
     excess = np.maximum([s.leftover - 1.0 for s in samples], 0.0)
     truth = np.array([labels.index(s.truth) for s in samples])
     weight = np.array([s.weight for s in samples])
-    return _Table(evidence, imitated, kinds, truth, excess, before / before.sum(), weight)
+    return _Table(evidence, imitated, capped, none, kinds, truth, excess, before / before.sum(), weight)
 
 
 def _loss(x: Array, t: _Table) -> float:
@@ -129,6 +133,7 @@ def _loss(x: Array, t: _Table) -> float:
     unexplained, per_leftover, misled = x[-3:]
     temperature = exp(x[0]) * (1.0 + per_leftover * t.excess)
     logits = np.array([0.0, *x[1:-3]])[t.kind] + (t.evidence - unexplained * t.imitated) / temperature[:, None]
+    logits = np.minimum(logits, np.where(t.capped, logits[:, t.none, None], inf))
     shares = np.exp(logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1))
     right = np.log((1.0 - misled) * shares + misled * t.before[t.truth])
     return float(-(t.weight @ right) + 0.5 * np.sum((x / PRIOR_STD) ** 2))

@@ -19,7 +19,18 @@ from hfanalysis.diagnose.answer import gap, posterior
 from hfanalysis.diagnose.answer import verdict as verdict_module
 from hfanalysis.diagnose.answer.acting import acting
 from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judged, lost
-from hfanalysis.diagnose.answer.posterior import BEFORE, SET, UNSEEN, Scale, evidences_of, kind, scale, smallest_set
+from hfanalysis.diagnose.answer.posterior import (
+    BEFORE,
+    LEAST_EVIDENCE,
+    SET,
+    UNSEEN,
+    Scale,
+    evidences_of,
+    kind,
+    scale,
+    seen,
+    smallest_set,
+)
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import _within, effects_product, places, verdict_of
 from hfanalysis.diagnose.answer.words import place_sentence
@@ -51,8 +62,10 @@ def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: f
     found = Scale(t, more).probabilities(evidences, leftover)
     assert set(found) == set(evidences)
     assert sum(found.values()) == pytest.approx(1.0)
-    order = sorted(evidences, key=lambda k: evidences[k])
+    little = "none" in evidences and not seen(evidences)
+    order = sorted((k for k in evidences if k != "unknown" or not little), key=lambda k: evidences[k])
     assert all(found[a] <= found[b] for a, b in pairwise(order))
+    assert not little or found.get("unknown", 0.0) <= found["none"]
 
 
 @given(labels)
@@ -119,6 +132,21 @@ def test_unknown_has_to_explain_more_than_closures_get_wrong() -> None:
     assert odds(40.0, 43.0) == pytest.approx(-1.0 + (3.0 - 4.0) / 2.0)
     assert odds(0.0, 10.0) == pytest.approx(-1.0 + 10.0 / 2.0)
     assert odds(-3.0, 10.0) == pytest.approx(-1.0 + 13.0 / 2.0)  # a name that explains nothing leaves nothing
+
+
+def test_where_nothing_is_seen_unknown_is_not_more_probable_than_none() -> None:
+    """Else a verdict of none would stand beside a probability of nine tenths for unknown."""
+
+    def odds(unknown: float, name: float = 1.0, offset: float = 0.0) -> float:
+        offsets = {"none": 0.0, "named": 0.0, "unknown": offset}
+        found = Scale(offsets=offsets).probabilities({"none": 0.0, "tank_heat": name, "unknown": unknown}, 1.0)
+        return float(np.log(found["unknown"] / found["none"]))
+
+    least = LEAST_EVIDENCE["unknown"]
+    assert odds(least - 0.1) == pytest.approx(0.0)
+    assert odds(least) == pytest.approx(least)
+    assert odds(6.0, name=LEAST_EVIDENCE["named"]) == pytest.approx(6.0)  # something is there
+    assert odds(6.0, offset=-8.0) == pytest.approx(-2.0)  # what is less probable anyhow stays as it is
 
 
 @pytest.fixture
