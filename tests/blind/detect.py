@@ -58,16 +58,25 @@ EXPONENT = [n[0] for n in NUISANCES].index("n")
 VALLEYS = (-0.2, -0.1, -0.05, 0.05, 0.1, 0.2)
 """How far from where a fit has ended n is tried as well."""
 
-NOT_HOPELESS, FIRST_STEPS = 4.0, 3
-"""How many times the least chi-square a start there may have to be followed; what is hidden in the grain's equation, in
-which a and n are, is first followed for so many steps: the valley bends away from the straight line that leads
-there."""
+NOT_HOPELESS = 4.0
+"""How many times the least chi-square a start there may have to be followed."""
+
+STRIDE, STRIDES = 0.05, 12
+"""Where something is hidden in the grain's equation, in which a and n are: how far n is moved at a time, and how often,
+while all else follows. The valley is narrow and bends; steps of everything at once crawl in it, and a start far away
+lies high above it."""
+
+FOLLOWED, MOST_FOLLOWING = 0.8, 8
+"""Part of chi-square that a step of all else leaves where it has followed, and the most steps."""
+
+LEFT = 100.0
+"""Times the least chi-square at which a valley is left."""
 
 OPENING = 5e-3
 """Standard deviation of the instant of opening [s]; the log does not state it."""
 
-CONVERGED = 2e-3
-"""Relative gain in chi-square (twice that in d') below which a fit has ended."""
+CONVERGED, MOST_STEPS = 2e-3, 25
+"""Relative gain in chi-square (twice that in d') below which a fit has ended, and the most steps."""
 
 ALIKE = 0.06
 """Difference in the logarithm of d' that a quick fit may make: hardly more than the search for a strength leaves."""
@@ -172,9 +181,9 @@ class Detector:
         """The base model fitted to a response to the end."""
         return self._ended(target, self.quick_fit(target))
 
-    def _ended(self, target: Array, fit: Fit, most: int = 25) -> Fit:
+    def _ended(self, target: Array, fit: Fit) -> Fit:
         """A fit followed to the end: every step on tangents of its own."""
-        for _ in range(most):
+        for _ in range(MOST_STEPS):
             before = replace(fit, slopes=self._slopes_at(fit.nuisances[: len(NUISANCES)]))
             fit = self._stepped(target, before, (1.0, 0.5, 0.2, 0.05))
             if before.chi2 - fit.chi2 < CONVERGED * fit.chi2:
@@ -188,17 +197,40 @@ class Detector:
         """
         target = self.response(hidden)
         first = best = self.fit(target)
-        of_grain = any("grain" in h.effect.equations for h in hidden)
         for away in VALLEYS:
             try:
                 start = self._at_exponent(target, first, away)
-                if of_grain:
-                    start = self._ended(target, start, FIRST_STEPS)
                 if start.chi2 < NOT_HOPELESS * best.chi2:
-                    best = min(best, self._ended(target, start), key=lambda f: f.chi2)
+                    best = min(best, self._ended(target, start), key=_chi2)
             except ArithmeticError:  # there the engine does not run
                 continue
+        if any("grain" in h.effect.equations for h in hidden):
+            lowest = min((self._along_valley(target, first, stride) for stride in (STRIDE, -STRIDE)), key=_chi2)
+            best = min(best, self._ended(target, lowest), key=_chi2)
         return best
+
+    def _along_valley(self, target: Array, fit: Fit, stride: float) -> Fit:
+        """The best of the fits at exponents further and further to one side; all else follows at each."""
+        best = fit
+        for _ in range(STRIDES):
+            try:
+                fit = self._followed(target, self._at_exponent(target, fit, stride))
+            except ArithmeticError:  # there the engine does not run
+                break
+            best = min(best, fit, key=_chi2)
+            if fit.chi2 > LEFT * best.chi2:
+                break
+        return best
+
+    def _followed(self, target: Array, fit: Fit) -> Fit:
+        """A fit at its exponent to which all else has moved."""
+        for _ in range(MOST_FOLLOWING):
+            slopes = self._slopes_at(fit.nuisances[: len(NUISANCES)])
+            moved = self._at_exponent(target, replace(fit, slopes=slopes), 0.0)
+            if moved.chi2 > FOLLOWED * fit.chi2:
+                return min(moved, replace(fit, slopes=slopes), key=_chi2)
+            fit = moved
+        return fit
 
     def _at_exponent(self, target: Array, fit: Fit, away: float) -> Fit:
         """A fit with n elsewhere; what else is uncertain has followed as far as tangents tell."""
@@ -301,6 +333,10 @@ class Detector:
             return self
         axis = shifted(self.stand, fit.nuisances[: len(NUISANCES)])
         return Detector(self.stand, self.instruments, list(self.rivals.values()), axis)
+
+
+def _chi2(fit: Fit) -> float:
+    return fit.chi2
 
 
 def fire_after_liquid(true: Histories) -> float:

@@ -290,8 +290,9 @@ def test_fire_that_the_test_does_not_have_tells_nothing() -> None:
     [
         # a little, where the pressure falls to a quarter: a and n do the same
         (600, 0, "C000039", 0.315, VALLEYS, 2.0, 8.0),
-        # the straight line to the other valley ends at d' 180: whether a start is hopeless shows after some steps
-        (1500, 9, "C090337", 0.17, (0.1,), 6.0, 14.0),
+        # no straight line leads along the valley: it is walked, n by n
+        (1500, 9, "C090337", 0.17, (), 6.0, 14.0),
+        (1500, 8, "C080120", 1.284e-3, (), 9.0, 12.0),
     ],
 )
 def test_another_exponent_of_regression_may_imitate_what_no_step_from_here_leads_to(
@@ -304,7 +305,7 @@ def test_another_exponent_of_regression_may_imitate_what_no_step_from_here_leads
     of_one_start: float,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Both are regressions that depend on pressure."""
+    """Regressions that depend on pressure, and slivers that show from the middle of a firing on."""
     case = next(c for c in plan(cases, "calibration", seed) if c.id == number)
     monkeypatch.setattr(
         "tests.blind.build._set_strengths", lambda detector, hidden, case: tuple(h.at(strength) for h in hidden)
