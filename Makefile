@@ -98,15 +98,17 @@ recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 blind-cases: $(STAMP) ## tests with hidden effects under .cache/blind/; FLAGS='--n 20' (docs/blind.md)
 	$(BIN)/python -m tests.blind write --jobs 2 $(FLAGS)
 
-# 1 says that cases failed: the page says which, so it is written all the same.
+# What is found is kept in FOUND, of which a run elsewhere goes on, or makes the page alone. 1 says that cases failed: the
+# page says which, so it is written all the same.
 BLIND := $(BIN)/python -m benchmarks.blind
+FOUND := --archive benchmarks/blind/found/scored.jsonl.xz
 
 blind: $(STAMP) ## 1,500 tests with hidden effects diagnosed and scored: docs/blind-benchmark.md; goes on where stopped
-	$(BLIND) run --split scored --n 1500 --jobs 2 $(FLAGS) || [ $$? -eq 1 ]
+	$(BLIND) run --split scored --n 1500 --jobs 2 $(FOUND) $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) table --split scored --write docs/blind-benchmark.md --json .cache/blind/cases/scored/figures.json
 
 blind-none: $(STAMP) ## the 330 of them in which nothing is hidden: docs/blind-none.md
-	$(BLIND) run --split scored --n 1500 --kind none --jobs 2 --out .cache/blind/none $(FLAGS) || [ $$? -eq 1 ]
+	$(BLIND) run --split scored --n 1500 --kind none --jobs 2 --out .cache/blind/none $(FOUND) $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) table --split scored --none --out .cache/blind/none --write docs/blind-none.md
 
 blind-smoke: $(STAMP) ## 24 of them from the development split, the figures on the screen

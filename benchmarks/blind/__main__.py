@@ -50,6 +50,7 @@ def _run_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument("--keep", action="store_true", help="keep what another version of the code found")
     p.add_argument("--retry", action="store_true", help="try again what failed")
     p.add_argument("--seconds", type=float, default=300.0, help="longest time for one case")
+    p.add_argument("--archive", type=Path, metavar="FILE", help="go on from what this file holds; add what is found")
     p.add_argument("--every", type=int, default=10, help="cases between two lines of progress")
 
 
@@ -71,7 +72,7 @@ def _run(a: argparse.Namespace, folder: Any) -> int:
     settings = {key: _value(text) for key, _, text in (s.partition("=") for s in a.set)}
     request = Request(
         a.split, a.n, folder, a.jobs, a.seed, a.limit, settings, a.keep, a.retry, a.seconds, a.every, a.kind,
-        a.targets, a.each,
+        a.targets, a.each, a.archive,
     )  # fmt: skip
     try:
         return run(request)

@@ -32,7 +32,9 @@ class Unfit(Exception):
 
 def log_scores(samples: Sequence[Sample], constants: Sequence[Constants]) -> np.ndarray:
     """Logarithm of the probability of the right label."""
-    right = (c.probabilities(s.evidences, s.leftover)[s.truth] for s, c in zip(samples, constants, strict=True))
+    right = (
+        c.probabilities(s.evidences, s.leftover, s.elsewhere)[s.truth] for s, c in zip(samples, constants, strict=True)
+    )
     return np.log(np.maximum(list(right), LEAST))
 
 
@@ -45,7 +47,7 @@ def weights_of(samples: Sequence[Sample]) -> np.ndarray:
 def stated(cases: Sequence[Case], samples: Sequence[Sample], constants: Sequence[Constants]) -> list[Case]:
     """The cases with the probabilities that the constants make of their evidences."""
     return [
-        Case(c.answer, {"posterior": k.probabilities(s.evidences, s.leftover)})
+        Case(c.answer, {"posterior": k.probabilities(s.evidences, s.leftover, s.elsewhere)})
         for c, s, k in zip(cases, samples, constants, strict=True)
     ]
 

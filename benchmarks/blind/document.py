@@ -95,7 +95,8 @@ def facts(full: Results, split: str) -> list[str]:
     for (code, constants), number in full.codes.most_common():
         fitted = "none" if constants == ABSENT else f"`{constants[:12]}`"
         lines.append(f"| code `{code[:12]}`, fitted constants {fitted} | {number} cases |")
-    return [*lines, f"| generator and scorer | `{scoring_digest()[:12]}` |"]
+    lines += [f"| generator `{made[:12]}` | {number} cases |" for made, number in full.generators.most_common()]
+    return [*lines, f"| scorer | `{scoring_digest()[:12]}` |"]
 
 
 def rows(result: dict[str, Any], names: Iterable[str]) -> list[str]:

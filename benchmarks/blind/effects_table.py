@@ -16,7 +16,7 @@ def effects_table(cases: Sequence[Case], groups: Groups) -> list[str]:
     for name, here in sorted(_by_truth(cases).items()):
         right = share(_right(c) for c in here)
         twins = sum(c.stated in groups.get(c.truth, ()) for c in here) if here[0].kind == "single" else None
-        place = sum(right_equation(c) for c in here)
+        place = sum(right_equation(c, c.first_place) for c in here)
         said = Counter(_said(c) for c in here if not _right(c)).most_common(3)
         limits = f"{right.low:.2f} to {right.high:.2f}"
         stated = ", ".join(f"{what} {k}" for what, k in said) or "-"

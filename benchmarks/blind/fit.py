@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, detailed_kinds, seen
+from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, claimable, detailed_kinds
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,8 @@ none ever is (Laplace's rule of succession)."""
 class Sample:
     """One case: log evidences by label, the misfit left, the right label; samples of one group share a fold.
 
-    ``weight``: for how many cases it counts.
+    ``weight``: for how many cases it counts; ``elsewhere``: log evidence of an unknown source in another equation than
+    the best name's.
     """
 
     evidences: dict[str, float]
@@ -48,6 +49,7 @@ class Sample:
     truth: str
     group: str
     weight: float = 1.0
+    elsewhere: float | None = None
 
 
 @dataclass(frozen=True)
@@ -63,14 +65,16 @@ class Constants:
     unseen_unknown: float | None = None
     unexplained: float = 0.0
 
-    def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
+    def probabilities(
+        self, evidences: Mapping[str, float], leftover: float, elsewhere: float | None = None
+    ) -> dict[str, float]:
         """The stated probabilities.
 
         >>> p = Constants(temperature=2.0).probabilities({"none": 0.0, "tank_heat": 2.0}, 1.0)
         >>> round(p["tank_heat"], 3)
         0.731
         """
-        return self.scale.probabilities(evidences, leftover)
+        return self.scale.probabilities(evidences, leftover, elsewhere)
 
     @property
     def scale(self) -> Scale:
@@ -88,17 +92,20 @@ def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
     leftover = product.get("leftover")
     if truth not in evidences or len(evidences) < 2:
         return None
-    return Sample(evidences, 1.0 if leftover is None else float(leftover), truth, group)
+    elsewhere = product.get("unknown_elsewhere")
+    return Sample(evidences, 1.0 if leftover is None else float(leftover), truth, group, elsewhere=elsewhere)
 
 
 @dataclass(frozen=True)
 class _Table:
     """Samples as arrays: ``evidence`` [case, label] (-inf where not stated), its kind (0 for none, else the number in
     OFFSETS and 1), the truth; ``imitated`` [case, label]: what the best name explains where the label is unknown, 0
-    elsewhere; ``capped`` [case, label]: whether a label is at most as probable as ``none``, the place of that label."""
+    elsewhere; ``apart`` [case]: evidence of an unknown source in another equation than that name's (-inf: none);
+    ``capped`` [case, label]: whether a label is at most as probable as ``none``, the place of that label."""
 
     evidence: Array
     imitated: Array
+    apart: Array
     capped: NDArray[np.bool_]
     none: int
     kind: NDArray[np.int64]
@@ -119,20 +126,23 @@ def _table(samples: Sequence[Sample]) -> _Table:
     unseen = np.array([[of.get(label, "").startswith("unseen") for label in labels] for of in detailed])
     best = np.max(np.where(kind == 1, evidence, 0.0), axis=1, initial=0.0)
     imitated = np.where(kinds == 2, best[:, None], 0.0)
-    capped = (kind == 2) & ~np.array([seen(s.evidences) for s in samples])[:, None]
+    capped = (kind == 2) & ~np.array([claimable(s.evidences) for s in samples])[:, None]
+    apart = np.array([-inf if s.elsewhere is None else s.elsewhere for s in samples])
     none = labels.index("none") if "none" in labels else 0
     evidence[unseen] = 0.0
     excess = np.maximum([s.leftover - 1.0 for s in samples], 0.0)
     truth = np.array([labels.index(s.truth) for s in samples])
     weight = np.array([s.weight for s in samples])
-    return _Table(evidence, imitated, capped, none, kinds, truth, excess, before / before.sum(), weight)
+    return _Table(evidence, imitated, apart, capped, none, kinds, truth, excess, before / before.sum(), weight)
 
 
 def _loss(x: Array, t: _Table) -> float:
     """Negative penalised log likelihood at NAMES."""
     unexplained, per_leftover, misled = x[-3:]
     temperature = exp(x[0]) * (1.0 + per_leftover * t.excess)
-    logits = np.array([0.0, *x[1:-3]])[t.kind] + (t.evidence - unexplained * t.imitated) / temperature[:, None]
+    evidence = t.evidence - unexplained * t.imitated
+    evidence = np.where(t.kind == 2, np.maximum(evidence, t.apart[:, None]), evidence)
+    logits = np.array([0.0, *x[1:-3]])[t.kind] + evidence / temperature[:, None]
     logits = np.minimum(logits, np.where(t.capped, logits[:, t.none, None], inf))
     shares = np.exp(logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1))
     right = np.log((1.0 - misled) * shares + misled * t.before[t.truth])

@@ -35,6 +35,11 @@ class Results:
         return [note for note in self.notes.values() if note.status != DONE]
 
     @property
+    def generators(self) -> Counter[str]:
+        """Digests of the generators that made the cases, with the number of cases."""
+        return Counter(str(case.answer.get("generator", "not stated")) for case in self.cases.values())
+
+    @property
     def codes(self) -> Counter[tuple[str, str]]:
         """Digests of sources and of fitted constants, with the number of cases."""
         return Counter((self.notes[i].code, self.notes[i].probabilities) for i in self.cases)

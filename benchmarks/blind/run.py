@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from tests.blind.plan import Case, plan
+from tests.blind.version import generator_digest
 from tests.blind.write import answer_path, write_all
 
+from .archive import pack, unpack
 from .folder import DIED, DONE, LATE, UNWRITTEN, Folder, Note, code_digest, probabilities_digest, write_json
 from .pool import Outcome, Pool
 from .progress import display
@@ -37,6 +39,7 @@ class Request:
         kind: of these, only the tests of one kind.
         targets: only those with one of these d' asked for, if there are any.
         each: only the first so many of every effect and d'.
+        archive: a file with what was found before, elsewhere; what is found is added to it.
         settings: parameters of stages by ``"stage.name"``.
         keep: keep products that another version of the code made.
         retry: try again what failed.
@@ -58,6 +61,7 @@ class Request:
     kind: str | None = None
     targets: tuple[float, ...] = ()
     each: int | None = None
+    archive: Path | None = None
 
 
 def variant_settings(variant: str | None, given: dict[str, Any], known: Iterable[str]) -> dict[str, Any]:
@@ -159,6 +163,15 @@ def asked_for(request: Request) -> list[Case]:
     return out
 
 
+def archive_of(request: Request) -> Path | None:
+    """The file that results are kept in; a variant has its own beside that of the full method."""
+    path, variant = request.archive, request.folder.variant
+    if path is None or variant is None:
+        return path
+    name, dot, ending = path.name.partition(".")
+    return path.with_name(f"{name}-{variant}{dot}{ending}")
+
+
 def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) -> int:
     """Do what is not done yet.
 
@@ -169,6 +182,10 @@ def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) ->
     request = _checked(request)
     cases = asked_for(request)
     now = (code_digest(), probabilities_digest())
+    archive = archive_of(request)
+    if archive is not None:
+        taken = unpack(archive, folder, {c.id for c in cases}, now, generator_digest())
+        print(f"{archive}: {taken} cases taken from it", file=sys.stderr, flush=True)
     there = written(cases, request, now)
     went_by = {"split": request.split, "n": request.total, "seed": request.seed, "limit": request.limit}
     parts = {"kind": request.kind, "targets": request.targets, "each": request.each}
@@ -179,6 +196,7 @@ def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) ->
     for case in todo:
         (folder.runs / f"{case.id}.json").unlink(missing_ok=True)
     pool = (make_pool or _pool)(request)
+    interrupted = False
     try:
         with display(len(todo), request.every) as shown:
             for outcome in pool.run([job_of(c, request) for c in todo]):
@@ -187,8 +205,10 @@ def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) ->
                 shown.done(note)
     except KeyboardInterrupt:
         print("interrupted; the same command goes on from here", file=sys.stderr)
-        return INTERRUPTED
-    return _summary([folder.note(c.id) for c in cases])
+        interrupted = True
+    if archive is not None:
+        print(f"{archive}: {pack(folder, archive)} cases", file=sys.stderr)
+    return INTERRUPTED if interrupted else _summary([folder.note(c.id) for c in cases])
 
 
 def _checked(request: Request) -> Request:

@@ -69,7 +69,7 @@ def build(case: Case) -> Built:
     log = se.write_log(own_rng, stand, true, channels, instruments)
     fuel = stand.fuel_mass - float(true.trace(s.FUEL).sum()) * kernel.STEP
     weighed = {"oxidizer_mass": stand.mass + float(own_rng.normal(0.0, 0.01)),
-               "fuel_mass_after": max(fuel, 0.0) + float(own_rng.normal(0.0, 0.005))}  # fmt: skip
+               "fuel_mass_after": max(max(fuel, 0.0) + float(own_rng.normal(0.0, 0.005)), 0.0)}  # fmt: skip
     return Built(case, stand, instruments, hidden, true, channels, log, _detectability(detector, hidden), weighed)
 
 

@@ -92,7 +92,17 @@ class Case:
     @property
     def places(self) -> list[dict[str, Any]]:
         """Localisation, the most significant first."""
-        return sorted(self.product.get("localisation") or [], key=lambda r: -number(r.get("significance"), 0.0))
+        return by_significance(self.product.get("localisation") or [])
+
+    @property
+    def first_place(self) -> dict[str, Any]:
+        """The first place of all: where nothing is claimed, where the product says that it most likely would be."""
+        return self.places[0] if self.places else self.product.get("likeliest_place") or {}
+
+
+def by_significance(places: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of a localisation, the most significant first."""
+    return sorted(places, key=lambda row: -number(row.get("significance"), 0.0))
 
 
 def number(x: Any, default: float = nan) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -59,14 +59,19 @@ def strange(c: Case) -> bool:
     return c.kind == "outside" and (c.answer["after_best_of_library"] or 0.0) >= OUTSIDE_SEEN
 
 
-def right_equation(c: Case) -> bool:
-    """The first place found is in an equation of something that is hidden."""
-    return bool(c.places) and any(c.places[0].get("equation") in e["equations_accepted"] for e in c.answer["effects"])
+def right_equation(c: Case, place: Mapping[str, Any]) -> bool:
+    """A place is in an equation of something that is hidden."""
+    return any(place.get("equation") in e["equations_accepted"] for e in c.answer["effects"])
 
 
-def right_phase(c: Case) -> bool:
-    """The first place found is in a phase in which the source acts."""
-    return bool(c.places) and any(c.places[0].get("phase") in e["phases"] for e in c.answer["effects"])
+def right_phase(c: Case, place: Mapping[str, Any]) -> bool:
+    """A place is in a phase in which the source acts."""
+    return any(place.get("phase") in e["phases"] for e in c.answer["effects"])
+
+
+def claimed_place(c: Case) -> Mapping[str, Any]:
+    """The first of the places at which a source is claimed; empty where none is."""
+    return c.places[0] if c.places else {}
 
 
 def placed(c: Case) -> bool:
@@ -164,12 +169,16 @@ NAMING: dict[str, Judge] = {
     "false_alarm": lambda c, g: c.claims if c.kind == "none" else None,
     "pair_both": lambda c, g: pair_both(c),
     "outside_unknown": lambda c, g: c.stated == "unknown" if strange(c) else None,
-    "outside_unknown_and_equation": lambda c, g: c.stated == "unknown" and right_equation(c) if strange(c) else None,
+    "outside_unknown_and_equation": lambda c, g: (
+        c.stated == "unknown" and right_equation(c, claimed_place(c)) if strange(c) else None
+    ),
 }
 
 PLACES: dict[str, Judge] = {
-    "equation_first": lambda c, g: right_equation(c) if placed(c) else None,
-    "phase": lambda c, g: right_phase(c) if placed(c) else None,
+    "equation_first": lambda c, g: right_equation(c, c.first_place) if placed(c) else None,
+    "phase": lambda c, g: right_phase(c, c.first_place) if placed(c) else None,
+    "equation_claimed": lambda c, g: right_equation(c, claimed_place(c)) if placed(c) else None,
+    "phase_claimed": lambda c, g: right_phase(c, claimed_place(c)) if placed(c) else None,
     "onset_in_95_band": lambda c, g: onset_covered(c) if placed(c) else None,
     "no_source_on_none": lambda c, g: not c.places and not c.failed if c.kind == "none" else None,
     "size_in_90_interval": lambda c, g: size_covered(c) if placed(c) else None,

@@ -18,13 +18,14 @@ from typing import Any
 import numpy as np
 import pytest
 from benchmarks.blind import folder as fo
+from benchmarks.blind.archive import pack, unpack
 from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, pooled, save, weights
 from benchmarks.blind.document import document, without_effect, write
 from benchmarks.blind.fit import Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
 from benchmarks.blind.pool import Outcome, Pool
 from benchmarks.blind.results import results
-from benchmarks.blind.run import Refused, Request, asked_for, check_plan, is_done, variant_settings
+from benchmarks.blind.run import Refused, Request, archive_of, asked_for, check_plan, is_done, variant_settings
 from benchmarks.blind.work import Job, settings_of
 from tests.blind.judged import Case
 from tests.blind.made_up import answer, broken, nothing, product, work
@@ -208,6 +209,75 @@ def test_a_variant_of_another_version_of_the_code_is_not_compared(made: Callable
     text, _ = document(results(full, "calibration"), "calibration", None)
     assert "Diagnosed by `older`, which the full method was not" in text
     assert "full less variant" not in text
+
+
+ALL = ("X000", "X001", "X002")
+PLACE = {"equation": "tank_energy", "phase": "liquid", "significance": 9.0, "history": {"time": [1.0, 2.0]}}
+
+
+@pytest.fixture
+def kept(made: Callable[..., Folder], tmp_path: Path) -> Path:
+    """A file with a named effect, one that failed, and none."""
+    further = PLACE | {"equation": "nozzle", "significance": 2.0}
+    named = product("tank_heat", 0.93456789, localisation=[further, PLACE], gap={"before": {}, "closed_fraction": {}})
+    named["effects"] = [{"name": "tank_heat", "probability": 0.9, "meaning": "blankets"}]
+    folder = made([("tank_heat", named), ("n2_purge", named), (None, product("none", likeliest_place=PLACE))], failed=1)
+    for path in folder.answers.glob("*.json"):
+        write_json(path, json.loads(path.read_text(encoding="utf-8")) | {"generator": "g"})
+    assert pack(folder, tmp_path / "kept.xz") == 3
+    return tmp_path / "kept.xz"
+
+
+def test_a_run_goes_on_elsewhere_from_what_was_kept(kept: Path, tmp_path: Path) -> None:
+    here, there = Folder(tmp_path), Folder(tmp_path / "there")
+    now = ("c", fo.ABSENT)
+    assert unpack(kept, there, ALL, now, "g") == 2, "what failed was of no code"
+    assert sorted(there.notes()) == ["X001", "X002"]
+    note, product_there = there.note("X001"), json.loads(there.product("X001").read_text(encoding="utf-8"))
+    assert note == here.note("X001")
+    assert product_there["posterior"]["tank_heat"] == 0.934568
+    assert [row.get("history") for row in product_there["localisation"]] == [PLACE["history"], None]
+    assert product_there["effects"] == [{"name": "tank_heat", "probability": 0.9}]
+    one, other = (document(results(f, "calibration"), "calibration", None)[1]["figures"] for f in (here, there))
+    assert one["false_alarm"] == other["false_alarm"]
+    request = Request("calibration", 3, there)
+    assert is_done(note, there.product("X001"), request, now)
+    assert unpack(kept, there, ALL, now, "g") == 0, "it is there already"
+
+
+@pytest.mark.parametrize(
+    ("now", "generator"), [(("other", fo.ABSENT), "g"), (("c", "other"), "g"), (("c", fo.ABSENT), "h")]
+)
+def test_what_another_version_made_stays_where_it_was_kept(
+    now: tuple[str, str], generator: str, kept: Path, tmp_path: Path
+) -> None:
+    assert unpack(kept, Folder(tmp_path / "there"), ALL, now, generator) == 0
+
+
+def test_a_variant_is_kept_apart_from_the_full_method(tmp_path: Path) -> None:
+    given = Request("scored", 3, Folder(tmp_path), archive=tmp_path / "scored.jsonl.xz")
+    assert archive_of(given) == tmp_path / "scored.jsonl.xz"
+    assert archive_of(replace(given, folder=Folder(tmp_path, "white"))) == tmp_path / "scored-white.jsonl.xz"
+    assert archive_of(replace(given, archive=None)) is None
+
+
+def test_of_what_is_kept_only_the_cases_asked_for_are_taken(kept: Path, tmp_path: Path) -> None:
+    there = Folder(tmp_path / "there")
+    assert unpack(kept, there, ("X000", "X002"), ("c", fo.ABSENT), "g") == 1
+    assert list(there.notes()) == ["X002"]
+
+
+def test_what_is_kept_is_added_to_and_replaced_but_never_lost(kept: Path, tmp_path: Path) -> None:
+    there = Folder(tmp_path / "there")
+    unpack(kept, there, ALL, ("c", fo.ABSENT), "g")
+    note = there.note("X002")
+    assert note is not None
+    there.write_note(replace(note, seconds=1.0))
+    (there.runs / "X001.json").unlink()
+    assert pack(there, kept) == 3
+    again = Folder(tmp_path / "again")
+    unpack(kept, again, ALL, ("c", fo.ABSENT), "g")
+    assert [n.seconds for n in again.notes().values()] == [9.0, 1.0]
 
 
 LABELS = ("none", "unknown", "tank_heat", "n2_purge", "fuel_sliver", "nozzle_divergence")

@@ -100,6 +100,19 @@ def test_the_most_significant_place_counts_and_its_band_must_hold_the_onset() ->
         assert figure(cases, name)["value"] == value, name
 
 
+def test_a_place_may_be_first_without_being_claimed() -> None:
+    """Which equation comes first is one question, whether anything is claimed there another."""
+    likely, other = ({"equation": e, "phase": p} for e, p in (("tank_energy", "liquid"), ("nozzle", "vapor")))
+    cases = [Case(answer("tank_heat"), product("none", likeliest_place=likely)),
+             Case(answer("tank_heat"), product("none", likeliest_place=other)),
+             Case(answer("tank_heat"), product("none", likeliest_place=None)),
+             Case(answer("tank_heat"), product("tank_heat", place=likely, likeliest_place=None)),
+             Case(answer(None, d=0.0), product("none", likeliest_place=likely))]  # fmt: skip
+    for name, k in {"equation_first": 2, "phase": 2, "equation_claimed": 1, "phase_claimed": 1}.items():
+        assert (figure(cases, name)["k"], figure(cases, name)["n"]) == (k, 4), name
+    assert figure(cases, "no_source_on_none")["k"] == 1
+
+
 def test_stated_probabilities_that_come_true_have_no_calibration_error() -> None:
     rng = np.random.default_rng(0)
 

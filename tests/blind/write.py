@@ -17,6 +17,7 @@ from . import sensors as se
 from . import slots as s
 from .build import Built, answer, build
 from .plan import Case
+from .version import generator_digest
 
 COLUMNS = {"p_tank": "PT-TANK", "p_run": "PT-RUN", "p_chamber": "PT-CC", "p_purge": "PT-PURGE", "thrust": "LC-THRUST",
            "m_tank": "LC-TANK"}  # fmt: skip
@@ -114,7 +115,7 @@ def write_case(case: Case, root: Path) -> Path:
     path = answer_path(case, root)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_suffix(".part")
-    part.write_text(json.dumps(answer(b), indent=1), encoding="utf-8")
+    part.write_text(json.dumps(answer(b) | {"generator": generator_digest()}, indent=1), encoding="utf-8")
     os.replace(part, path)
     return path
 

@@ -12,7 +12,16 @@ from hfanalysis.diagnose.answer import gap
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
-from hfanalysis.diagnose.answer.verdict import Verdict, effects_product, places, sizes, upper_limits, verdict_of
+from hfanalysis.diagnose.answer.verdict import (
+    Verdict,
+    effects_product,
+    likeliest_place,
+    places,
+    sizes,
+    upper_limits,
+    verdict_of,
+)
+from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import story
 from hfanalysis.diagnose.fitting.fade import abrupt, with_abrupt_end
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
@@ -129,6 +138,7 @@ LEVEL = 1.0
 
 def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue) -> dict[str, Any]:
     observed, chosen = found.bench.observed, verdict.chosen
+    equations = by_equation(verdict.posterior, found)
     compared = np.concatenate([channel.time for channel in observed.channels])
     return {
         "verdict": verdict.label,
@@ -136,10 +146,13 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "set90": verdict.set90,
         "posterior": verdict.posterior,
         "partners": verdict.partners,
+        "by_equation": equations,
         "evidences": verdict.evidences,
+        "unknown_elsewhere": verdict.elsewhere,
         "tried": [_tried(c, found) for c in (*found.singles, *found.sets, *found.unknown)],
         "leftover": found.named.leftover,
         "localisation": places(verdict, found),
+        "likeliest_place": likeliest_place(verdict, found, equations),
         "gap": _gap(found.base, chosen, proof, observed),
         "upper_limits": upper_limits(verdict, found, catalogue),
         "twins": _twins(verdict, catalogue),

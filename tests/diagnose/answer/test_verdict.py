@@ -25,17 +25,18 @@ from hfanalysis.diagnose.answer.posterior import (
     SET,
     UNSEEN,
     Scale,
+    claimable,
     evidences_of,
     kind,
     scale,
-    seen,
     smallest_set,
 )
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
-from hfanalysis.diagnose.answer.verdict import _within, effects_product, places, verdict_of
+from hfanalysis.diagnose.answer.verdict import _within, effects_product, likeliest_place, places, verdict_of
+from hfanalysis.diagnose.answer.where import by_equation, elsewhere, likeliest_of
 from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.fitting.fit import fit
-from hfanalysis.diagnose.naming.candidate import Candidate
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.variants import VARIANTS, settings_of
@@ -62,7 +63,7 @@ def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: f
     found = Scale(t, more).probabilities(evidences, leftover)
     assert set(found) == set(evidences)
     assert sum(found.values()) == pytest.approx(1.0)
-    little = "none" in evidences and not seen(evidences)
+    little = "none" in evidences and not claimable(evidences)
     order = sorted((k for k in evidences if k != "unknown" or not little), key=lambda k: evidences[k])
     assert all(found[a] <= found[b] for a, b in pairwise(order))
     assert not little or found.get("unknown", 0.0) <= found["none"]
@@ -98,7 +99,7 @@ def test_where_evidence_misleads_nothing_is_certain() -> None:
 
 def test_effects_that_were_not_tried_are_less_probable_than_those_that_were() -> None:
     found = eroded()
-    evidences = evidences_of(replace(found, names=(*found.names, "tank_heat"), unknown=()))
+    evidences = evidences_of(replace(found, equations={**found.equations, "tank_heat": "tank_energy"}, unknown=()))
     assert evidences["tank_heat"] == evidences["unknown"]
     assert evidences["tank_heat"] <= min(UNSEEN, min(evidences.values()))
 
@@ -132,6 +133,19 @@ def test_unknown_has_to_explain_more_than_closures_get_wrong() -> None:
     assert odds(40.0, 43.0) == pytest.approx(-1.0 + (3.0 - 4.0) / 2.0)
     assert odds(0.0, 10.0) == pytest.approx(-1.0 + 10.0 / 2.0)
     assert odds(-3.0, 10.0) == pytest.approx(-1.0 + 13.0 / 2.0)  # a name that explains nothing leaves nothing
+
+
+def test_a_source_in_another_equation_is_nothing_that_a_closure_gets_wrong() -> None:
+    evidences = {"none": 0.0, "injector_two_phase": 100.0, "unknown": 108.0}
+
+    def odds(apart: float | None) -> float:
+        found = Scale(2.0, unexplained=0.1).probabilities(evidences, 1.0, apart)
+        return float(np.log(found["unknown"] / found["injector_two_phase"]))
+
+    assert odds(None) == pytest.approx((8.0 - 10.0) / 2.0)
+    assert odds(90.0) == odds(None)  # one at the same place explains more, even so
+    assert odds(103.0) == pytest.approx(3.0 / 2.0)
+    assert odds(108.0) == pytest.approx(8.0 / 2.0)
 
 
 def test_where_nothing_is_seen_unknown_is_not_more_probable_than_none() -> None:
@@ -219,7 +233,8 @@ def probable(*gains: tuple[str, float]) -> Naming:
     base = found.base.log_evidence
     singles = tuple(replace(single, names=(n,), log_evidence=base + g) for n, g in gains if n != "unknown")
     strange = tuple(Candidate(("tank_leak",), single.fit, base + g, unknown=True) for n, g in gains if n == "unknown")
-    return replace(found, singles=singles, sets=(), unknown=strange)
+    equations = found.equations | {n: effect(n).equation for n, _ in gains if n != "unknown"}
+    return replace(found, singles=singles, sets=(), unknown=strange, equations=equations)
 
 
 @pytest.mark.parametrize(
@@ -268,6 +283,93 @@ def test_no_hint_of_what_is_no_likelier_than_none(monkeypatch) -> None:  # type:
     doubtful = Scale(offsets={"none": 0.0, "named": -4.6, "unknown": 0.0})
     monkeypatch.setattr(verdict_module, "scale", lambda: doubtful)
     assert verdict_of(probable(("nozzle_throat_erosion", 4.8))).hint is None
+
+
+def strange(*sources: tuple[str, float]) -> Naming:
+    """Throat erosion that explains 20 units, and unknown sources alone at these sites that explain so much."""
+    found = probable(("nozzle_throat_erosion", 20.0))
+    fit, base = found.singles[0].fit, found.base.log_evidence
+    return replace(found, unknown=tuple(Candidate((site,), fit, base + gain, unknown=True) for site, gain in sources))
+
+
+@pytest.mark.parametrize(
+    ("sources", "apart"),
+    [
+        ((("throat_factor", 23.0), ("feed_loss", 18.0)), 18.0),
+        ((("feed_loss", 21.0), ("regression_factor", 22.0)), 22.0),
+        ((("throat_factor", 23.0), ("thrust_factor", 22.0)), None),
+        ((("offset of thrust", 25.0),), None),  # it may be the nozzle's
+        ((("offset of p_tank", 25.0),), 25.0),
+        ((), None),
+    ],
+)
+def test_sources_elsewhere_are_those_in_no_equation_of_the_best_name(sources, apart: float | None) -> None:  # type: ignore[no-untyped-def]
+    found = elsewhere(strange(*sources))
+    assert found == (None if apart is None else pytest.approx(apart))
+
+
+@pytest.mark.parametrize(
+    ("equation", "site", "apart"),
+    [
+        ("tank_energy", "tank_leak", False),
+        ("grain", "temperature_factor", False),
+        ("chamber_mass", "regression_factor", False),
+        ("injector", "feed_loss", True),
+        ("tank_volume", "injector_factor", True),
+    ],
+)
+def test_what_shows_in_the_same_pressure_is_not_elsewhere(equation: str, site: str, apart: bool) -> None:
+    found = replace(strange((site, 22.0)), equations={"nozzle_throat_erosion": equation})
+    assert (elsewhere(found) is not None) == apart
+
+
+def test_without_a_pressure_between_them_feed_line_and_injector_are_one_place() -> None:
+    found = replace(strange(("feed_loss", 22.0)), equations={"nozzle_throat_erosion": "injector"})
+    observed = found.bench.observed
+    channels = tuple(c for c in observed.channels if c.name != "p_run")
+    without_line = replace(found, bench=Bench(replace(observed, channels=channels)))
+    assert elsewhere(found) is not None
+    assert elsewhere(without_line) is None
+
+
+def test_a_source_beside_the_name_is_not_elsewhere() -> None:
+    found = strange(("feed_loss", 30.0))
+    beside = replace(found.unknown[0], names=("nozzle_throat_erosion", "feed_loss"))
+    assert elsewhere(replace(found, unknown=(beside,))) is None
+
+
+def test_an_equation_is_as_probable_as_its_names_together() -> None:
+    found = replace(eroded(), equations=dict.fromkeys(("tank_heat", "tank_wall_heat_capacity"), "tank_energy"))
+    found = replace(found, equations={**found.equations, "nozzle_throat_erosion": "nozzle"}, unknown=())
+    stated = {"none": 0.1, "tank_heat": 0.3, "tank_wall_heat_capacity": 0.2, "nozzle_throat_erosion": 0.4}
+    assert by_equation(stated, found) == pytest.approx({"tank_energy": 0.5, "nozzle": 0.4})
+    assert list(by_equation(stated, found)) == ["tank_energy", "nozzle"]
+
+
+def test_where_nothing_is_claimed_the_likeliest_place_is_told_all_the_same(monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(verdict_module, "scale", Scale)
+    for gain, there in ((3.0, True), (-1.0, False), (20.0, False)):
+        found = probable(("nozzle_throat_erosion", gain))
+        verdict = verdict_of(found)
+        place = likeliest_place(verdict, found, by_equation(verdict.posterior, found))
+        assert (place is not None) == there, gain
+        if place is not None:
+            assert (place["equation"], place["phase"]) == ("nozzle", "liquid")
+            assert place["significance"] == pytest.approx(gain)
+            assert "history" not in place
+
+
+def test_the_likeliest_place_is_in_the_likeliest_equation() -> None:
+    found = probable(("nozzle_throat_erosion", 4.0), ("tank_heat", 3.5), ("tank_wall_heat_capacity", 3.4))
+    found = replace(
+        found,
+        equations={"nozzle_throat_erosion": "nozzle"} | dict.fromkeys(("tank_heat", "tank_wall_heat_capacity"), "tank"),
+    )
+    evidences = evidences_of(found)
+    stated = Scale().probabilities(evidences, 1.0)
+    likeliest = likeliest_of(by_equation(stated, found), stated, evidences, found)
+    assert likeliest is not None
+    assert likeliest.names == ("tank_heat",)
 
 
 def with_set(gain: float, further: str = "load_cell_drift") -> Naming:
@@ -430,7 +532,10 @@ def test_what_slow_noise_may_be_larger_by_is_no_gap() -> None:
 def test_what_is_named_beside_the_first_is_not_said_to_be_excluded(monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.setattr(verdict_module, "scale", Scale)
     monkeypatch.setattr(posterior, "scale", Scale)
-    found = replace(with_set(10.0), names=(*with_set(10.0).names, "load_cell_drift", "chamber_tap_lag"))
+    found = with_set(10.0)
+    found = replace(
+        found, equations={**found.equations, **dict.fromkeys(("load_cell_drift", "chamber_tap_lag"), "sensor")}
+    )
     verdict = verdict_of(found)
     assert verdict.added == ("nozzle_throat_erosion", "load_cell_drift")
     assert verdict.posterior["load_cell_drift"] < LIKELY
@@ -443,7 +548,8 @@ def test_an_unknown_source_is_no_effect_of_the_name_of_its_site(monkeypatch) -> 
     monkeypatch.setattr(verdict_module, "scale", Scale)
     found = probable(("nozzle_throat_erosion", 3.0), ("unknown", 40.0))
     at_heat = replace(found.unknown[0], names=("tank_heat",))
-    verdict = verdict_of(replace(found, unknown=(at_heat,), names=(*found.names, "tank_heat")))
+    equations = {**found.equations, "tank_heat": "tank_energy"}
+    verdict = verdict_of(replace(found, unknown=(at_heat,), equations=equations))
     assert verdict.label == "unknown"
     assert verdict.chosen.names == ("tank_heat",)
     assert verdict.added == ()

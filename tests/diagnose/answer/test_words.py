@@ -10,8 +10,10 @@ from tests.diagnose.answer.test_verdict import eroded, probable
 
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.verdict import effects_product, places, verdict_of
+from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import (
     effect_sentence,
+    equation_sentence,
     gap_line,
     headline,
     place_sentence,
@@ -36,6 +38,7 @@ def product(label: str, **more: Any) -> dict[str, Any]:
     return {
         "verdict": label,
         "partners": {},
+        "by_equation": by_equation(verdict.posterior, found),
         "posterior": {"unknown": 0.97, "none": 0.03} if label == "unknown" else verdict.posterior,
         "set90": ["unknown"] if label == "unknown" else verdict.set90,
         "effects": effects_product(verdict) if label in ("named", "ambiguous") else [],
@@ -143,3 +146,20 @@ def test_a_gap_that_a_wrong_effect_closes_as_well_proves_nothing() -> None:
     said = " ".join(proof_sentences(product("named", gap={**gap, "closed_fraction": wider})))
     assert "the best wrong effect widens it by 16 %" in said
     assert "proves nothing" not in said
+
+
+@pytest.mark.parametrize(
+    ("verdict", "names", "by_equation", "said"),
+    [
+        ("ambiguous", (0.5, 0.45), 0.95, ["Whatever its name, it is in the gas's energy (0.95)."]),
+        ("ambiguous", (0.5, 0.3), 0.8, []),  # it may be elsewhere
+        ("ambiguous", (0.95, 0.03), 0.98, []),  # the name says it
+        ("named", (0.5, 0.45), 0.95, []),
+    ],
+)
+def test_where_names_leave_a_choice_the_equation_may_be_sure(
+    verdict: str, names: tuple[float, float], by_equation: float, said: list[str]
+) -> None:
+    posterior = dict(zip(("combustion_efficiency", "chamber_heat_loss"), names, strict=True))
+    given = {"verdict": verdict, "posterior": posterior, "by_equation": {"chamber_energy": by_equation, "grain": 0.01}}
+    assert equation_sentence(given) == said

@@ -36,9 +36,10 @@ class Scale:
 
     A label of which a score test saw nothing (UNSEEN) is as good as none, but for an offset of its own: that an effect
     is too small to be seen is no evidence against it. What a closure gets wrong of an effect is a part of what it
-    explains: unknown has that share ``unexplained`` of the best name's evidence less than it found, and where no
-    label has LEAST_EVIDENCE it is at most as probable as none. In a share ``misled`` of all tests the evidence misleads
-    altogether; there the labels have the probabilities that they have before a test.
+    explains: unknown has that share ``unexplained`` of the best name's evidence less than it found, unless its source
+    acts in another equation; and where no label has LEAST_EVIDENCE it is at most as probable as none. In a share
+    ``misled`` of all tests the evidence misleads altogether; there the labels have the probabilities that they have
+    before a test.
     """
 
     temperature: float = 1.0
@@ -47,12 +48,17 @@ class Scale:
     misled: float = 0.0
     unexplained: float = 0.0
 
-    def probabilities(self, evidences: Mapping[str, float], leftover: float) -> dict[str, float]:
-        """Of every label of ``evidences``; they sum to one."""
+    def probabilities(
+        self, evidences: Mapping[str, float], leftover: float, elsewhere: float | None = None
+    ) -> dict[str, float]:
+        """Of every label of ``evidences``; they sum to one.
+
+        ``elsewhere``: log evidence of the best unknown source in another equation than the best name's.
+        """
         heat, labels = self.heat(leftover), list(evidences)
-        kinds, counted = detailed_kinds(evidences), beyond_closures(evidences, self.unexplained)
+        kinds, counted = detailed_kinds(evidences), beyond_closures(evidences, self.unexplained, elsewhere)
         logs = np.array([self._log(kinds[label], counted[label], heat) for label in labels])
-        if "unknown" in labels and "none" in labels and not seen(evidences):
+        if "unknown" in labels and "none" in labels and not claimable(evidences):
             unknown = labels.index("unknown")
             logs[unknown] = min(logs[unknown], logs[labels.index("none")])
         weights = np.exp(logs - logs.max())
@@ -72,11 +78,13 @@ class Scale:
         return self.offsets.get(of, self.offsets[plain]) + evidence / heat
 
 
-def seen(evidences: Mapping[str, float]) -> bool:
+def claimable(evidences: Mapping[str, float]) -> bool:
     """Whether any label has the evidence that a claim takes, that of none being 0.
 
-    >>> seen({"none": 0.0, "tank_heat": 5.2, "unknown": 9.8}), seen({"none": 0.0, "tank_heat": 4.8, "unknown": 9.8})
-    (True, False)
+    >>> claimable({"none": 0.0, "tank_heat": 5.2, "unknown": 9.8})
+    True
+    >>> claimable({"none": 0.0, "tank_heat": 4.8, "unknown": 9.8})
+    False
     """
     return any(e >= LEAST_EVIDENCE[kind(label)] for label, e in evidences.items() if label != "none")
 
@@ -100,14 +108,23 @@ def detailed_kinds(evidences: Mapping[str, float]) -> dict[str, str]:
     return {label: f"unseen {kind(label)}" if label in unseen else kind(label) for label in evidences}
 
 
-def beyond_closures(evidences: Mapping[str, float], unexplained: float) -> dict[str, float]:
+def beyond_closures(
+    evidences: Mapping[str, float], unexplained: float, elsewhere: float | None = None
+) -> dict[str, float]:
     """The evidences, that of unknown without the share of the best name's that closures leave ``unexplained``.
+
+    A source ``elsewhere`` keeps all that it has.
 
     >>> beyond_closures({"none": 0.0, "tank_heat": 100.0, "unknown": 104.0}, 0.05)["unknown"]
     99.0
+    >>> beyond_closures({"none": 0.0, "tank_heat": 100.0, "unknown": 104.0}, 0.05, 102.0)["unknown"]
+    102.0
     """
+    if "unknown" not in evidences:
+        return dict(evidences)
     best = max((e for label, e in evidences.items() if kind(label) == "named"), default=0.0)
-    return {k: e - unexplained * max(best, 0.0) if k == "unknown" else e for k, e in evidences.items()}
+    less = evidences["unknown"] - unexplained * max(best, 0.0)
+    return {**evidences, "unknown": less if elsewhere is None else max(less, elsewhere)}
 
 
 @lru_cache(maxsize=1)
@@ -129,7 +146,7 @@ def evidences_of(found: Naming) -> dict[str, float]:
         name = candidate.names[0]
         out[name] = max(out.get(name, -np.inf), candidate.log_evidence - zero)
     unseen = min(UNSEEN, min(out.values()))
-    for name in found.names:
+    for name in found.equations:
         out.setdefault(name, unseen)
     strange = [c.log_evidence - zero for c in found.unknown if counts_as_unknown(c, found)]
     out["unknown"] = max(strange, default=unseen)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -14,15 +14,15 @@ from hfanalysis.diagnose.answer.limits import limits
 from hfanalysis.diagnose.answer.plausible import judged, lost
 from hfanalysis.diagnose.answer.posterior import (
     SET,
-    counts_as_unknown,
+    claimable,
     evidences_of,
     kind,
     partners_of,
     scale,
-    seen,
     smallest_set,
     weights_of,
 )
+from hfanalysis.diagnose.answer.where import elsewhere, likeliest_of, likeliest_source
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
@@ -56,7 +56,8 @@ class Verdict:
     """``label``: none, named, ambiguous or unknown; probabilities of all labels; the candidate that is the answer.
 
     ``partners``: probabilities of effects beside the first that is named. ``hint``: where nothing is claimed, what the
-    model differs by all the same if it does.
+    model differs by all the same if it does. ``elsewhere``: evidence of an unknown source in another equation than the
+    best name's.
     """
 
     label: str
@@ -66,6 +67,7 @@ class Verdict:
     chosen: Candidate
     partners: dict[str, float] = field(default_factory=dict)
     hint: Candidate | None = None
+    elsewhere: float | None = None
 
     @property
     def added(self) -> tuple[str, ...]:
@@ -87,16 +89,22 @@ def verdict_of(found: Naming) -> Verdict:
         sets=tuple(_believed(c) for c in found.sets),
     )
     evidences = evidences_of(weighed)
-    posterior = scale().probabilities(evidences, found.named.leftover)
+    apart = elsewhere(weighed)
+    posterior = scale().probabilities(evidences, found.named.leftover, apart)
+    return replace(_verdict(weighed, posterior, evidences), elsewhere=apart)
+
+
+def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, float]) -> Verdict:
+    """What probabilities amount to."""
     set90 = smallest_set(posterior)
     claimed = {k: p for k, p in posterior.items() if k != "none"}
-    top = max(claimed, key=lambda k: (claimed[k], k)) if seen(evidences) and posterior["none"] < CLAIM else "none"
-    chosen = _chosen(weighed, top)
+    top = max(claimed, key=lambda k: (claimed[k], k)) if claimable(evidences) and posterior["none"] < CLAIM else "none"
+    chosen = _chosen(found, top)
     if top == "none":
-        return Verdict(top, posterior, evidences, set90, chosen, hint=_hint(weighed, posterior, evidences))
+        return Verdict(top, posterior, evidences, set90, chosen, hint=_hint(found, posterior, evidences))
     if top == "unknown":
         return Verdict(top, posterior, evidences, set90, chosen)
-    partners = partners_of(top, weighed)
+    partners = partners_of(top, found)
     rivals = [name for name in set90 if name not in (top, "none")]
     sure = posterior[top] >= NAMED_FROM and not rivals and all(partners[n] >= SET for n in chosen.names[1:])
     beside = {name: posterior[top] * p for name, p in partners.items()}
@@ -133,7 +141,9 @@ def _chosen(found: Naming, top: str) -> Candidate:
     if top == "none":
         return found.base
     if top == "unknown":
-        return max((c for c in found.unknown if counts_as_unknown(c, found)), key=lambda c: c.log_evidence)
+        source = likeliest_source(found)
+        assert source is not None
+        return source
     named = [c for c in (*found.singles, *found.sets) if c.names[0] == top]
     best = max(named, key=lambda c: c.log_evidence)
     weights = weights_of(named, found)
@@ -180,7 +190,7 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     """Where, when and how much: the source of every named effect, or the unknown one."""
     observed, chosen = found.bench.observed, verdict.chosen
     if verdict.label == "none":
-        return [] if verdict.hint is None else [_of_hint(verdict.hint, found)]
+        return [] if verdict.hint is None else [{**_of_candidate(verdict.hint, found), "hint": True}]
     gain = chosen.log_evidence - found.base.log_evidence
     out = []
     if chosen.unknown:
@@ -195,11 +205,25 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     return out
 
 
-def _of_hint(hint: Candidate, found: Naming) -> dict[str, Any]:
-    """The row of what is not claimed."""
-    source = acting(hint.fit, hint.names[0], found.bench.observed)
-    gain = hint.log_evidence - found.base.log_evidence
-    return {**of_acting(hint.names[0], source, gain, found.bench.observed.phases), "hint": True}
+def likeliest_place(verdict: Verdict, found: Naming, equations: Iterable[str]) -> dict[str, Any] | None:
+    """Where nothing is claimed, the place at which something would most likely be; None where nothing is seen at all.
+
+    ``equations``: the most probable first.
+    """
+    if verdict.label != "none":
+        return None
+    likeliest = likeliest_of(equations, verdict.posterior, verdict.evidences, found)
+    if likeliest is None:
+        return None
+    return {k: v for k, v in _of_candidate(likeliest, found).items() if k != "history"}
+
+
+def _of_candidate(candidate: Candidate, found: Naming) -> dict[str, Any]:
+    """The row of a single effect or a source that is not claimed."""
+    observed, gain = found.bench.observed, candidate.log_evidence - found.base.log_evidence
+    if candidate.unknown:
+        return of_unknown(course_of(candidate.fit, candidate.names[-1], observed), gain, observed.phases)
+    return of_acting(candidate.names[0], acting(candidate.fit, candidate.names[0], observed), gain, observed.phases)
 
 
 def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:

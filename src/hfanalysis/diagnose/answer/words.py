@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from hfanalysis.diagnose.answer.posterior import SET
 from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.diagnose.observations.observed import FADE
 from hfanalysis.quantity import Quantity
@@ -56,7 +57,7 @@ _UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
 
 def story(product: Mapping[str, Any]) -> list[str]:
     """The whole verdict, sentence by sentence."""
-    out = [headline(product)]
+    out = [headline(product), *equation_sentence(product)]
     out += [place_sentence(row) for row in product["localisation"]]
     out += [effect_sentence(row) for row in product["effects"]]
     out += fade_sentence(product["compared"])
@@ -93,6 +94,14 @@ def headline(product: Mapping[str, Any]) -> str:
     beside = [f"{n} ({p:.2f})" for n, p in product["partners"].items() if n not in named and p >= LIKELY]
     either = f"; in place of what is beside it: {', '.join(beside)}" if beside else ""
     return f"The model lacks {names}{doubt}{either}."
+
+
+def equation_sentence(product: Mapping[str, Any]) -> list[str]:
+    """Where names leave a choice, that all the likely ones are in one equation."""
+    if product["verdict"] != "ambiguous" or max(product["posterior"].values()) >= SET:
+        return []
+    equation, probability = next(iter(product["by_equation"].items()))
+    return [f"Whatever its name, it is in {EQUATIONS[equation]} ({probability:.2f})."] if probability >= SET else []
 
 
 def listed(names: Sequence[str]) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.naming.base_model import base_model
@@ -21,7 +22,7 @@ from hfanalysis.stages.base import Progress, silent
 class Naming:
     """The base model, every single effect, sets of effects, and unknown sources; each the best first.
 
-    ``names``: all effects that were thought of; those that a score test saw nothing of have no candidate.
+    ``equations``: of all effects that were thought of; those that a score test saw nothing of have no candidate.
     """
 
     base: Candidate
@@ -29,7 +30,7 @@ class Naming:
     sets: tuple[Candidate, ...]
     unknown: tuple[Candidate, ...]
     bench: Bench
-    names: tuple[str, ...] = ()
+    equations: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def named(self) -> Candidate:
@@ -62,4 +63,5 @@ def name_effects(
     unknown = unknown_sources(base, valleys, named, bench)
     if settings.polishing:
         base = polished(base, [*sets, *unknown], bench)
-    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, tuple(catalogue.effects))
+    equations = {name: effect.equation for name, effect in catalogue.effects.items()}
+    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations)
