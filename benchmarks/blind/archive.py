@@ -16,7 +16,7 @@ from typing import Any
 
 from tests.blind.judged import by_significance
 
-from .folder import DONE, Folder, Note, write_json
+from .folder import DONE, UNWRITTEN, Folder, Note, write_json
 
 SCORED = ("verdict", "set90", "posterior", "evidences", "unknown_elsewhere", "tried", "leftover", "likeliest_place")
 """Of a product, as it stands."""
@@ -49,10 +49,13 @@ def rounded(value: Any) -> Any:
 def pack(folder: Folder, path: Path) -> int:
     """Write all that a folder holds into a file, whole; how many cases.
 
-    What the file had of cases that the folder has no note on stays in it.
+    What the file had of cases that the folder has no note on stays in it. A case that could not be written has no
+    answer and is no result: it is tried again wherever the run goes on.
     """
     rows = {row["note"]["id"]: row for row in _rows(path)}
     for name, note in folder.notes().items():
+        if note.status == UNWRITTEN:
+            continue
         row: dict[str, Any] = {"note": asdict(note), "answer": _read(folder.answers / f"{name}.json")}
         if note.status == DONE:
             row["product"] = essence(_read(folder.product(name)))
