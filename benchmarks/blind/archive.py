@@ -68,16 +68,18 @@ def pack(folder: Folder, path: Path) -> int:
     return len(rows)
 
 
-def unpack(path: Path, folder: Folder, wanted: Container[str], now: tuple[str, str], generator: str) -> int:
+def unpack(path: Path, folder: Folder, wanted: Container[str], now: tuple[str, str] | None, generator: str) -> int:
     """Put what a file holds of the ``wanted`` cases into a folder; how many.
 
     What is there already stays, and what another version made is left: ``now`` are the digests of the package and of
-    its constants, ``generator`` that of what makes the cases.
+    its constants (None: whatever they are), ``generator`` that of what makes the cases.
     """
     taken = 0
     for row in _rows(path):
         note = Note(**row["note"])
-        if note.id not in wanted or folder.note(note.id) is not None or (note.code, note.probabilities) != now:
+        if note.id not in wanted or folder.note(note.id) is not None:
+            continue
+        if now is not None and (note.code, note.probabilities) != now:
             continue
         if row["answer"].get("generator") != generator:
             continue

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, claimable, detailed_kinds
+from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, detailed_kinds, telling
 
 Array = NDArray[np.float64]
 
@@ -126,7 +126,7 @@ def _table(samples: Sequence[Sample]) -> _Table:
     unseen = np.array([[of.get(label, "").startswith("unseen") for label in labels] for of in detailed])
     best = np.max(np.where(kind == 1, evidence, 0.0), axis=1, initial=0.0)
     imitated = np.where(kinds == 2, best[:, None], 0.0)
-    capped = (kind == 2) & ~np.array([claimable(s.evidences) for s in samples])[:, None]
+    capped = (kind == 2) & ~np.array([telling(s.evidences) for s in samples])[:, None]
     apart = np.array([-inf if s.elsewhere is None else s.elsewhere for s in samples])
     none = labels.index("none") if "none" in labels else 0
     evidence[unseen] = 0.0

@@ -184,7 +184,8 @@ def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) ->
     now = (code_digest(), probabilities_digest())
     archive = archive_of(request)
     if archive is not None:
-        taken = unpack(archive, folder, {c.id for c in cases}, now, generator_digest())
+        known = None if request.keep else now
+        taken = unpack(archive, folder, {c.id for c in cases}, known, generator_digest())
         print(f"{archive}: {taken} cases taken from it", file=sys.stderr, flush=True)
     there = written(cases, request, now)
     went_by = {"split": request.split, "n": request.total, "seed": request.seed, "limit": request.limit}

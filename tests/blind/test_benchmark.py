@@ -251,7 +251,15 @@ def test_a_run_goes_on_elsewhere_from_what_was_kept(kept: Path, tmp_path: Path) 
 def test_what_another_version_made_stays_where_it_was_kept(
     now: tuple[str, str], generator: str, kept: Path, tmp_path: Path
 ) -> None:
-    assert unpack(kept, Folder(tmp_path / "there"), ALL, now, generator) == 0
+    there = Folder(tmp_path / "there")
+    assert unpack(kept, there, ALL, now, generator) == 0
+    assert unpack(kept, there, ALL, None, generator) == (3 if generator == "g" else 0), "but for --keep"
+
+
+def test_a_case_that_could_not_be_written_is_no_result(kept: Path, tmp_path: Path) -> None:
+    there = Folder(tmp_path / "there")
+    there.write_note(Note("X009", fo.UNWRITTEN, "ZeroDivisionError: float division by zero", code="c"))
+    assert pack(there, kept) == 3
 
 
 def test_a_variant_is_kept_apart_from_the_full_method(tmp_path: Path) -> None:

@@ -70,7 +70,6 @@ def sources(material: Material, product: Mapping[str, Any]) -> Iterator[Chart | 
             f"{tidy(float(row['significance']), 3)}."
         )
         caption += " It stands beside what is named." if row.get("beside") else ""
-        caption += " Too little for a claim: a hint of where to look." if row.get("hint") else ""
         axis, key = (str(row["site"]).replace("_", " "), unit), f"diagnosis-source-{number}"
         yield over_time(
             material,

@@ -17,22 +17,29 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.diagnose.answer import gap, posterior
 from hfanalysis.diagnose.answer import verdict as verdict_module
-from hfanalysis.diagnose.answer.acting import acting
+from hfanalysis.diagnose.answer.acting import Acting, acting
 from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judged, lost
 from hfanalysis.diagnose.answer.posterior import (
     BEFORE,
-    LEAST_EVIDENCE,
     SET,
+    TELLING,
     UNSEEN,
     Scale,
-    claimable,
     evidences_of,
     kind,
     scale,
     smallest_set,
+    telling,
 )
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
-from hfanalysis.diagnose.answer.verdict import _within, effects_product, likeliest_place, places, verdict_of
+from hfanalysis.diagnose.answer.verdict import (
+    _within,
+    effects_product,
+    likeliest_place,
+    of_acting,
+    places,
+    verdict_of,
+)
 from hfanalysis.diagnose.answer.where import by_equation, elsewhere, likeliest_of
 from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.fitting.fit import fit
@@ -63,7 +70,7 @@ def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: f
     found = Scale(t, more).probabilities(evidences, leftover)
     assert set(found) == set(evidences)
     assert sum(found.values()) == pytest.approx(1.0)
-    little = "none" in evidences and not claimable(evidences)
+    little = "none" in evidences and not telling(evidences)
     order = sorted((k for k in evidences if k != "unknown" or not little), key=lambda k: evidences[k])
     assert all(found[a] <= found[b] for a, b in pairwise(order))
     assert not little or found.get("unknown", 0.0) <= found["none"]
@@ -156,10 +163,10 @@ def test_where_nothing_is_seen_unknown_is_not_more_probable_than_none() -> None:
         found = Scale(offsets=offsets).probabilities({"none": 0.0, "tank_heat": name, "unknown": unknown}, 1.0)
         return float(np.log(found["unknown"] / found["none"]))
 
-    least = LEAST_EVIDENCE["unknown"]
+    least = TELLING["unknown"]
     assert odds(least - 0.1) == pytest.approx(0.0)
     assert odds(least) == pytest.approx(least)
-    assert odds(6.0, name=LEAST_EVIDENCE["named"]) == pytest.approx(6.0)  # something is there
+    assert odds(6.0, name=TELLING["named"]) == pytest.approx(6.0)  # something is there
     assert odds(6.0, offset=-8.0) == pytest.approx(-2.0)  # what is less probable anyhow stays as it is
 
 
@@ -244,12 +251,14 @@ def probable(*gains: tuple[str, float]) -> Naming:
         ((("tank_heat", 20.0), ("n2_purge", 19.5)), "ambiguous"),
         ((("tank_heat", -20.0),), "none"),
         ((("tank_heat", 20.0), ("unknown", 30.0)), "unknown"),
-        ((("tank_heat", 5.2),), "named"),
-        ((("tank_heat", 4.8),), "none"),
+        ((("tank_heat", 9.2),), "named"),
+        ((("tank_heat", 8.8),), "none"),
         ((("unknown", 9.8),), "none"),
-        ((("unknown", 9.8), ("tank_heat", 5.2)), "unknown"),
-        ((("unknown", 9.8), ("tank_heat", 4.8)), "none"),
+        ((("unknown", 9.8), ("tank_heat", 5.2)), "none"),
+        ((("unknown", 9.8), ("tank_heat", 9.2)), "none"),
+        ((("unknown", 9.2), ("tank_heat", 9.8)), "ambiguous"),
         ((("unknown", 10.2),), "unknown"),
+        ((("unknown", 10.2), ("tank_heat", 4.8)), "unknown"),
     ],
 )
 def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> None:  # type: ignore[no-untyped-def]
@@ -263,26 +272,42 @@ def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> No
         assert verdict.chosen.names == (verdict.top,)
 
 
-@pytest.mark.parametrize(("gain", "hinted"), [(4.4, False), (4.8, True), (20.0, False)])
-def test_what_is_too_little_for_a_claim_is_a_hint_of_the_place(gain: float, hinted: bool, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_what_is_too_little_for_a_claim_is_no_place_but_the_likeliest(monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.setattr(verdict_module, "scale", Scale)
-    found = probable(("nozzle_throat_erosion", gain))
+    found = probable(("nozzle_throat_erosion", 8.8))
     verdict = verdict_of(found)
-    rows = places(verdict, found)
-    assert (verdict.hint is not None) == hinted
-    if verdict.label == "none":
-        assert verdict.chosen.names == ()
-        assert [(row["equation"], row["hint"]) for row in rows] == ([("nozzle", True)] if hinted else [])
-    else:
-        assert not any("hint" in row for row in rows)
-    sentences = [place_sentence(row) for row in rows]
-    assert ("hint" in " ".join(sentences)) == hinted
+    assert (verdict.label, verdict.chosen.names) == ("none", ())
+    assert verdict.posterior["nozzle_throat_erosion"] > 0.9
+    assert places(verdict, found) == []
+    place = likeliest_place(verdict, found, ["nozzle"])
+    assert place is not None
+    assert place["equation"] == "nozzle"
 
 
-def test_no_hint_of_what_is_no_likelier_than_none(monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    doubtful = Scale(offsets={"none": 0.0, "named": -4.6, "unknown": 0.0})
-    monkeypatch.setattr(verdict_module, "scale", lambda: doubtful)
-    assert verdict_of(probable(("nozzle_throat_erosion", 4.8))).hint is None
+TIME = np.linspace(0.0, 10.0, 201)
+
+
+@pytest.mark.parametrize(
+    ("begins", "rises", "since"),
+    [
+        (4.0, 0.0, 3.8),  # all at once
+        (3.0, 2.0, 3.1 - 0.2 - (4.8 - 3.1 - 0.2)),  # seen at 3.1 s, risen at 4.8 s
+        (3.0, 6.5, 0.0),  # it may have begun with the fire
+        (-1.0, 0.0, -0.2),
+    ],
+)
+def test_what_rises_slowly_may_have_begun_before_it_is_seen(begins: float, rises: float, since: float) -> None:
+    """By as much as it then takes to rise; what is there at once is not."""
+    mean = np.clip((TIME - begins + 1e-6) / max(rises, 1e-6), 0.0, 1.0)
+    source = Acting("grain", "kg/s", TIME, mean, np.full(TIME.size, 0.025), None)
+    phases = {"liquid": 0.0, "end": 10.0}
+    row = of_acting("regression_factor", source, 20.0, phases, blur=0.1)
+    low, high = row["t_start"].interval
+    assert low == pytest.approx(since, abs=0.01)
+    assert high == pytest.approx(row["t_start"].value + 0.196, abs=1e-3)
+    assert ("at the latest" in place_sentence(row)) == (rises > 0.0)
+    known = of_acting("fuel_sliver", source, 20.0, phases)["t_start"]
+    assert known.interval == pytest.approx((known.value - 0.098, known.value + 0.098), abs=1e-3)
 
 
 def strange(*sources: tuple[str, float]) -> Naming:

@@ -23,11 +23,11 @@ SET = 0.9
 """Probability that the stated set of names holds."""
 
 
-LEAST_EVIDENCE = {"named": 5.0, "unknown": 10.0}
-"""Log evidence that any label of a claim has. Of 214 simulated tests that hide nothing (docs/blind.md names the runs)
-`benchmarks.blind calibrate` prints 8.8, 8.3, 4.6 and 4.3 as the largest of names, and 7.2, 7.0, 6.7 and 6.5 as those of
-unknown sources; those need more, for a source that explains little is what two tables of nitrous oxide differ by, and
-of 62 others they had 8.0."""
+TELLING = {"named": 5.0, "unknown": 10.0}
+"""Log evidence from which on a label is told from what a test that hides nothing shows. Of 214 simulated ones
+(docs/blind.md names the runs) `benchmarks.blind calibrate` prints 8.8, 8.3, 4.6 and 4.3 as the largest of names, and
+7.2, 7.0, 6.7 and 6.5 as those of unknown sources; those need more, for a source that explains little is what two tables
+of nitrous oxide differ by, and of 62 others they had 8.0."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Scale:
     A label of which a score test saw nothing (UNSEEN) is as good as none, but for an offset of its own: that an effect
     is too small to be seen is no evidence against it. What a closure gets wrong of an effect is a part of what it
     explains: unknown has that share ``unexplained`` of the best name's evidence less than it found, unless its source
-    acts in another equation; and where no label has LEAST_EVIDENCE it is at most as probable as none. In a share
+    acts in another equation; and where nothing is ``telling`` it is at most as probable as none. In a share
     ``misled`` of all tests the evidence misleads altogether; there the labels have the probabilities that they have
     before a test.
     """
@@ -58,7 +58,7 @@ class Scale:
         heat, labels = self.heat(leftover), list(evidences)
         kinds, counted = detailed_kinds(evidences), beyond_closures(evidences, self.unexplained, elsewhere)
         logs = np.array([self._log(kinds[label], counted[label], heat) for label in labels])
-        if "unknown" in labels and "none" in labels and not claimable(evidences):
+        if "unknown" in labels and "none" in labels and not telling(evidences):
             unknown = labels.index("unknown")
             logs[unknown] = min(logs[unknown], logs[labels.index("none")])
         weights = np.exp(logs - logs.max())
@@ -78,15 +78,15 @@ class Scale:
         return self.offsets.get(of, self.offsets[plain]) + evidence / heat
 
 
-def claimable(evidences: Mapping[str, float]) -> bool:
-    """Whether any label has the evidence that a claim takes, that of none being 0.
+def telling(evidences: Mapping[str, float]) -> bool:
+    """Whether any label has more evidence than a test that hides nothing shows, that of none being 0.
 
-    >>> claimable({"none": 0.0, "tank_heat": 5.2, "unknown": 9.8})
+    >>> telling({"none": 0.0, "tank_heat": 5.2, "unknown": 9.8})
     True
-    >>> claimable({"none": 0.0, "tank_heat": 4.8, "unknown": 9.8})
+    >>> telling({"none": 0.0, "tank_heat": 4.8, "unknown": 9.8})
     False
     """
-    return any(e >= LEAST_EVIDENCE[kind(label)] for label, e in evidences.items() if label != "none")
+    return any(e >= TELLING[kind(label)] for label, e in evidences.items() if label != "none")
 
 
 BEFORE = {"none": 0.25, "named": 0.6, "unknown": 0.15}

@@ -47,6 +47,9 @@ SLOW_FADE = 2.0
 UNEVEN = 0.5
 """Part of its root mean square below which a source's mean says little of it."""
 
+GRADUAL = 2.5
+"""Standard deviations by which the interval of a beginning reaches back further than the instant is uncertain."""
+
 BRIEF = 0.5
 """Seconds of a stretch below which its beginning and end are said to hundredths."""
 
@@ -132,7 +135,6 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     where = _BY_UNIT.get((row["equation"], row["source"].unit), EQUATIONS[row["equation"]])
     where += f" ({row['channel']})" if row.get("channel") else ""
     left = " Beside what is named, this is still open." if row.get("beside") else ""
-    left += " That is a hint, and no finding." if row.get("hint") else ""
     if "opens_in" in row:
         opens = row["opens_in"]
         return (
@@ -154,8 +156,10 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     if "delay" in row:
         delay = row["delay"]
         return f"{where[0].upper()}{where[1:]} is read {1e3 * delay.value:.3g} ± {1e3 * delay.std:.2g} ms late.{left}"
-    digits = 1 if row["t_end"].value - row["t_start"].value > BRIEF else 2
-    span = f"From {row['t_start'].value:.{digits}f} to {row['t_end'].value:.{digits}f} s {where}"
+    start, end = row["t_start"], row["t_end"]
+    digits = 1 if end.value - start.value > BRIEF else 2
+    latest = " s (at the latest)" if start.value - start.interval[0] > GRADUAL * start.std else ""
+    span = f"From {start.value:.{digits}f}{latest} to {end.value:.{digits}f} s {where}"
     if "rms" in row and abs(value) < UNEVEN * factor * row["rms"].value:
         swing = factor * row["rms"].value
         return f"{span} goes up and down by {swing:.3g} {unit} (rms; mostly in the {row['phase']} phase).{left}"
