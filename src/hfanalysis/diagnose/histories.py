@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,18 +19,22 @@ UNITS = {"thrust": "N", "m_tank": "kg"}
 
 
 def write_histories(path: Path, found: Diagnosis, provenance: Mapping[str, Any]) -> None:
-    """Groups ``sources/SITE`` {time, mean, low90, high90}, ``residuals/CHANNEL`` {time, before, after, noise_std}."""
+    """Groups ``sources/SITE`` {time, mean, low90, high90}, ``residuals/CHANNEL`` {time, before, after, noise_std}.
+
+    A second source at a site is ``sources/SITE 2``.
+    """
     import h5py
 
     observed = found.naming.bench.observed
     before, after = (residuals_of(f, observed) for f in (found.naming.base.fit, found.verdict.chosen.fit))
     with h5py.File(path, "w", libver="latest") as file:
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
-        for row in found.product["localisation"]:
-            group = file.create_group(f"sources/{row['site']}")
+        rows = found.product["localisation"]
+        for name, row in zip(numbered([row["site"] for row in rows]), rows, strict=True):
+            group = file.create_group(f"sources/{name}")
             group.attrs["equation"] = row["equation"]
             history = row["history"]
-            columns = {name: np.array(history[name]) for name in ("time", "mean", "low90", "high90")}
+            columns = {key: np.array(history[key]) for key in ("time", "mean", "low90", "high90")}
             _write(group, history["unit"], **columns)
         for channel in observed.channels:
             burning = ~channel.resting
@@ -41,6 +45,17 @@ def write_histories(path: Path, found: Diagnosis, provenance: Mapping[str, Any])
                 "noise_std": channel.noise_std[burning],
             }
             _write(file.create_group(f"residuals/{channel.name}"), UNITS.get(channel.name, "Pa"), **columns)
+
+
+def numbered(names: Sequence[str]) -> list[str]:
+    """The names, each different: an effect and an unknown source beside it may have the same.
+
+    >>> numbered(["tank_heat", "valve", "tank_heat"])
+    ['tank_heat', 'valve', 'tank_heat 2']
+    """
+    return [
+        name if (nth := names[: place + 1].count(name)) == 1 else f"{name} {nth}" for place, name in enumerate(names)
+    ]
 
 
 def write_empty(path: Path, provenance: Mapping[str, Any]) -> None:
