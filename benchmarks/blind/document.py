@@ -175,13 +175,17 @@ def variants(full: Results, split: str) -> Iterable[tuple[str, list[str]]]:
     """What becomes of the figures without a part of the method, on the cases that both have, by the same code."""
     for name in full.folder.variants():
         other = results(Folder(full.folder.root, name), split)
-        codes, full_codes = ({code for code, _ in found.codes} for found in (other, full))
-        if codes != full_codes:
-            said = ", ".join(f"`{code[:12]}`" for code in sorted(codes)) or "no code"
-            yield name, [f"Diagnosed by {said}, which the full method was not: they are not compared."]
-            continue
+        same = {
+            i: case for i, case in other.cases.items() if i in full.notes and full.notes[i].code == other.notes[i].code
+        }
         settings = ", ".join(f"{k} = {v}" for k, v in other.plan.get("settings", {}).items()) or "-"
-        yield name, [f"Settings: {settings}.", "", *comparison(full.cases, other.cases, full.groups)]
+        lines = [f"Settings: {settings}."]
+        if rest := other.cases.keys() - same.keys():
+            said = ", ".join(f"`{code[:12]}`" for code in sorted({other.notes[i].code for i in rest}))
+            lines.append(
+                f"{len(rest)} cases were diagnosed by {said}, and not by the full method: they are not compared."
+            )
+        yield name, [*lines, "", *(comparison(full.cases, same, full.groups) if same else [])]
 
 
 def failures(full: Results) -> list[str]:

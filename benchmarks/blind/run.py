@@ -144,6 +144,24 @@ def written(cases: Sequence[Case], request: Request, now: tuple[str, str]) -> li
     return [c for c in cases if answer_path(c, root).exists()]
 
 
+def forget_answers(cases: Sequence[Case], jobs: Sequence[Job], root: Path) -> None:
+    """Where an answer came of an archive its log is not there: both are written anew for what jobs need."""
+    needed = {name for job in jobs for name in (job.id, job.first)}
+    for case in cases:
+        if case.id in needed and not (root / "raw_tests" / case.id).exists():
+            answer_path(case, root).unlink(missing_ok=True)
+
+
+def state_plan(request: Request) -> None:
+    """What the folder goes by; a part of a plan of which more was run before changes nothing of that."""
+    went_by = {"split": request.split, "n": request.total, "seed": request.seed, "limit": request.limit}
+    parts = {"kind": request.kind, "targets": request.targets, "each": request.each}
+    chosen = {name: value for name, value in parts.items() if value}
+    file = request.folder.plan_file
+    if not chosen or not file.exists():
+        write_json(file, {**went_by, **chosen, "jobs": request.jobs, "settings": request.settings})
+
+
 def asked_for(request: Request) -> list[Case]:
     """The cases of the plan that are asked for."""
     cases = plan(request.total, request.split, request.seed)[: request.limit]
@@ -187,12 +205,11 @@ def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) ->
         known = None if request.keep else now
         taken = unpack(archive, folder, {c.id for c in cases}, known, generator_digest())
         print(f"{archive}: {taken} cases taken from it", file=sys.stderr, flush=True)
-    there = written(cases, request, now)
-    went_by = {"split": request.split, "n": request.total, "seed": request.seed, "limit": request.limit}
-    parts = {"kind": request.kind, "targets": request.targets, "each": request.each}
-    went_by |= {name: value for name, value in parts.items() if value}
-    write_json(folder.plan_file, {**went_by, "jobs": request.jobs, "settings": request.settings})
-    todo = [c for c in there if not is_done(folder.note(c.id), folder.product(c.id), request, now)]
+    todo = [c for c in cases if not is_done(folder.note(c.id), folder.product(c.id), request, now)]
+    forget_answers(cases, [job_of(c, request) for c in todo], folder.root)
+    there = {c.id for c in written(cases, request, now)}
+    state_plan(request)
+    todo = [c for c in todo if c.id in there]
     print(f"{len(cases)} cases, {len(there) - len(todo)} done, {len(todo)} to diagnose", file=sys.stderr, flush=True)
     for case in todo:
         (folder.runs / f"{case.id}.json").unlink(missing_ok=True)

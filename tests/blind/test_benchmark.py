@@ -25,7 +25,17 @@ from benchmarks.blind.fit import Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
 from benchmarks.blind.pool import Outcome, Pool
 from benchmarks.blind.results import results
-from benchmarks.blind.run import Refused, Request, archive_of, asked_for, check_plan, is_done, variant_settings
+from benchmarks.blind.run import (
+    Refused,
+    Request,
+    archive_of,
+    asked_for,
+    check_plan,
+    forget_answers,
+    is_done,
+    state_plan,
+    variant_settings,
+)
 from benchmarks.blind.work import Job, settings_of
 from tests.blind.judged import Case
 from tests.blind.made_up import answer, broken, nothing, product, work
@@ -204,10 +214,15 @@ def test_a_variant_stands_beside_the_full_method_on_the_same_cases(made: Callabl
 def test_a_variant_of_another_version_of_the_code_is_not_compared(made: Callable[..., Folder]) -> None:
     full = made([("tank_heat", product("tank_heat"))] * 8)
     other = made([("tank_heat", product("n2_purge"))] * 8, variant="blind")
+    for i, note in list(other.notes().items())[:-1]:
+        other.write_note(replace(note, id=i, code="older"))
+    text, _ = document(results(full, "calibration"), "calibration", None)
+    assert "7 cases were diagnosed by `older`, and not by the full method" in text
+    row = next(x for x in text.split("## Variant")[1].splitlines() if x.startswith("| exact name"))
+    assert row.split("|")[-2].strip() == "1"
     for i, note in other.notes().items():
         other.write_note(replace(note, id=i, code="older"))
     text, _ = document(results(full, "calibration"), "calibration", None)
-    assert "Diagnosed by `older`, which the full method was not" in text
     assert "full less variant" not in text
 
 
@@ -260,6 +275,32 @@ def test_a_case_that_could_not_be_written_is_no_result(kept: Path, tmp_path: Pat
     there = Folder(tmp_path / "there")
     there.write_note(Note("X009", fo.UNWRITTEN, "ZeroDivisionError: float division by zero", code="c"))
     assert pack(there, kept) == 3
+
+
+def test_answers_whose_logs_were_not_kept_are_written_anew(tmp_path: Path) -> None:
+    """For what is to be diagnosed, and for the other test of a stand that it is proved on."""
+    cases = plan(4, "calibration")
+    names = [case.id for case in cases]
+    there = Folder(tmp_path)
+    for name in names:
+        write_json(there.answers / f"{name}.json", {})
+    (tmp_path / "raw_tests" / names[1]).mkdir(parents=True)
+    forget_answers(cases, [Job(tmp_path, tmp_path, names[1]), Job(tmp_path, tmp_path, names[2], names[0])], tmp_path)
+    assert sorted(p.stem for p in there.answers.glob("*.json")) == [names[1], names[3]]
+
+
+def test_a_part_of_a_plan_leaves_what_the_folder_goes_by(tmp_path: Path) -> None:
+    whole = Request("scored", 1500, Folder(tmp_path), limit=300)
+    part = replace(whole, kind="none", each=30, limit=None)
+
+    def stated() -> dict[str, Any]:
+        return dict(json.loads(whole.folder.plan_file.read_text(encoding="utf-8")))
+
+    state_plan(part)
+    assert stated()["kind"] == "none"
+    state_plan(whole)
+    state_plan(part)
+    assert (stated()["limit"], "kind" in stated()) == (300, False)
 
 
 def test_a_variant_is_kept_apart_from_the_full_method(tmp_path: Path) -> None:
