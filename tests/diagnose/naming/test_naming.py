@@ -147,7 +147,7 @@ def test_what_no_score_test_sees_starts_from_a_moderate_size_where_much_is_left_
         return _promising(base, search, name)[0], []
 
     monkeypatch.setattr(singles, "_promising", blind)
-    found = _first_children(base, Search(bench, catalogue((name,))), [name])
+    found = _first_children(base, [], Search(bench, catalogue((name,))), [name])
     assert [c.names for c in found] == ([(name,)] if HIDDEN[hidden] else [])
     assert all(c.log_evidence > base.log_evidence + 20.0 for c in found)
 
@@ -160,7 +160,7 @@ def test_constants_follow_to_an_effect_where_a_fit_of_all_at_once_leads_to_nothi
     assert fitted is not None
     base = candidate((), fitted, FINEST)
     monkeypatch.setattr(singles, "attempted", lambda *_: None)
-    (found,) = _first_children(base, Search(bench, catalogue(("tank_heat",))), ["tank_heat"])
+    (found,) = _first_children(base, [], Search(bench, catalogue(("tank_heat",))), ["tank_heat"])
     assert found.log_evidence > base.log_evidence + 20.0
     assert found.fit.hypothesis.free[-1].most > found.fit.hypothesis.free[-1].least  # it is free again in the end
 
@@ -176,7 +176,7 @@ def test_an_effect_whose_place_the_constants_take_starts_far_from_nothing(monkey
     monkeypatch.setattr(singles, "_promising", lambda *of: (promising(*of)[0], []))
     monkeypatch.setattr(singles, "CALM", np.inf)  # nor is a moderate size tried
     for one, seen in ((grain, True), (replace(grain, far_starts=()), False)):
-        found = _first_children(base, Search(bench, Catalogue({grain.name: one}, {})), [grain.name])
+        found = _first_children(base, [], Search(bench, Catalogue({grain.name: one}, {})), [grain.name])
         assert [c.names for c in found] == [(grain.name,)] * seen
         assert all(c.log_evidence > base.log_evidence + 5.0 for c in found)
 

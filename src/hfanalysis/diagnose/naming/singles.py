@@ -33,7 +33,7 @@ from hfanalysis.diagnose.naming.candidate import (
     held,
     more_probable,
 )
-from hfanalysis.diagnose.naming.fading import fades, fading_fit
+from hfanalysis.diagnose.naming.fading import fades, fades_unseen, fading_fit, unseen_fits
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.observations.observed import Observed
@@ -71,7 +71,10 @@ def singles_of(base: Candidate, valleys: list[Candidate], search: Search) -> tup
     """The base model, polished, and every effect that is seen from it or its other ``valleys``, the best first."""
     bench, names = search.bench, list(search.catalogue.effects)
     best: dict[str, Candidate] = {}
-    _keep(best, _raced([*_first_children(base, search, names), *_from_elsewhere(base, valleys, search, names)], bench))
+    _keep(
+        best,
+        _raced([*_first_children(base, valleys, search, names), *_from_elsewhere(base, valleys, search, names)], bench),
+    )
     if search.settings.polishing and best:
         base = _second_turn(base, best, search)
     found = each(partial(_no_worse, parent=base, bench=bench), each(bench.converged, list(best.values())))
@@ -124,14 +127,16 @@ def polished(parent: Candidate, children: list[Candidate], bench: Bench) -> Cand
     return bench.judged(best) if best is not parent else parent
 
 
-def _first_children(base: Candidate, search: Search, names: list[str]) -> list[Candidate]:
+def _first_children(base: Candidate, valleys: list[Candidate], search: Search, names: list[str]) -> list[Candidate]:
     """Each of the effects with what makes the base model's data most probable, at its form.
 
     From the starts that score tests promise most of. Where the base model is far from the data, or leaves much open,
     those see little of an effect; what they do not lead to anything starts from a moderate size. The constants follow
-    first where a fit of all at once leads to nothing, and where an effect starts far from nothing.
+    first where a fit of all at once leads to nothing, and where an effect starts far from nothing. The base model's
+    other ``valleys`` tell whether fuel may have ended unseen.
     """
     observed, done = search.bench.at(base.form), count()
+    fits_of_base = [c.fit for c in (base, *valleys)]
     far = base.form != FINEST or any(left > CALM for left in observed.left_open(base.fit.residual))
 
     def child(name: str) -> Candidate | None:
@@ -147,6 +152,8 @@ def _first_children(base: Candidate, search: Search, names: list[str]) -> list[C
         fits += [followed(made, slice(base.fit.x.size, None), observed, x) for x in starts]
         if not seen(fits) and fades(search, name):
             fits.append(fading_fit(base.fit, search, name, observed))
+        if fades_unseen(fits_of_base, search, name, observed):
+            fits += unseen_fits(base.fit, search, name, observed)
         return _best((name,), fits, base.form)
 
     def seen(fits: list[Fit | None]) -> bool:
