@@ -111,9 +111,10 @@ blind-none: $(STAMP) ## the 330 of them in which nothing is hidden: docs/blind-n
 	$(BLIND) run --split scored --n 1500 --kind none --jobs 2 --out .cache/blind/none $(FOUND) $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) table --split scored --none --out .cache/blind/none --write docs/blind-none.md
 
-# A part of the method left out each time, on one test of d' 8 per effect.
+# A part of the method left out each time, on one test of d' 8 per effect; beside all that is kept, for it is the same page.
 VARIANTS := no_tempering no_polish no_projection white_noise
 blind-ablations: $(STAMP) ## what each part of the method is good for, on 18 of them: into docs/blind-benchmark.md
+	$(BLIND) run --split scored --n 1500 --jobs 2 --keep $(FOUND) || [ $$? -eq 1 ]
 	for variant in '' $(VARIANTS); do \
 		$(BLIND) run --split scored --n 1500 --jobs 2 $(FOUND) $${variant:+--variant $$variant} \
 			--kind single --targets 8 --each 1 $(FLAGS) || [ $$? -eq 1 ] || exit; done

@@ -18,6 +18,7 @@ from .picture import reliability_svg
 from .results import Results, results
 from .variants import comparison
 from .words import BASELINE_FIGURES, FIGURES, INTRODUCTION, TIMES, WITHOUT_EFFECT
+from .wrong import longest, sizes_by_effect, wrong_names
 
 
 def document(full: Results, split: str, picture: str | None) -> tuple[str, dict[str, Any]]:
@@ -30,9 +31,11 @@ def document(full: Results, split: str, picture: str | None) -> tuple[str, dict[
         ("## Single effects by d'", by_d_prime(result)),
         ("## Effect by effect", [_EFFECTS, "", *effects_table(cases, full.groups), "", twins(result)]),
         ("## Confusion matrix", [_CONFUSION, "", *confusion_table(result["confusion"], (*NAMES, "none", "unknown"))]),
+        ("## What is wrong", [_WRONG, "", *wrong_names(cases, full.groups)]),
+        ("## Sizes by effect", [_SIZES, "", *sizes_by_effect(cases)]),
         ("## Stated probabilities", reliability(result, picture)),
         ("## False alarms by family of noise", counted(result["false_alarm_by_noise"], "noise")),
-        ("## Time", [TIMES, "", *times(full, result)]),
+        ("## Time", [TIMES, "", *times(full, result), "", *longest(full.notes)]),
         ("## Beside methods that do not look", baselines(result)),
         *((f"## Variant {v}", lines) for v, lines in variants(full, split)),
         ("## Without a diagnosis", failures(full)),
@@ -73,6 +76,11 @@ _EFFECTS = (
     "with none, the worst first."
 )
 _CONFUSION = "Single effects and outsiders with d' >= 6, and tests without an effect."
+_WRONG = (
+    "Single effects with d' >= 6 and outsiders with d' >= 8 after the best of the library of which another label is "
+    "stated, and all labels that are stated above 0.9 and wrong (sure). The first log evidence is the right label's."
+)
+_SIZES = "Effects with d' >= 6 whose source is given in its own equation and unit."
 
 
 def facts(full: Results, split: str) -> list[str]:

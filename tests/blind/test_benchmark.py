@@ -37,6 +37,7 @@ from benchmarks.blind.run import (
     variant_settings,
 )
 from benchmarks.blind.work import Job, settings_of
+from benchmarks.blind.wrong import longest, wrong_names
 from tests.blind.judged import Case
 from tests.blind.made_up import answer, broken, nothing, product, work
 from tests.blind.plan import SHARES, SPLITS, plan
@@ -224,6 +225,32 @@ def test_a_variant_of_another_version_of_the_code_is_not_compared(made: Callable
         other.write_note(replace(note, id=i, code="older"))
     text, _ = document(results(full, "calibration"), "calibration", None)
     assert "full less variant" not in text
+
+
+def test_what_is_wrong_is_listed_with_its_rival_and_whether_it_was_sure(made: Callable[..., Folder]) -> None:
+    full = made([("tank_heat", product("tank_heat", 0.95)), ("n2_purge", product("tank_heat", 0.95)),
+                 ("n2_purge", product("tank_heat", 0.6)), (None, product("none"))])  # fmt: skip
+    found = results(full, "calibration")
+    head, _, *lines = wrong_names(found.cases.values(), found.groups)
+    rows = [dict(zip(cells_of(head), cells_of(line), strict=True)) for line in lines]
+    assert [(r["case"], r["hidden"], r["stated"], r["sure"]) for r in rows] == [
+        ("X001", "n2_purge", "tank_heat", "yes"), ("X002", "n2_purge", "tank_heat", "")]  # fmt: skip
+    text, _ = document(found, "calibration", None)
+    assert lines[0] in text
+
+
+def test_the_longest_diagnoses_are_listed_but_those_that_compiled() -> None:
+    notes = {
+        name: Note(name, fo.DONE, seconds=seconds, processor_seconds=0.5 * seconds, first=name == "b")
+        for name, seconds in {"a": 3.0, "b": 90.0, "c": 60.0, "d": 10.0, "e": 9.0, "f": 8.0, "g": 7.0}.items()
+    }
+    lines = longest(notes)[2:]
+    assert [cells_of(line)[0] for line in lines] == ["c", "d", "e", "f", "g"]
+    assert cells_of(lines[0]) == ["c", "60.0", "30.0"]
+
+
+def cells_of(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip().strip("|").split("|")]
 
 
 ALL = ("X000", "X001", "X002")
