@@ -151,8 +151,10 @@ def test_next_to_no_heat_is_next_to_no_change(root: Path, base: dict[str, dict[s
     # this burn tells little of n: its fit ends within a hundredth of n's deviation, and starts elsewhere as m differs
     moved = found["n"]["value"] - base["calibration"]["n"]["value"]
     assert abs(moved) < 0.03 * base["calibration"]["n"]["std"]
-    for name in ("m", "C_i", "K_loss", "n"):
+    for name in ("m", "C_i", "K_loss"):
         assert found[name]["std"] == pytest.approx(base["calibration"][name]["std"], rel=0.1)
+    # how little differs, too: the noise is taken from what is left at each end, and n's profile is flat
+    assert found["n"]["verdict"] == base["calibration"]["n"]["verdict"] == "not identifiable"
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,6 @@ from hfanalysis.effects import effect
 from hfanalysis.engine.batch import burn_many
 from hfanalysis.engine.closure import chamber_energy, vapor_heat, vapor_heat_total
 from hfanalysis.engine.model import OUTPUTS
-from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 
 Array = NDArray[np.float64]
@@ -31,22 +30,35 @@ def dry(of: Burn) -> NDArray[np.bool_]:
 
 
 def test_the_vapours_heat_closes_its_energy() -> None:
-    """dU = m c_v dT - u mdot dt and out goes u + p/rho: integrated along the run, from the states alone."""
+    """V dp = k_s p V d ln rho + G dQ: integrated along the run, from pressure and mass alone."""
     of, on = run(), dry(run())
-    time, mass, t = of.time[on], of.state("tank_mass")[on], of.state("tank_temperature")[on]
-    cv = of.steps.engine.saturation.heat_capacities(np.clip(t, 185.0, 305.0))[0]
+    mass, t, source = of.state("tank_mass")[on], of.state("tank_temperature")[on][0], of.steps.engine.saturation
     p, volume = of.output("tank_pressure")[on], of.steps.engine.feed.volume
-    sensible = np.trapezoid(mass * cv, t)
-    flow_work = np.trapezoid(of.output("tank_outflow")[on] * p * volume / mass, time)
-    assert sensible + flow_work == pytest.approx(vapor_heat_total(of), rel=1e-3)
+    expanded = source.isentropic_exponent(t) * np.trapezoid(p * volume, np.log(mass))
+    heat = (volume * (p[-1] - p[0]) - expanded) / source.grueneisen(t)
+    assert heat == pytest.approx(vapor_heat_total(of), rel=1e-3)
 
 
 def test_a_small_exponent_needs_tens_of_kilowatts_and_an_adiabatic_one_none() -> None:
     assert vapor_heat(run())[dry(run())][0] > 10e3
-    z, t = run().state("vapor_compressibility")[-1], run().steps.begin[run().steps.events.tolist().index(0) + 1, 1]
-    cv = float(run().steps.engine.saturation.heat_capacities(t)[0])
-    adiabatic = burn(engine_on_stand(polytropic_exponent=1.0 + z * SPECIFIC_GAS_CONSTANT / cv), SECONDS, run_on=True)
+    t = run().steps.begin[run().steps.events.tolist().index(0) + 1, 1]
+    exponent = float(run().steps.engine.saturation.isentropic_exponent(t))
+    adiabatic = burn(engine_on_stand(polytropic_exponent=exponent), SECONDS, run_on=True)
     assert abs(vapor_heat(adiabatic)[dry(adiabatic)][0]) < 100.0
+
+
+def test_heat_into_the_vapour_raises_its_pressure_as_grueneisens_parameter_has_it() -> None:
+    """V dp = m p V d ln rho + G Q dt beside the polytropic exponent m, whatever the vapour's temperature stands for."""
+    heated = engine_on_stand(
+        polytropic_exponent=1.1, effects=(effect("tank_heat").at(power=5e3, begun=1.0, fade=500.0),)
+    )
+    of = burn(heated, SECONDS, rtol=1e-8, run_on=True)
+    on = dry(of)
+    p, volume, mass = of.output("tank_pressure")[on], heated.feed.volume, of.state("tank_mass")[on]
+    g = heated.saturation.grueneisen(np.clip(of.state("tank_temperature")[on], 185.0, 305.0))
+    raised = np.diff(p) * volume - 1.1 * 0.5 * (p[1:] + p[:-1]) * volume * np.diff(np.log(mass))
+    power = raised / (0.5 * (g[1:] + g[:-1])) / np.diff(of.time[on])
+    assert np.median(power) == pytest.approx(5e3, rel=0.02)
 
 
 def test_while_there_is_liquid_no_heat_is_implied() -> None:

@@ -9,11 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import exprel
 
 from hfanalysis.compiled import compiled
 from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, liquid_mass, temperature_rate
-from hfanalysis.thermo.saturation import LIQUID_VOLUME, LN_PRESSURE, Array, Property, Saturation, evaluate
+from hfanalysis.thermo.saturation import LIQUID_VOLUME, LN_PRESSURE, Array, Saturation, evaluate
 
 Table = tuple[Array, float, float, float]
 
@@ -198,13 +199,12 @@ def implied_heat(
 ) -> float:
     """Heat [J] that a polytropic vapour blowdown needs from outside (negative: must give away).
 
-    From ``mass_start`` to ``mass_end`` [kg] at T = T_v (M/M_v)^(m-1), with u = u_v(T_v) + c_v (T - T_v) and h = u + Z R
-    T: Q = [M u] + integral of h over the mass that leaves. The polytropic law itself does not conserve energy.
+    From ``mass_start`` to ``mass_end`` [kg], beginning with saturated vapour at ``temperature`` [K]: the integral of
+    (m_s - m) p V/G over -d ln M, p V = Z R T_v M_v (M/M_v)^m, with that vapour's isentropic exponent m_s and
+    Grueneisen's G (as :mod:`hfanalysis.engine.closure`). The polytropic law itself does not conserve energy.
     """
-    c_v = float(saturation.heat_capacities(temperature)[0])
-    u_v = float(saturation.energy(Property.VAPOR_ENERGY, temperature)[0])
-    m = np.linspace(mass_end, mass_start, 513)
-    t = temperature * (m / mass_start) ** (exponent - 1.0)
-    u = u_v + c_v * (t - temperature)
-    h = u + z * SPECIFIC_GAS_CONSTANT * t
-    return float(m[0] * u[0] - m[-1] * u[-1] + np.trapezoid(h, m))
+    held = z * SPECIFIC_GAS_CONSTANT * temperature * mass_start
+    too_small = float(saturation.isentropic_exponent(temperature)) - exponent
+    less = float(np.log(mass_end / mass_start))
+    leaves = -less * float(exprel(exponent * less))
+    return float(held * too_small / float(saturation.grueneisen(temperature)) * leaves)

@@ -1,8 +1,9 @@
 """The heat that the model's simplifications imply: where its equations do not close in energy, how much is missing.
 
-A polytropic vapour. With u of the vapour, dU = m c_v dT - u mdot dt, and what leaves takes h = u + Z R T with it, so
-that dU/dt = -mdot h + Qdot gives Qdot = m c_v dT/dt + mdot Z R T. With the polytropic dT/dt = -T (k - 1) mdot / m of an
-exponent k that is Qdot = mdot T (Z R - c_v (k - 1)): none for k = 1 + Z R / c_v.
+A polytropic vapour. What leaves takes its own entropy with it, so that V dp = k_s p V d ln rho + G Qdot dt, with the
+isentropic exponent k_s and Grueneisen's G of the vapour with which it begins. A polytropic exponent k, dp = k p d ln
+rho, takes Qdot = mdot (k_s - k) p V/(m G): none for k = k_s. Nitrogen in it, an ideal gas, adds its part to (dp/dT)_V,
+to (dp/d ln rho)_T, and to the heat capacity, which give both G and k_s of the mixture.
 
 A chamber in quasi-steady equilibrium. Its gas burns at constant pressure: m h is exactly what oxidizer and fuel bring
 in less what leaves. The energy that is stored is U = m h - p V, the solid fuel's enthalpy being that of formation at
@@ -26,12 +27,21 @@ Array = NDArray[np.float64]
 def vapor_heat(burn: Burn) -> Array:
     """Heat flow into the tank's vapour [W] over ``burn.time``; 0 while there is liquid."""
     dry = burn.time > burn.liquid_out if burn.liquid_out is not None else np.zeros(burn.time.size, dtype=bool)
+    if not dry.any():
+        return np.zeros(burn.time.size)
     temperature, share = burn.state("tank_temperature"), burn.output("nitrogen_share")
-    inside = np.clip(temperature, COLDEST_VAPOR, WARMEST_VAPOR)
-    cv = (1.0 - share) * burn.steps.engine.saturation.heat_capacities(inside)[0] + share * NITROGEN_CV
+    source, first = burn.steps.engine.saturation, float(np.clip(temperature[dry][0], COLDEST_VAPOR, WARMEST_VAPOR))
+    cv, cp = source.heat_capacities(first)
     compressible = burn.state("vapor_compressibility") * SPECIFIC_GAS_CONSTANT
-    constant = (1.0 - share) * compressible + share * SPECIFIC_NITROGEN
-    by_flow = temperature * (constant - cv * (burn.state("vapor_exponent") - 1.0))
+
+    def mixed(vapor: Array, nitrogen: float) -> Array:
+        return (1.0 - share) * vapor + share * nitrogen
+
+    constant, capacity = mixed(compressible, SPECIFIC_NITROGEN), mixed(cv, NITROGEN_CV)
+    by_temperature = mixed(source.grueneisen(first) * cv, SPECIFIC_NITROGEN)
+    by_density = mixed(compressible * source.isentropic_exponent(first) * cv / cp, SPECIFIC_NITROGEN)
+    isentropic = (by_density + by_temperature**2 / capacity) / constant
+    by_flow = temperature * constant * (isentropic - burn.state("vapor_exponent")) * capacity / by_temperature
     return np.where(dry, burn.output("tank_outflow") * by_flow, 0.0)
 
 

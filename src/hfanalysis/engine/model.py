@@ -73,7 +73,7 @@ from hfanalysis.thermo.air import air
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
 from hfanalysis.thermo.combustion_table import Grid, chamber_pressure
 from hfanalysis.thermo.constants import GAS_CONSTANT, NITROGEN_MOLAR_MASS
-from hfanalysis.thermo.saturation import LN_VAPOR_CV, VAPOR_ENTHALPY, evaluate
+from hfanalysis.thermo.saturation import LN_VAPOR_CV, VAPOR_ENTHALPY, VAPOR_GRUENEISEN, evaluate
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -424,7 +424,12 @@ def expanded(m: Equations, *question: float) -> tuple[float, float]:
 
 @inlined
 def tank_rates(y: Array, liquid: bool, m: Equations, dy: Array) -> None:
-    """Masses and temperature of the tank (report, eq. 3.9 and the polytropic vapour)."""
+    """Masses and temperature of the tank (report, eq. 3.9 and the polytropic vapour).
+
+    The polytropic vapour is as warm as its pressure asks for at the compressibility with which it began. Heat Q raises
+    the pressure of a real one by G Q/V (Grueneisen's parameter G, about 0.3), which an ideal gas of its c_v would do by
+    Z R Q/(c_v V): half as much near 275 K. So it warms by what that pressure asks for.
+    """
     env, site, outflow = m.env, m.site, m.env[OXIDIZER_FLOW] + m.site[TANK_LEAK]
     inert = env[NITROGEN_SHARE] * outflow
     dy[TANK] = inert - outflow
@@ -434,8 +439,10 @@ def tank_rates(y: Array, liquid: bool, m: Equations, dy: Array) -> None:
         return
     dy[TEMPERATURE] = y[TEMPERATURE] * (y[EXPONENT] - 1.0) * -outflow / (y[TANK] + y[NITROGEN])
     if site[TANK_HEAT] != 0.0:
-        cv = np.exp(vapor(m, LN_VAPOR_CV, y[TEMPERATURE]))
-        dy[TEMPERATURE] += site[TANK_HEAT] / (y[TANK] * cv + y[NITROGEN] * NITROGEN_CV)
+        cv, g = np.exp(vapor(m, LN_VAPOR_CV, y[TEMPERATURE])), vapor(m, VAPOR_GRUENEISEN, y[TEMPERATURE])
+        warming = site[TANK_HEAT] / (y[TANK] * cv + y[NITROGEN] * NITROGEN_CV)
+        held = y[COMPRESSIBILITY] * SPECIFIC_GAS_CONSTANT * y[TANK] + SPECIFIC_NITROGEN * y[NITROGEN]
+        dy[TEMPERATURE] += warming * (g * cv * y[TANK] + SPECIFIC_NITROGEN * y[NITROGEN]) / held
 
 
 @inlined

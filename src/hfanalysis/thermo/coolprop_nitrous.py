@@ -16,7 +16,7 @@ from hfanalysis.thermo.saturation import NODES, Array, Property, Saturation
 CRITICAL_TEMPERATURE = 309.5207
 T_MIN = 182.34
 T_MAX = 309.50
-LAYOUT = 1
+LAYOUT = 2
 """Raised when the content of the cached table changes."""
 
 
@@ -39,8 +39,9 @@ def sample(theta: Array) -> Array:
         liquid = (1.0 / state.rhomass(), state.umass(), state.hmass())
         state.update(CoolProp.QT_INPUTS, 1.0, t)
         vapor = (np.log(1.0 / state.rhomass()), state.umass(), state.hmass())
-        capacities = (np.log(state.cvmass()), np.log(state.cpmass()))
-        rows[:, i] = (np.log(state.p()), liquid[0], vapor[0], liquid[1], vapor[1], liquid[2], vapor[2], *capacities)
+        by_temperature = state.first_partial_deriv(CoolProp.iP, CoolProp.iT, CoolProp.iDmass)
+        heat = (np.log(state.cvmass()), np.log(state.cpmass()), by_temperature / state.rhomass() / state.cvmass())
+        rows[:, i] = (np.log(state.p()), liquid[0], vapor[0], liquid[1], vapor[1], liquid[2], vapor[2], *heat)
     return rows
 
 

@@ -107,7 +107,22 @@ def build() -> Saturation:
         Property.LN_VAPOR_CV: _spline_to_last(np.log(TABLE[:-1, 6] * joule_per_kg), theta),
         Property.LN_VAPOR_CP: _spline_to_last(np.log(TABLE[:-1, 7] * joule_per_kg), theta),
     }
+    samples[Property.VAPOR_GRUENEISEN] = _grueneisen(theta, t, samples)
     return Saturation.from_samples("report", theta, samples, CRITICAL_TEMPERATURE)
+
+
+def _grueneisen(theta: Array, t: Array, samples: dict[Property, Array]) -> Array:
+    """G = (dp/dT)_v v / c_v of the vapour, from its energy along saturation: du = c_v dT + (T (dp/dT)_v - p) dv.
+
+    With p v = h - u, which is the table's own.
+    """
+    cv = np.exp(samples[Property.LN_VAPOR_CV])
+    energy, volume = (
+        CubicSpline(theta, samples[p])(theta, 1) for p in (Property.VAPOR_ENERGY, Property.LN_VAPOR_VOLUME)
+    )
+    by_theta = -3.0 * CRITICAL_TEMPERATURE * theta**2
+    work = samples[Property.VAPOR_ENTHALPY] - samples[Property.VAPOR_ENERGY]
+    return np.asarray(((energy - cv * by_theta) / volume + work) / (t * cv))
 
 
 def _theta(temperature: Array | float) -> Array:

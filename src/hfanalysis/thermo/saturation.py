@@ -35,11 +35,12 @@ class Property(IntEnum):
     VAPOR_ENTHALPY = 6
     LN_VAPOR_CV = 7
     LN_VAPOR_CP = 8
+    VAPOR_GRUENEISEN = 9
 
 
 LN_PRESSURE, LIQUID_VOLUME, LN_VAPOR_VOLUME = 0, 1, 2
 LIQUID_ENERGY, VAPOR_ENERGY, LIQUID_ENTHALPY, VAPOR_ENTHALPY = 3, 4, 5, 6
-LN_VAPOR_CV, LN_VAPOR_CP = 7, 8
+LN_VAPOR_CV, LN_VAPOR_CP, VAPOR_GRUENEISEN = 7, 8, 9
 
 
 @dataclass(frozen=True)
@@ -123,6 +124,17 @@ class Saturation:
         cv = self._evaluate(Property.LN_VAPOR_CV, temperature)[0]
         cp = self._evaluate(Property.LN_VAPOR_CP, temperature)[0]
         return np.exp(cv), np.exp(cp)
+
+    def grueneisen(self, temperature: ArrayLike) -> Array:
+        """Grueneisen's parameter V (dp/dU)_V [-] of the saturated vapour: heat Q raises its pressure by this Q/V."""
+        return self._evaluate(Property.VAPOR_GRUENEISEN, temperature)[0]
+
+    def isentropic_exponent(self, temperature: ArrayLike) -> Array:
+        """(d ln p/d ln rho)_s of the saturated vapour [-]: c_p/c_v times (d ln p/d ln rho)_T, which follows from c_p -
+        c_v = -T (dp/dT)_v^2 / (dp/dv)_T with (dp/dT)_v = G c_v / v."""
+        cv, cp = self.heat_capacities(temperature)
+        by_heat = self.grueneisen(temperature) ** 2 * cv * np.asarray(temperature, dtype=np.float64)
+        return np.asarray(cp / (cp - cv) * by_heat / (self.pressure(temperature) * self.vapor_volume(temperature)[0]))
 
     def temperature(self, pressure: ArrayLike) -> Array:
         """Saturation temperature [K] at a pressure [Pa]: the inverse of :meth:`pressure`; NaN outside the range."""

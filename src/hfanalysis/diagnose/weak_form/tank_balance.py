@@ -30,7 +30,8 @@ class TankBalance(TankFlow):
     def tank_energy(self) -> list[Piece]:
         """Heat that the tank's content receives [W], the injector's flow taken as right.
 
-        Liquid: dU/dt + mdot h_l. Vapour: c_v (V/(Z R) dp/dt + k mdot T), the heat beside a polytropic exponent k.
+        Liquid: dU/dt + mdot h_l. Vapour: (V dp/dt + k mdot p V/M)/G, the heat beside a polytropic exponent k, of which
+        Grueneisen's G tells what it does to the pressure; p V = Z R M T.
         """
         source = self.engine.saturation
         energy = through(self._energy, self.constant("volume", self.wet), self.wet_mass, self.temperature)
@@ -47,10 +48,16 @@ class TankBalance(TankFlow):
                     self.dry,
                     self.exponent * self.dry_flow * self.dry_temperature,
                     stored,
-                    source.heat_capacities(inside)[0],
+                    self._compressible_constant / source.grueneisen(inside),
                 )
             )
         return pieces
+
+    @property
+    def _compressible_constant(self) -> float:
+        """Z R of the vapour that is left at the end of the liquid [J/(kg K)]."""
+        source, temperature = self.engine.saturation, float(self.vapor_start[1].value[0])
+        return float(source.pressure(temperature) * source.vapor_volume(temperature)[0]) / temperature
 
     def _carried(self) -> History:
         """Enthalpy flow [W] of the liquid that leaves."""
