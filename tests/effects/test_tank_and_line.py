@@ -12,7 +12,7 @@ from tests.engine.stand import engine_on_stand
 from hfanalysis.effects import effect
 from hfanalysis.effects.feed_line_fill import FULL_AT, LIQUID_DENSITY
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, energy_derivatives
-from hfanalysis.engine.unsteady import Burn
+from hfanalysis.engine.unsteady import Burn, burn
 
 AT_REST = float(engine_on_stand().saturation.pressure(engine_on_stand().temperature))
 """The tank's pressure before anything flows [Pa]."""
@@ -39,6 +39,19 @@ def test_nitrogen_enters_from_the_opening_on_and_is_conserved() -> None:
     left = np.trapezoid(found.output("oxidizer_flow") * found.output("nitrogen_share"), found.time)
     assert held + left == pytest.approx(entered, rel=2e-3)
     assert held > 0.0
+
+
+def test_a_valve_that_closes_where_the_pressure_hardly_moves_stops_no_run() -> None:
+    """After a dip the tank's pressure comes up to a flat top, a few pascal above that at which the valve opens."""
+    dip = effect("tank_nonequilibrium").at(depth=9e5, delay=0.1, sustained=0.1)
+    dipping = burn(engine_on_stand(effects=(dip,)), 3.0)
+    pressure = dipping.output("tank_pressure")
+    lowest = int(np.argmin(np.where(dipping.time < 0.6, pressure, np.inf)))
+    top = float(pressure[lowest:].max())
+    assert top > pressure[lowest] + 5e5
+    for below in np.geomspace(1.0, 1e5, 80):
+        purge = effect("n2_purge").at(area=4e-5, supply_pressure=top - below + 4e5, cracking_pressure=4e5)
+        assert burn(engine_on_stand(effects=(dip, purge)), 3.0).time[-1] > 2.9
 
 
 def test_nitrogen_is_choked_below_the_critical_ratio_of_its_line() -> None:

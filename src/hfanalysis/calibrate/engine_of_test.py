@@ -219,7 +219,10 @@ def pressure_at(engine: Engine, instant: float) -> float:
     """Modelled tank pressure [Pa] at an instant [s after ignition]."""
     if instant <= 0.0 and not engine.effects:
         return float(engine.saturation.pressure(engine.temperature))
-    burnt = burn(engine, longest=max(instant, 1e-3))
+    try:
+        burnt = burn(engine, longest=max(instant, 1e-3))
+    except ArithmeticError as error:
+        raise AbsentError(f"the tank's pressure at {instant:.2f} s: {error}") from error
     return float(np.interp(instant, burnt.time, burnt.output("tank_pressure")))
 
 

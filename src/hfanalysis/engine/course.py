@@ -478,6 +478,7 @@ def integrate(
             steps = first(steps, n, 2 * n)
         arrive(t + h, liquid, burning, model, s, steps.dense[n])
         event, theta = first_event(t, y, h, steps.dense[n], liquid, burning, model, s)
+        whole = h
         if theta < 1.0:
             h *= theta
             attempt(t, y, h, liquid, burning, model, s)
@@ -500,10 +501,11 @@ def integrate(
             burning, happened[FUEL_OUT] = False, t
             ending = REACHED_END if run_on else BURNT_OUT
         s = enter(t, y, liquid, burning, model)
-        if event >= CHOKING:
+        passed_by = s.before[event] < 0.0 if falling else s.before[event] > 0.0
+        if event >= CHOKING and (passed_by or h < FIRST_STEP):
             s.before[event] = -1e-300 if falling else 1e-300  # or the same crossing would be found again
-        if event not in (CHOKING, SHOCK):
-            h = min(h, 10.0 * FIRST_STEP)
+        # else the step was that much too short, for its interpolant errs: the crossing is still to come
+        h = whole if event in (CHOKING, SHOCK) else min(whole, 10.0 * FIRST_STEP)
         old_error, rejected = 1.0, False
     return ending, first(steps, n, n), happened
 
