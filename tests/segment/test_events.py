@@ -145,6 +145,17 @@ def test_nitrogen_enters_when_its_line_starts_to_sag() -> None:
     assert found[1] < 0.02
 
 
+@pytest.mark.parametrize("early", [0.1, 0.15, 0.18, 0.3])
+def test_the_corner_at_the_end_of_the_liquid_is_not_that_of_the_nitrogen(early: float) -> None:
+    """The line follows the tank, slowly, and three times as fast once the liquid is gone."""
+    purge = 30e5 - 3.3e5 * since(6.3) - 9e5 * since(6.3 + early)
+    tank = noisy("p_tank", np.full(TIME.size, 25e5))
+    found = find_nitrogen(noisy("p_purge", np.maximum(purge, 6e5)), 9.9, tank, knee=6.3 + early)
+    assert not isinstance(found, str)
+    assert found[0] == pytest.approx(6.3, abs=max(4.0 * found[1], 0.01))
+    assert found[1] < 0.03
+
+
 def test_valve_hammer_is_no_nitrogen() -> None:
     purge = sagging(6.3)
     purge[(TIME > 2.0) & (TIME < 2.05)] -= 10e5

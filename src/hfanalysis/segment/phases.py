@@ -251,7 +251,7 @@ class _Search:
     def _nitrogen(self) -> tuple[float, float] | str:
         if "p_purge" not in self.signals:
             return "the log has no p_purge: nitrogen shows in its supply line"
-        return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"))
+        return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._time("t_v"))
 
     def _unchoking(self, kind: Kind) -> tuple[float, float] | str:
         if "p_chamber" not in self.signals:

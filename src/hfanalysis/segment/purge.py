@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from hfanalysis.segment.breaks import Break
 from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.refine import refine_kink
 from hfanalysis.segment.signals import Array, Signal
@@ -14,11 +15,17 @@ SMALLEST_SAG = 0.01
 LASTING = 0.4
 """Seconds over which a sag must go on: valve hammer and electrical spikes do not."""
 
+KNEE_AWAY = 0.05
+"""Seconds between two corners of the line from which on they are told apart."""
 
-def find_nitrogen(purge: Signal, end: float, tank: Signal | None) -> tuple[float, float] | str:
+
+def find_nitrogen(
+    purge: Signal, end: float, tank: Signal | None, knee: float | None = None
+) -> tuple[float, float] | str:
     """t_purge [s] and its standard deviation, time counted from the opening, searched up to ``end``; else the reason.
 
-    ``tank`` is the tank pressure: the check valve cannot have opened while the tank stands above the purge line.
+    ``tank`` is the tank pressure: the check valve cannot have opened while the tank stands above the purge line. At
+    ``knee`` [s], the end of the liquid, the tank's fall has a corner of its own, and with it the line's.
     """
     quiet = purge.between(-3.0, -0.02)
     if quiet.time.size < 8:
@@ -34,7 +41,22 @@ def find_nitrogen(purge: Signal, end: float, tank: Signal | None) -> tuple[float
     reach = max(0.2, 6.0 * purge.step)
     noise = Noise.of(purge, purge.between(-np.inf, rough - reach))
     found = refine_kink(purge, rough, window + reach, window + reach, reach, flat=True, noise=noise)
+    if found is not None and knee is not None and found.time < knee < rough + window + reach:
+        found = _before_knee(purge, found, knee, window, reach, noise)
     return (found.time, found.std) if found else (rough, reach)
+
+
+def _before_knee(purge: Signal, found: Break, knee: float, window: float, reach: float, noise: Noise) -> Break:
+    """The break, fitted again to what lies before the knee, which took it along: the first of these fits looks from
+    further back."""
+    for back in (0.5 * reach, 0.0):
+        middle = min(found.time, knee - KNEE_AWAY) - back
+        away = knee - middle
+        again = refine_kink(purge, middle, window + reach, away, min(reach, 0.8 * away), flat=True, noise=noise)
+        if again is None:
+            break
+        found = again
+    return found
 
 
 def _start_of_sag(coarse: Signal, level: float, drop: float) -> float | None:
