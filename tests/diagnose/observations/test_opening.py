@@ -47,6 +47,12 @@ def test_a_line_that_leaps_and_creeps_up_is_not_a_slow_valve(leap: float, time_c
     assert slow_opening(line(course)) is None
 
 
+def test_a_leap_in_a_hole_of_the_log_is_not_a_slow_valve() -> None:
+    whole = line(np.where(times() > 0.0, 1.0, 0.0))["p_run"]
+    kept = ~((times() > -0.015) & (times() < 0.015))
+    assert slow_opening({"p_run": Signal("p_run", times()[kept], whole.value[kept], 3e3, STEP)}) is None
+
+
 def test_a_wild_sample_is_no_opening() -> None:
     signals = line(np.where(times() > 0.0, 1.0, 0.0))
     values = signals["p_run"].value.copy()

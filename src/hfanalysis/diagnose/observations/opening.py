@@ -71,8 +71,8 @@ def slow_opening(signals: Mapping[str, Signal]) -> SlowOpening | None:
         return None
     risen = np.maximum.accumulate(_median_of_three((line.at(time) - closed) / (level - closed)))
     first, second, last = (float(time[int(np.argmax(risen >= part))]) for part in (*EARLY, NEARLY))
-    if second - first < (GRADUAL - 0.5) * step:
-        return None
+    if second - first < (GRADUAL - 0.5) * step or line.between(first, second).time.size < GRADUAL - 1:
+        return None  # a leap, or one in a hole of the log
     begins = first - EARLY[0] / (EARLY[1] - EARLY[0]) * (second - first)
     near = (time > begins - AROUND) & (time < last + AROUND)
     at_once = min(_misfit(risen[near], time[near] >= instant) for instant in time[near])
