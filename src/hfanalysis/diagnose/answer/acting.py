@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
 
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.predict import aligned, last_regression, misread, with_spare_fuel
@@ -80,6 +81,9 @@ def acting(found: Fit, name: str, observed: Observed) -> Acting:
     mean = course.source(active.effect, found.x)
     slopes = np.column_stack([course.slope(active.effect, k, mean) for k in range(found.x.size)])
     std = np.sqrt(np.maximum(np.einsum("ti,ij,tj->t", slopes, found.covariance, slopes), 0.0))
+    if active.effect.fading_web is not None:
+        mean = course.beside_a_sudden_end(mean)
+        std = np.hypot(std, FADE_ERROR * np.abs(mean))
     unit = "Pa" if active.effect.sites == ("tank_pressure",) else UNITS[active.effect.equation]
     return Acting(active.effect.equation, unit, time, mean, _with_shape(mean, std))
 
@@ -139,6 +143,7 @@ class _Course:
     fuel_out: float | None
     where: Array
     states: Array
+    outputs: Array
     liquid_out: float | None
 
     @classmethod
@@ -146,7 +151,14 @@ class _Course:
         engine = with_spare_fuel(found.hypothesis.at(found.x), observed.fuel_out)
         burnt = burn(engine, observed.longest + 1.0, run_on=True, keep_idle=True)
         where = aligned(observed, burnt, time)
-        return cls(found, observed.fuel_out, where, burnt.steps.at(where)[0], burnt.liquid_out)
+        return cls(found, observed.fuel_out, where, *burnt.steps.at(where), burnt.liquid_out)
+
+    def beside_a_sudden_end(self, mean: Array) -> Array:
+        """The fuel flow beside that of a fire which is out at once when it has burnt all of the fuel, where ``mean`` is
+        that beside one which does not end: from then on all of it is too much."""
+        flow = self.outputs[:, OUTPUTS.index("fuel_flow")]
+        burnt = cumulative_trapezoid(flow - mean, self.where, initial=0.0)
+        return np.where(burnt < self.found.hypothesis.at(self.found.x).fuel_mass, mean, flow)
 
     def source(self, effect: Effect, x: Array) -> Array:
         """What the effect changes in its equation at each state, with the constants that ``x`` stands for."""

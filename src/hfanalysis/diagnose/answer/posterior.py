@@ -24,10 +24,10 @@ SET = 0.9
 
 
 TELLING = {"named": 5.0, "unknown": 10.0}
-"""Log evidence from which on a label is told from what a test that hides nothing shows. Of 214 simulated ones
-(docs/blind.md names the runs) `benchmarks.blind calibrate` prints 8.8, 8.3, 4.6 and 4.3 as the largest of names, and
-7.2, 7.0, 6.7 and 6.5 as those of unknown sources; those need more, for a source that explains little is what two tables
-of nitrous oxide differ by, and of 62 others they had 8.0."""
+"""Log evidence of which, where no label has it, unknown is taken to be no more probable than none. Of 214 simulated
+tests that hide nothing (docs/blind.md names the runs) `benchmarks.blind calibrate` prints 8.8, 8.3, 4.6 and 4.3 as the
+largest of names, and 7.2, 7.0, 6.7 and 6.5 as those of unknown sources; of 62 others those had 8.0. They need more, for
+a source that explains little is what two tables of nitrous oxide differ by."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class Scale:
 
 
 def telling(evidences: Mapping[str, float]) -> bool:
-    """Whether any label has more evidence than a test that hides nothing shows, that of none being 0.
+    """Whether any label has as much evidence as hardly a test shows that hides nothing (TELLING), that of none being 0.
 
     >>> telling({"none": 0.0, "tank_heat": 5.2, "unknown": 9.8})
     True
