@@ -18,7 +18,7 @@ export TEST OTHER
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy recovery blind blind-none blind-ablations blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy recovery replicas blind blind-none blind-ablations blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -111,14 +111,21 @@ blind-none: $(STAMP) ## the 330 of them in which nothing is hidden: docs/blind-n
 	$(BLIND) run --split scored --n 1500 --kind none --jobs 2 --out .cache/blind/none $(FOUND) $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) table --split scored --none --out .cache/blind/none --write docs/blind-none.md
 
-# A part of the method left out each time, on one test of d' 8 per effect; beside all that is kept, for it is the same page.
-VARIANTS := no_tempering no_polish no_projection white_noise
-blind-ablations: $(STAMP) ## what each part of the method is good for, on 18 of them: into docs/blind-benchmark.md
+# A part of the method left out each time, on tests of the kind that it is there for; beside all that is kept, for it is
+# the same page. What tempering is there for no simulated test has: `make replicas`.
+blind-ablations: $(STAMP) ## what each part of the method is good for: into docs/blind-benchmark.md
 	$(BLIND) run --split scored --n 1500 --jobs 2 --keep $(FOUND) || [ $$? -eq 1 ]
-	for variant in '' $(VARIANTS); do \
-		$(BLIND) run --split scored --n 1500 --jobs 2 $(FOUND) $${variant:+--variant $$variant} \
-			--kind single --targets 8 --each 1 $(FLAGS) || [ $$? -eq 1 ] || exit; done
+	$(call left-out,white_noise,--kind single --targets 8 --each 1)
+	$(call left-out,no_projection,--kind pair --limit 400)
+	$(call left-out,no_polish,--kind none --limit 450)
 	$(BLIND) table --split scored --write docs/blind-benchmark.md
+
+# Of a variant and the tests: the method on them, by the present code, and the variant.
+left-out = for variant in '' $(1); do $(BLIND) run --split scored --n 1500 --jobs 2 $(FOUND) \
+		$${variant:+--variant $$variant} $(2) $(FLAGS) || [ $$? -eq 1 ] || exit; done
+
+replicas: $(STAMP) ## HF5 and HF4 diagnosed, each proven on the other, and without each part of the method: docs/diagnosis.md
+	PYTHONPATH=. $(BIN)/python benchmarks/replicas.py --write docs/diagnosis.md
 
 blind-smoke: $(STAMP) ## 24 of them from the development split, the figures on the screen
 	$(BLIND) run --split development --n 24 --jobs 2 --out .cache/blind/smoke $(FLAGS) || [ $$? -eq 1 ]
