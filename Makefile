@@ -125,7 +125,7 @@ left-out = for variant in '' $(1); do $(BLIND) run --split scored --n 1500 --job
 		$${variant:+--variant $$variant} $(2) $(FLAGS) || [ $$? -eq 1 ] || exit; done
 
 replicas: $(STAMP) ## HF5 and HF4 diagnosed, each proven on the other, and without each part of the method: docs/diagnosis.md
-	PYTHONPATH=. $(BIN)/python benchmarks/replicas.py --write docs/diagnosis.md
+	$(BIN)/python -m benchmarks.replicas --write docs/diagnosis.md
 
 blind-smoke: $(STAMP) ## 24 of them from the development split, the figures on the screen
 	$(BLIND) run --split development --n 24 --jobs 2 --out .cache/blind/smoke $(FLAGS) || [ $$? -eq 1 ]

@@ -1,6 +1,6 @@
 """Diagnosis of tests whose truth is known: what is named, with which probability, and what of the gap closes.
 
-python benchmarks/practice.py --cases DIR [--write docs/diagnosis.md]
+python -m benchmarks.practice --cases DIR [--write docs/diagnosis.md]
 
 CASES holds ``raw_tests/`` and ``answers/``; products go to a temporary folder. The answers are read only after all
 verdicts are there.
@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 import tempfile
 from collections.abc import Iterable
@@ -18,6 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import Any
+
+from benchmarks.diagnosed import one_thread, percent, put
 
 from hfanalysis.errors import AnalysisError
 from hfanalysis.stages.opening import open_test
@@ -106,16 +107,12 @@ def table(found: Iterable[Outcome], answers: Path) -> list[str]:
             continue
         top = p["posterior"]["none"] if p["verdict"] == "none" else max(p["posterior"].values())
         names = ", ".join(row["name"] for row in p["effects"]) or "-"
-        closed = " / ".join(_percent(p["gap"]["closed_fraction"].get(arm)) for arm in ("same", "held_out"))
+        closed = " / ".join(percent(p["gap"]["closed_fraction"].get(arm)) for arm in ("same", "held_out"))
         rows.append(
             f"| {one.case} | {truth} | {p['verdict']} ({top:.2f}) | {', '.join(p['set90'])} | {names} | {closed} "
             f"| {one.seconds:.0f} | {right} |"
         )
     return [*rows, "", ", ".join(f"{name}: {number}" for name, number in sorted(counts.items()))]
-
-
-def _percent(x: float | None) -> str:
-    return "-" if x is None else f"{100.0 * x:.0f} %"
 
 
 def main() -> int:
@@ -124,8 +121,7 @@ def main() -> int:
     parser.add_argument("--cases", type=Path, required=True)
     parser.add_argument("--write", type=Path)
     asked = parser.parse_args()
-    for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(threads, "1")  # as the command line does, before numpy is loaded
+    one_thread()
     names = sorted(p.name for p in (asked.cases / "raw_tests").iterdir() if (p / "test.toml").exists())
     found = []
     with tempfile.TemporaryDirectory() as scratch:
@@ -136,10 +132,7 @@ def main() -> int:
     lines = table(found, asked.cases / "answers")
     print("\n".join(lines))
     if asked.write:
-        start, end = "<!-- practice: begin -->", "<!-- practice: end -->"
-        page = asked.write.read_text()
-        head, tail = page.split(start)[0], page.split(end)[1]
-        asked.write.write_text(f"{head}{start}\n" + "\n".join(lines) + f"\n{end}{tail}")
+        put(asked.write, "practice", lines)
     return 0
 
 

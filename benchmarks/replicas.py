@@ -1,6 +1,6 @@
 """Diagnosis of the replicas HF4 and HF5, each proven on the other, by the method and without each of its parts.
 
-python benchmarks/replicas.py [--write docs/diagnosis.md] (`make replicas`)
+python -m benchmarks.replicas [--write docs/diagnosis.md] (`make replicas`)
 
 The adopted constants of one test are frozen on the other. Products go to a temporary folder.
 """
@@ -8,12 +8,13 @@ The adopted constants of one test are frozen on the other. Products go to a temp
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+from benchmarks.diagnosed import one_thread, percent, put
 
 from hfanalysis.diagnose.naming.variants import VARIANTS
 from hfanalysis.stages.opening import open_test
@@ -23,7 +24,6 @@ ROOT = Path(__file__).resolve().parent.parent
 PAIRS = (("HF5", "HF4"), ("HF4", "HF5"))
 ARMS = ("same", "held_out", "other_test", "placebo")
 CHANNELS = {"p_tank": ("bar", 1e5), "p_run": ("bar", 1e5), "p_chamber": ("bar", 1e5), "thrust": ("N", 1.0)}
-BEGIN, END = "<!-- replicas: begin -->\n", "<!-- replicas: end -->"
 
 
 def diagnosed(test: str, other: str, variant: str, scratch: Path) -> dict[str, Any]:
@@ -37,7 +37,7 @@ def diagnosed(test: str, other: str, variant: str, scratch: Path) -> dict[str, A
 def row(test: str, variant: str, product: Mapping[str, Any]) -> str:
     """One line of the table."""
     gap = product["gap"]
-    closed = " / ".join(_percent(gap["closed_fraction"].get(arm)) for arm in ARMS)
+    closed = " / ".join(percent(gap["closed_fraction"].get(arm)) for arm in ARMS)
     rms = "; ".join(
         f"{name} {gap['before'][name] / scale:.2f} to {gap['after'][name] / scale:.2f} {unit}"
         for name, (unit, scale) in CHANNELS.items()
@@ -63,17 +63,12 @@ def sizes(test: str, product: Mapping[str, Any]) -> list[str]:
     return out
 
 
-def _percent(x: float | None) -> str:
-    return "-" if x is None else f"{100.0 * x:.0f} %"
-
-
 def main() -> int:
     """Diagnose both replicas by every variant."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", type=Path)
     asked = parser.parse_args()
-    for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(threads, "1")  # as the command line does, before the stages load numpy
+    one_thread()
     rows = [
         f"| test | | named | gap closed: {' / '.join(ARMS)} | rms without and with | m without and with |",
         "|---|---|---|---|---|---|",
@@ -89,9 +84,7 @@ def main() -> int:
     lines = [*places, "", *rows]
     print("\n".join(lines))
     if asked.write:
-        page = asked.write.read_text(encoding="utf-8")
-        head, tail = page.split(BEGIN)[0], page.split(END)[1]
-        asked.write.write_text(f"{head}{BEGIN}" + "\n".join(lines) + f"\n{END}{tail}", encoding="utf-8")
+        put(asked.write, "replicas", lines)
     return 0
 
 

@@ -153,8 +153,9 @@ def test_next_to_no_heat_is_next_to_no_change(root: Path, base: dict[str, dict[s
     assert abs(moved) < 0.03 * base["calibration"]["n"]["std"]
     for name in ("m", "C_i", "K_loss"):
         assert found[name]["std"] == pytest.approx(base["calibration"][name]["std"], rel=0.1)
-    # how little differs, too: the noise is taken from what is left at each end, and n's profile is flat
+    # n's is taken from what is left in p_chamber, of which four or five values are independent: itself known to a half
     assert found["n"]["verdict"] == base["calibration"]["n"]["verdict"] == "not identifiable"
+    assert found["n"]["std"] == pytest.approx(base["calibration"]["n"]["std"], rel=0.5)
 
 
 @pytest.mark.parametrize(
