@@ -67,7 +67,7 @@ test: lint rocketpy ## ruff, mypy and the tests
 	OMP_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder $(FLAGS)
 
 lint: $(STAMP) ## ruff and mypy
-	$(BIN)/ruff check
+	$(BIN)/ruff check --no-cache
 	$(BIN)/mypy
 
 format: $(STAMP) ## format the code with ruff

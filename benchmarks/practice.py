@@ -18,7 +18,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from benchmarks.diagnosed import one_thread, percent, put
+from benchmarks.studies import one_thread, percent, put
 
 from hfanalysis.errors import AnalysisError
 from hfanalysis.stages.opening import open_test

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from benchmarks.diagnosed import one_thread, percent, put
+from benchmarks.studies import one_thread, percent, put
 
 from hfanalysis.diagnose.naming.variants import VARIANTS
 from hfanalysis.stages.opening import open_test
