@@ -75,3 +75,26 @@ def test_peaks_are_those_of_the_teams_own_table(tmp_path: Path) -> None:
     assert np.nanmax(log["p_tank"].values) / psi == pytest.approx(977, abs=3)
     assert np.nanmax(log["p_chamber"].values) / psi == pytest.approx(582, abs=5)
     assert np.nanmax(log["thrust"].values) == pytest.approx(6204, abs=30)
+
+
+@pytest.mark.parametrize(
+    ("test", "falls", "late", "perhaps"),
+    [
+        ("MRT-HF2.3", None, 0.0, 0.0),
+        ("MRT-HF2.4", 9.5, 0.5, 0.5),
+        ("MRT-HF3.1", 8.1, 1.0, 0.5),
+        ("MRT-HF3.4", 18.3, 1.0, 0.5),
+    ],
+)
+def test_without_an_engine_the_pressures_tell_of_the_tank_and_the_nitrogen(
+    test: str, falls: float | None, late: float, perhaps: float, tmp_path: Path
+) -> None:
+    read(tmp_path, test)
+    found = run_to("diagnose", open_test(tmp_path, test)).read_json("diagnosis.json")
+    sure = found["posterior"]["load_cell_drift"]
+    assert sure > 0.95
+    assert found["verdict"] == ("ambiguous" if late == perhaps > 0.0 else "named")
+    expected = {"tank_nonequilibrium": late, "tank_stratification": perhaps, "n2_purge": 1.0}
+    assert found["partners"] == pytest.approx({name: sure * p for name, p in expected.items() if p > 0.0})
+    tank = [row["source"]["value"] for row in found["localisation"] if row["channel"] == "p_tank"]
+    assert tank == pytest.approx([] if falls is None else [-1e5 * falls], rel=0.02)

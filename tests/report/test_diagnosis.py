@@ -209,6 +209,16 @@ def test_without_an_engine_the_section_tells_the_sensors_and_claims_no_numbers(t
     assert "calibrated on" not in found
 
 
+@pytest.mark.parametrize("effects", [ALONE["effects"], []])
+def test_without_an_engine_what_is_beside_the_first_has_a_table(effects: list[Any], tmp_path: Path) -> None:
+    beside = {**ALONE, "effects": effects, "partners": {"n2_purge": 0.98}}
+    made = without(material(tmp_path), "diagnosis")
+    found = told(section(lay_out(replace(made, products={**made.products, "diagnosis": beside}))))
+    first = effects[0]["name"] if effects else "load_cell_drift"
+    assert f"Effects beside {first}." in found
+    assert "n2_purge" in found
+
+
 def test_a_test_that_cannot_be_diagnosed_says_why_in_the_section(tmp_path: Path) -> None:
     bare = without(material(tmp_path), diagnosis="the engine is not stated: [engine] is missing")
     laid = section(lay_out(bare))

@@ -221,6 +221,8 @@ def _diagnose(context: Context, console: Console) -> None:
         console.print(Text(sentence, style="bold" if i == 0 else ""), soft_wrap=True)
     likely = sorted(((p, n) for n, p in product["posterior"].items() if p >= SHOWN), reverse=True)
     console.print(Text("  probabilities: " + ", ".join(f"{name} {p:.2f}" for p, name in likely)), soft_wrap=True)
+    if partners := {name: p for name, p in (product.get("partners") or {}).items() if p >= SHOWN}:
+        console.print(Text("  beside it: " + ", ".join(f"{n} {p:.2f}" for n, p in partners.items())), soft_wrap=True)
     for warning in (*product["notes"], *product["warnings"]):
         console.print(Text(f"  {warning}", style="yellow"), soft_wrap=True)
 

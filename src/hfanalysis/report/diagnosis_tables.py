@@ -72,7 +72,8 @@ def partners(product: Product) -> Markup | None:
     if not kept:
         return None
     rows = [(name, _probability(found[name]), _bar(found[name]), "yes" if name in added else "") for name in kept]
-    caption = f"Effects beside {added[0]}, by all sets of effects that were tried."
+    tried = ", by all sets of effects that were tried" if "none" in product["posterior"] else ""
+    caption = f"Effects beside {(added or product['set90'])[0]}{tried}."
     return html.table("Beside it", caption, ("name", ">probability", "", "added to the model"), rows)
 
 

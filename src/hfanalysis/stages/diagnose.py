@@ -3,7 +3,7 @@
 Reads ``ingest.h5``, ``segments.json`` and ``base_calibration.json`` (the base model is what is diagnosed, whatever has
 been adopted), and those of another test of the same stand, to prove it there with frozen constants. A test whose run
 line was not recorded starts from a calibration of injector and line as one; one that cannot be calibrated at all, or
-whose engine cannot be run, gets what its sensors show by themselves. Writes ``diagnosis.json`` and ``diagnosis.h5``.
+whose engine cannot be run, gets what its channels show by themselves. Writes ``diagnosis.json`` and ``diagnosis.h5``.
 """
 
 from __future__ import annotations

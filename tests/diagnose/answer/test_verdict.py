@@ -21,10 +21,12 @@ from hfanalysis.diagnose.answer.acting import Acting, acting
 from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judged, lost
 from hfanalysis.diagnose.answer.posterior import (
     BEFORE,
+    FAR,
     SET,
     TELLING,
     UNSEEN,
     Scale,
+    described,
     evidences_of,
     kind,
     scale,
@@ -33,6 +35,7 @@ from hfanalysis.diagnose.answer.posterior import (
 )
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import (
+    _claimed,
     _within,
     effects_product,
     likeliest_place,
@@ -65,7 +68,7 @@ def eroded() -> Naming:
     return name_effects(made.hypothesis(), made.observed(EROSION), tried)
 
 
-@given(labels, some.floats(0.5, 20.0), some.floats(0.0, 5.0), some.floats(0.0, 10.0))
+@given(labels, some.floats(0.5, 20.0), some.floats(0.0, 5.0), some.floats(0.0, FAR))
 def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: float, leftover: float) -> None:
     found = Scale(t, more).probabilities(evidences, leftover)
     assert set(found) == set(evidences)
@@ -90,9 +93,29 @@ def test_a_temperature_takes_evidences_less_seriously() -> None:
     cold, warm = (Scale(t).probabilities(evidences, 1.0) for t in (1.0, 5.0))
     assert cold["tank_heat"] == pytest.approx(1.0 / (1.0 + np.exp(-10.0)))
     assert warm["tank_heat"] == pytest.approx(1.0 / (1.0 + np.exp(-2.0)))
-    left = Scale(1.0, 1.0)
+    left = Scale(1.0, 4.0)
     assert left.probabilities(evidences, 0.8) == cold
-    assert left.probabilities(evidences, 5.0) == warm
+    assert left.probabilities(evidences, 2.0) == warm
+
+
+@given(some.floats(-20.0, 5000.0), some.floats(-20.0, 5000.0), some.floats(FAR, 100.0))
+def test_of_a_test_that_no_model_comes_near_names_keep_what_is_described(
+    name: float, strange: float, leftover: float
+) -> None:
+    evidences = {"none": 0.0, "tank_heat": name, "unknown": strange}
+    near, far = (Scale().probabilities(evidences, left) for left in (1.0, leftover))
+    assert sum(far.values()) == pytest.approx(1.0)
+    for label in ("none", "tank_heat"):
+        assert far[label] == pytest.approx(near[label] * FAR / leftover)
+    assert far["unknown"] >= 1.0 - FAR / leftover
+
+
+def test_far_from_all_models_a_name_is_claimed_only_where_no_source_is_found() -> None:
+    far = Scale().probabilities({"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, 19.0)
+    assert _claimed(far, {"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, described(19.0)) == "unknown"
+    assert _claimed(far, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}, described(19.0)) == "tank_heat"
+    assert _claimed(far, {"none": 0.0, "tank_heat": 8.0, "unknown": -5.0}, described(19.0)) == "none"
+    assert _claimed(far, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}) == "none"
 
 
 def test_where_evidence_misleads_nothing_is_certain() -> None:

@@ -14,6 +14,7 @@ from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import (
     effect_sentence,
     equation_sentence,
+    far_sentence,
     gap_line,
     headline,
     place_sentence,
@@ -44,6 +45,7 @@ def product(label: str, **more: Any) -> dict[str, Any]:
         "effects": effects_product(verdict) if label in ("named", "ambiguous") else [],
         "localisation": places(verdict, found) if label != "none" else [],
         "compared": {"chi_square": 0.9},
+        "leftover": 0.9,
         "gap": {"before": rms, "after": made.NOISE, "noise": made.NOISE, "closed_fraction": fractions},
         "not_it": ["tank_heat"],
         "decisive_measurements": [] if label == "none" else ["nozzle_throat_erosion: the throat's diameter"],
@@ -163,3 +165,13 @@ def test_where_names_leave_a_choice_the_equation_may_be_sure(
     posterior = dict(zip(("combustion_efficiency", "chamber_heat_loss"), names, strict=True))
     given = {"verdict": verdict, "posterior": posterior, "by_equation": {"chamber_energy": by_equation, "grain": 0.01}}
     assert equation_sentence(given) == said
+
+
+def test_it_is_said_that_no_model_comes_near_a_test_and_which_comes_nearest() -> None:
+    rows = [(["n2_purge"], False, 80.0), (["n2_purge", "tank_heat"], False, 90.0), (["offset of p_tank"], True, 95.0)]
+    tried = [{"names": names, "unknown": strange, "log_evidence": gain} for names, strange, gain in rows]
+    assert far_sentence({"leftover": 2.0, "tried": tried}) == []
+    (said,) = far_sentence({"leftover": 18.76, "tried": tried})
+    assert "(n2_purge and tank_heat) leaves a chi-square of 18.8" in said
+    (bare,) = far_sentence({"leftover": 18.76, "tried": tried[2:]})
+    assert "the best with names leaves" in bare

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from hfanalysis.diagnose.answer.posterior import SET
+from hfanalysis.diagnose.answer.posterior import SET, described
 from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.diagnose.observations.observed import FADE
 from hfanalysis.quantity import Quantity
@@ -60,7 +60,7 @@ _UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
 
 def story(product: Mapping[str, Any]) -> list[str]:
     """The whole verdict, sentence by sentence."""
-    out = [headline(product), *equation_sentence(product)]
+    out = [headline(product), *far_sentence(product), *equation_sentence(product)]
     out += [place_sentence(row) for row in product["localisation"]]
     out += [effect_sentence(row) for row in product["effects"]]
     out += fade_sentence(product["compared"])
@@ -97,6 +97,21 @@ def headline(product: Mapping[str, Any]) -> str:
     beside = [f"{n} ({p:.2f})" for n, p in product["partners"].items() if n not in named and p >= LIKELY]
     either = f"; in place of what is beside it: {', '.join(beside)}" if beside else ""
     return f"The model lacks {names}{doubt}{either}."
+
+
+def far_sentence(product: Mapping[str, Any]) -> list[str]:
+    """That even the best model is far from the test, and what explains most of it all the same."""
+    left = product["leftover"]
+    if described(left) == 1.0:
+        return []
+    best = max(product["tried"], key=lambda row: row["log_evidence"] * (not row["unknown"]))
+    closest = f" ({listed(best['names'])})" if not best["unknown"] and best["log_evidence"] > 0.0 else ""
+    return [
+        f"No model comes near this test: the best with names{closest} leaves a chi-square of {left:.1f} per "
+        "observation, more than any simulated test by which probabilities were fitted. A stated value or a channel may "
+        "be wrong, or more may be missing than the library has; names have no more than the part that is described, "
+        "and none is excluded."
+    ]
 
 
 def equation_sentence(product: Mapping[str, Any]) -> list[str]:
