@@ -1,6 +1,6 @@
 """Compare the two property sources of saturated nitrous oxide and write docs/properties.md.
 
-python benchmarks/nitrous_properties.py
+python -m benchmarks.nitrous_properties
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from benchmarks.other_tables import enthalpies, liquid_density, pressure, vapor_density
 
 from hfanalysis.engine.blowdown import FeedSystem, blow_down
 from hfanalysis.engine.tank import split
@@ -18,7 +19,7 @@ PAGE = Path(__file__).resolve().parent.parent / "docs" / "properties.md"
 
 INTRODUCTION = """# Nitrous oxide: two property sources
 
-Written by `python benchmarks/nitrous_properties.py`.
+Written by `python -m benchmarks.nitrous_properties`.
 
 `[model] properties` chooses where the saturated properties of nitrous oxide come from:
 
@@ -39,6 +40,14 @@ that, take `report`.
 """
 
 
+DEPARTURES = """## Two independent sources
+
+The correlations of ESDU 91022 against CoolProp: what is known of nitrous oxide is known to half of that. A diagnosis
+takes it as unknown: errors of pressure, liquid, vapour and latent heat, each as a level and as what changes over 25 K
+(`hfanalysis.thermo.departures`), are constants of every hypothesis.
+"""
+
+
 def differences() -> str:
     """Report against CoolProp, in percent, over the range of a tank."""
     a, b = saturation("report"), saturation("coolprop")
@@ -54,6 +63,24 @@ def differences() -> str:
         read = float(a.temperature(b.pressure(t))) - t
         differ = " | ".join(f"{v:+.2f} %" for v in values)
         rows.append(f"| {t:.2f} | {float(b.pressure(t)) / 1e5:.2f} | {read:+.2f} K | {differ} | {closure:.4f} |")
+    return "\n".join(rows)
+
+
+def departures() -> str:
+    """ESDU 91022 against CoolProp, in percent."""
+    source = saturation("coolprop")
+    rows = ["| T, K | p_sat | liquid density | vapour density | latent heat |", "|---|---|---|---|---|"]
+    for t in (245.0, 255.0, 265.0, 275.0, 285.0, 295.0, 300.0):
+        latent = [float(source.energy(p, t)[0]) for p in (Property.LIQUID_ENTHALPY, Property.VAPOR_ENTHALPY)]
+        liquid, vapor = (float(h) for h in enthalpies(np.array(t)))
+        pairs = (
+            (pressure(np.array(t)), source.pressure(t)),
+            (liquid_density(np.array(t)), source.liquid_density(t)),
+            (vapor_density(np.array(t)), source.vapor_density(t)),
+            (vapor - liquid, latent[1] - latent[0]),
+        )
+        differ = " | ".join(f"{100.0 * (float(a) / float(b) - 1.0):+.2f} %" for a, b in pairs)
+        rows.append(f"| {t:.0f} | {differ} |")
     return "\n".join(rows)
 
 
@@ -89,6 +116,7 @@ def closure() -> str:
 def main() -> None:
     """Write the page."""
     tables = f"## Report against CoolProp\n\n{differences()}\n\n## The same tank with either\n\n{closure()}\n"
+    tables += f"\n{DEPARTURES}\n{departures()}\n"
     text = f"{INTRODUCTION}\n{tables}"
     PAGE.write_text(text, encoding="utf-8")
     print(text)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.predict import ACCURACY, AFTER, slopes_of, with_spare_fuel
+from hfanalysis.diagnose.fitting.predict import ACCURACY, AFTER, all_slopes, slopes_of, with_spare_fuel
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.sensors import Sensor, missing_sensors
@@ -205,8 +205,13 @@ def _rows(made: Hypothesis, observed: Observed, sensors: tuple[Sensor, ...], x: 
     """Whitened slopes with x of what is observed, and of what each sensor would read."""
     engine = with_spare_fuel(made.at(x), observed.fuel_out)
     found = run_with_tangents(engine, made.of_engine, observed.longest + AFTER, ACCURACY, run_on=True)
-    jacobian = made.jacobian(x)
-    return [slopes_of(made, observed, found) @ jacobian, *(s.slopes(made, observed, found) @ jacobian for s in sensors)]
+    jacobian, mine = made.jacobian(x), np.flatnonzero(np.isin(made.names, made.of_engine))
+    rows = [all_slopes(made, observed, slopes_of(made, observed, found))]
+    for sensor in sensors:
+        own = sensor.slopes(made, observed, found)
+        rows.append(np.zeros((own.shape[0], made.size)))
+        rows[-1][:, mine] = own
+    return [row @ jacobian for row in rows]
 
 
 def _with_all(hypothesis: Hypothesis, catalogue: Catalogue) -> Hypothesis:

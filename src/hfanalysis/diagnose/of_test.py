@@ -24,7 +24,8 @@ from hfanalysis.diagnose.answer.verdict import (
 from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import story
 from hfanalysis.diagnose.fitting.fade import abrupt, with_abrupt_end
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, base_hypothesis
+from hfanalysis.diagnose.fitting.hypothesis import TABLE, Hypothesis, base_hypothesis
+from hfanalysis.diagnose.fitting.tables import with_other_tables
 from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
@@ -74,7 +75,7 @@ class Subject:
     def compared(self) -> tuple[Hypothesis, Observed]:
         """The base model and the observations, with what only the model says of these."""
         hypothesis = self.hypothesis()
-        return hypothesis, with_abrupt_end(self.observed(), hypothesis.engine)
+        return with_other_tables(hypothesis, with_abrupt_end(self.observed(), hypothesis.engine))
 
 
 @dataclass(frozen=True)
@@ -231,7 +232,7 @@ def _constants(found: Naming, verdict: Verdict) -> dict[str, dict[str, Quantity]
         out[arm] = {
             {"polytropic_exponent": "m"}.get(n, n): Quantity(values[n], units.get(n, ""), stds[n])
             for n in values
-            if "." not in n
+            if "." not in n and not n.startswith(TABLE)
         }
     return out
 

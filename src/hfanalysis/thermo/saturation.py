@@ -78,6 +78,14 @@ class Saturation:
             float(t.max()),
         )
 
+    def samples(self) -> tuple[Array, dict[Property, Array]]:
+        """The nodes in theta and all properties there, of which :meth:`from_samples` makes the same table again."""
+        step, last = self.theta_step, self.coefficients[:, -1]
+        end = last[:, 0] + step * (last[:, 1] + step * (last[:, 2] + step * last[:, 3]))
+        values = np.column_stack([self.coefficients[:, :, 0], end])
+        theta = np.asarray(self.theta_start + step * np.arange(values.shape[1]), dtype=np.float64)
+        return theta, {p: values[p] for p in Property}
+
     @property
     def kernel_table(self) -> tuple[Array, float, float, float]:
         """What the compiled functions of this module read."""

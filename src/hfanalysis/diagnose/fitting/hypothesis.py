@@ -43,6 +43,10 @@ N_RANGE = 2.5
 """Standard deviations that n may be off: a flux exponent below 0 or above 1 is no regression law of a fuel."""
 
 
+TABLE = "table: "
+"""How the names of parameters begin that are departures of the table of nitrous oxide."""
+
+
 @dataclass(frozen=True)
 class Free:
     """A parameter that may move, as a function of x, whose prior is N(0, 1) between ``least`` and ``most``.
@@ -138,7 +142,13 @@ class Hypothesis:
     @property
     def of_engine(self) -> tuple[str, ...]:
         """Names of those on which the engine depends."""
-        return (*(f.name for f in self.free), *(n for b in self.blocks if b.sensor is None for n in b.names))
+        own = (f.name for f in self.free if not f.name.startswith(TABLE))
+        return (*own, *(n for b in self.blocks if b.sensor is None for n in b.names))
+
+    @property
+    def of_tables(self) -> list[int]:
+        """Where among the parameters the departures of the table of nitrous oxide are."""
+        return [i for i, f in enumerate(self.free) if f.name.startswith(TABLE)]
 
     def places(self) -> list[tuple[Block, slice]]:
         """Where the blocks are among the parameters."""

@@ -70,7 +70,7 @@ def with_slopes(
         scales = np.array([f.slope(float(v)) for f, v in zip(free, x[only], strict=True)])
         return replace(there, slopes=slopes_of(hypothesis, observed, found) * scales)
     found = tangents_of(there.burnt, hypothesis.of_engine)
-    slopes = _all_slopes(hypothesis, observed, slopes_of(hypothesis, observed, found)) @ hypothesis.jacobian(x)
+    slopes = all_slopes(hypothesis, observed, slopes_of(hypothesis, observed, found)) @ hypothesis.jacobian(x)
     return replace(there, slopes=slopes)
 
 
@@ -84,15 +84,26 @@ def with_spare_fuel(engine: Engine, fuel_out: float | None = None) -> Engine:
     return replace(engine, spare_web=engine.outer_radius, fuel_end=inf if fuel_out is None else fuel_out)
 
 
-def _all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> Array:
-    """Slopes with all parameters [SI]: the engine's, and those of the sensors' sources."""
+def all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> Array:
+    """Slopes with all parameters [SI]: the engine's, those of the sensors' sources, and those of its table."""
     names, out = hypothesis.of_engine, np.zeros((of_engine.shape[0], hypothesis.size))
     column = {name: i for i, name in enumerate(hypothesis.names)}
     out[:, [column[name] for name in names]] = of_engine
     for block, place in hypothesis.places():
         if block.sensor is not None:
             out[:, place] = sensor_slopes(observed, block.sensor, block.splines)
+    if tables := hypothesis.of_tables:
+        out[:, tables] = table_slopes(observed, len(tables))
     return out
+
+
+def table_slopes(observed: Observed, count: int) -> Array:
+    """Slopes of the residuals with the departures of the table of nitrous oxide."""
+    blocks = [np.zeros((c.time.size, count)) if c.tables is None else c.tables for c in observed.channels]
+    scalars = np.zeros((len(observed.events) + len(observed.stated), count))
+    if observed.later is not None and "t_v" in observed.events:
+        scalars[list(observed.events).index("t_v")] = -observed.later / observed.spread("t_v")
+    return np.concatenate([-observed.whiten(np.concatenate(blocks)), scalars])
 
 
 def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
@@ -121,6 +132,8 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
         deviation = observed.spread(name)
         if name == "t_v":
             gone = burnt.liquid_out if burnt.liquid_out is not None else 2.0 * observed.end
+            if observed.later is not None and (tables := hypothesis.of_tables):
+                gone += float(observed.later @ x[tables])
             scalars.append((at - gone) / deviation)
         else:
             web = hypothesis.engine.outer_radius - float(burnt.steps.at(np.array([at]))[0][0, RADIUS])
@@ -163,8 +176,10 @@ def _with_its_zero(observed: Observed, true: Mapping[str, Array], read: dict[str
 
 
 def added(hypothesis: Hypothesis, observed: Observed, x: Array, channel: Channel) -> Array:
-    """What unknown sources add to a channel's blocks."""
+    """What unknown sources and another table of nitrous oxide add to a channel's blocks."""
     own = hypothesis.offset(channel.name, x, channel.time)
+    if channel.tables is not None and (tables := hypothesis.of_tables):
+        own = own + channel.tables @ x[tables]
     if channel.name != ALIKE[1] or observed.line_zero is None:
         return own
     return own + hypothesis.offset(ALIKE[0], x, np.array([observed.line_zero]))

@@ -31,7 +31,8 @@ class Channel:
     ``coherence``: blocks whose noise is worth one independent value. ``slow``: the part of the covariance that is slow
     noise, whose size a quiet time of seconds does not tell exactly, but to the standard deviation ``unsure`` of the log
     of its amplitude; None where there is none. ``span``: the range that the model-form error is a part of, where it is
-    not the channel's own.
+    not the channel's own. ``tables`` (blocks, departures): what a model would read more if the table of nitrous oxide
+    departed by a standard deviation; None where that was not asked.
     """
 
     name: str
@@ -47,12 +48,14 @@ class Channel:
     slow: Array | None = None
     span: float | None = None
     unsure: float = 1.0
+    tables: Array | None = None
 
     def only(self, rows: Integers) -> Channel:
         """The same with some of its blocks."""
         picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
         slow = None if self.slow is None else self.slow[np.ix_(rows, rows)]
-        return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)], slow=slow)
+        tables = None if self.tables is None else self.tables[rows]
+        return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)], slow=slow, tables=tables)
 
     def with_white_noise(self) -> Channel:
         """The same with independent noise of the same size, beside offset and gain."""

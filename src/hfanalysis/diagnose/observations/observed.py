@@ -48,7 +48,8 @@ class Observed:
     taken of the first.
     ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``plain``:
     what is plain in the samples without a model, and is in no model. ``abrupt``: the seconds that FADE would be if the
-    fire were out at once, where a model was asked.
+    fire were out at once, where a model was asked. ``later`` [s]: by how much a model's liquid ends later for every
+    departure of the table of nitrous oxide, where it was asked (as the channels' ``tables``).
     """
 
     channels: tuple[Channel, ...]
@@ -67,6 +68,7 @@ class Observed:
     fuel_out: float | None = None
     plain: tuple[Plain, ...] = ()
     abrupt: float | None = None
+    later: Array | None = None
 
     def with_errors(self, tank: float, chamber: float) -> Observed:
         """The same with another model-form error."""
