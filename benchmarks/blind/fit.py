@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, detailed_kinds, telling
+from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, described, detailed_kinds, telling
 
 Array = NDArray[np.float64]
 
@@ -101,7 +101,8 @@ class _Table:
     """Samples as arrays: ``evidence`` [case, label] (-inf where not stated), its kind (0 for none, else the number in
     OFFSETS and 1), the truth; ``imitated`` [case, label]: what the best name explains where the label is unknown, 0
     elsewhere; ``apart`` [case]: evidence of an unknown source in another equation than that name's (-inf: none);
-    ``capped`` [case, label]: whether a label is at most as probable as ``none``, the place of that label."""
+    ``capped`` [case, label]: whether a label is at most as probable as ``none``, the place of that label; ``described``
+    [case]: the part that all labels keep, and the truth where it is ``strange``, unknown, is given the rest."""
 
     evidence: Array
     imitated: Array
@@ -111,6 +112,8 @@ class _Table:
     kind: NDArray[np.int64]
     truth: NDArray[np.int64]
     excess: Array
+    described: Array
+    strange: NDArray[np.bool_]
     before: Array
     weight: Array
 
@@ -131,9 +134,12 @@ def _table(samples: Sequence[Sample]) -> _Table:
     none = labels.index("none") if "none" in labels else 0
     evidence[unseen] = 0.0
     excess = np.maximum([s.leftover - 1.0 for s in samples], 0.0)
+    kept = np.array([described(s.leftover) if "unknown" in s.evidences else 1.0 for s in samples])
+    strange = np.array([s.truth == "unknown" for s in samples])
     truth = np.array([labels.index(s.truth) for s in samples])
     weight = np.array([s.weight for s in samples])
-    return _Table(evidence, imitated, apart, capped, none, kinds, truth, excess, before / before.sum(), weight)
+    of_labels = (evidence, imitated, apart, capped, none, kinds, truth)
+    return _Table(*of_labels, excess, kept, strange, before / before.sum(), weight)
 
 
 def _loss(x: Array, t: _Table) -> float:
@@ -145,7 +151,8 @@ def _loss(x: Array, t: _Table) -> float:
     logits = np.array([0.0, *x[1:-3]])[t.kind] + evidence / temperature[:, None]
     logits = np.minimum(logits, np.where(t.capped, logits[:, t.none, None], inf))
     shares = np.exp(logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1))
-    right = np.log((1.0 - misled) * shares + misled * t.before[t.truth])
+    stated = (1.0 - misled) * shares + misled * t.before[t.truth]
+    right = np.log(t.described * stated + (1.0 - t.described) * t.strange)
     return float(-(t.weight @ right) + 0.5 * np.sum((x / PRIOR_STD) ** 2))
 
 

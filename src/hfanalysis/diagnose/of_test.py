@@ -72,10 +72,14 @@ class Subject:
         full = run_full(self.log, self.segments, self.calibration, self.definition)
         return base_hypothesis(full.engine, self.calibration, self.definition.model.conventions != "report")
 
-    def compared(self) -> tuple[Hypothesis, Observed]:
-        """The base model and the observations, with what only the model says of these."""
+    def compared(self, any_table: bool = True) -> tuple[Hypothesis, Observed]:
+        """The base model and the observations, with what only the model says of these.
+
+        ``any_table``: what the table of nitrous oxide may be wrong by is free, which it is in no engine that is run.
+        """
         hypothesis = self.hypothesis()
-        return with_other_tables(hypothesis, with_abrupt_end(self.observed(), hypothesis.engine))
+        observed = with_abrupt_end(self.observed(), hypothesis.engine)
+        return with_other_tables(hypothesis, observed) if any_table else (hypothesis, observed)
 
 
 @dataclass(frozen=True)
