@@ -18,7 +18,7 @@ export TEST OTHER
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy recovery replicas blind blind-none blind-ablations blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy recovery replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -126,6 +126,11 @@ left-out = for variant in '' $(1); do $(BLIND) run --split scored --n 1500 --job
 
 replicas: $(STAMP) ## HF5 and HF4 diagnosed, each proven on the other, and without each part of the method: docs/diagnosis.md
 	$(BIN)/python -m benchmarks.replicas --write docs/diagnosis.md
+
+blind-other-table: $(STAMP) ## 130 tests that hide nothing, of nitrous oxide by another table, the figures on the screen
+	$(BIN)/python -m benchmarks.other_tables .cache/blind/other-table
+	$(BLIND) run --split calibration --n 1500 --seed 15 --kind none --limit 495 --jobs 2 --out .cache/blind/other-table $(FLAGS) || [ $$? -eq 1 ]
+	$(BLIND) table --split calibration --none --out .cache/blind/other-table
 
 blind-smoke: $(STAMP) ## 24 of them from the development split, the figures on the screen
 	$(BLIND) run --split development --n 24 --jobs 2 --out .cache/blind/smoke $(FLAGS) || [ $$? -eq 1 ]

@@ -10,7 +10,7 @@ from tests.diagnose import logged
 
 from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.of_test import Subject
-from hfanalysis.diagnose.without_engine import sensors_alone
+from hfanalysis.diagnose.without_engine import channels_alone
 from hfanalysis.errors import AbsentError
 from hfanalysis.testdata.log import TestLog
 
@@ -27,7 +27,7 @@ def subject(drift: float, layer: float = 0.0) -> Subject:
 
 
 def test_a_cell_that_does_not_come_back_has_drifted_and_nothing_is_certain() -> None:
-    found = sensors_alone(subject(300.0), WHY)
+    found = channels_alone(subject(300.0), WHY)
     assert (found["verdict"], found["set90"]) == ("named", ["load_cell_drift"])
     (effect,) = found["effects"]
     assert effect["parameters"]["drift"].value == pytest.approx(300.0, rel=0.1)
@@ -38,11 +38,11 @@ def test_a_cell_that_does_not_come_back_has_drifted_and_nothing_is_certain() -> 
 
 def test_sensors_that_show_nothing_wrong_are_no_answer() -> None:
     with pytest.raises(AbsentError, match="by themselves, show nothing wrong"):
-        sensors_alone(subject(0.0), WHY)
+        channels_alone(subject(0.0), WHY)
 
 
 def test_what_is_beside_a_drift_is_stated_beside_it_and_a_choice_is_called_one() -> None:
-    found = sensors_alone(subject(300.0, 8e5), WHY)
+    found = channels_alone(subject(300.0, 8e5), WHY)
     half = 0.5 * (1.0 - scale().misled)
     assert (found["verdict"], found["set90"]) == ("ambiguous", ["load_cell_drift"])
     assert found["partners"] == {"tank_stratification": half, "tank_nonequilibrium": half}
@@ -55,7 +55,7 @@ def test_what_is_beside_a_drift_is_stated_beside_it_and_a_choice_is_called_one()
 
 
 def test_of_two_names_for_all_that_is_seen_both_are_in_the_set_and_nothing_is_added() -> None:
-    found = sensors_alone(subject(0.0, 8e5), WHY)
+    found = channels_alone(subject(0.0, 8e5), WHY)
     assert (found["verdict"], found["effects"], found["partners"]) == ("ambiguous", [], {})
     assert found["set90"] == ["tank_stratification", "tank_nonequilibrium"]
     assert sum(found["posterior"].values()) == pytest.approx(1.0)

@@ -10,7 +10,7 @@ import numpy as np
 
 from hfanalysis.diagnose.answer import gap
 from hfanalysis.diagnose.answer.plausible import judged
-from hfanalysis.diagnose.answer.posterior import described, scale
+from hfanalysis.diagnose.answer.posterior import far, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import (
     Verdict,
@@ -32,7 +32,7 @@ from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.observations.observed import FADE, Observed
 from hfanalysis.diagnose.observations.reduction import observe_test
-from hfanalysis.diagnose.signs import sentences
+from hfanalysis.diagnose.signs import shown
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
 from hfanalysis.diagnose.weak_form.weak_product import weak_product
@@ -111,8 +111,8 @@ def diagnose(
     product = _product(found, verdict, proof, catalogue)
     product["notes"] = [*subject.notes, *product["notes"]]
     product["sentences"] = story(product)
-    if described(found.named.leftover) < 1.0:
-        product["sentences"] += sentences(subject.log, subject.segments, subject.definition)
+    if far(found.named.leftover):
+        product["sentences"] += shown(subject.log, subject.segments, subject.definition).sentences
     return Diagnosis(found, verdict, product)
 
 
@@ -164,7 +164,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "gap": _gap(found.base, chosen, proof, observed),
         "upper_limits": upper_limits(verdict, found, catalogue),
         "twins": _twins(verdict, catalogue),
-        "not_it": _not_it(verdict) if described(found.named.leftover) == 1.0 else [],
+        "not_it": [] if far(found.named.leftover) else _not_it(verdict),
         "decisive_measurements": _decisive(verdict, catalogue),
         "plausibility": {
             name: row for name, row in _plausibility(found, chosen).items() if name in (*verdict.set90, *verdict.added)

@@ -8,17 +8,16 @@ from typing import Any
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.of_test import Subject
-from hfanalysis.diagnose.signs import Sign, sentences, signs
+from hfanalysis.diagnose.signs import Shown, Sign, shown
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError
 from hfanalysis.quantity import Quantity
-from hfanalysis.validate.performance import fire_of
-from hfanalysis.validate.sensors import ZERO, Finding, findings
+from hfanalysis.validate.sensors import ZERO, Finding
 
 DRIFT = "load_cell_drift"
 
 
-def sensors_alone(subject: Subject, why: str) -> dict[str, Any]:
+def channels_alone(subject: Subject, why: str) -> dict[str, Any]:
     """The product of a diagnosis without a model. Raises AbsentError where the channels show nothing wrong either.
 
     A thrust cell that does not come back to its zero has drifted, whatever the engine did. That thrust and chamber
@@ -26,38 +25,24 @@ def sensors_alone(subject: Subject, why: str) -> dict[str, Any]:
     line show is in ``diagnose.signs``. Nothing tells which of several explains most: a drift comes first, for its size
     is known, and nothing else is added to the model.
     """
-    fire = fire_of(subject.segments, subject.definition)
-    wrong = findings(subject.log, subject.segments, subject.definition, fire)
-    seen = signs(subject.log, subject.segments)
-    if not wrong and not seen:
+    seen = shown(subject.log, subject.segments, subject.definition)
+    if not seen.wrong and not seen.signs:
         raise AbsentError(f"{why}; its channels, by themselves, show nothing wrong")
-    drift = next((f for f in wrong if f.verdict == ZERO), None)
-    sure = 1.0 - scale().misled
-    effects = [] if drift is None else [_drift(drift, sure)]
-    labels = ([(DRIFT,)] if drift else []) + [sign.names for sign in seen]
-    first = {name: sure / len(labels[0]) for name in labels[0]} if labels else {"unknown": sure}
-    partners = {name: sure / len(group) for group in labels[1:] for name in group}
-    partners |= {name: 0.5 * sure for sign in seen for name in sign.besides}
+    stated = _stated(seen)
+    effects = [_drift(found) for found in seen.wrong if found.verdict == ZERO]
+    names = [name for name in (*stated["posterior"], *stated["partners"]) if name not in ("none", "unknown")]
     return {
-        "verdict": "unknown" if not labels else "named" if all(len(group) == 1 for group in labels) else "ambiguous",
+        **stated,
         "effects": effects,
-        "set90": list(first),
-        "posterior": {**first, "unknown" if labels else "none": 1.0 - sure},
-        "partners": partners,
-        "localisation": [*(_place(f, subject) for f in wrong), *(_place_of(sign) for sign in seen)],
+        "localisation": [*(_place(f, subject) for f in seen.wrong), *(_place_of(sign) for sign in seen.signs)],
         "gap": {"before": {}, "after": {}, "noise": {}, "closed_fraction": dict.fromkeys(ARMS)},
         "upper_limits": {},
         "twins": [],
         "not_it": [],
-        "decisive_measurements": [
-            f"{name}: {effect(name).decisive}" for name in dict.fromkeys((*first, *partners)) if name != "unknown"
-        ],
+        "decisive_measurements": [f"{name}: {effect(name).decisive}" for name in names],
         "plausibility": {row["name"]: row["plausibility"] for row in effects},
-        "compared": {"channels": sorted({c for f in wrong for c in f.channels} | {s.channel for s in seen})},
-        "sentences": [
-            *sentences(subject.log, subject.segments, subject.definition),
-            f"No more can be said without a model to compare with: {why}.",
-        ],
+        "compared": {"channels": sorted({c for f in seen.wrong for c in f.channels} | {s.channel for s in seen.signs})},
+        "sentences": [*seen.sentences, f"No more can be said without a model to compare with: {why}."],
         "notes": [
             "only what the channels show by themselves was judged; no probability of other effects was formed; "
             "what is stated is as sure as any evidence was on simulated tests; of two names, or of one that may have a "
@@ -69,16 +54,43 @@ def sensors_alone(subject: Subject, why: str) -> dict[str, Any]:
     }
 
 
+def _stated(seen: Shown) -> dict[str, Any]:
+    """The verdict and the probabilities: of the first of what is seen, and of what is beside it."""
+    sure = _sure()
+    groups = [(DRIFT,) for found in seen.wrong if found.verdict == ZERO] + [sign.names for sign in seen.signs]
+    if not groups:
+        return {
+            "verdict": "unknown",
+            "set90": ["unknown"],
+            "posterior": {"unknown": sure, "none": 1.0 - sure},
+            "partners": {},
+        }
+    even = {name: sure / len(group) for group in groups for name in group}
+    first = {name: even[name] for name in groups[0]}
+    perhaps = {name: 0.5 * sure for sign in seen.signs for name in sign.besides}
+    return {
+        "verdict": "named" if all(len(group) == 1 for group in groups) else "ambiguous",
+        "set90": list(first),
+        "posterior": {**first, "unknown": 1.0 - sure},
+        "partners": {name: p for name, p in (even | perhaps).items() if name not in first},
+    }
+
+
+def _sure() -> float:
+    """As probable as anything is."""
+    return 1.0 - scale().misled
+
+
 ARMS: Sequence[str] = ("same", "held_out", "other_test", "placebo")
 
 
-def _drift(found: Finding, sure: float) -> dict[str, Any]:
+def _drift(found: Finding) -> dict[str, Any]:
     size: Quantity = found.size
     value = size.value or 0.0
     parameters: Mapping[str, Quantity] = {"drift": size}
     return {
         "name": DRIFT,
-        "probability": sure,
+        "probability": _sure(),
         "equation": "sensor",
         "meaning": effect(DRIFT).meaning,
         "parameters": parameters,

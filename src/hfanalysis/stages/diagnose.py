@@ -25,7 +25,7 @@ def run(context: Context) -> None:
     from hfanalysis.diagnose.histories import write_empty, write_histories
     from hfanalysis.diagnose.naming.variants import settings_of
     from hfanalysis.diagnose.of_test import diagnose
-    from hfanalysis.diagnose.without_engine import sensors_alone
+    from hfanalysis.diagnose.without_engine import channels_alone
     from hfanalysis.effects import FOLDER, library
 
     effects = library(context.root / FOLDER)
@@ -38,7 +38,7 @@ def run(context: Context) -> None:
         found = diagnose(subject, effects, lambda: _other(context), context.progress, settings)
     except AbsentError as missing:
         write_empty(context.scratch("diagnosis.h5"), context.provenance())
-        context.write_json("diagnosis.json", sensors_alone(subject, str(missing)))
+        context.write_json("diagnosis.json", channels_alone(subject, str(missing)))
         return
     write_histories(context.scratch("diagnosis.h5"), found, context.provenance())
     context.write_json("diagnosis.json", found.product)

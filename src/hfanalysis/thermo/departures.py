@@ -9,6 +9,7 @@ as a level and as what changes over 25 K, is one standard deviation here.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -26,7 +27,7 @@ class Departure:
     """A relative error of one property: ``level`` everywhere, ``slope`` more for every OVER kelvins above MIDDLE."""
 
     name: str
-    of: str
+    of: Literal["pressure", "liquid", "vapor", "latent heat"]
     level: float = 0.0
     slope: float = 0.0
 

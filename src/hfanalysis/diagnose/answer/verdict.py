@@ -14,8 +14,8 @@ from hfanalysis.diagnose.answer.limits import limits
 from hfanalysis.diagnose.answer.plausible import judged, lost
 from hfanalysis.diagnose.answer.posterior import (
     SET,
-    described,
     evidences_of,
+    far,
     partners_of,
     scale,
     smallest_set,
@@ -93,7 +93,7 @@ def verdict_of(found: Naming) -> Verdict:
 def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, float]) -> Verdict:
     """What probabilities amount to."""
     set90 = smallest_set(posterior)
-    top = _claimed(posterior, evidences, described(found.named.leftover))
+    top = _claimed(posterior, evidences, far(found.named.leftover))
     chosen = _chosen(found, top)
     if top in ("none", "unknown"):
         return Verdict(top, posterior, evidences, set90, chosen)
@@ -104,13 +104,13 @@ def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, fl
     return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
 
 
-def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], described: float = 1.0) -> str:
+def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], far_off: bool = False) -> str:
     """The most probable label but none, where it may be claimed, or else none.
 
-    Where all models are far from the test and no unknown source was found, a name is what there is to go by.
+    Where all models are ``far_off`` and no unknown source was found, a name is what there is to go by.
     """
     labels = [k for k in posterior if k != "none"]
-    if described < 1.0 and evidences.get("unknown", 0.0) < LEAST_EVIDENCE:
+    if far_off and evidences.get("unknown", 0.0) < LEAST_EVIDENCE:
         labels = [k for k in labels if k != "unknown"]
     top = max(labels, key=lambda k: (posterior[k], k))
     return top if posterior["none"] < CLAIM and evidences[top] >= LEAST_EVIDENCE else "none"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from hfanalysis.diagnose.answer.posterior import SET, described
+from hfanalysis.diagnose.answer.posterior import SET, far
 from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.diagnose.observations.observed import FADE
 from hfanalysis.quantity import Quantity
@@ -101,11 +101,11 @@ def headline(product: Mapping[str, Any]) -> str:
 
 def far_sentence(product: Mapping[str, Any]) -> list[str]:
     """That even the best model is far from the test, and what explains most of it all the same."""
-    left = product["leftover"]
-    if described(left) == 1.0:
+    left, named = product["leftover"], [row for row in product["tried"] if not row["unknown"]]
+    if not far(left):
         return []
-    best = max(product["tried"], key=lambda row: row["log_evidence"] * (not row["unknown"]))
-    closest = f" ({listed(best['names'])})" if not best["unknown"] and best["log_evidence"] > 0.0 else ""
+    best = max(named, key=lambda row: row["log_evidence"], default=None)
+    closest = f" ({listed(best['names'])})" if best is not None and best["log_evidence"] > 0.0 else ""
     return [
         f"No model comes near this test: the best with names{closest} leaves a chi-square of {left:.1f} per "
         "observation, more than any simulated test by which probabilities were fitted. A stated value or a channel may "
