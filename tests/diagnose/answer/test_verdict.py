@@ -110,11 +110,11 @@ def test_of_a_test_that_no_model_comes_near_names_keep_what_is_described(
 
 
 def test_far_from_all_models_a_name_is_claimed_only_where_no_source_is_found() -> None:
-    far = Scale().probabilities({"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, 19.0)
-    assert _claimed(far, {"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, far(19.0)) == "unknown"
-    assert _claimed(far, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}, far(19.0)) == "tank_heat"
-    assert _claimed(far, {"none": 0.0, "tank_heat": 8.0, "unknown": -5.0}, far(19.0)) == "none"
-    assert _claimed(far, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}) == "none"
+    stated = Scale().probabilities({"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, 19.0)
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, far(19.0)) == "unknown"
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}, far(19.0)) == "tank_heat"
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8.0, "unknown": -5.0}, far(19.0)) == "none"
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}) == "none"
 
 
 def test_where_evidence_misleads_nothing_is_certain() -> None:

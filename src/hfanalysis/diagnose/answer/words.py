@@ -101,9 +101,10 @@ def headline(product: Mapping[str, Any]) -> str:
 
 def far_sentence(product: Mapping[str, Any]) -> list[str]:
     """That even the best model is far from the test, and what explains most of it all the same."""
-    left, named = product["leftover"], [row for row in product["tried"] if not row["unknown"]]
+    left = product["leftover"]
     if not far(left):
         return []
+    named = [row for row in product["tried"] if not row["unknown"]]
     best = max(named, key=lambda row: row["log_evidence"], default=None)
     closest = f" ({listed(best['names'])})" if best is not None and best["log_evidence"] > 0.0 else ""
     return [
