@@ -27,6 +27,7 @@ from hfanalysis.diagnose.answer.posterior import (
     UNSEEN,
     Scale,
     evidences_of,
+    far,
     kind,
     scale,
     smallest_set,
