@@ -22,6 +22,9 @@ from .results import Results
 ALONE = (*OFFSETS, "unexplained")
 """Constants that can be fitted alone."""
 
+FRACTIONS = ("unexplained", "misled", "misled_faint")
+"""Constants that are shares."""
+
 FEWEST = 50
 """Cases below which the constants would be arbitrary."""
 
@@ -183,7 +186,8 @@ def _constants(one: Fitted) -> str:
         f"unseen: named = {k.unseen_named:.4g} +- {_pm(one, 'unseen named')}, "
         f"unknown = {k.unseen_unknown:.4g} +- {_pm(one, 'unseen unknown')}, "
         f"unexplained = {k.unexplained:.3g} +- {_pm(one, 'unexplained')}, "
-        f"misled = {k.misled:.3g} +- {_pm(one, 'misled')}"
+        f"misled = {k.misled:.3g} +- {_pm(one, 'misled')}, "
+        f"where all is faint {k.scale.misled_faint:.3g} +- {_pm(one, 'misled_faint')}"
     )
 
 
@@ -200,6 +204,7 @@ def to_json(one: Fitted, number: int, split: str, codes: Sequence[str]) -> dict[
         "temperature_per_leftover": k.per_leftover,
         "offsets": dict(k.scale.offsets),
         "misled": k.misled,
+        "misled_faint": k.scale.misled_faint,
         "unexplained": k.unexplained,
         "standard_errors": one.errors,
         "cases": number,
@@ -216,7 +221,7 @@ def pooled(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
     if one["temperature_per_leftover"] or other["temperature_per_leftover"]:
         raise Unfit("constants of which the temperature goes with the misfit left are not pooled")
     values, errors = {}, {}
-    for name in (*one["offsets"], "ln_temperature", "unexplained", "misled"):
+    for name in (*one["offsets"], "ln_temperature", *FRACTIONS):
         if name == "none":
             continue
         both = [(_constant(data, name), data["standard_errors"][name]) for data in (one, other)]
@@ -228,7 +233,7 @@ def pooled(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
     return {
         **one,
         "temperature": float(np.exp(values.pop("ln_temperature"))),
-        **{name: values.pop(name) for name in ("unexplained", "misled")},
+        **{name: values.pop(name) for name in FRACTIONS},
         "offsets": {"none": 0.0, **values},
         "standard_errors": {**one["standard_errors"], **errors},
         "cases": one["cases"] + other["cases"],

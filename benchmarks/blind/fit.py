@@ -1,6 +1,7 @@
 """From raw log evidences to stated probabilities: p_k proportional to exp(b_class(k) + e_k / T).
 
-In a share ``misled`` of the cases the evidence misleads altogether, and the labels have the probabilities from before.
+In a share ``misled`` of the cases the evidence misleads altogether, and the labels have the probabilities from before;
+that share is ``misled_faint`` of those in which no label has what a claim needs.
 T = T0 (1 + t1 max(0, leftover - 1)) with the chi-square per degree of freedom that the best named model leaves; one
 offset b for the names and one for ``unknown``, that of ``none`` is 0. A label of which nothing was seen has an offset
 of its kind instead, and no evidence. e of ``unknown`` is without a share ``unexplained`` of the best name's, which
@@ -20,16 +21,17 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, described, detailed_kinds, telling
+from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, described, detailed_kinds, faint, telling
 
 Array = NDArray[np.float64]
 
 OFFSETS = ("named", "unknown", "unseen named", "unseen unknown")
 """Kinds of labels that have an offset; that of none is 0."""
-NAMES = ("ln_temperature", *OFFSETS, "unexplained", "per_leftover", "misled")
-PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 0.2, 10.0, 0.1])
+NAMES = ("ln_temperature", *OFFSETS, "unexplained", "per_leftover", "misled", "misled_faint")
+PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 0.2, 10.0, 0.1, 0.1])
 """Of NAMES (the temperature is T0, per_leftover t1): wide, so that only what the cases leave open feels it."""
 BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * len(OFFSETS), (0.0, 0.5), (0.0, 50.0))
+"""Of all but the shares that are misled."""
 
 MOST_MISLED = 0.5
 """The largest share; the least is one in so many cases as there are, and two: that none was misled does not say that
@@ -64,6 +66,7 @@ class Constants:
     unseen_named: float | None = None
     unseen_unknown: float | None = None
     unexplained: float = 0.0
+    misled_faint: float | None = None
 
     def probabilities(
         self, evidences: Mapping[str, float], leftover: float, elsewhere: float | None = None
@@ -82,7 +85,8 @@ class Constants:
         offsets = {"none": 0.0, "named": self.named, "unknown": self.unknown}
         special = {name: getattr(self, name.replace(" ", "_")) for name in OFFSETS[2:]}
         offsets |= {k: v for k, v in special.items() if v is not None}
-        return Scale(self.temperature, self.per_leftover, offsets, self.misled, self.unexplained)
+        faint_too = self.misled if self.misled_faint is None else self.misled_faint
+        return Scale(self.temperature, self.per_leftover, offsets, self.misled, faint_too, self.unexplained)
 
 
 def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
@@ -102,7 +106,8 @@ class _Table:
     OFFSETS and 1), the truth; ``imitated`` [case, label]: what the best name explains where the label is unknown, 0
     elsewhere; ``apart`` [case]: evidence of an unknown source in another equation than that name's (-inf: none);
     ``capped`` [case, label]: whether a label is at most as probable as ``none``, the place of that label; ``described``
-    [case]: the part that all labels keep, and the truth where it is ``strange``, unknown, is given the rest."""
+    [case]: the part that all labels keep, and the truth where it is ``strange``, unknown, is given the rest; ``faint``
+    [case]: whether no label has what a claim needs."""
 
     evidence: Array
     imitated: Array
@@ -114,6 +119,7 @@ class _Table:
     excess: Array
     described: Array
     strange: NDArray[np.bool_]
+    faint: NDArray[np.bool_]
     before: Array
     weight: Array
 
@@ -137,18 +143,20 @@ def _table(samples: Sequence[Sample]) -> _Table:
     kept = np.array([described(s.leftover) if "unknown" in s.evidences else 1.0 for s in samples])
     strange = np.array([s.truth == "unknown" for s in samples])
     truth = np.array([labels.index(s.truth) for s in samples])
+    weak = np.array([faint(s.evidences) for s in samples])
     weight = np.array([s.weight for s in samples])
     of_labels = (evidence, imitated, apart, capped, none, kinds, truth)
-    return _Table(*of_labels, excess, kept, strange, before / before.sum(), weight)
+    return _Table(*of_labels, excess, kept, strange, weak, before / before.sum(), weight)
 
 
 def _loss(x: Array, t: _Table) -> float:
     """Negative penalised log likelihood at NAMES."""
-    unexplained, per_leftover, misled = x[-3:]
+    unexplained, per_leftover = x[-4:-2]
+    misled = np.where(t.faint, x[-1], x[-2])
     temperature = exp(x[0]) * (1.0 + per_leftover * t.excess)
     evidence = t.evidence - unexplained * t.imitated
     evidence = np.where(t.kind == 2, np.maximum(evidence, t.apart[:, None]), evidence)
-    logits = np.array([0.0, *x[1:-3]])[t.kind] + evidence / temperature[:, None]
+    logits = np.array([0.0, *x[1:-4]])[t.kind] + evidence / temperature[:, None]
     logits = np.minimum(logits, np.where(t.capped, logits[:, t.none, None], inf))
     shares = np.exp(logits[np.arange(len(t.truth)), t.truth] - logsumexp(logits, axis=1))
     stated = (1.0 - misled) * shares + misled * t.before[t.truth]
@@ -172,11 +180,13 @@ def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None =
     if not samples:
         raise ValueError("no case has evidences for its right label: nothing can be fitted")
     t = _table(samples)
-    bounds = [*BOUNDS[:-1], BOUNDS[-1] if with_leftover else (0.0, 0.0), (1.0 / (len(samples) + 2.0), MOST_MISLED)]
+    leftover = BOUNDS[-1] if with_leftover else (0.0, 0.0)
+    shares = [(1.0 / (len(of) + 2.0), MOST_MISLED) for of in (samples, [s for s in samples if faint(s.evidences)])]
+    bounds = [*BOUNDS[:-1], leftover, *shares]
     if held is not None:
         at = _vector(held)
-        bounds = [BOUNDS[i] if name == only else (at[i], at[i]) for i, name in enumerate(NAMES)]
-    first = {"unseen named": -3.0, "unseen unknown": -3.0, "unexplained": 0.03, "misled": 0.05}
+        bounds = [bounds[i] if name == only else (at[i], at[i]) for i, name in enumerate(NAMES)]
+    first = {"unseen named": -3.0, "unseen unknown": -3.0, "unexplained": 0.03, "misled": 0.05, "misled_faint": 0.05}
     first["per_leftover"] = 0.1 if with_leftover else 0.0
     starts = [[ln_t, *(first.get(name, 0.0) for name in NAMES[1:])] for ln_t in (0.0, 2.0, 4.0)]
     low, high = np.array(bounds).T
@@ -195,7 +205,7 @@ def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None =
 def constants_of(data: Mapping[str, Any]) -> Constants:
     """Constants as the data file holds them."""
     offsets = {name.replace(" ", "_"): value for name, value in data["offsets"].items() if name != "none"}
-    shares = {name: data[name] for name in ("misled", "unexplained")}
+    shares = {name: data[name] for name in ("misled", "misled_faint", "unexplained")}
     return Constants(data["temperature"], data["temperature_per_leftover"], **shares, **offsets)
 
 
@@ -203,7 +213,7 @@ def _vector(constants: Constants) -> Array:
     """Constants in the order of NAMES; an offset that there is not yet is that of its kind."""
     offsets = constants.scale.offsets
     own = [offsets.get(name, offsets[name.split()[-1]]) for name in OFFSETS]
-    rest = (constants.unexplained, constants.per_leftover, constants.misled)
+    rest = (constants.unexplained, constants.per_leftover, constants.misled, constants.scale.misled_faint)
     return np.array([np.log(constants.temperature), *own, *rest])
 
 

@@ -21,7 +21,7 @@ from benchmarks.blind import folder as fo
 from benchmarks.blind.archive import pack, unpack
 from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, pooled, save, weights
 from benchmarks.blind.document import document, without_effect, write
-from benchmarks.blind.fit import Constants, Sample, fit, folds
+from benchmarks.blind.fit import OFFSETS, Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
 from benchmarks.blind.pool import Outcome, Pool
 from benchmarks.blind.results import results
@@ -387,7 +387,7 @@ def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
 
 @pytest.mark.parametrize("which", ["unexplained", "unseen unknown"])
 def test_one_constant_may_be_fitted_alone(which: str) -> None:
-    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.2)
+    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.2, misled_faint=0.0)
     own = which.replace(" ", "_")
     found = fit(drawn(true, 3000), True, replace(true, **{own: 0.0}), which)
     std = found.errors[which]
@@ -439,6 +439,21 @@ def test_evidence_that_never_misled_may_still_mislead(number: int) -> None:
     assert max(k.probabilities(certain[0].evidences, 1.0).values()) < 1.0 - 0.5 / (number + 2)
 
 
+def test_how_often_faint_evidence_misleads_is_a_constant_of_its_own() -> None:
+    true, rng = Constants(misled=0.01, misled_faint=0.3), np.random.default_rng(3)
+    samples = []
+    for i, evidence in enumerate(rng.uniform(7.0, 11.0, 1000).tolist()):
+        evidences = dict.fromkeys(LABELS, 0.0) | {"tank_heat": evidence}
+        p = true.probabilities(evidences, 1.0)
+        samples.append(Sample(evidences, 1.0, str(rng.choice(list(p), p=list(p.values()))), f"g{i}"))
+    found = fit(samples, with_leftover=False)
+    std = found.errors["misled_faint"]
+    assert found.constants.misled < 0.05
+    assert found.constants.misled_faint is not None
+    assert std is not None
+    assert abs(found.constants.misled_faint - 0.3) < 3.0 * std < 0.15
+
+
 def test_tests_of_one_stand_stay_in_one_fold() -> None:
     fold = folds(drawn(Constants(), 100))
     assert (fold[::2] == fold[1::2]).all()
@@ -471,11 +486,12 @@ def test_calibration_betters_the_stated_probabilities_and_keeps_to_its_split(
 
 
 def constants_with(temperature: float, named: float, error: float | None) -> dict[str, Any]:
-    names = ("ln_temperature", "named", "unknown", "unseen named", "unseen unknown", "unexplained", "misled")
+    shares = {"misled": 0.02, "misled_faint": 0.1, "unexplained": 0.0}
     return {
-        "temperature": temperature, "temperature_per_leftover": 0.0, "misled": 0.02, "unexplained": 0.0, "cases": 100,
+        "temperature": temperature, "temperature_per_leftover": 0.0, **shares, "cases": 100,
         "offsets": {"none": 0.0, "named": named, "unknown": -3.0, "unseen named": -4.0, "unseen unknown": -2.0},
-        "standard_errors": {**dict.fromkeys(names, error), "per_leftover": None}, "split": "calibration", "code": ["a"],
+        "standard_errors": {**dict.fromkeys(("ln_temperature", *OFFSETS, *shares), error), "per_leftover": None},
+        "split": "calibration", "code": ["a"],
     }  # fmt: skip
 
 
@@ -486,7 +502,7 @@ def test_two_fits_count_by_their_standard_errors() -> None:
     assert found["offsets"] == pytest.approx(
         {"none": 0.0, "named": -2.4, "unknown": -3.0, "unseen named": -4.0, "unseen unknown": -2.0}
     )
-    assert (found["misled"], found["unexplained"]) == pytest.approx((0.02, 0.0))
+    assert (found["misled"], found["misled_faint"], found["unexplained"]) == pytest.approx((0.02, 0.1, 0.0))
     assert found["standard_errors"]["named"] == pytest.approx(1.0 / np.sqrt(125.0))
     assert (found["cases"], found["code"], found["split"]) == (200, ["a"], "calibration")
     with pytest.raises(Unfit, match="no standard error"):

@@ -12,8 +12,8 @@ from hfanalysis.diagnose.answer.posterior import telling
 @pytest.mark.parametrize("unknown", [12.0, 7.0, -6.0])
 @pytest.mark.parametrize("name", [20.0, 5.1, 4.0, -8.0])
 def test_the_fit_counts_the_probabilities_that_are_stated(name: float, unknown: float) -> None:
-    """Also where nothing is seen, and unknown is at most as probable as none."""
-    at = Constants(1.5, 0.4, -1.0, 2.0, 0.05, -2.5, -1.5, 0.2)
+    """Also where nothing is seen, and unknown is at most as probable as none, and where all evidence is faint."""
+    at = Constants(1.5, 0.4, -1.0, 2.0, 0.05, -2.5, -1.5, 0.2, 0.3)
     evidences = {"none": 0.0, "tank_heat": name, "n2_purge": -1.0, "unknown": unknown}
     stated = at.probabilities(evidences, 1.8)
     penalty = 0.5 * float(np.sum((_vector(at) / PRIOR_STD) ** 2))

@@ -22,6 +22,7 @@ from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judg
 from hfanalysis.diagnose.answer.posterior import (
     BEFORE,
     FAR,
+    LEAST_EVIDENCE,
     SET,
     TELLING,
     UNSEEN,
@@ -125,6 +126,15 @@ def test_where_evidence_misleads_nothing_is_certain() -> None:
     assert found["none"] == pytest.approx(0.1 * BEFORE["none"])
     assert found["n2_purge"] == pytest.approx(0.1 * BEFORE["named"] / 2.0)
     assert found["tank_heat"] == pytest.approx(0.9 + 0.1 * BEFORE["named"] / 2.0)
+
+
+@pytest.mark.parametrize("evidence", [LEAST_EVIDENCE - 0.01, LEAST_EVIDENCE])
+def test_faint_evidence_misleads_in_a_share_of_its_own(evidence: float) -> None:
+    evidences = {"none": 0.0, "tank_heat": evidence, "unknown": -5.0}
+    found = Scale(misled=0.01, misled_faint=0.2).probabilities(evidences, 1.0)
+    share = 0.2 if evidence < LEAST_EVIDENCE else 0.01
+    assert sum(found.values()) == pytest.approx(1.0)
+    assert found["none"] == pytest.approx(share * BEFORE["none"], abs=2e-4)
 
 
 def test_effects_that_were_not_tried_are_less_probable_than_those_that_were() -> None:

@@ -30,6 +30,11 @@ largest of names, and 7.2, 7.0, 6.7 and 6.5 as those of unknown sources; of 62 o
 a source that explains little is what two tables of nitrous oxide differ by."""
 
 
+LEAST_EVIDENCE = 9.0
+"""Log evidence that a label needs itself to be claimed: more than any had of 214 simulated tests that hide nothing
+(8.8 a name, 7.2 an unknown source; docs/blind.md names the runs) and of 62 others (8.0, an unknown source)."""
+
+
 FAR = 2.0
 """Chi-square per observation that the best name leaves, at the model-form error that it asks for, beyond which model
 and test are further apart than in any of the tests by which probabilities were fitted. Of the 1,498 scored tests one
@@ -58,14 +63,16 @@ class Scale:
     is too small to be seen is no evidence against it. What a closure gets wrong of an effect is a part of what it
     explains: unknown has that share ``unexplained`` of the best name's evidence less than it found, unless its source
     acts in another equation; and where nothing is ``telling`` it is at most as probable as none. In a share
-    ``misled`` of all tests the evidence misleads altogether; there the labels have the probabilities that they have
-    before a test. Of a test that no model comes near unknown has what is not ``described``.
+    ``misled`` of the tests the evidence misleads altogether; there the labels have the probabilities that they have
+    before a test. Where all evidence is ``faint`` that share is another, ``misled_faint``. Of a test that no model
+    comes near unknown has what is not ``described``.
     """
 
     temperature: float = 1.0
     temperature_per_leftover: float = 0.0
     offsets: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(("none", "named", "unknown"), 0.0))
     misled: float = 0.0
+    misled_faint: float = 0.0
     unexplained: float = 0.0
 
     def probabilities(
@@ -84,7 +91,8 @@ class Scale:
         weights = np.exp(logs - logs.max())
         before = np.array([BEFORE[kind(label)] for label in labels])
         before[[kind(label) == "named" for label in labels]] /= max(sum(kind(k) == "named" for k in labels), 1)
-        mixed = (1.0 - self.misled) * weights / weights.sum() + self.misled * before / before.sum()
+        misled = self.misled_faint if faint(evidences) else self.misled
+        mixed = (1.0 - misled) * weights / weights.sum() + misled * before / before.sum()
         if "unknown" in labels:
             mixed = described(leftover) * mixed
             mixed[labels.index("unknown")] += 1.0 - described(leftover)
@@ -110,6 +118,11 @@ def telling(evidences: Mapping[str, float]) -> bool:
     False
     """
     return any(e >= TELLING[kind(label)] for label, e in evidences.items() if label != "none")
+
+
+def faint(evidences: Mapping[str, float]) -> bool:
+    """Whether no label has the evidence that a claim needs (LEAST_EVIDENCE), that of none being 0."""
+    return all(e < LEAST_EVIDENCE for label, e in evidences.items() if label != "none")
 
 
 BEFORE = {"none": 0.25, "named": 0.6, "unknown": 0.15}
@@ -157,7 +170,7 @@ def scale() -> Scale:
     if not source.is_file():
         return Scale()
     found = json.loads(source.read_text(encoding="utf-8"))
-    shares = {name: float(found.get(name, 0.0)) for name in ("misled", "unexplained")}
+    shares = {name: float(found.get(name, 0.0)) for name in ("misled", "misled_faint", "unexplained")}
     return Scale(found["temperature"], found["temperature_per_leftover"], found["offsets"], **shares)
 
 

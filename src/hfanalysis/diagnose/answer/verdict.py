@@ -13,6 +13,7 @@ from hfanalysis.diagnose.answer.acting import Acting, acting
 from hfanalysis.diagnose.answer.limits import limits
 from hfanalysis.diagnose.answer.plausible import judged, lost
 from hfanalysis.diagnose.answer.posterior import (
+    LEAST_EVIDENCE,
     SET,
     evidences_of,
     far,
@@ -37,10 +38,6 @@ CLAIM = 0.15
 
 FEWER = 0.3
 """Probability of fewer effects from which on no more of them are claimed; more have paid a price before."""
-
-LEAST_EVIDENCE = 9.0
-"""Log evidence that a label needs itself to be claimed: more than any had of 214 simulated tests that hide nothing
-(8.8 a name, 7.2 an unknown source; docs/blind.md names the runs) and of 62 others (8.0, an unknown source)."""
 
 LIKELIER = 1.5
 """How much more probable than none a label has to be to be mentioned where nothing is claimed."""
