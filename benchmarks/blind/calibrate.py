@@ -15,15 +15,12 @@ from tests.blind.outcomes import LEAST
 from tests.blind.plan import OUTSIDE_TARGETS, SHARES, TARGETS
 from tests.blind.score import reliability
 
-from .fit import OFFSETS, Constants, Fitted, Sample, constants_of, fit, out_of_fold, sample
+from .fit import OFFSETS, REST, Constants, Fitted, Sample, constants_of, fit, out_of_fold, sample
 from .folder import PROBABILITIES, write_json
 from .results import Results
 
 ALONE = (*OFFSETS, "unexplained")
 """Constants that can be fitted alone."""
-
-FRACTIONS = ("unexplained", "misled", "misled_faint")
-"""Constants that are shares."""
 
 FEWEST = 50
 """Cases below which the constants would be arbitrary."""
@@ -221,7 +218,7 @@ def pooled(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
     if one["temperature_per_leftover"] or other["temperature_per_leftover"]:
         raise Unfit("constants of which the temperature goes with the misfit left are not pooled")
     values, errors = {}, {}
-    for name in (*one["offsets"], "ln_temperature", *FRACTIONS):
+    for name in (*one["offsets"], "ln_temperature", *REST):
         if name == "none":
             continue
         both = [(_constant(data, name), data["standard_errors"][name]) for data in (one, other)]
@@ -233,7 +230,7 @@ def pooled(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
     return {
         **one,
         "temperature": float(np.exp(values.pop("ln_temperature"))),
-        **{name: values.pop(name) for name in FRACTIONS},
+        **{name: values.pop(name) for name in REST},
         "offsets": {"none": 0.0, **values},
         "standard_errors": {**one["standard_errors"], **errors},
         "cases": one["cases"] + other["cases"],

@@ -1,12 +1,12 @@
 """From raw log evidences to stated probabilities: p_k proportional to exp(b_class(k) + e_k / T).
 
 In a share ``misled`` of the cases the evidence misleads altogether, and the labels have the probabilities from before;
-that share is ``misled_faint`` of those in which no label has what a claim needs.
-T = T0 (1 + t1 max(0, leftover - 1)) with the chi-square per degree of freedom that the best named model leaves; one
-offset b for the names and one for ``unknown``, that of ``none`` is 0. A label of which nothing was seen has an offset
-of its kind instead, and no evidence. e of ``unknown`` is without a share ``unexplained`` of the best name's, which
-closures get wrong; ``unknown`` is at most as probable as none where nothing is seen. Fitted by penalised likelihood of
-the right label (temperature scaling: Guo, Pleiss, Sun, Weinberger: On Calibration of Modern Neural Networks, 2017).
+that share is ``misled_faint`` of those in which no label has what a claim needs. T = T0 (1 + t1 max(0, leftover - 1))
+with the chi-square per degree of freedom that the best named model leaves; one offset b for the names and one for
+``unknown``, that of ``none`` is 0. A label of which nothing was seen has an offset of its kind instead, and no
+evidence. e of ``unknown`` is without ``unexplained`` times the root of the best name's, which closures get wrong;
+``unknown`` is at most as probable as none where nothing is seen. Fitted by penalised likelihood of the right label
+(temperature scaling: Guo, Pleiss, Sun, Weinberger: On Calibration of Modern Neural Networks, 2017).
 """
 
 from __future__ import annotations
@@ -27,10 +27,12 @@ Array = NDArray[np.float64]
 
 OFFSETS = ("named", "unknown", "unseen named", "unseen unknown")
 """Kinds of labels that have an offset; that of none is 0."""
+REST = ("unexplained", "misled", "misled_faint")
+"""What there is beside temperature and offsets."""
 NAMES = ("ln_temperature", *OFFSETS, "unexplained", "per_leftover", "misled", "misled_faint")
-PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 0.2, 10.0, 0.1, 0.1])
+PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 2.0, 10.0, 0.1, 0.1])
 """Of NAMES (the temperature is T0, per_leftover t1): wide, so that only what the cases leave open feels it."""
-BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * len(OFFSETS), (0.0, 0.5), (0.0, 50.0))
+BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * len(OFFSETS), (0.0, 5.0), (0.0, 50.0))
 """Of all but the shares that are misled."""
 
 MOST_MISLED = 0.5
@@ -103,11 +105,11 @@ def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
 @dataclass(frozen=True)
 class _Table:
     """Samples as arrays: ``evidence`` [case, label] (-inf where not stated), its kind (0 for none, else the number in
-    OFFSETS and 1), the truth; ``imitated`` [case, label]: what the best name explains where the label is unknown, 0
-    elsewhere; ``apart`` [case]: evidence of an unknown source in another equation than that name's (-inf: none);
-    ``capped`` [case, label]: whether a label is at most as probable as ``none``, the place of that label; ``described``
-    [case]: the part that all labels keep, and the truth where it is ``strange``, unknown, is given the rest; ``faint``
-    [case]: whether no label has what a claim needs."""
+    OFFSETS and 1), the truth; ``imitated`` [case, label]: the root of what the best name explains where the label is
+    unknown, 0 elsewhere; ``apart`` [case]: evidence of an unknown source in another equation than that name's (-inf:
+    none); ``capped`` [case, label]: whether a label is at most as probable as ``none``, the place of that label;
+    ``described`` [case]: the part that all labels keep, and the truth where it is ``strange``, unknown, is given the
+    rest; ``faint`` [case]: whether no label has what a claim needs."""
 
     evidence: Array
     imitated: Array
@@ -134,7 +136,7 @@ def _table(samples: Sequence[Sample]) -> _Table:
     kinds = np.array([[number[of.get(label, "none")] for label in labels] for of in detailed])
     unseen = np.array([[of.get(label, "").startswith("unseen") for label in labels] for of in detailed])
     best = np.max(np.where(kind == 1, evidence, 0.0), axis=1, initial=0.0)
-    imitated = np.where(kinds == 2, best[:, None], 0.0)
+    imitated = np.where(kinds == 2, np.sqrt(best)[:, None], 0.0)
     capped = (kind == 2) & ~np.array([telling(s.evidences) for s in samples])[:, None]
     apart = np.array([-inf if s.elsewhere is None else s.elsewhere for s in samples])
     none = labels.index("none") if "none" in labels else 0
@@ -186,7 +188,7 @@ def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None =
     if held is not None:
         at = _vector(held)
         bounds = [bounds[i] if name == only else (at[i], at[i]) for i, name in enumerate(NAMES)]
-    first = {"unseen named": -3.0, "unseen unknown": -3.0, "unexplained": 0.03, "misled": 0.05, "misled_faint": 0.05}
+    first = {"unseen named": -3.0, "unseen unknown": -3.0, "unexplained": 0.3, "misled": 0.05, "misled_faint": 0.05}
     first["per_leftover"] = 0.1 if with_leftover else 0.0
     starts = [[ln_t, *(first.get(name, 0.0) for name in NAMES[1:])] for ln_t in (0.0, 2.0, 4.0)]
     low, high = np.array(bounds).T
@@ -205,8 +207,8 @@ def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None =
 def constants_of(data: Mapping[str, Any]) -> Constants:
     """Constants as the data file holds them."""
     offsets = {name.replace(" ", "_"): value for name, value in data["offsets"].items() if name != "none"}
-    shares = {name: data[name] for name in ("misled", "misled_faint", "unexplained")}
-    return Constants(data["temperature"], data["temperature_per_leftover"], **shares, **offsets)
+    rest = {name: data[name] for name in REST}
+    return Constants(data["temperature"], data["temperature_per_leftover"], **rest, **offsets)
 
 
 def _vector(constants: Constants) -> Array:

@@ -371,23 +371,23 @@ def drawn(true: Constants, number: int) -> list[Sample]:
 
 
 def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
-    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.2)
+    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.8)
     found = fit(drawn(true, 3000), with_leftover=True)
     k, e = found.constants, found.errors
     z = [(np.log(k.temperature / 4.0), e["ln_temperature"]), (k.per_leftover - 0.8, e["per_leftover"]),
          (k.named + 1.0, e["named"]), (k.unknown - 0.7, e["unknown"]),
          (k.unseen_named + 2.5, e["unseen named"]), (k.unseen_unknown + 1.5, e["unseen unknown"]),
-         (k.unexplained - 0.2, e["unexplained"])]  # fmt: skip
+         (k.unexplained - 0.8, e["unexplained"])]  # fmt: skip
     for off, std in z:
         assert std is not None
-        assert std < 0.25
+        assert std < 0.25 or std == e["unexplained"] < 0.5
         assert abs(off) < 3.0 * std
     assert abs(np.log(Constants().temperature / 4.0)) > 10.0 * e["ln_temperature"]  # the start was not the answer
 
 
 @pytest.mark.parametrize("which", ["unexplained", "unseen unknown"])
 def test_one_constant_may_be_fitted_alone(which: str) -> None:
-    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.2, misled_faint=0.0)
+    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.8, misled_faint=0.0)
     own = which.replace(" ", "_")
     found = fit(drawn(true, 3000), True, replace(true, **{own: 0.0}), which)
     std = found.errors[which]

@@ -167,10 +167,11 @@ def test_unknown_has_to_explain_more_than_closures_get_wrong() -> None:
 
     def odds(name: float, unknown: float) -> float:
         evidences = {"none": 0.0, "tank_heat": name, "unknown": unknown}
-        found = Scale(2.0, offsets=offsets, unexplained=0.1).probabilities(evidences, 1.0)
+        found = Scale(2.0, offsets=offsets, unexplained=0.5).probabilities(evidences, 1.0)
         return float(np.log(found["unknown"] / found["tank_heat"]))
 
-    assert odds(40.0, 43.0) == pytest.approx(-1.0 + (3.0 - 4.0) / 2.0)
+    assert odds(64.0, 67.0) == pytest.approx(-1.0 + (3.0 - 4.0) / 2.0)
+    assert odds(256.0, 259.0) == pytest.approx(-1.0 + (3.0 - 8.0) / 2.0)
     assert odds(0.0, 10.0) == pytest.approx(-1.0 + 10.0 / 2.0)
     assert odds(-3.0, 10.0) == pytest.approx(-1.0 + 13.0 / 2.0)  # a name that explains nothing leaves nothing
 
@@ -179,7 +180,7 @@ def test_a_source_in_another_equation_is_nothing_that_a_closure_gets_wrong() -> 
     evidences = {"none": 0.0, "injector_two_phase": 100.0, "unknown": 108.0}
 
     def odds(apart: float | None) -> float:
-        found = Scale(2.0, unexplained=0.1).probabilities(evidences, 1.0, apart)
+        found = Scale(2.0, unexplained=1.0).probabilities(evidences, 1.0, apart)
         return float(np.log(found["unknown"] / found["injector_two_phase"]))
 
     assert odds(None) == pytest.approx((8.0 - 10.0) / 2.0)

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib.resources import files
+from math import sqrt
 
 import numpy as np
 
@@ -60,12 +61,12 @@ class Scale:
     """How log evidences become probabilities: p_k ~ exp(offset of its kind + evidence / T).
 
     A label of which a score test saw nothing (UNSEEN) is as good as none, but for an offset of its own: that an effect
-    is too small to be seen is no evidence against it. What a closure gets wrong of an effect is a part of what it
-    explains: unknown has that share ``unexplained`` of the best name's evidence less than it found, unless its source
-    acts in another equation; and where nothing is ``telling`` it is at most as probable as none. In a share
-    ``misled`` of the tests the evidence misleads altogether; there the labels have the probabilities that they have
-    before a test. Where all evidence is ``faint`` that share is another, ``misled_faint``. Of a test that no model
-    comes near unknown has what is not ``described``.
+    is too small to be seen is no evidence against it. What a closure gets wrong of an effect grows with what it
+    explains, but less than in proportion: unknown has ``unexplained`` times the root of the best name's evidence less
+    than it found, unless its source acts in another equation; and where nothing is ``telling`` it is at most as
+    probable as none. In a share ``misled`` of the tests the evidence misleads altogether; there the labels have the
+    probabilities that they have before a test. Where all evidence is ``faint`` that share is another,
+    ``misled_faint``. Of a test that no model comes near unknown has what is not ``described``.
     """
 
     temperature: float = 1.0
@@ -147,19 +148,19 @@ def detailed_kinds(evidences: Mapping[str, float]) -> dict[str, str]:
 def beyond_closures(
     evidences: Mapping[str, float], unexplained: float, elsewhere: float | None = None
 ) -> dict[str, float]:
-    """The evidences, that of unknown without the share of the best name's that closures leave ``unexplained``.
+    """The evidences, that of unknown without what closures leave ``unexplained``, by the root of the best name's.
 
     A source ``elsewhere`` keeps all that it has.
 
-    >>> beyond_closures({"none": 0.0, "tank_heat": 100.0, "unknown": 104.0}, 0.05)["unknown"]
+    >>> beyond_closures({"none": 0.0, "tank_heat": 100.0, "unknown": 104.0}, 0.5)["unknown"]
     99.0
-    >>> beyond_closures({"none": 0.0, "tank_heat": 100.0, "unknown": 104.0}, 0.05, 102.0)["unknown"]
+    >>> beyond_closures({"none": 0.0, "tank_heat": 100.0, "unknown": 104.0}, 0.5, 102.0)["unknown"]
     102.0
     """
     if "unknown" not in evidences:
         return dict(evidences)
     best = max((e for label, e in evidences.items() if kind(label) == "named"), default=0.0)
-    less = evidences["unknown"] - unexplained * max(best, 0.0)
+    less = evidences["unknown"] - unexplained * sqrt(max(best, 0.0))
     return {**evidences, "unknown": less if elsewhere is None else max(less, elsewhere)}
 
 
@@ -170,8 +171,8 @@ def scale() -> Scale:
     if not source.is_file():
         return Scale()
     found = json.loads(source.read_text(encoding="utf-8"))
-    shares = {name: float(found.get(name, 0.0)) for name in ("misled", "misled_faint", "unexplained")}
-    return Scale(found["temperature"], found["temperature_per_leftover"], found["offsets"], **shares)
+    rest = {name: float(found.get(name, 0.0)) for name in ("misled", "misled_faint", "unexplained")}
+    return Scale(found["temperature"], found["temperature_per_leftover"], found["offsets"], **rest)
 
 
 def evidences_of(found: Naming) -> dict[str, float]:
