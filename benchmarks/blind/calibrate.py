@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from math import sqrt
+from math import inf, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,8 @@ from tests.blind.judged import Case, of_kind
 from tests.blind.outcomes import LEAST
 from tests.blind.plan import OUTSIDE_TARGETS, SHARES, TARGETS
 from tests.blind.score import reliability
+
+from hfanalysis.diagnose.answer.posterior import LEAST_EVIDENCE
 
 from .fit import OFFSETS, REST, Constants, Fitted, Sample, constants_of, fit, out_of_fold, sample
 from .folder import PROBABILITIES, write_json
@@ -94,7 +96,15 @@ def calibrate(
     # t1 is kept where it pays beyond its own noise on cases that it was not fitted to
     gain = (scores[True] - scores[False]) * weights_of(samples)
     grows = bool(gain.mean() > gain.std(ddof=1) / sqrt(len(gain)))
-    lines = [*_report(cases, samples, fits, held_out, grows, without), "", *forms(cases), "", *alarms(cases)]
+    lines = [
+        *_report(cases, samples, fits, held_out, grows, without),
+        "",
+        *forms(cases),
+        "",
+        *alarms(cases),
+        "",
+        *leads(cases),
+    ]
     return lines, to_json(fits[grows], len(samples), split, codes)
 
 
@@ -169,6 +179,25 @@ def alarms(cases: Sequence[Case], most: int = 4) -> list[str]:
     return lines
 
 
+def leads(cases: Sequence[Case], most: int = 8) -> list[str]:
+    """What an unknown source explains more than the best name, where that has what a claim needs and both act in one
+    equation: the most where the name is right, and all where something else is hidden. What closures leave goes by it.
+    """
+    found: dict[bool, list[tuple[float, float, str]]] = {True: [], False: []}
+    for c in cases:
+        evidences = c.product.get("evidences", {})
+        name, best = max(((k, e) for k, e in evidences.items() if k not in ("none", "unknown")), key=lambda x: x[1])
+        lead, apart = evidences.get("unknown", -inf) - best, c.product.get("unknown_elsewhere")
+        same_place = apart is None or apart < evidences["unknown"]
+        if best >= LEAST_EVIDENCE and lead > 0.0 and same_place and c.truth in (name, "unknown"):
+            found[c.truth == name].append((lead, best, c.answer["id"]))
+    lines = ["lead of an unknown source over the best name (its log evidence) in the same equation"]
+    for right, text in ((True, "names that are right"), (False, "outsiders")):
+        rows = sorted(found[right], reverse=True)[: most if right else None]
+        lines.append(f"  {text}: " + ", ".join(f"{lead:.1f} ({best:.0f}, {i})" for lead, best, i in rows))
+    return lines
+
+
 def value_of(constants: Constants, which: str) -> float:
     """One of ALONE."""
     return constants.unexplained if which == "unexplained" else constants.scale.offsets[which]
@@ -184,7 +213,7 @@ def _constants(one: Fitted) -> str:
         f"unknown = {k.unseen_unknown:.4g} +- {_pm(one, 'unseen unknown')}, "
         f"unexplained = {k.unexplained:.3g} +- {_pm(one, 'unexplained')}, "
         f"misled = {k.misled:.3g} +- {_pm(one, 'misled')}, "
-        f"where all is faint {k.scale.misled_faint:.3g} +- {_pm(one, 'misled_faint')}"
+        f"where all is faint {k.misled_faint:.3g} +- {_pm(one, 'misled_faint')}"
     )
 
 
@@ -201,7 +230,7 @@ def to_json(one: Fitted, number: int, split: str, codes: Sequence[str]) -> dict[
         "temperature_per_leftover": k.per_leftover,
         "offsets": dict(k.scale.offsets),
         "misled": k.misled,
-        "misled_faint": k.scale.misled_faint,
+        "misled_faint": k.misled_faint,
         "unexplained": k.unexplained,
         "standard_errors": one.errors,
         "cases": number,

@@ -29,11 +29,11 @@ OFFSETS = ("named", "unknown", "unseen named", "unseen unknown")
 """Kinds of labels that have an offset; that of none is 0."""
 REST = ("unexplained", "misled", "misled_faint")
 """What there is beside temperature and offsets."""
-NAMES = ("ln_temperature", *OFFSETS, "unexplained", "per_leftover", "misled", "misled_faint")
-PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 2.0, 10.0, 0.1, 0.1])
+NAMES = ("ln_temperature", *OFFSETS, "per_leftover", *REST)
+PRIOR_STD = np.array([3.0, 10.0, 10.0, 10.0, 10.0, 10.0, 2.0, 0.1, 0.1])
 """Of NAMES (the temperature is T0, per_leftover t1): wide, so that only what the cases leave open feels it."""
-BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * len(OFFSETS), (0.0, 5.0), (0.0, 50.0))
-"""Of all but the shares that are misled."""
+BOUNDS = ((-5.0, 12.0), *[(-200.0, 200.0)] * len(OFFSETS), (0.0, 50.0), (0.0, 5.0))
+"""Of NAMES but the shares that are misled."""
 
 MOST_MISLED = 0.5
 """The largest share; the least is one in so many cases as there are, and two: that none was misled does not say that
@@ -68,7 +68,7 @@ class Constants:
     unseen_named: float | None = None
     unseen_unknown: float | None = None
     unexplained: float = 0.0
-    misled_faint: float | None = None
+    misled_faint: float = 0.0
 
     def probabilities(
         self, evidences: Mapping[str, float], leftover: float, elsewhere: float | None = None
@@ -87,8 +87,8 @@ class Constants:
         offsets = {"none": 0.0, "named": self.named, "unknown": self.unknown}
         special = {name: getattr(self, name.replace(" ", "_")) for name in OFFSETS[2:]}
         offsets |= {k: v for k, v in special.items() if v is not None}
-        faint_too = self.misled if self.misled_faint is None else self.misled_faint
-        return Scale(self.temperature, self.per_leftover, offsets, self.misled, faint_too, self.unexplained)
+        rest = {name: getattr(self, name) for name in REST}
+        return Scale(self.temperature, self.per_leftover, offsets, **rest)
 
 
 def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:
@@ -153,8 +153,8 @@ def _table(samples: Sequence[Sample]) -> _Table:
 
 def _loss(x: Array, t: _Table) -> float:
     """Negative penalised log likelihood at NAMES."""
-    unexplained, per_leftover = x[-4:-2]
-    misled = np.where(t.faint, x[-1], x[-2])
+    per_leftover, unexplained, plain, weak = x[-4:]
+    misled = np.where(t.faint, weak, plain)
     temperature = exp(x[0]) * (1.0 + per_leftover * t.excess)
     evidence = t.evidence - unexplained * t.imitated
     evidence = np.where(t.kind == 2, np.maximum(evidence, t.apart[:, None]), evidence)
@@ -182,9 +182,10 @@ def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None =
     if not samples:
         raise ValueError("no case has evidences for its right label: nothing can be fitted")
     t = _table(samples)
-    leftover = BOUNDS[-1] if with_leftover else (0.0, 0.0)
     shares = [(1.0 / (len(of) + 2.0), MOST_MISLED) for of in (samples, [s for s in samples if faint(s.evidences)])]
-    bounds = [*BOUNDS[:-1], leftover, *shares]
+    bounds = [*BOUNDS, *shares]
+    if not with_leftover:
+        bounds[NAMES.index("per_leftover")] = (0.0, 0.0)
     if held is not None:
         at = _vector(held)
         bounds = [bounds[i] if name == only else (at[i], at[i]) for i, name in enumerate(NAMES)]
@@ -215,8 +216,8 @@ def _vector(constants: Constants) -> Array:
     """Constants in the order of NAMES; an offset that there is not yet is that of its kind."""
     offsets = constants.scale.offsets
     own = [offsets.get(name, offsets[name.split()[-1]]) for name in OFFSETS]
-    rest = (constants.unexplained, constants.per_leftover, constants.misled, constants.scale.misled_faint)
-    return np.array([np.log(constants.temperature), *own, *rest])
+    rest = (getattr(constants, name) for name in REST)
+    return np.array([np.log(constants.temperature), *own, constants.per_leftover, *rest])
 
 
 def _errors(x: Array, t: _Table, bounds: Sequence[tuple[float, float]]) -> dict[str, float | None]:

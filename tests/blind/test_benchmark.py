@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from benchmarks.blind import folder as fo
 from benchmarks.blind.archive import pack, unpack
-from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, pooled, save, weights
+from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, leads, pooled, save, weights
 from benchmarks.blind.document import document, without_effect, write
 from benchmarks.blind.fit import OFFSETS, Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
@@ -372,7 +372,7 @@ def drawn(true: Constants, number: int) -> list[Sample]:
 
 def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
     true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.8)
-    found = fit(drawn(true, 3000), with_leftover=True)
+    found = fit(drawn(true, 5000), with_leftover=True)
     k, e = found.constants, found.errors
     z = [(np.log(k.temperature / 4.0), e["ln_temperature"]), (k.per_leftover - 0.8, e["per_leftover"]),
          (k.named + 1.0, e["named"]), (k.unknown - 0.7, e["unknown"]),
@@ -380,14 +380,14 @@ def test_the_fit_gives_back_the_constants_that_made_the_cases() -> None:
          (k.unexplained - 0.8, e["unexplained"])]  # fmt: skip
     for off, std in z:
         assert std is not None
-        assert std < 0.25 or std == e["unexplained"] < 0.5
+        assert std < 0.25
         assert abs(off) < 3.0 * std
     assert abs(np.log(Constants().temperature / 4.0)) > 10.0 * e["ln_temperature"]  # the start was not the answer
 
 
 @pytest.mark.parametrize("which", ["unexplained", "unseen unknown"])
 def test_one_constant_may_be_fitted_alone(which: str) -> None:
-    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.8, misled_faint=0.0)
+    true = Constants(4.0, 0.8, -1.0, 0.7, unseen_named=-2.5, unseen_unknown=-1.5, unexplained=0.8)
     own = which.replace(" ", "_")
     found = fit(drawn(true, 3000), True, replace(true, **{own: 0.0}), which)
     std = found.errors[which]
@@ -449,7 +449,6 @@ def test_how_often_faint_evidence_misleads_is_a_constant_of_its_own() -> None:
     found = fit(samples, with_leftover=False)
     std = found.errors["misled_faint"]
     assert found.constants.misled < 0.05
-    assert found.constants.misled_faint is not None
     assert std is not None
     assert abs(found.constants.misled_faint - 0.3) < 3.0 * std < 0.15
 
@@ -536,6 +535,27 @@ def test_calibration_tells_the_largest_evidences_of_nothing(made: Callable[..., 
     assert "the 2 cases" in first
     assert names.split() == ["names:", "2.5,", "-1.0"]
     assert unknown.split() == ["unknown:", "8.9,", "-3.0"]
+
+
+def test_leads_of_unknown_sources_are_listed_where_they_act_in_the_same_equation() -> None:
+    said = {"none": 0.0, "tank_heat": 40.0, "fuel_sliver": 3.0, "unknown": 44.0}
+    found = [
+        ("tank_heat", "single", said, None),
+        ("tank_heat", "single", said, 44.0),
+        ("tank_heat", "single", {**said, "unknown": 39.0}, None),
+        ("tank_heat", "single", {**said, "tank_heat": 8.0}, None),
+        ("fuel_sliver", "single", said, None),
+        ("vent_leak", "outside", {**said, "unknown": 50.0}, -5.0),
+    ]
+    cases = [
+        Case(
+            answer(name, 10.0, kind, kind == "single", id=f"X{i}"), {"evidences": evidences, "unknown_elsewhere": apart}
+        )
+        for i, (name, kind, evidences, apart) in enumerate(found)
+    ]
+    _, right, outsiders = leads(cases)
+    assert right == "  names that are right: 4.0 (40, X0)"
+    assert outsiders == "  outsiders: 10.0 (40, X5)"
 
 
 def test_the_scored_split_is_not_fitted_to_under_any_name(made: Callable[..., Folder], tmp_path: Path) -> None:
