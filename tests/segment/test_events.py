@@ -289,6 +289,38 @@ def test_fuel_that_thins_out_before_the_liquid_is_gone_is_dated_by_the_middle_of
     assert isinstance(find_fuel_end(not_shared, AMBIENT, 0.1, 5.3, 5.3), str)
 
 
+def fading_fire(run: Array, goes: float = 5.3) -> dict[str, Signal]:
+    """Signals of a fire that fades for 0.4 s after the liquid is gone (at 4 s), until what is left of it goes out."""
+    level = np.interp(TIME, [0.0, 0.05, 4.0, 4.01, 4.9], [0.0, 12e5, 10e5, 3e5, 2.4e5])
+    level = level * np.interp(TIME, [4.9, 5.0, 5.1, 5.2, 5.3], [1.0, 0.9, 0.7, 0.5, 0.35])
+    level = level * np.where(TIME < goes, 1.0, 0.05 + 0.95 * np.exp(-since(goes) / 0.003))
+    thrust = 2e-3 * level + noise(np.random.default_rng(1), TIME.size, RATE, 5.0, 0.0)
+    read = {"p_run": noisy("p_run", run), "p_chamber": noisy("p_chamber", AMBIENT + level)}
+    return {**read, "thrust": signal("thrust", TIME, thrust)}
+
+
+EMPTYING = 20e5 * np.exp(-np.maximum(TIME - 4.0, 0.0) / 3.0)
+
+
+def test_a_fire_that_fades_is_dated_where_what_is_left_of_it_goes_out() -> None:
+    found = find_fuel_end(fading_fire(EMPTYING), AMBIENT, 0.1, 4.0, 9.0)
+    assert not isinstance(found, str)
+    assert found.time == pytest.approx(5.3, abs=0.01)
+    assert found.std < 0.01
+    assert found.duration < 0.05
+
+
+@pytest.mark.parametrize("then", [0.0, 1.15], ids=["ahead of its sensor", "behind it"])
+def test_where_the_feed_ends_a_fire_goes_out_with_fuel_left(then: float) -> None:
+    closed = np.where(TIME < 5.3, 1.0, then + (1.0 - then) * np.exp(-since(5.3) / 0.03))
+    assert isinstance(find_fuel_end(fading_fire(EMPTYING * closed), AMBIENT, 0.1, 4.0, 9.0), str)
+
+
+def test_a_fire_that_fades_to_its_end_goes_out_at_no_instant() -> None:
+    signals = fading_fire(EMPTYING, goes=np.inf)
+    assert isinstance(find_fuel_end(signals, AMBIENT, 0.1, 4.0, 9.0), str)
+
+
 def test_without_the_run_line_the_fuel_cannot_be_told_from_the_feed() -> None:
     test = fire(Stand(t_fuel_out=3.4), rate=RATE)
     signals = {n: s for n, s in signals_of(test).items() if n != "p_run"}

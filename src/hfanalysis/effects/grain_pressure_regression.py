@@ -36,13 +36,13 @@ EFFECT = Effect(
     formula="dr/dt = a G^n exp(k ((p_c/p_ref)^b - 1) / b), for b = 0 a G^n (p_c / p_ref)^k",
     sites=("regression_factor",),
     parameters=(
-        Parameter("exponent", "-", "power of the chamber pressure at p_ref", typical=0.2, low=-0.5, high=1.0),
+        Parameter("exponent", "-", "power of the chamber pressure at p_ref", typical=0.2, low=-0.5, high=1.5),
         Parameter("bend", "-", "power of the pressure with which that power grows", typical=0.7, low=-1.0, high=1.5),
         Parameter("reference", "Pa", "pressure at which a holds", 10e5, center=10e5, low=1e5, high=100e5, given=True),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,
-    far_starts=(0.6,),
+    far_starts=(0.6, 0.9),
     twins=(),
     decisive="the port's radius over time (ultrasound), or firings at two chamber pressures of one oxidizer flow",
 )

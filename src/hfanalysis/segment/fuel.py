@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hfanalysis.segment.falls import RELAXATION, abrupt_falls
 from hfanalysis.segment.refine import refine_step
 from hfanalysis.segment.signals import Array, Signal, sample_noise
 
@@ -45,6 +46,18 @@ CLOSE_FALL = 0.2
 
 SHORT = 0.03
 """Least length [s] of what is seen between t_v and a fall close to it."""
+
+OUT_LEVEL, OUT_AFTER = 0.06, 0.15
+"""Seconds over which the chamber's level is taken before a fire goes out, and after it."""
+
+OUT = 0.5
+"""Least part of the chamber's level, and of the thrust, that goes at once where a fire goes out."""
+
+FEED_FALLS, FEED_RISES = 0.12, 0.02
+"""Parts of the feed's pressure by which it may change meanwhile: a tank empties by some per cent in OUT_AFTER."""
+
+AT_ONCE = 0.05
+"""Seconds within which the chamber of a fire that goes out has flushed."""
 
 CLEAR_FALL = 8.0
 """Least size of a sudden fall in standard deviations of its own scatter."""
@@ -94,6 +107,8 @@ def find_fuel_end(
     sudden = _sudden(signals, response, t_feed, t_v)
     if sudden is None and t_v is not None:
         sudden = _close(signals, ambient, end, t_feed, t_v)
+    if sudden is None:
+        sudden = _goes_out(signals, ambient, t_feed, t_v, float(response.time[-1]))
     if sudden is not None:
         return sudden
     fade = _fade(response, t_feed, t_v) if t_v is not None else None
@@ -193,6 +208,28 @@ def _sudden(signals: Mapping[str, Signal], response: _Response, t_feed: float, t
     if at is None or not _thrust_falls(signals, (at - WINDOW, at - GAP), (at + GAP, at + WINDOW), 0.03):
         return None
     return _dated(signals, at, t_v)
+
+
+def _goes_out(
+    signals: Mapping[str, Signal], ambient: float, t_feed: float, t_v: float | None, last: float
+) -> FuelEnd | None:
+    """The last instant at which a fire that fades goes out: what is left of it goes within hundredths of a second.
+
+    The fade before it, which is no line, hides that fall from a search with windows of WINDOW. The feed goes on:
+    its pressure falls away where a valve closes ahead of its sensor, and rises to the tank's where one does behind it.
+    """
+    chamber, start = signals["p_chamber"], max(t_feed + 0.2, t_v + 2.0 * GAP if t_v is not None else 0.0)
+    for time in reversed(abrupt_falls(chamber, ambient, start, last)):
+        before, after = (time - OUT_LEVEL, time), (time + RELAXATION, time + OUT_AFTER)
+        level, left = chamber.mean(*before) - ambient, chamber.mean(*after) - ambient
+        feed, then = (signals["p_run"].mean(*when) - ambient for when in (before, after))
+        flows_on = (1.0 - FEED_FALLS) * feed < then < (1.0 + FEED_RISES) * feed
+        if left > (1.0 - OUT) * level or not flows_on or not _thrust_falls(signals, before, after, OUT):
+            continue
+        found = refine_step([chamber], time, OUT_LEVEL, OUT_AFTER, 0.5 * OUT_LEVEL)
+        if found is not None and found.std < SHARPLY_DATED and 3.0 * found.relaxation < AT_ONCE:
+            return FuelEnd(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)
+    return None
 
 
 def _fall_at(response: _Response, t: float, t_v: float | None) -> float:

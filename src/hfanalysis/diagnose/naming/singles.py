@@ -54,6 +54,9 @@ MODERATE = 0.6
 STARTS = 2
 """Starts of an effect's fit."""
 
+LOW = -1.5
+"""Where n starts besides (as x) with a strength far from nothing: the base model's n has grown to take its place."""
+
 ELSEWHERE = (-1.0, 1.0)
 """How far from the base model's n effects are looked for besides, in standard deviations of its prior."""
 
@@ -240,12 +243,13 @@ def _moderate(base: Candidate, strengths: int, size: int) -> Array:
 
 
 def _far(base: Candidate, effect: Effect, made: Hypothesis) -> list[Array]:
-    """The base's constants with the strengths far from nothing that an effect wants to be started from."""
-    first, out = base.fit.x.size, []
+    """The base's constants, and those with n at LOW, with the strengths that an effect wants to be started from."""
+    first, exponent, out = base.fit.x.size, [f.name for f in made.free].index("n"), []
     for strength in effect.far_starts:
-        start = np.concatenate([base.fit.x, np.zeros(made.size - base.fit.x.size)])
-        start[first] = made.free[first].place(strength)
-        out.append(start)
+        for n in (base.fit.x[exponent], LOW):
+            start = np.concatenate([base.fit.x, np.zeros(made.size - base.fit.x.size)])
+            start[[exponent, first]] = n, made.free[first].place(strength)
+            out.append(start)
     return out
 
 
