@@ -293,7 +293,7 @@ def fading_fire(run: Array, goes: float = 5.3) -> dict[str, Signal]:
     """Signals of a fire that fades for 0.4 s after the liquid is gone (at 4 s), until what is left of it goes out."""
     level = np.interp(TIME, [0.0, 0.05, 4.0, 4.01, 4.9], [0.0, 12e5, 10e5, 3e5, 2.4e5])
     level = level * np.interp(TIME, [4.9, 5.0, 5.1, 5.2, 5.3], [1.0, 0.9, 0.7, 0.5, 0.35])
-    level = level * np.where(TIME < goes, 1.0, 0.05 + 0.95 * np.exp(-since(goes) / 0.003))
+    level = level * np.where(goes > TIME, 1.0, 0.05 + 0.95 * np.exp(-since(goes) / 0.003))
     thrust = 2e-3 * level + noise(np.random.default_rng(1), TIME.size, RATE, 5.0, 0.0)
     read = {"p_run": noisy("p_run", run), "p_chamber": noisy("p_chamber", AMBIENT + level)}
     return {**read, "thrust": signal("thrust", TIME, thrust)}
