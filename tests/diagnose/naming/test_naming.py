@@ -181,6 +181,21 @@ def test_an_effect_whose_place_the_constants_take_starts_far_from_nothing(monkey
         assert all(c.log_evidence > base.log_evidence + 5.0 for c in found)
 
 
+def test_an_effect_that_starts_far_from_nothing_does_so_at_a_low_n_too() -> None:
+    """The base model's n may have grown to take its place, from where no fit leads back."""
+    grain, bench = effect("grain_pressure_regression"), Bench(made.observed())
+    fitted = attempted(made.hypothesis(), bench.at(COARSEST), np.zeros(made.hypothesis().size))
+    assert fitted is not None
+    with_grain = Catalogue({grain.name: grain}, {}).add(made.hypothesis(), grain.name)
+    starts = singles._far(candidate((), fitted, COARSEST), grain, with_grain)
+    read = [with_grain.values(x) for x in starts]
+    seen = {(round(v["grain_pressure_regression.exponent"], 3), round(v["n"], 3)) for v in read}
+    low, own = (round(with_grain.values(x)["n"], 3) for x in (np.full(with_grain.size, singles.LOW), starts[0]))
+    assert low < 0.2 < own
+    assert seen == {(strength, n) for strength in grain.far_starts for n in (low, own)}
+    assert all(v["a"] == fitted.values["a"] for v in read)
+
+
 def objective_at(candidate: Candidate, bench: Bench, form: Form) -> float:
     """Minus the log of posterior density of a candidate, fitted at a model-form error until nothing moves any more."""
     found = candidate.fit
