@@ -1,7 +1,8 @@
 """One file with what a run has found so far, so that it can go on elsewhere and its page be made without running it.
 
 Of every case the answer, the note, and of the product what is scored. It is taken up where a case has no note: what
-another version of the package, of its constants or of the generator made stays in the file and out of the folder.
+another version of the package or of its constants found stays in the file and out of the folder, and so does all that
+is of another generator.
 """
 
 from __future__ import annotations
@@ -69,21 +70,22 @@ def pack(folder: Folder, path: Path) -> int:
 
 
 def unpack(path: Path, folder: Folder, wanted: Container[str], now: tuple[str, str] | None, generator: str) -> int:
-    """Put what a file holds of the ``wanted`` cases into a folder; how many.
+    """Put what a file holds of the ``wanted`` cases into a folder; how many diagnoses.
 
     What is there already stays, and what another version made is left: ``now`` are the digests of the package and of
-    its constants (None: whatever they are), ``generator`` that of what makes the cases.
+    its constants (None: whatever they are), ``generator`` that of what makes the cases. The answers are taken whatever
+    has become of the package since.
     """
     taken = 0
     for row in _rows(path):
         note = Note(**row["note"])
-        if note.id not in wanted or folder.note(note.id) is not None:
+        if note.id not in wanted or row["answer"].get("generator") != generator:
             continue
-        if now is not None and (note.code, note.probabilities) != now:
+        answer = folder.answers / f"{note.id}.json"
+        if not answer.exists():
+            write_json(answer, row["answer"])
+        if folder.note(note.id) is not None or (now is not None and (note.code, note.probabilities) != now):
             continue
-        if row["answer"].get("generator") != generator:
-            continue
-        write_json(folder.answers / f"{note.id}.json", row["answer"])
         if note.status == DONE:
             write_json(folder.product(note.id), row["product"])
         folder.write_note(note)

@@ -16,6 +16,7 @@ from tests.blind.write import answer_path, write_all
 
 from .archive import pack, unpack
 from .folder import DIED, DONE, LATE, UNWRITTEN, Folder, Note, code_digest, probabilities_digest, write_json
+from .logs import log_path, write_logs
 from .pool import Outcome, Pool
 from .progress import display
 from .work import PROOF, Job, known_parameters
@@ -144,12 +145,10 @@ def written(cases: Sequence[Case], request: Request, now: tuple[str, str]) -> li
     return [c for c in cases if answer_path(c, root).exists()]
 
 
-def forget_answers(cases: Sequence[Case], jobs: Sequence[Job], root: Path) -> None:
-    """Where an answer came of an archive its log is not there: both are written anew for what jobs need."""
+def without_log(cases: Sequence[Case], jobs: Sequence[Job], root: Path) -> list[Case]:
+    """Of the cases that jobs need those whose answer is there, as of an archive, and whose log is not."""
     needed = {name for job in jobs for name in (job.id, job.first)}
-    for case in cases:
-        if case.id in needed and not (root / "raw_tests" / case.id).exists():
-            answer_path(case, root).unlink(missing_ok=True)
+    return [c for c in cases if c.id in needed and answer_path(c, root).exists() and not log_path(c, root).exists()]
 
 
 def state_plan(request: Request) -> None:
@@ -206,7 +205,7 @@ def run(request: Request, make_pool: Callable[[Request], Pool] | None = None) ->
         taken = unpack(archive, folder, {c.id for c in cases}, known, generator_digest())
         print(f"{archive}: {taken} cases taken from it", file=sys.stderr, flush=True)
     todo = [c for c in cases if not is_done(folder.note(c.id), folder.product(c.id), request, now)]
-    forget_answers(cases, [job_of(c, request) for c in todo], folder.root)
+    write_logs(without_log(cases, [job_of(c, request) for c in todo], folder.root), folder.root, request.jobs)
     there = {c.id for c in written(cases, request, now)}
     state_plan(request)
     todo = [c for c in todo if c.id in there]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,13 +17,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 from benchmarks.blind import folder as fo
-from benchmarks.blind.archive import pack, unpack
+from benchmarks.blind.archive import pack, rounded, unpack
 from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, leads, pooled, save, weights
 from benchmarks.blind.document import document, without_effect, write
 from benchmarks.blind.fit import OFFSETS, Constants, Sample, fit, folds
 from benchmarks.blind.folder import Folder, Note, write_json
+from benchmarks.blind.logs import built_of, write_logs
 from benchmarks.blind.pool import Outcome, Pool
 from benchmarks.blind.results import results
 from benchmarks.blind.run import (
@@ -31,16 +34,19 @@ from benchmarks.blind.run import (
     archive_of,
     asked_for,
     check_plan,
-    forget_answers,
     is_done,
     state_plan,
     variant_settings,
+    without_log,
 )
 from benchmarks.blind.work import Job, settings_of
 from benchmarks.blind.wrong import longest, wrong_names
+from tests.blind import write as blind_write
+from tests.blind.build import build
 from tests.blind.judged import Case
 from tests.blind.made_up import answer, broken, nothing, product, work
 from tests.blind.plan import SHARES, SPLITS, plan
+from tests.blind.plan import Case as LogCase
 
 ROOT = Path(__file__).parents[2]
 NOW = ("code", "constants")
@@ -295,6 +301,8 @@ def test_what_another_version_made_stays_where_it_was_kept(
 ) -> None:
     there = Folder(tmp_path / "there")
     assert unpack(kept, there, ALL, now, generator) == 0
+    assert not there.notes()
+    assert len(list(there.answers.glob("*.json"))) == (3 if generator == "g" else 0), "answers are the generator's"
     assert unpack(kept, there, ALL, None, generator) == (3 if generator == "g" else 0), "but for --keep"
 
 
@@ -304,16 +312,52 @@ def test_a_case_that_could_not_be_written_is_no_result(kept: Path, tmp_path: Pat
     assert pack(there, kept) == 3
 
 
-def test_answers_whose_logs_were_not_kept_are_written_anew(tmp_path: Path) -> None:
+def test_logs_that_were_not_kept_are_written_anew(tmp_path: Path) -> None:
     """For what is to be diagnosed, and for the other test of a stand that it is proved on."""
-    cases = plan(4, "calibration")
+    cases = plan(5, "calibration")
     names = [case.id for case in cases]
-    there = Folder(tmp_path)
-    for name in names:
-        write_json(there.answers / f"{name}.json", {})
+    for name in names[:4]:
+        write_json(Folder(tmp_path).answers / f"{name}.json", {})
     (tmp_path / "raw_tests" / names[1]).mkdir(parents=True)
-    forget_answers(cases, [Job(tmp_path, tmp_path, names[1]), Job(tmp_path, tmp_path, names[2], names[0])], tmp_path)
-    assert sorted(p.stem for p in there.answers.glob("*.json")) == [names[1], names[3]]
+    (tmp_path / "raw_tests" / names[1] / "log.csv").touch()
+    jobs = [Job(tmp_path, tmp_path, names[i], first) for i, first in ((1, None), (2, names[0]), (4, None))]
+    assert [case.id for case in without_log(cases, jobs, tmp_path)] == [names[0], names[2]]
+
+
+@pytest.mark.parametrize("second", [False, True])
+def test_a_log_written_to_its_answer_is_the_one_that_it_was_written_with(second: bool, tmp_path: Path) -> None:
+    case = LogCase("X", "stand", ("tank_heat",), 8.0, "ar1", 41 + second, 41, "stand-x", second)
+    blind_write.write_case(case, tmp_path)
+    folder, answer = tmp_path / "raw_tests" / "X", tmp_path / "answers" / "X.json"
+    log, document = pd.read_csv(folder / "log.csv"), (folder / "test.toml").read_text(encoding="utf-8")
+    write_json(answer, rounded(json.loads(answer.read_text(encoding="utf-8"))))
+    kept = answer.read_bytes()
+    shutil.rmtree(folder)
+    write_logs([case], tmp_path, 1)
+    again = pd.read_csv(folder / "log.csv")
+    assert json.loads(answer.read_bytes()) == json.loads(kept)
+    assert (folder / "test.toml").read_text(encoding="utf-8") == document
+    assert list(again) == list(log)
+    assert np.array_equal(again.isna(), log.isna())
+    differ = (again != log) & again.notna()
+    assert differ.to_numpy().mean() < 0.02
+    quanta = {blind_write.column(x.channel): x.quantum for x in build(case).instruments.sensors}
+    for name in log.columns[1:]:
+        assert (again[name] - log[name]).abs().max() <= 1.01 * quanta[name], name
+    stronger = json.loads(kept)
+    stronger["effects"][0]["strength"] *= 1.5
+    assert not np.array_equal(built_of(case, stronger).true.traces, built_of(case, json.loads(kept)).true.traces)
+
+
+def test_an_answer_whose_log_cannot_be_written_to_it_is_sought_anew(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = LogCase("X", "single", ("tank_heat",), 8.0, "ar1", 41, 41)
+    answer = tmp_path / "answers" / "X.json"
+    write_json(answer, {"effects": []})
+    write_logs([case], tmp_path, 1)
+    assert not answer.exists()
+    assert "X: KeyError" in capsys.readouterr().err
 
 
 def test_a_part_of_a_plan_leaves_what_the_folder_goes_by(tmp_path: Path) -> None:
