@@ -117,7 +117,6 @@ blind-ablations: $(STAMP) ## what each part of the method is good for: into docs
 	$(BLIND) run --split scored --n 1500 --jobs 2 --keep $(FOUND) || [ $$? -eq 1 ]
 	$(call left-out,white_noise,--kind single --targets 8 --each 1)
 	$(call left-out,no_projection,--kind pair --limit 400)
-	$(call left-out,no_polish,--kind none --limit 450)
 	$(BLIND) table --split scored --write docs/blind-benchmark.md
 
 # Of a variant and the tests: the method on them, by the present code, and the variant.

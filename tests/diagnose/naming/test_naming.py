@@ -493,8 +493,8 @@ def test_an_effect_is_found_from_a_valley_that_the_base_model_is_not_in() -> Non
     bench = Bench(seen)
     deepest, valleys = base_model(hypothesis, bench)
     search = Search(bench, catalogue(("injector_two_phase",)))
-    _, (alone,) = singles_of(valleys[0], [], search)
-    _, (found,) = singles_of(valleys[0], [deepest], search)
+    (alone,) = singles_of(valleys[0], [], search)
+    (found,) = singles_of(valleys[0], [deepest], search)
     assert alone.log_evidence < deepest.log_evidence + 20.0
     assert found.log_evidence > deepest.log_evidence + 50.0
 

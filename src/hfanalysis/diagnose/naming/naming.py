@@ -12,7 +12,7 @@ from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import unknown_sources
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import sets_of
-from hfanalysis.diagnose.naming.singles import polished, singles_of
+from hfanalysis.diagnose.naming.singles import singles_of
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.stages.base import Progress, silent
@@ -56,12 +56,10 @@ def name_effects(
     search = Search(bench, catalogue, settings, progress)
     progress("fitting the base model", 0.0)
     base, valleys = base_model(hypothesis, bench)
-    base, singles = singles_of(base, valleys, search)
+    singles = singles_of(base, valleys, search)
     singles, sets = sets_of(base, singles, search)
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
     unknown = unknown_sources(base, valleys, named, bench)
-    if settings.polishing:
-        base = polished(base, [*sets, *unknown], bench)
     equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations)

@@ -3,8 +3,7 @@
 At the form of the base model every effect is fitted with all calibrated constants free, from the start at which a score
 test with the constants projected out sees most of it; the same from where the base model has other valleys, for the
 effect may be what bent it into its own. From there all go down together: at each finer form those that have fallen far
-behind are left out, and each stays at the form at which it has most evidence. The base model is fitted again from its
-children's constants, for an unconverged base poses as evidence for a wrong effect.
+behind are left out, and each stays at the form at which it has most evidence.
 """
 
 from __future__ import annotations
@@ -42,9 +41,6 @@ from hfanalysis.engine.effect import Effect
 
 Array = NDArray[np.float64]
 
-FAR = 3.0
-"""Units of log evidence that a base gains from a child's constants before all are fitted again."""
-
 SEEN = 0.7
 """Gain in log probability below which a score test has seen nothing."""
 
@@ -66,22 +62,19 @@ CHAMBER_SIDE = ("grain", "chamber_mass", "chamber_energy", "nozzle")
 WORSE = 0.05
 """Log of posterior density by which a child may fit worse than its parent: fits end within as much."""
 
-POLISHING = 3
-"""Children whose constants a parent is fitted again from."""
 
-
-def singles_of(base: Candidate, valleys: list[Candidate], search: Search) -> tuple[Candidate, list[Candidate]]:
-    """The base model, polished, and every effect that is seen from it or its other ``valleys``, the best first."""
+def singles_of(base: Candidate, valleys: list[Candidate], search: Search) -> list[Candidate]:
+    """Every effect that is seen from the base model or its other ``valleys``, the best first."""
     bench, names = search.bench, list(search.catalogue.effects)
     best: dict[str, Candidate] = {}
-    _keep(
-        best,
-        _raced([*_first_children(base, valleys, search, names), *_from_elsewhere(base, valleys, search, names)], bench),
-    )
-    if search.settings.polishing and best:
-        base = _second_turn(base, best, search)
+    for one in _raced(
+        [*_first_children(base, valleys, search, names), *_from_elsewhere(base, valleys, search, names)], bench
+    ):
+        name = one.names[0]
+        if name not in best or more_probable(one, best[name]):
+            best[name] = one
     found = each(partial(_no_worse, parent=base, bench=bench), each(bench.converged, list(best.values())))
-    return base, sorted(found, key=lambda c: -c.log_evidence)
+    return sorted(found, key=lambda c: -c.log_evidence)
 
 
 def _no_worse(child: Candidate, parent: Candidate, bench: Bench) -> Candidate:
@@ -93,41 +86,6 @@ def _no_worse(child: Candidate, parent: Candidate, bench: Bench) -> Candidate:
     if again is None:
         return child
     return max(child, candidate(child.names, again, child.form), key=lambda c: c.log_evidence)
-
-
-def _second_turn(base: Candidate, best: dict[str, Candidate], search: Search) -> Candidate:
-    """The base model, polished; if that moved it, or the best effect asks for a finer form than it, effects are fitted
-    anew from there: all of them, or those that stayed at a coarser form than the best."""
-    bench = search.bench
-    better = polished(base, list(best.values()), bench)
-    winner = max(best.values(), key=lambda c: c.log_evidence)
-    moved = better.log_evidence > base.log_evidence + FAR
-    if winner.form.total < base.form.total or moved:
-        names = [
-            n for n in search.catalogue.effects if moved or n not in best or best[n].form.total > winner.form.total
-        ]
-        parent = bench.refitted(better, winner.form) or better
-        _keep(best, _raced(_further_children(parent, search, names), bench))
-        better = polished(better, list(best.values()), bench)
-    return better
-
-
-def _keep(best: dict[str, Candidate], found: list[Candidate]) -> None:
-    """Of every effect the candidate with most evidence."""
-    for one in found:
-        name = one.names[0]
-        if name not in best or more_probable(one, best[name]):
-            best[name] = one
-
-
-def polished(parent: Candidate, children: list[Candidate], bench: Bench) -> Candidate:
-    """The parent, fitted again from the constants of its best children."""
-    starts = [c.fit.x for c in sorted(children, key=lambda c: -c.log_evidence)[:POLISHING]]
-    hypothesis, observed = parent.fit.hypothesis, bench.at(parent.form)
-    fits = each(lambda x: attempted(hypothesis, observed, x[: hypothesis.nuisances]), starts)
-    found = [candidate(parent.names, f, parent.form) for f in fits if f is not None]
-    best = max([parent, *found], key=lambda c: c.log_evidence)
-    return bench.judged(best) if best is not parent else parent
 
 
 def _first_children(base: Candidate, valleys: list[Candidate], search: Search, names: list[str]) -> list[Candidate]:
@@ -143,7 +101,7 @@ def _first_children(base: Candidate, valleys: list[Candidate], search: Search, n
     far = base.form != FINEST or any(left > CALM for left in observed.left_open(base.fit.residual))
 
     def child(name: str) -> Candidate | None:
-        search.progress(f"fitting {name}", 0.3 * next(done) / len(names))
+        search.progress(f"fitting {name}", 0.6 * next(done) / len(names))
         made, promising = _promising(base, search, name)
         starts = promising[:STARTS]
         fits = [attempted(made, observed, x, SHORT) for x in starts]
@@ -207,18 +165,6 @@ def _with_exponent(base: Candidate, place: int, x: float, observed: Observed) ->
 def _on_chamber_side(effect: Effect) -> bool:
     """Whether what an effect does is seen in chamber and thrust first."""
     return effect.equation in CHAMBER_SIDE or (effect.equation == "sensor" and bool(set(effect.sites) & set(TOGETHER)))
-
-
-def _further_children(parent: Candidate, search: Search, names: list[str]) -> list[Candidate]:
-    """Those of the effects that a score test sees, each from its best start, at the parent's form."""
-    observed, done = search.bench.at(parent.form), count()
-
-    def child(name: str) -> Candidate | None:
-        search.progress(f"fitting {name}", 0.3 + 0.3 * next(done) / len(names))
-        made, starts = _promising(parent, search, name)
-        return _best((name,), [attempted(made, observed, x, SHORT) for x in starts[:1]], parent.form)
-
-    return [c for c in each(child, names) if c is not None]
 
 
 def _promising(parent: Candidate, search: Search, name: str) -> tuple[Hypothesis, list[Array]]:

@@ -12,7 +12,6 @@ class Settings:
     """What the method does; all on but in studies of what each is good for."""
 
     tempering: bool = True
-    polishing: bool = True
     projection: bool = True
     coloured: bool = True
 
@@ -20,7 +19,6 @@ class Settings:
 VARIANTS = {
     "": Settings(),
     "no_tempering": Settings(tempering=False),
-    "no_polish": Settings(polishing=False),
     "no_projection": Settings(projection=False),
     "white_noise": Settings(coloured=False),
 }
