@@ -66,7 +66,8 @@ def test_a_tank_that_is_badly_understood_hides_nothing_in_the_chamber() -> None:
     hidden = effect("tank_heat").at(power=6000.0), effect("nozzle_throat_erosion").at(rate=1.5e-4)
     bench = Bench(made.observed(*hidden))
     library = Catalogue({"nozzle_throat_erosion": effect("nozzle_throat_erosion")}, {})
-    base, singles = singles_of(*base_model(made.hypothesis(), bench), Search(bench, library))
+    base, starts = base_model(made.hypothesis(), bench)
+    singles = singles_of(base, starts, Search(bench, library))
     assert base.form.tank > 0
     assert singles[0].form.chamber < singles[0].form.tank
     coarse = Form(singles[0].form.tank, singles[0].form.tank)
