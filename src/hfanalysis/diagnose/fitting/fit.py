@@ -1,4 +1,4 @@
-"""Fitting a hypothesis to what a test says: damped Gauss-Newton on exact tangents, with priors and bounds.
+"""Fitting a hypothesis to what a test says: Gauss-Newton steps on exact tangents, with a trust region, priors, bounds.
 
 The result is the most probable set of parameters, their covariance, and the evidence by Laplace's approximation.
 """
@@ -14,6 +14,7 @@ from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.noise_level import louder_or_quieter
 from hfanalysis.diagnose.fitting.predict import Prediction, predict, with_slopes
 from hfanalysis.diagnose.fitting.size import of_any_size
+from hfanalysis.diagnose.fitting.trust import damping_within, grown, length_of, shrunk
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.unsteady import Burn
 
@@ -28,6 +29,9 @@ STEEPEST = 1e8
 
 TRUST = 0.1
 """Part of what the slopes promise of a step that it must bring: a step that brings less leads along a wrong valley."""
+
+TRIALS = 8
+"""Steps that are tried from one point, each shorter than the last."""
 
 LONGEST_STRIDE = 2.0
 """Standard deviations of its prior that a parameter moves at a time."""
@@ -93,21 +97,25 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
     least, highest = hypothesis.bounds
     if not usable(here):
         raise ArithmeticError("the model has no slopes where its fit starts")
-    damping, done = 1e-6, False
+    radius, done = np.inf, False
     for _ in range(most):
         assert here.slopes is not None
-        before = _objective(here, x)
-        moved = None
-        for _ in range(8):
+        before, moved = _objective(here, x), None
+        gradient, curvature = here.slopes.T @ here.residual + x, here.slopes.T @ here.slopes + np.eye(x.size)
+        free = np.where(gradient > 0.0, x > least, x < highest)
+        for _ in range(TRIALS):
+            damping = damping_within(curvature, gradient, free, radius)
             step = bounded_step(here.slopes, here.residual, x, least, highest, damping)
             expected = _expected(here, x, step)
             trial = _try(hypothesis, observed, x + step)
-            if trial is not None and _objective(trial, x + step) < before - TRUST * expected:
-                moved = trial
+            part = np.nan if trial is None or expected <= 0.0 else (before - _objective(trial, x + step)) / expected
+            length = length_of(step, curvature)
+            if trial is not None and part > TRUST:
+                moved, radius = trial, grown(radius, length, part)
                 break
             if 0.0 < expected < CONVERGED:
                 break  # a shorter step brings less
-            damping = max(10.0 * damping, 1e-3)
+            radius = shrunk(length, part)
         if moved is None:
             done = True
             break
@@ -116,10 +124,9 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
             break
         there = with_slopes(hypothesis, observed, x + step, moved)
         if not usable(there):
-            damping = max(100.0 * damping, 1.0)  # a point without slopes leads nowhere: a shorter step
+            radius = shrunk(length, np.nan)  # a point without slopes leads nowhere: a shorter step
             continue
         x, here = x + step, there
-        damping = max(0.1 * damping, 1e-9)
     assert here.slopes is not None
     evidence = log_evidence(here.residual, here.slopes, x, observed, hypothesis)
     covariance = np.asarray(np.linalg.inv(here.slopes.T @ here.slopes + np.eye(x.size)))

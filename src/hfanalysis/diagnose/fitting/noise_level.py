@@ -93,6 +93,11 @@ class _Level:
         last = solve_triangular(root, self.gradient, lower=True)
         return 2.0 * float(np.log(root.diagonal()).sum()), float(last @ last)
 
+    @cached_property
+    def _own(self) -> list[NDArray[np.intp]]:
+        """Patterns that hold anything of a channel's slow noise."""
+        return [np.flatnonzero(share) for share in self.shares]
+
     def at(self, log_factor: Array) -> _At:
         """With these factors of the channels' slow noise (logs).
 
@@ -108,11 +113,17 @@ class _Level:
         misfit = float(extra @ self.left**2 - np.sum((root.T @ step) ** 2)) + lower
         prior = float(np.sum((log_factor / self.unsure) ** 2))
         gain = -0.5 * (float(np.log(variance).sum()) + grown + misfit + prior)
-        # R, the inverse of the marginal covariance, in the patterns: 1 / v less what the parameters take
-        taken = solve_triangular(root, (self.slopes / variance[:, None]).T, lower=True)
-        inverse = np.diag(1.0 / variance) - taken.T @ taken
-        pull = (self.left + self.slopes @ step) / variance
+        # R, the inverse of the marginal covariance, in the patterns: 1 / v less what the parameters take, a matrix of
+        # low rank; and traces of R dV/df R dV/dg
+        known = 1.0 / variance
+        taken = solve_triangular(root, (self.slopes * known[:, None]).T, lower=True)
+        lost = np.sum(taken**2, axis=0)
+        pull = (self.left + self.slopes @ step) * known
         speed = 2.0 * squares[:, None] * self.shares
-        gradient = 0.5 * speed @ (pull**2 - inverse.diagonal()) - log_factor / self.unsure**2
-        information = speed @ inverse**2 @ speed.T  # traces of R dV/df R dV/dg
+        gradient = 0.5 * speed @ (pull**2 - known + lost) - log_factor / self.unsure**2
+        of_channels = np.array(
+            [(taken[:, own] * part[own]) @ taken[:, own].T for part, own in zip(speed, self._own, strict=True)]
+        )
+        information = speed @ ((known * (known - 2.0 * lost))[:, None] * speed.T)
+        information += np.tensordot(of_channels, of_channels, axes=([1, 2], [1, 2]))
         return _At(gain, gradient, 0.5 * information + np.diag(self.unsure**-2.0))

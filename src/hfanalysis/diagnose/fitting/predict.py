@@ -40,11 +40,15 @@ THROAT_GROWTH = "throat_growth"
 
 @dataclass(frozen=True)
 class Prediction:
-    """A run of a hypothesis: whitened residuals (measured less model) and, if asked for, their slopes with ``x``."""
+    """A run of a hypothesis: whitened residuals (measured less model) and, if asked for, their slopes with ``x``.
+
+    ``true``: the channels without any distortion on the common grid, where they are at hand.
+    """
 
     residual: Array
     slopes: Array | None
     burnt: Burn
+    true: Mapping[str, Array] | None = None
 
 
 def predict(
@@ -56,7 +60,8 @@ def predict(
     """
     engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
     burnt = burn(engine, observed.longest + AFTER, ACCURACY, run_on=True, keep_idle=True)
-    there = Prediction(residuals(hypothesis, observed, x, burnt), None, burnt)
+    true = true_readings(observed, burnt)
+    there = Prediction(residuals(hypothesis, observed, x, burnt, true), None, burnt, true)
     return with_slopes(hypothesis, observed, x, there, only) if tangents else there
 
 
@@ -68,10 +73,10 @@ def with_slopes(
         free = hypothesis.free[only]
         found = tangents_of(there.burnt, [f.name for f in free])
         scales = np.array([f.slope(float(v)) for f, v in zip(free, x[only], strict=True)])
-        return replace(there, slopes=slopes_of(hypothesis, observed, found) * scales)
+        return replace(there, slopes=slopes_of(hypothesis, observed, found, there.true) * scales)
     found = tangents_of(there.burnt, hypothesis.of_engine)
-    slopes = all_slopes(hypothesis, observed, slopes_of(hypothesis, observed, found)) @ hypothesis.jacobian(x)
-    return replace(there, slopes=slopes)
+    of_engine = slopes_of(hypothesis, observed, found, there.true)
+    return replace(there, slopes=all_slopes(hypothesis, observed, of_engine) @ hypothesis.jacobian(x))
 
 
 def with_spare_fuel(engine: Engine, fuel_out: float | None = None) -> Engine:
@@ -119,9 +124,11 @@ def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
     )
 
 
-def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn) -> Array:
+def residuals(
+    hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn, true: Mapping[str, Array] | None = None
+) -> Array:
     """Whitened measured less model: the channels one after the other, then the events, then what was stated."""
-    read = readings(observed, burnt)
+    read = readings(observed, burnt, true)
     parts = []
     for channel in observed.channels:
         model = channel.averaged(read[channel.name]) + added(hypothesis, observed, x, channel)
@@ -146,10 +153,14 @@ def residuals(hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn)
     return np.concatenate([observed.whiten(raw), np.array(scalars)])
 
 
-def readings(observed: Observed, burnt: Burn) -> dict[str, Array]:
-    """What the sensors read on the common grid."""
-    times = aligned(observed, burnt, observed.grid)
-    channels = _resting(observed, _with_purge_line(true_channels(burnt, times)))
+def true_readings(observed: Observed, burnt: Burn) -> dict[str, Array]:
+    """The channels of a run on the common grid, without any distortion."""
+    return _with_purge_line(true_channels(burnt, aligned(observed, burnt, observed.grid)))
+
+
+def readings(observed: Observed, burnt: Burn, true: Mapping[str, Array] | None = None) -> dict[str, Array]:
+    """What the sensors read on the common grid; ``true``: :func:`true_readings`, if they are at hand."""
+    channels = _resting(observed, true_readings(observed, burnt) if true is None else true)
     return _with_its_zero(observed, channels, distorted(channels, observed.grid, burnt.steps.engine.effects))
 
 
@@ -201,9 +212,11 @@ def aligned(observed: Observed, burnt: Burn, times: Array) -> Array:
     return np.asarray(np.clip(moved, 0.0, burnt.steps.times[-1, 1]))
 
 
-def slopes_of(hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Array:
+def slopes_of(
+    hypothesis: Hypothesis, observed: Observed, found: Tangents, true: Mapping[str, Array] | None = None
+) -> Array:
     """Derivatives (residuals, parameters) of :func:`residuals` with the parameters of ``found`` [SI]."""
-    read = _slopes_of_readings(observed, found)
+    read = _slopes_of_readings(observed, found, true_readings(observed, found.burn) if true is None else true)
     white = -observed.whiten(np.concatenate([c.averaged(read[c.name]) for c in observed.channels]))
     rows = []
     for name, (at, _) in observed.events.items():
@@ -230,16 +243,15 @@ def signatures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Array:
         if f"{a.effect.name}.{p.name}" in hypothesis.of_engine
     ]  # fmt: skip
     found = run_with_tangents(engine, names, observed.longest + AFTER, ACCURACY, run_on=True)
-    read = _slopes_of_readings(observed, found)
+    read = _slopes_of_readings(observed, found, true_readings(observed, found.burn))
     values = hypothesis.values(x)
     size = np.array([values[n] for n in names])
     return np.asarray(np.concatenate([c.averaged(read[c.name]) for c in observed.channels]) * size)
 
 
-def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]:
+def _slopes_of_readings(observed: Observed, found: Tangents, true: Mapping[str, Array]) -> dict[str, Array]:
     """Slopes (grid, parameters) of what is read at aligned instants, which move with the end of the liquid."""
     times = aligned(observed, found.burn, observed.grid)
-    channels = _with_purge_line(true_channels(found.burn, times))
     slopes = _with_purge_line(true_tangents(found, times))
     seen = observed.events.get("t_v")
     if seen is not None and found.burn.liquid_out is not None:
@@ -247,11 +259,11 @@ def _slopes_of_readings(observed: Observed, found: Tangents) -> dict[str, Array]
         moved = share(observed.grid, seen[0], found.burn.liquid_out, observed.fuel_out)
         moment = np.nan_to_num(found.event(LIQUID_OUT))
         for name in slopes:
-            speed = (ahead[name] - channels[name]) / TICK * moved
+            speed = (ahead[name] - true[name]) / TICK * moved
             slopes[name] = slopes[name] + speed[:, np.newaxis] * moment[np.newaxis]
     for name in ("p_chamber", "p_run", "thrust"):
         slopes[name] = np.where(observed.resting[:, np.newaxis], 0.0, slopes[name])
-    channels = _resting(observed, channels)
+    channels = _resting(observed, true)
     effects = found.burn.steps.engine.effects
     read = distorted_tangents(channels, slopes, observed.grid, effects, found.parameters)
     return _with_its_zero(observed, slopes, read)

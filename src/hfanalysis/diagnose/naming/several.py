@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,16 +170,21 @@ def _asked(
 
 def swapped(found: Candidate, search: Search) -> Candidate:
     """The set with declared twins in the place of its effects, where that makes the data more probable."""
-    for name in found.names:
-        for twin in search.catalogue.effects[name].twins:
-            if twin in search.catalogue.effects and twin not in found.names:
-                other = _in_place(found, name, twin, search)
-                found = other if other is not None and more_probable(other, found) else found
+    effects = search.catalogue.effects
+    pairs = [(n, twin) for n in found.names for twin in effects[n].twins if twin in effects and twin not in found.names]
+    while pairs:
+        tried = each(partial(_in_place, found, search=search), pairs)
+        better = [(c, pair) for c, pair in zip(tried, pairs, strict=True) if c is not None and more_probable(c, found)]
+        if not better:
+            break
+        found, (name, twin) = max(better, key=lambda one: one[0].log_evidence)
+        pairs = [pair for pair in pairs if pair[0] != name and pair[1] != twin]
     return found
 
 
-def _in_place(found: Candidate, name: str, twin: str, search: Search) -> Candidate | None:
-    """The set with another effect in the place of one; None where it cannot be run."""
+def _in_place(found: Candidate, pair: tuple[str, str], search: Search) -> Candidate | None:
+    """The set with the second effect of a pair in the place of the first; None where it cannot be run."""
+    name, twin = pair
     observed = search.bench.at(found.form)
     rest = without(found, name, observed)
     if rest is None:
