@@ -108,12 +108,12 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
             step = bounded_step(here.slopes, here.residual, x, least, highest, damping)
             expected = _expected(here, x, step)
             trial = _try(hypothesis, observed, x + step)
-            part = np.nan if trial is None or expected <= 0.0 else (before - _objective(trial, x + step)) / expected
+            part = np.nan if trial is None else (before - _objective(trial, x + step)) / max(expected, 1e-300)
             length = length_of(step, curvature)
             if trial is not None and part > TRUST:
                 moved, radius = trial, grown(radius, length, part)
                 break
-            if 0.0 < expected < CONVERGED:
+            if expected < CONVERGED:
                 break  # a shorter step brings less
             radius = shrunk(length, part)
         if moved is None:
