@@ -173,10 +173,12 @@ def promised(found: Fit, observed: Observed, other: Observed, slack: Array | Non
 
 
 def bounded_step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, damping: float) -> Array:
-    """A damped Gauss-Newton step (parameters,) from ``x``, at most LONGEST_STRIDE long, that stays within bounds.
+    """A damped Gauss-Newton step (parameters,) from ``x`` that stays within bounds, with no parameter farther than
+    LONGEST_STRIDE.
 
     Whatever reaches a bound on the way stays there, and the others go on without it: all the way it is downhill.
     """
+    least, most = np.maximum(least, x - LONGEST_STRIDE), np.minimum(most, x + LONGEST_STRIDE)
     gradient = slopes.T @ residual + x
     curvature = slopes.T @ slopes + np.eye(x.size)
     curvature = curvature + damping * np.diag(curvature.diagonal())
@@ -191,7 +193,6 @@ def bounded_step(slopes: Array, residual: Array, x: Array, least: Array, most: A
         if part.min() >= 1.0:
             break
         free &= part > part.min()
-    step *= min(1.0, LONGEST_STRIDE / max(float(np.abs(step).max()), 1e-12))
     return np.asarray(np.clip(x + step, least, most) - x)
 
 

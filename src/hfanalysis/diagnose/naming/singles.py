@@ -33,7 +33,7 @@ from hfanalysis.diagnose.naming.candidate import (
     more_probable,
 )
 from hfanalysis.diagnose.naming.fading import fades, fades_unseen, fading_fit, unseen_fits
-from hfanalysis.diagnose.naming.score import score_tests
+from hfanalysis.diagnose.naming.score import Test, score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.diagnose.observations.recorded import TOGETHER
@@ -49,6 +49,10 @@ MODERATE = 0.6
 
 STARTS = 2
 """Starts of an effect's fit."""
+
+LOST, KEPT = 0.5, 0.5
+"""Log of posterior density by which a fit that is lost is worse than its parent, and the part of what a score test
+promises that a fit brings if it went where that pointed."""
 
 LOW = -1.5
 """Where n starts besides (as x) with a strength far from nothing: the base model's n has grown to take its place."""
@@ -93,8 +97,8 @@ def _first_children(base: Candidate, valleys: list[Candidate], search: Search, n
 
     From the starts that score tests promise most of. Where the base model is far from the data, or leaves much open,
     those see little of an effect; what they do not lead to anything starts from a moderate size. The constants follow
-    first where a fit of all at once leads to nothing, and where an effect starts far from nothing. The base model's
-    other ``valleys`` tell whether fuel may have ended unseen.
+    first where an effect starts far from nothing, and from where a fit of all at once is lost, or brings far less than
+    was promised. The base model's other ``valleys`` tell whether fuel may have ended unseen.
     """
     observed, done = search.bench.at(base.form), count()
     fits_of_base = [c.fit for c in (base, *valleys)]
@@ -102,15 +106,14 @@ def _first_children(base: Candidate, valleys: list[Candidate], search: Search, n
 
     def child(name: str) -> Candidate | None:
         search.progress(f"fitting {name}", 0.6 * next(done) / len(names))
-        made, promising = _promising(base, search, name)
-        starts = promising[:STARTS]
-        fits = [attempted(made, observed, x, SHORT) for x in starts]
+        made, starts = _promising(base, search, name)
+        fits = [attempted(made, observed, x, SHORT) for _, x in starts]
         if not seen(fits) and far:
-            starts = [*starts, _moderate(base, search.catalogue.effects[name].strengths, made.size)]
-            fits.append(attempted(made, observed, starts[-1], SHORT))
-        starts = [] if seen(fits) else starts
-        starts = [*starts, *_far(base, search.catalogue.effects[name], made)]
-        fits += [followed(made, slice(base.fit.x.size, None), observed, x) for x in starts]
+            starts = [*starts, (0.0, _moderate(base, search.catalogue.effects[name].strengths, made.size))]
+            fits.append(attempted(made, observed, starts[-1][1], SHORT))
+        again = [] if seen(fits) else _led_astray(base.fit, starts, fits)
+        again += _far(base, search.catalogue.effects[name], made)
+        fits += [followed(made, slice(base.fit.x.size, None), observed, x) for x in again]
         if not seen(fits) and fades(search, name):
             fits.append(fading_fit(base.fit, search, name, observed))
         if fades_unseen(fits_of_base, search, name, observed):
@@ -167,11 +170,18 @@ def _on_chamber_side(effect: Effect) -> bool:
     return effect.equation in CHAMBER_SIDE or (effect.equation == "sensor" and bool(set(effect.sites) & set(TOGETHER)))
 
 
-def _promising(parent: Candidate, search: Search, name: str) -> tuple[Hypothesis, list[Array]]:
-    """The parent with an effect more, and the starts of which a score test sees something, the best first."""
+def _promising(parent: Candidate, search: Search, name: str) -> tuple[Hypothesis, list[Test]]:
+    """The parent with an effect more, and the STARTS of which a score test sees most, if it sees anything."""
     observed = search.bench.at(parent.form)
     made, (tests,) = score_tests(parent.fit, [parent.fit.slopes], search.catalogue, name, [observed], search.settings)
-    return made, [x for gain, x in tests if gain > SEEN]
+    return made, [(gain, x) for gain, x in tests if gain > SEEN][:STARTS]
+
+
+def _led_astray(parent: Fit, starts: list[Test], fits: list[Fit | None]) -> list[Array]:
+    """Starts whose fit ends where it explains less than its parent does, or all fits far less than they promised."""
+    gains = [-np.inf if f is None else parent.objective - f.objective for f in fits]
+    most = max(gains, default=0.0)
+    return [x for (promised, x), gain in zip(starts, gains, strict=True) if gain < -LOST or most < KEPT * promised]
 
 
 def _best(names: tuple[str, ...], fits: list[Fit | None], form: Form) -> Candidate | None:
