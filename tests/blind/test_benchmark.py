@@ -42,7 +42,6 @@ from benchmarks.blind.run import (
 from benchmarks.blind.work import Job, settings_of
 from benchmarks.blind.wrong import longest, wrong_names
 from tests.blind import write as blind_write
-from tests.blind.build import build
 from tests.blind.judged import Case
 from tests.blind.made_up import answer, broken, nothing, product, work
 from tests.blind.plan import SHARES, SPLITS, plan
@@ -341,7 +340,7 @@ def test_a_log_written_to_its_answer_is_the_one_that_it_was_written_with(second:
     assert np.array_equal(again.isna(), log.isna())
     differ = (again != log) & again.notna()
     assert differ.to_numpy().mean() < 0.02
-    quanta = {blind_write.column(x.channel): x.quantum for x in build(case).instruments.sensors}
+    quanta = {blind_write.column(x.channel): x.quantum for x in built_of(case, json.loads(kept)).instruments.sensors}
     for name in log.columns[1:]:
         assert (again[name] - log[name]).abs().max() <= 1.01 * quanta[name], name
     stronger = json.loads(kept)
