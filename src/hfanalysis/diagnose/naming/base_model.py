@@ -13,10 +13,10 @@ import numpy as np
 from hfanalysis.diagnose.fitting.fit import Fit
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate, followed
 
 FROM_EXPONENTS = (0.0, -1.5, 1.5)
-"""Where the base model's fit starts in n, in standard deviations of its prior."""
+"""Where the base model's fit starts in n besides, in standard deviations of its prior, once all else has followed."""
 
 NEARLY = 3.0
 """Log evidence behind the best valley, after a short fit, up to which another may yet turn out deeper."""
@@ -41,7 +41,7 @@ def base_model(hypothesis: Hypothesis, bench: Bench) -> tuple[Candidate, list[Ca
     for exponent in FROM_EXPONENTS:
         start = first.fit.x.copy()
         start[place] = exponent
-        other = attempted(hypothesis, bench.at(first.form), start, SHORT)
+        other = followed(hypothesis, slice(place, place + 1), bench.at(first.form), start)
         if other is None or _same(other, first.fit):
             continue
         found = candidate((), other, first.form)
