@@ -44,7 +44,7 @@ SHIFT = 1e-6
 class Tangents:
     """A run and its sensitivities to ``parameters``.
 
-    ``states`` (n, 3, states, parameters) and ``outputs`` (n, 3, outputs, parameters) on three nodes of each of the
+    ``states`` (n, 4, states, parameters) and ``outputs`` (n, 4, outputs, parameters) on four nodes of each of the
     solver's n steps; ``liquid_out`` and ``burn_time`` (parameters,), NaN where the event does not take place.
     """
 

@@ -1,7 +1,7 @@
 """Sensitivities of a run: how every state and output moves with every parameter, right through the events.
 
 Along a finished run the variational equation S' = f_y S + f_p is linear. It is integrated over the run's own steps
-by the two-stage Radau IIA method (order 3, stiffly accurate); f_y and f_p are forward differences of the same
+by the three-stage Radau IIA method (order 5, stiffly accurate); f_y and f_p are forward differences of the same
 compiled equations at the nodes, so that outputs' sensitivities out_y S + out_p come along. Where an event g(y, p) =
 0 changes the equations, its time moves by dt = -(g_y S + g_p) / (g_y f + g_t), and S jumps by change_y (S + f dt) +
 change_p - f_after dt.
@@ -31,12 +31,16 @@ INSIDE = 1e-3
 """Part of a step by which slopes are formed beside an event, on the step's own side: differences of the state at the
 event itself might lead to the other."""
 
-NODES = np.array([1.0 / 3.0, 1.0])
-RADAU = np.array([[5.0 / 12.0, -1.0 / 12.0], [3.0 / 4.0, 1.0 / 4.0]])
-"""Radau IIA, order 3 (Hairer and Wanner, Solving Ordinary Differential Equations II, table IV.5.5)."""
-
-COUNT = NODES.size
-"""Points within a step; its start is the first of the nodes that are returned."""
+_ROOT = np.sqrt(6.0)
+NODES = np.array([(4.0 - _ROOT) / 10.0, (4.0 + _ROOT) / 10.0, 1.0])
+RADAU = np.array(
+    [
+        [(88.0 - 7.0 * _ROOT) / 360.0, (296.0 - 169.0 * _ROOT) / 1800.0, (-2.0 + 3.0 * _ROOT) / 225.0],
+        [(296.0 + 169.0 * _ROOT) / 1800.0, (88.0 + 7.0 * _ROOT) / 360.0, (-2.0 - 3.0 * _ROOT) / 225.0],
+        [(16.0 - _ROOT) / 36.0, (16.0 + _ROOT) / 36.0, 1.0 / 9.0],
+    ]
+)
+"""Radau IIA, order 5 (Hairer and Wanner, Solving Ordinary Differential Equations II, table IV.5.6)."""
 
 
 class Parameters(NamedTuple):
@@ -140,7 +144,7 @@ def joined(moving: Integers, slopes: Slopes) -> Integers:
     found, n = np.empty(size, dtype=np.int64), 0
     for i in range(size):
         begins = False
-        for b in range(COUNT):
+        for b in range(3):
             if not known[i] and not begins:
                 begins = not_zero(slopes.f_p[b, i])
                 for j in moving:
@@ -155,12 +159,12 @@ def joined(moving: Integers, slopes: Slopes) -> Integers:
 def radau_matrix(h: float, f_y: Array, moving: Integers, matrix: Array) -> None:
     """1 - h (RADAU x f_y) of the moving states."""
     m = moving.size
-    for a in range(COUNT):
-        for b in range(COUNT):
+    for a in range(3):
+        for b in range(3):
             for i in range(m):
                 for j in range(m):
                     matrix[a * m + i, b * m + j] = -h * RADAU[a, b] * f_y[b, moving[i], moving[j]]
-    for i in range(COUNT * m):
+    for i in range(3 * m):
         matrix[i, i] += 1.0
 
 
@@ -168,12 +172,12 @@ def radau_matrix(h: float, f_y: Array, moving: Integers, matrix: Array) -> None:
 def radau_stages(
     h: float, k: int, s: Array, f_p: Array, moving: Integers, lu: Array, pivots: Integers, u: Array
 ) -> None:
-    """Sensitivities ``u`` of the moving states at the nodes to parameter ``k``."""
+    """Sensitivities ``u`` of the moving states at the three nodes to parameter ``k``."""
     m = moving.size
-    for a in range(COUNT):
+    for a in range(3):
         for i in range(m):
             total = s[moving[i], k]
-            for b in range(COUNT):
+            for b in range(3):
                 total += h * RADAU[a, b] * f_p[b, moving[i], k]
             u[a * m + i] = total
     substitute(lu, pivots, u)
@@ -183,16 +187,16 @@ def radau_stages(
 def spread(h: float, k: int, s: Array, slopes: Slopes, moving: Integers, u: Array, states: Array) -> None:
     """The stages of parameter ``k`` into ``states`` (nodes, states, parameters); the impulse is a quadrature."""
     m = moving.size
-    for a in range(COUNT):
+    for a in range(3):
         for i in range(s.shape[0]):
             states[a + 1, i, k] = s[i, k]
         for i in range(m):
             states[a + 1, moving[i], k] = u[a * m + i]
-    for b in range(COUNT):
+    for b in range(3):
         rate = slopes.f_p[b, IMPULSE, k]
         for j in range(m):
             rate += slopes.f_y[b, IMPULSE, moving[j]] * u[b * m + j]
-        for a in range(COUNT):
+        for a in range(3):
             states[a + 1, IMPULSE, k] += h * RADAU[a, b] * rate
 
 
@@ -216,13 +220,10 @@ def at_node(slopes: Slopes, node: int) -> Slopes:
 
 @inner
 def empty_slopes(size: int, number: int) -> Slopes:
-    """Room for the slopes at NODES and at the start of a step."""
+    """Room for the slopes at four points: NODES, and the start of a step."""
     outs = len(OUTPUTS)
     return Slopes(
-        np.zeros((COUNT + 1, size, size)),
-        np.zeros((COUNT + 1, size, number)),
-        np.zeros((COUNT + 1, outs, size)),
-        np.zeros((COUNT + 1, outs, number)),
+        np.zeros((4, size, size)), np.zeros((4, size, number)), np.zeros((4, outs, size)), np.zeros((4, outs, number))
     )
 
 
@@ -244,8 +245,8 @@ def linearize_step(
     liquid, burning = run.phases[n, 0] == 1, run.phases[n, 1] == 1
     if n == 0 or run.events[n - 1] >= 0:
         interpolate(INSIDE, run.begin[n], run.end[n], run.dense[n], y)
-        linearize(t + INSIDE * h, y, liquid, burning, m, p, moving, at_node(slopes, COUNT), spare)
-    for k in range(COUNT):
+        linearize(t + INSIDE * h, y, liquid, burning, m, p, moving, at_node(slopes, 3), spare)
+    for k in range(3):
         theta = min(NODES[k], 1.0 - INSIDE if run.events[n] >= 0 else 1.0)
         interpolate(theta, run.begin[n], run.end[n], run.dense[n], y)
         linearize(t + theta * h, y, liquid, burning, m, p, moving, at_node(slopes, k), spare)
@@ -255,16 +256,16 @@ def linearize_step(
 def propagate(
     run: History, m: Equations, shifted: Array, steps: Array, acting: Array, scales: Array, start: Array
 ) -> tuple[Array, Array, Array]:
-    """Sensitivities at three nodes of every step (its start and NODES) and of the event times.
+    """Sensitivities at four nodes of every step (its start and NODES) and of the event times.
 
     ``shifted``, ``steps`` and ``acting`` as in Parameters, ``start`` (states, parameters) the sensitivities of the
     initial state. States that no parameter moves (no nitrogen, no cold gas yet) take no part; one that begins to move
     within a step is found by its slopes, and the step is taken anew with it.
-    Returns those of the states (n, 3, states, parameters), of the outputs (n, 3, outputs, parameters), and of the time
+    Returns those of the states (n, 4, states, parameters), of the outputs (n, 4, outputs, parameters), and of the time
     of the event at each step's end (n, parameters; 0 without one).
     """
     count, size, number, outs = run.times.shape[0], run.begin.shape[1], steps.size, len(OUTPUTS)
-    states, outputs = np.zeros((count, COUNT + 1, size, number)), np.zeros((count, COUNT + 1, outs, number))
+    states, outputs = np.zeros((count, 4, size, number)), np.zeros((count, 4, outs, number))
     moments = np.zeros((count, number))
     p, slopes = Parameters(shifted, steps, acting, scales), empty_slopes(size, number)
     spare = Spare(np.zeros(size), np.zeros(outs), np.zeros(size), np.zeros(outs))
@@ -272,7 +273,7 @@ def propagate(
     for n in range(count):
         h = run.times[n, 1] - run.times[n, 0]
         if n > 0:
-            copy_slopes(slopes, COUNT - 1, COUNT)
+            copy_slopes(slopes, 2, 3)
         moving = moving_states(s)
         linearize_step(n, run, y, m, p, moving, slopes, spare)
         more = joined(moving, slopes)
@@ -282,18 +283,18 @@ def propagate(
             more = joined(moving, slopes)
         if moving.size != old:
             old = moving.size
-            matrix, pivots = np.zeros((COUNT * old, COUNT * old)), np.zeros(COUNT * old, dtype=np.int64)
-            stage = np.zeros(COUNT * old)
+            matrix, pivots = np.zeros((3 * old, 3 * old)), np.zeros(3 * old, dtype=np.int64)
+            stage = np.zeros(3 * old)
         radau_matrix(h, slopes.f_y, moving, matrix)
         factorize(matrix, pivots)
         copy(s, states[n, 0], s.size)
-        outputs_of(s, moving, slopes.out_y[COUNT], slopes.out_p[COUNT], outputs[n, 0])
+        outputs_of(s, moving, slopes.out_y[3], slopes.out_p[3], outputs[n, 0])
         for k in range(number):
             radau_stages(h, k, s, slopes.f_p, moving, matrix, pivots, stage)
             spread(h, k, s, slopes, moving, stage, states[n])
-        for a in range(COUNT):
+        for a in range(3):
             outputs_of(states[n, a + 1], moving, slopes.out_y[a], slopes.out_p[a], outputs[n, a + 1])
-        copy(states[n, COUNT], s, s.size)
+        copy(states[n, 3], s, s.size)
         if run.events[n] >= 0:
             through_event(n, run, m, p, spare, s, moments[n])
     return states, outputs, moments
@@ -377,25 +378,25 @@ def follow(event: int, m: Equations, p: Parameters, k: int, y: Array, s: Array, 
 
 @compiled
 def at_times(at: Array, times: Array, values: Array) -> Array:
-    """Sensitivities (times, rows, parameters) at increasing times: parabolas through each step's three nodes."""
+    """Sensitivities (times, rows, parameters) at increasing times: cubics through each step's four nodes."""
     out = np.empty((at.size, values.shape[2], values.shape[3]))
-    nodes = np.array([0.0, NODES[0], NODES[1]])
+    nodes = np.array([0.0, NODES[0], NODES[1], NODES[2]])
     k, last = 0, times.shape[0] - 1
-    weights = np.empty(COUNT + 1)
+    weights = np.empty(4)
     for i in range(at.size):
         while k < last and at[i] > times[k, 1]:
             k += 1
         t = min(max(at[i], times[0, 0]), times[last, 1])
         theta = (t - times[k, 0]) / (times[k, 1] - times[k, 0])
-        for a in range(COUNT + 1):
+        for a in range(4):
             weights[a] = 1.0
-            for b in range(COUNT + 1):
+            for b in range(4):
                 if a != b:
                     weights[a] *= (theta - nodes[b]) / (nodes[a] - nodes[b])
         for r in range(values.shape[2]):
             for p in range(values.shape[3]):
                 total = 0.0
-                for a in range(COUNT + 1):
+                for a in range(4):
                     total += weights[a] * values[k, a, r, p]
                 out[i, r, p] = total
     return out

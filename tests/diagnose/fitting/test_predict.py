@@ -128,7 +128,8 @@ def test_a_step_goes_downhill_within_bounds(seed: int, damping: float, room: flo
     slopes[:, 1] = slopes[:, 0] + 1e-2 * slopes[:, 1]
     residual, x = rng.normal(size=12) * 10.0 ** rng.uniform(0.0, 2.0), rng.uniform(-1.0, 1.0, 5)
     least, most = np.minimum(x, -room * rng.uniform(size=5)), np.maximum(x, room * rng.uniform(size=5))
-    step = bounded_step(slopes, residual, x, least, most, damping)
+    gradient, curvature = slopes.T @ residual + x, slopes.T @ slopes + np.eye(5)
+    step = bounded_step(gradient, curvature, x, least, most, damping)
     assert ((x + step >= least - 1e-12) & (x + step <= most + 1e-12)).all()
 
     def objective(at: Array) -> float:
@@ -136,12 +137,20 @@ def test_a_step_goes_downhill_within_bounds(seed: int, damping: float, room: flo
         return 0.5 * float(left @ left + at @ at)
 
     assert objective(x + step) <= objective(x) * (1.0 + 1e-12)
-    free = objective(x - np.linalg.solve(slopes.T @ slopes + np.eye(5), slopes.T @ residual + x))
+    free = objective(x - np.linalg.solve(curvature, gradient))
     inside = ((x + step > least + 1e-9) & (x + step < most - 1e-9)).all() and np.abs(
         step
     ).max() < 0.999 * LONGEST_STRIDE
     if damping == 0.0 and inside:
         assert objective(x + step) == pytest.approx(free, rel=1e-6)
+
+
+def test_a_parameter_that_the_data_do_not_tell_does_not_hold_the_others_back() -> None:
+    """It would move 50 deviations; the others go as far as they want to beside where it stays."""
+    gradient, curvature = np.array([-30.0, -50.0]), np.array([[100.0, 1.0], [1.0, 1.02]])
+    step = bounded_step(gradient, curvature, np.zeros(2), np.full(2, -np.inf), np.full(2, np.inf), 0.0)
+    assert step[1] == LONGEST_STRIDE
+    assert curvature[0] @ step == pytest.approx(-gradient[0])
 
 
 def test_what_the_model_says_after_the_flow_is_ambient_pressure_and_no_thrust() -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from tests.engine.stand import engine_on_stand
 from hfanalysis.diagnose.answer.limits import inserted, limits
 from hfanalysis.diagnose.answer.verdict import of_unknown, places, verdict_of
 from hfanalysis.diagnose.answer.words import place_sentence
-from hfanalysis.diagnose.fitting.fit import fit, promised
+from hfanalysis.diagnose.fitting.fit import Fit, fit, promised
 from hfanalysis.diagnose.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, mid_flux
 from hfanalysis.diagnose.fitting.late import late
@@ -508,3 +510,17 @@ def test_a_source_that_a_coarse_form_hides_is_found_at_the_next_finer_one() -> N
     found = unknown_sources(coarse, [], coarse, bench)
     assert found[0].names[0] in ("tank_heat", "nitrogen_inflow", "tank_leak", "tank_pressure")
     assert found[0].form == FINEST
+
+
+def test_fits_are_followed_where_they_went_astray_and_nowhere_else() -> None:
+    """A start whose fit ends below its parent; all of them where none brings half of what was promised."""
+
+    def ended(objective: float) -> Fit:
+        return cast(Fit, SimpleNamespace(objective=objective))
+
+    parent, (a, b) = ended(100.0), (np.zeros(1), np.ones(1))
+    assert singles._led_astray(parent, [(8.0, a), (1.0, b)], [ended(95.0), ended(97.0)]) == []
+    assert singles._led_astray(parent, [(8.0, a), (1.0, b)], [ended(95.0), ended(250.0)]) == [b]
+    assert singles._led_astray(parent, [(8.0, a), (1.0, b)], [ended(95.0), None]) == [b]
+    assert singles._led_astray(parent, [(90.0, a), (1.0, b)], [ended(95.0), ended(97.0)]) == [a]
+    assert singles._led_astray(parent, [(0.0, a)], [ended(100.0)]) == []

@@ -105,7 +105,7 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
         free = np.where(gradient > 0.0, x > least, x < highest)
         for _ in range(TRIALS):
             damping = damping_within(curvature, gradient, free, radius)
-            step = bounded_step(here.slopes, here.residual, x, least, highest, damping)
+            step = bounded_step(gradient, curvature, x, least, highest, damping)
             expected = _expected(here, x, step)
             trial = _try(hypothesis, observed, x + step)
             part = np.nan if trial is None else (before - _objective(trial, x + step)) / max(expected, 1e-300)
@@ -172,15 +172,14 @@ def promised(found: Fit, observed: Observed, other: Observed, slack: Array | Non
     return log_evidence(residual + slopes @ step, slopes, x + step, other, found.hypothesis)
 
 
-def bounded_step(slopes: Array, residual: Array, x: Array, least: Array, most: Array, damping: float) -> Array:
-    """A damped Gauss-Newton step (parameters,) from ``x`` that stays within bounds, with no parameter farther than
+def bounded_step(gradient: Array, curvature: Array, x: Array, least: Array, most: Array, damping: float) -> Array:
+    """A damped Gauss-Newton step (parameters,) from ``x`` that stays within bounds, no parameter farther than
     LONGEST_STRIDE.
 
-    Whatever reaches a bound on the way stays there, and the others go on without it: all the way it is downhill.
+    Of the objective's gradient (parameters,) and curvature (parameters, parameters) there. Whatever reaches a bound on
+    the way stays there, and the others go on without it: all the way it is downhill.
     """
     least, most = np.maximum(least, x - LONGEST_STRIDE), np.minimum(most, x + LONGEST_STRIDE)
-    gradient = slopes.T @ residual + x
-    curvature = slopes.T @ slopes + np.eye(x.size)
     curvature = curvature + damping * np.diag(curvature.diagonal())
     free, step = np.ones(x.size, dtype=bool), np.zeros(x.size)
     while free.any():

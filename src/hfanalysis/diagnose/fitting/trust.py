@@ -49,13 +49,13 @@ def length_of(step: Array, curvature: Array) -> float:
 
 
 def shrunk(length: float, part: float) -> float:
-    """The region after a step of that length that brought only a ``part`` of what its slopes promised (NaN: none)."""
+    """The region after a step of that length that brought only a ``part`` of what its slopes promised (NaN: no run)."""
     least, most = SHRINKAGE
-    return length * (least if np.isnan(part) else min(max(1.0 / max(2.0 - part, 1.0), least), most))
+    return length * (least if np.isnan(part) else min(max(1.0 / (2.0 - part), least), most))
 
 
 def grown(radius: float, length: float, part: float) -> float:
     """The region after a step that was taken."""
     if part > GOOD:
-        return max(radius, GROWTH * length) if radius < np.inf else radius
+        return max(radius, GROWTH * length)
     return SHRINKAGE[1] * length if part < POOR else radius
