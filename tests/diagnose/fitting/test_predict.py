@@ -11,7 +11,7 @@ from hypothesis import strategies as some
 from tests.diagnose import made
 from tests.engine.stand import engine_on_stand
 
-from hfanalysis.diagnose.fitting.fit import LONGEST_STRIDE, Array, bounded_step, fit
+from hfanalysis.diagnose.fitting.fit import fit
 from hfanalysis.diagnose.fitting.hypothesis import FARTHEST, M_RANGE, Free, Hypothesis, free_parameters
 from hfanalysis.diagnose.fitting.predict import predict, readings, signatures
 from hfanalysis.diagnose.fitting.probe import Splines, probe
@@ -118,39 +118,6 @@ def test_bounds_are_kept() -> None:
     least, most = made.hypothesis().bounds
     assert ((found.x >= least) & (found.x <= most)).all()
     assert found.x[at] == pytest.approx(-M_RANGE)
-
-
-@given(seed=some.integers(0, 2**31), damping=some.sampled_from((0.0, 1e-3, 1.0)), room=some.floats(0.05, 3.0))
-def test_a_step_goes_downhill_within_bounds(seed: int, damping: float, room: float) -> None:
-    """Also where parameters do nearly the same, and the best point of all lies far beyond what several may be."""
-    rng = np.random.default_rng(seed)
-    slopes = rng.normal(size=(12, 5)) * 10.0 ** rng.uniform(-1.0, 2.0, 5)
-    slopes[:, 1] = slopes[:, 0] + 1e-2 * slopes[:, 1]
-    residual, x = rng.normal(size=12) * 10.0 ** rng.uniform(0.0, 2.0), rng.uniform(-1.0, 1.0, 5)
-    least, most = np.minimum(x, -room * rng.uniform(size=5)), np.maximum(x, room * rng.uniform(size=5))
-    gradient, curvature = slopes.T @ residual + x, slopes.T @ slopes + np.eye(5)
-    step = bounded_step(gradient, curvature, x, least, most, damping)
-    assert ((x + step >= least - 1e-12) & (x + step <= most + 1e-12)).all()
-
-    def objective(at: Array) -> float:
-        left = residual + slopes @ (at - x)
-        return 0.5 * float(left @ left + at @ at)
-
-    assert objective(x + step) <= objective(x) * (1.0 + 1e-12)
-    free = objective(x - np.linalg.solve(curvature, gradient))
-    inside = ((x + step > least + 1e-9) & (x + step < most - 1e-9)).all() and np.abs(
-        step
-    ).max() < 0.999 * LONGEST_STRIDE
-    if damping == 0.0 and inside:
-        assert objective(x + step) == pytest.approx(free, rel=1e-6)
-
-
-def test_a_parameter_that_the_data_do_not_tell_does_not_hold_the_others_back() -> None:
-    """It would move 50 deviations; the others go as far as they want to beside where it stays."""
-    gradient, curvature = np.array([-30.0, -50.0]), np.array([[100.0, 1.0], [1.0, 1.02]])
-    step = bounded_step(gradient, curvature, np.zeros(2), np.full(2, -np.inf), np.full(2, np.inf), 0.0)
-    assert step[1] == LONGEST_STRIDE
-    assert curvature[0] @ step == pytest.approx(-gradient[0])
 
 
 def test_what_the_model_says_after_the_flow_is_ambient_pressure_and_no_thrust() -> None:

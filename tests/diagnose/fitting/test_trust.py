@@ -14,34 +14,74 @@ from tests.diagnose import made
 from hfanalysis.diagnose.fitting import fit as fits
 from hfanalysis.diagnose.fitting.fit import CONVERGED, fit
 from hfanalysis.diagnose.fitting.predict import Prediction, predict
-from hfanalysis.diagnose.fitting.trust import LEAST_DAMPING, damping_within, grown, length_of, shrunk
+from hfanalysis.diagnose.fitting.trust import (
+    LEAST_DAMPING,
+    LONGEST_STRIDE,
+    bounded_step,
+    box_about,
+    grown,
+    length_of,
+    shrunk,
+    step_within,
+)
 
 Array = NDArray[np.float64]
 
 SEEDS = some.integers(0, 2**31)
 
 
-@given(seed=SEEDS, part=some.floats(0.01, 2.0))
-def test_a_damped_step_is_as_long_as_the_region_is_wide(seed: int, part: float) -> None:
-    """Whatever units parameters have; a step that is inside as it is, is not damped."""
+@given(seed=SEEDS, damping=some.sampled_from((0.0, 1e-3, 1.0)), room=some.floats(0.05, 3.0))
+def test_a_step_goes_downhill_within_bounds(seed: int, damping: float, room: float) -> None:
+    """Also where parameters do nearly the same, and the best point of all lies far beyond what several may be."""
+    slopes, residual, x, box = valley(seed, room)
+    gradient, curvature = slopes.T @ residual + x, slopes.T @ slopes + np.eye(5)
+    step = bounded_step(gradient, curvature, box, damping)
+    assert ((step >= box[0] - 1e-12) & (step <= box[1] + 1e-12)).all()
+
+    def objective(at: Array) -> float:
+        left = residual + slopes @ (at - x)
+        return 0.5 * float(left @ left + at @ at)
+
+    assert objective(x + step) <= objective(x) * (1.0 + 1e-12)
+    pull = gradient + (curvature + damping * np.diag(curvature.diagonal())) @ step
+    at_rest = 1e-6 * np.abs(gradient).max()
+    assert (pull[step > box[0] + 1e-9] < at_rest).all()  # what is not at its least does not want down
+    assert (pull[step < box[1] - 1e-9] > -at_rest).all()
+    if damping == 0.0 and ((step > box[0] + 1e-9) & (step < box[1] - 1e-9)).all():
+        assert objective(x + step) == pytest.approx(objective(x - np.linalg.solve(curvature, gradient)), rel=1e-6)
+
+
+def test_a_parameter_that_the_data_do_not_tell_does_not_hold_the_others_back() -> None:
+    """It would move 50 deviations; the others go as far as they want to beside where it stays."""
+    gradient, curvature = np.array([-30.0, -50.0]), np.array([[100.0, 1.0], [1.0, 1.02]])
+    step = bounded_step(gradient, curvature, box_about(np.zeros(2), np.full(2, -np.inf), np.full(2, np.inf)), 0.0)
+    assert step[1] == LONGEST_STRIDE
+    assert curvature[0] @ step == pytest.approx(-gradient[0])
+
+
+@given(seed=SEEDS, part=some.floats(0.01, 2.0), room=some.floats(0.05, 3.0))
+def test_a_damped_step_is_as_long_as_the_region_is_wide(seed: int, part: float, room: float) -> None:
+    """Whatever units parameters have, and also where some of them rest at their bounds and the others go farther for
+    it; a step that is inside as it is, is not damped."""
+    slopes, residual, x, box = valley(seed, room)
+    gradient, curvature = slopes.T @ residual + x, slopes.T @ slopes + np.eye(5)
+    whole = bounded_step(gradient, curvature, box, LEAST_DAMPING)
+    radius = part * length_of(whole, curvature)
+    step = step_within(radius, gradient, curvature, box)
+    if part >= 1.0:
+        assert (step == whole).all()
+    else:
+        assert 0.9 * radius < length_of(step, curvature) <= radius
+
+
+def valley(seed: int, room: float) -> tuple[Array, Array, Array, tuple[Array, Array]]:
+    """Slopes (12, 5) and a residual (12,) at ``x`` (5,), and the box about it."""
     rng = np.random.default_rng(seed)
     slopes = rng.normal(size=(12, 5)) * 10.0 ** rng.uniform(-1.0, 2.0, 5)
     slopes[:, 1] = slopes[:, 0] + 1e-2 * slopes[:, 1]
-    curvature, gradient = slopes.T @ slopes + np.eye(5), 10.0 * rng.normal(size=5)
-    free = rng.uniform(size=5) < 0.8
-
-    def step(damping: float) -> Array:
-        damped = curvature + damping * np.diag(curvature.diagonal())
-        out = np.zeros(5)
-        out[free] = -np.linalg.solve(damped[np.ix_(free, free)], gradient[free])
-        return out
-
-    whole = length_of(step(0.0), curvature)
-    damping = damping_within(curvature, gradient, free, part * whole)
-    if part > 1.01 or not free.any():
-        assert damping == LEAST_DAMPING
-    else:
-        assert length_of(step(damping), curvature) == pytest.approx(min(part, 1.0) * whole, rel=0.02)
+    residual, x = rng.normal(size=12) * 10.0 ** rng.uniform(0.0, 2.0), rng.uniform(-1.0, 1.0, 5)
+    least, most = np.minimum(x, -room * rng.uniform(size=5)), np.maximum(x, room * rng.uniform(size=5))
+    return slopes, residual, x, box_about(x, least, most)
 
 
 @given(length=some.floats(1e-3, 1e3), part=some.floats(-1e6, 0.1))

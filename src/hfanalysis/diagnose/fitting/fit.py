@@ -14,7 +14,7 @@ from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.fitting.noise_level import louder_or_quieter
 from hfanalysis.diagnose.fitting.predict import Prediction, predict, with_slopes
 from hfanalysis.diagnose.fitting.size import of_any_size
-from hfanalysis.diagnose.fitting.trust import damping_within, grown, length_of, shrunk
+from hfanalysis.diagnose.fitting.trust import box_about, grown, length_of, shrunk, step_within
 from hfanalysis.diagnose.observations.observed import Observed
 from hfanalysis.engine.unsteady import Burn
 
@@ -30,11 +30,8 @@ STEEPEST = 1e8
 TRUST = 0.1
 """Part of what the slopes promise of a step that it must bring: a step that brings less leads along a wrong valley."""
 
-TRIALS = 8
+TRIALS = 12
 """Steps that are tried from one point, each shorter than the last."""
-
-LONGEST_STRIDE = 2.0
-"""Standard deviations of its prior that a parameter moves at a time."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +91,6 @@ def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATI
 
 def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Prediction, most: int) -> Fit:
     """From ``x``, where the prediction is ``here``."""
-    least, highest = hypothesis.bounds
     if not usable(here):
         raise ArithmeticError("the model has no slopes where its fit starts")
     radius, done = np.inf, False
@@ -102,10 +98,9 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
         assert here.slopes is not None
         before, moved = _objective(here, x), None
         gradient, curvature = here.slopes.T @ here.residual + x, here.slopes.T @ here.slopes + np.eye(x.size)
-        free = np.where(gradient > 0.0, x > least, x < highest)
+        box = box_about(x, *hypothesis.bounds)
         for _ in range(TRIALS):
-            damping = damping_within(curvature, gradient, free, radius)
-            step = bounded_step(gradient, curvature, x, least, highest, damping)
+            step = step_within(radius, gradient, curvature, box)
             expected = _expected(here, x, step)
             trial = _try(hypothesis, observed, x + step)
             part = np.nan if trial is None else (before - _objective(trial, x + step)) / max(expected, 1e-300)
@@ -170,29 +165,6 @@ def promised(found: Fit, observed: Observed, other: Observed, slack: Array | Non
         slopes, x = np.hstack([slopes, columns]), np.concatenate([x, np.zeros(slack.shape[1])])
     step = -np.linalg.solve(slopes.T @ slopes + np.eye(x.size), slopes.T @ residual + x)
     return log_evidence(residual + slopes @ step, slopes, x + step, other, found.hypothesis)
-
-
-def bounded_step(gradient: Array, curvature: Array, x: Array, least: Array, most: Array, damping: float) -> Array:
-    """A damped Gauss-Newton step (parameters,) from ``x`` that stays within bounds, no parameter farther than
-    LONGEST_STRIDE.
-
-    Of the objective's gradient (parameters,) and curvature (parameters, parameters) there. Whatever reaches a bound on
-    the way stays there, and the others go on without it: all the way it is downhill.
-    """
-    least, most = np.maximum(least, x - LONGEST_STRIDE), np.minimum(most, x + LONGEST_STRIDE)
-    curvature = curvature + damping * np.diag(curvature.diagonal())
-    free, step = np.ones(x.size, dtype=bool), np.zeros(x.size)
-    while free.any():
-        onward = np.zeros(x.size)
-        pull = gradient[free] + curvature[free] @ step
-        onward[free] = -np.linalg.solve(curvature[np.ix_(free, free)], pull)
-        room = np.where(onward > 0.0, most, least) - x - step
-        part = np.divide(room, onward, out=np.full(x.size, np.inf), where=onward != 0.0)
-        step += min(1.0, max(float(part.min()), 0.0)) * onward
-        if part.min() >= 1.0:
-            break
-        free &= part > part.min()
-    return np.asarray(np.clip(x + step, least, most) - x)
 
 
 def _expected(here: Prediction, x: Array, step: Array) -> float:

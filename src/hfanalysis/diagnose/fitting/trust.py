@@ -13,8 +13,15 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-LEAST_DAMPING = 1e-9
-DAMPINGS = np.geomspace(LEAST_DAMPING, 1e6, 91)
+LONGEST_STRIDE = 2.0
+"""Standard deviations of its prior that a parameter moves at a time."""
+
+LEAST_DAMPING, MOST_DAMPING = 1e-9, 1e6
+HALVINGS = 12
+"""Of the logarithm of damping, to find the least that will do."""
+
+MOST_CHANGES, AT_REST = 4, 1e-9
+"""Changes of what is free in a step, for each parameter, and the part of the steepest slope that moves nothing."""
 
 GOOD, POOR = 0.75, 0.25
 """Parts of what the slopes promised of a step: from the one on the region grows, and below the other it shrinks."""
@@ -26,21 +33,60 @@ SHRINKAGE = 0.1, 0.5
 """The least and the greatest part of a step's length that the region shrinks to."""
 
 
-def damping_within(curvature: Array, gradient: Array, free: NDArray[np.bool_], radius: float) -> float:
-    """The least damping whose step stays within ``radius``, with the parameters that are not ``free`` at rest.
+def box_about(x: Array, least: Array, most: Array) -> tuple[Array, Array]:
+    """The least and the greatest step from ``x`` that keeps bounds, no parameter farther than LONGEST_STRIDE."""
+    return np.maximum(least - x, -LONGEST_STRIDE), np.minimum(most - x, LONGEST_STRIDE)
 
-    Of a curvature (parameters, parameters) and a gradient (parameters,); damping is relative to the curvature's
-    diagonal.
+
+def step_within(radius: float, gradient: Array, curvature: Array, box: tuple[Array, Array]) -> Array:
+    """The step (parameters,) of least damping that is no longer than ``radius`` and stays in its ``box``.
+
+    Of an objective's gradient (parameters,) and curvature (parameters, parameters), and of the least and the greatest
+    step of every parameter (parameters,). Damping is relative to the curvature's diagonal. It is the step in its box
+    that is measured: where some parameters come to rest at their bounds, the others may go the farther for it.
     """
-    if not free.any() or radius == np.inf:
-        return LEAST_DAMPING
-    units = np.sqrt(curvature.diagonal()[free])
-    values, vectors = np.linalg.eigh(curvature[np.ix_(free, free)] / np.outer(units, units))
-    pull = vectors.T @ (gradient[free] / units)
-    lengths = np.linalg.norm(pull / (np.maximum(values, 0.0) + DAMPINGS[:, np.newaxis]), axis=1)
-    if lengths[0] <= radius:
-        return LEAST_DAMPING
-    return float(np.exp(np.interp(-np.log(radius), -np.log(lengths), np.log(DAMPINGS))))
+    step = bounded_step(gradient, curvature, box, LEAST_DAMPING)
+    if length_of(step, curvature) <= radius:
+        return step
+    low, high = np.log(LEAST_DAMPING), np.log(MOST_DAMPING)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        tried = bounded_step(gradient, curvature, box, float(np.exp(middle)))
+        if length_of(tried, curvature) > radius:
+            low = middle
+        else:
+            high, step = middle, tried
+    return step
+
+
+def bounded_step(gradient: Array, curvature: Array, box: tuple[Array, Array], damping: float) -> Array:
+    """The damped Gauss-Newton step (parameters,) in its box: the lowest point there of the damped parabola.
+
+    By active sets: whatever reaches a side on the way stays there and the others go on without it; once they are at
+    rest, what is drawn back inside most is set free again. All the way it is downhill.
+    """
+    least, most = box
+    curvature = curvature + damping * np.diag(curvature.diagonal())
+    units = np.sqrt(curvature.diagonal())
+    free, step = np.ones(gradient.size, dtype=bool), np.zeros(gradient.size)
+    for _ in range(MOST_CHANGES * gradient.size):
+        if free.any():
+            onward = np.zeros(gradient.size)
+            pull = gradient[free] + curvature[free] @ step
+            onward[free] = -np.linalg.solve(curvature[np.ix_(free, free)], pull)
+            room = np.where(onward > 0.0, most, least) - step
+            part = np.divide(room, onward, out=np.full(step.size, np.inf), where=onward != 0.0)
+            step += min(1.0, max(float(part.min()), 0.0)) * onward
+            if part.min() < 1.0:
+                free &= part > part.min()
+                continue
+        slope = (gradient + curvature @ step) / units
+        inward = np.where(free | (least == most), 0.0, np.where(step - least < most - step, -slope, slope))
+        back = int(np.argmax(inward))
+        if inward[back] <= AT_REST * float(np.abs(gradient / units).max()):
+            break
+        free[back] = True
+    return np.asarray(np.clip(step, least, most))
 
 
 def length_of(step: Array, curvature: Array) -> float:
