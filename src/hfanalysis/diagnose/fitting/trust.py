@@ -65,28 +65,46 @@ def bounded_step(gradient: Array, curvature: Array, box: tuple[Array, Array], da
     By active sets: whatever reaches a side on the way stays there and the others go on without it; once they are at
     rest, what is drawn back inside most is set free again. All the way it is downhill.
     """
-    least, most = box
     curvature = curvature + damping * np.diag(curvature.diagonal())
-    units = np.sqrt(curvature.diagonal())
     free, step = np.ones(gradient.size, dtype=bool), np.zeros(gradient.size)
     for _ in range(MOST_CHANGES * gradient.size):
         if free.any():
-            onward = np.zeros(gradient.size)
-            pull = gradient[free] + curvature[free] @ step
-            onward[free] = -np.linalg.solve(curvature[np.ix_(free, free)], pull)
-            room = np.where(onward > 0.0, most, least) - step
-            part = np.divide(room, onward, out=np.full(step.size, np.inf), where=onward != 0.0)
-            step += min(1.0, max(float(part.min()), 0.0)) * onward
+            part = _go_on(step, free, gradient, curvature, box)
             if part.min() < 1.0:
                 free &= part > part.min()
                 continue
-        slope = (gradient + curvature @ step) / units
-        inward = np.where(free | (least == most), 0.0, np.where(step - least < most - step, -slope, slope))
-        back = int(np.argmax(inward))
-        if inward[back] <= AT_REST * float(np.abs(gradient / units).max()):
+        back = _drawn_back(step, free, gradient, curvature, box)
+        if back is None:
             break
         free[back] = True
-    return np.asarray(np.clip(step, least, most))
+    return np.asarray(np.clip(step, *box))
+
+
+def _go_on(step: Array, free: NDArray[np.bool_], gradient: Array, curvature: Array, box: tuple[Array, Array]) -> Array:
+    """Lengthen a step, in place, by what is free of it: to the lowest point, or to the first side of the box.
+
+    Returns the parts of the way (parameters,) after which each comes to its side.
+    """
+    least, most = box
+    onward = np.zeros(gradient.size)
+    pull = gradient[free] + curvature[free] @ step
+    onward[free] = -np.linalg.solve(curvature[np.ix_(free, free)], pull)
+    room = np.where(onward > 0.0, most, least) - step
+    part = np.divide(room, onward, out=np.full(step.size, np.inf), where=onward != 0.0)
+    step += min(1.0, max(float(part.min()), 0.0)) * onward
+    return np.asarray(part)
+
+
+def _drawn_back(
+    step: Array, free: NDArray[np.bool_], gradient: Array, curvature: Array, box: tuple[Array, Array]
+) -> int | None:
+    """Which parameter at a side of the box is drawn back inside most, None if none is."""
+    least, most = box
+    units = np.sqrt(curvature.diagonal())
+    slope = (gradient + curvature @ step) / units
+    inward = np.where(free | (least == most), 0.0, np.where(step - least < most - step, -slope, slope))
+    back = int(np.argmax(inward))
+    return back if inward[back] > AT_REST * float(np.abs(gradient / units).max()) else None
 
 
 def length_of(step: Array, curvature: Array) -> float:
