@@ -38,7 +38,8 @@ TRIALS = 12
 class Fit:
     """The most probable ``x`` of a hypothesis, its covariance, the whitened residual there and the log evidence.
 
-    The evidence is a density, in units that do not depend on the hypothesis or on the model-form error.
+    The evidence is a density, in units that do not depend on the hypothesis or on the model-form error. ``converged``:
+    going on would bring nothing, for the slopes promise nothing or no step along them that was tried is better.
     """
 
     hypothesis: Hypothesis
