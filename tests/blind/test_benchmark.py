@@ -217,6 +217,18 @@ def test_a_variant_stands_beside_the_full_method_on_the_same_cases(made: Callabl
     assert (cells[2], cells[3], cells[4], cells[6]) == ("1.000", "0.250", "+0.750", "8")
 
 
+def test_a_variant_is_compared_by_means_and_medians_but_not_in_time(made: Callable[..., Folder]) -> None:
+    full = made([("tank_heat", product("tank_heat"))] * 4)
+    made([("tank_heat", {**product("tank_heat"), "set90": ["tank_heat", "none", "unknown"]})]
+         + [("tank_heat", product("tank_heat"))] * 3, variant="blind")  # fmt: skip
+    text, _ = document(results(full, "calibration"), "calibration", None)
+    assert "one diagnosis [s]" in text.split("## Variant")[0]
+    table = text.split("## Variant")[1].split("## ")[0]
+    assert "one diagnosis [s]" not in table
+    size = cells_of(next(x for x in table.splitlines() if x.startswith("| mean size")))
+    assert size[1:4] == ["1.000", "1.500", "-0.500"]
+
+
 def test_a_variant_of_another_version_of_the_code_is_not_compared(made: Callable[..., Folder]) -> None:
     full = made([("tank_heat", product("tank_heat"))] * 8)
     other = made([("tank_heat", product("n2_purge"))] * 8, variant="blind")
