@@ -327,24 +327,17 @@ def test_the_sample_of_the_readme_is_what_is_printed(products: dict[str, Any]) -
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     renewed, samples = readme.renewed(text, products["HF5"]["folder"].parents[1])
     assert samples == 1
-    for line, now in zip(text.splitlines(), renewed.splitlines(), strict=True):
-        old, new = (NUMBER.split(" ".join(x.split())) for x in (line, now))
-        assert old[::2] == new[::2], "the sample is of older code: `make readme` writes it anew"
-        share = SHARES.get(line.split(" ")[0], 0.0)
-        far = [(a, b) for a, b in zip(old[1::2], new[1::2], strict=True) if not _near(a, b, share)]
-        assert not far, "the sample is of older code: `make readme` writes it anew"
+    old, new = (NUMBER.split(" ".join(page.split())) for page in (text, renewed))
+    assert old[::2] == new[::2], "the sample is of older code: `make readme` writes it anew"
+    far = [(a, b) for a, b in zip(old[1::2], new[1::2], strict=True) if not _a_digit_apart(a, b)]
+    assert not far, "the sample is of older code: `make readme` writes it anew"
 
 
 NUMBER = re.compile(r"(\d+(?:\.\d+)?)")
-SHARES = {"regression_rate_reference": 0.004}
-"""Rows that differ by a share more from one processor to another. The flux at which the rate is stated is one of a grid
-of 1.8 %, the middle of those at which it is known next to best; at the next one the rate, which is known to 1.4 %, is
-another by 0.4 %."""
 
 
-def _near(one: str, other: str, share: float) -> bool:
-    """Whether two numbers are the same but for one in the last digit, and this share: one is how far the ends of a fit
-    are apart from one processor to another."""
+def _a_digit_apart(one: str, other: str) -> bool:
+    """Whether two numbers are the same but for one in the last digit: that much a fit's end differs by from one
+    processor to another."""
     places = {len(number.partition(".")[2]) for number in (one, other)}
-    apart = abs(float(one) - float(other))
-    return len(places) == 1 and apart < 1.5 * 10.0 ** -places.pop() + share * float(one)
+    return len(places) == 1 and abs(float(one) - float(other)) < 1.5 * 10.0 ** -places.pop()

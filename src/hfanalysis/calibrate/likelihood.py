@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from hfanalysis.quantity import NORMAL_95
+
 Array = NDArray[np.float64]
 Misfit = Callable[[Array], float]
 
@@ -129,6 +131,12 @@ class Surface:
         """95 % profile-likelihood interval of a linear combination of the parameters: the region's projection."""
         inside = self.points[self.rise <= self.threshold] @ weights
         return float(inside.min()), float(inside.max())
+
+    @property
+    def covariance(self) -> Array:
+        """Of the parameters (2, 2), by the likelihood over the grid: smooth in it, as no point at its edge is."""
+        likelihood = np.exp(-0.5 * NORMAL_95**2 * self.rise / self.threshold)
+        return np.cov(self.points.T, aweights=likelihood)
 
     @property
     def lowest(self) -> Array:

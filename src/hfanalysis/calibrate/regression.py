@@ -78,20 +78,14 @@ class Fitted:
 
     @property
     def reference_flux(self) -> float:
-        """The flux [kg/m^2/s] at which the rate is known best and does not depend on n."""
-        low, high = self._narrowest()
-        return float(np.sqrt(low * high))
-
-    def _narrowest(self) -> tuple[float, float]:
-        """Fluxes of the (first test's) burn between which the interval of ln r is within a twentieth of its least."""
+        """The flux [kg/m^2/s] of the (first test's) burn at which the rate is known best and does not depend on n."""
         first = self.evidence[0]
         burnt = first.burnt(self.law)
         flux = burnt.output("oxidizer_flow") / (pi * burnt.state("port_radius") ** 2)
-        least, most = np.quantile(flux[burnt.time > 0.1], (0.0, 1.0))
-        shifts = np.linspace(log(max(least, 0.05 * self.flux) / self.flux), log(most / self.flux), 201)
-        widths = np.array([np.ptp(self.surface.interval(np.array([1.0, s]))) for s in shifts])
-        near = shifts[widths <= 1.05 * widths.min()]
-        return self.flux * exp(float(near[0])), self.flux * exp(float(near[-1]))
+        burn = flux[burnt.time > 0.1]
+        covariance = self.surface.covariance
+        best = self.flux * exp(-covariance[0, 1] / covariance[1, 1])
+        return float(np.clip(best, max(burn.min(), 0.05 * self.flux), burn.max()))
 
 
 def law_at(point: Array, flux: float) -> Regression:

@@ -90,7 +90,8 @@ def _go_on(step: Array, free: NDArray[np.bool_], gradient: Array, curvature: Arr
     pull = gradient[free] + curvature[free] @ step
     onward[free] = -np.linalg.solve(curvature[np.ix_(free, free)], pull)
     room = np.where(onward > 0.0, most, least) - step
-    part = np.divide(room, onward, out=np.full(step.size, np.inf), where=onward != 0.0)
+    with np.errstate(over="ignore"):  # what hardly moves never comes to its side
+        part = np.divide(room, onward, out=np.full(step.size, np.inf), where=onward != 0.0)
     step += min(1.0, max(float(part.min()), 0.0)) * onward
     return np.asarray(part)
 
