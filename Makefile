@@ -96,7 +96,7 @@ recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 	$(BIN)/python benchmarks/recovery.py $(FLAGS)
 
 blind-cases: $(STAMP) ## tests with hidden effects under .cache/blind/; FLAGS='--n 20' (docs/blind.md)
-	$(BIN)/python -m tests.blind write --jobs 2 $(FLAGS)
+	$(BIN)/python -m simulated.blind write --jobs 2 $(FLAGS)
 
 # What is found is kept in FOUND, of which a run elsewhere goes on, or makes the page alone. 1 says that cases failed: the
 # page says which, so it is written all the same.

@@ -22,13 +22,13 @@ from time import perf_counter
 import numpy as np
 
 from hfanalysis.flight.ascent import NOMINAL, RESULTS, arguments, ascend, fly_all
-from hfanalysis.launch.firing import Firing, firing
-from hfanalysis.launch.uncertainty import disperse, rows
+from hfanalysis.measured_flight.firing import Firing, firing
+from hfanalysis.measured_flight.uncertainty import disperse, rows
+from hfanalysis.record.log import read_log
 from hfanalysis.segment.phases import Segments
 from hfanalysis.stages.base import Context
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
-from hfanalysis.testdata.log import read_log
 
 ROOT = Path(__file__).resolve().parent.parent
 

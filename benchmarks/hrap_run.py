@@ -20,7 +20,7 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from benchmarks.engines import HOLE_AREA, HOLES, hf5_like
+from simulated.engines import HOLE_AREA, HOLES, hf5_like
 
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.unsteady import Burn, Engine, burn

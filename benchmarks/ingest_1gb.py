@@ -77,8 +77,8 @@ def read_with_pandas(log: Path) -> float:
 
 def read_with_ingest(definition: Path) -> float:
     """Seconds ingest takes, from test.toml to ingest.h5, with compiled code cached."""
-    from hfanalysis.testdata.definition import load_definition
-    from hfanalysis.testdata.ingest import ingest
+    from hfanalysis.record.definition import load_definition
+    from hfanalysis.record.ingest import ingest
 
     with tempfile.TemporaryDirectory() as folder:
         ingest(load_definition(write_test(Path(folder), 1_000_000)), Path(folder) / "ingest.h5")

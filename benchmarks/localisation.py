@@ -17,16 +17,17 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+from hfanalysis.diagnose.diagnosis import diagnose
 from hfanalysis.diagnose.naming.base_model import base_model
-from hfanalysis.diagnose.naming.candidate import Bench
 from hfanalysis.diagnose.naming.localise import Source, linear_sources
-from hfanalysis.diagnose.of_test import Subject, diagnose
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
 from hfanalysis.effects import library
+from hfanalysis.inference.candidate import Bench
+from hfanalysis.inference.subject import Subject
 from hfanalysis.stages.base import load_stage
 from hfanalysis.stages.diagnose import subject_of
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
 Made = TypeVar("Made")

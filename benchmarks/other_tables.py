@@ -53,7 +53,7 @@ def enthalpies(temperature: Array) -> tuple[Array, Array]:
 
 def other_table() -> Array:
     """The blind generator's table of nitrous oxide with all that ESDU 91022 has of it."""
-    from tests.blind import nitrous
+    from simulated.blind import nitrous
 
     table = nitrous.table().copy()
     temperature = nitrous.LOWEST + nitrous.STEP * np.arange(table.shape[1])
@@ -68,9 +68,9 @@ def other_table() -> Array:
 
 def main() -> None:
     """Write the tests that are not there."""
-    from tests.blind import nitrous
-    from tests.blind.plan import plan
-    from tests.blind.write import answer_path, write_case
+    from simulated.blind import nitrous
+    from simulated.blind.plan import plan
+    from simulated.blind.write import answer_path, write_case
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path, metavar="DIR")

@@ -21,7 +21,7 @@ from typing import Any
 from benchmarks.studies import one_thread, percent, put
 
 from hfanalysis.errors import AnalysisError
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
 EQUATIONS = {

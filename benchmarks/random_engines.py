@@ -17,7 +17,7 @@ import numpy as np
 
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.unsteady import Burn, Engine, burn
-from hfanalysis.flight.vehicle import Vehicle
+from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.combustion_table import CombustionTable, build
 from hfanalysis.thermo.nitrous import saturation

@@ -1,7 +1,7 @@
 """Does the calibration find what is in a log, and do its intervals hold it? Three studies, each resumable.
 
 ``own``: 400 logs of the virtual stand (random truth, noise, declared biases, line filling, purge), each taken through
-ingest, segment and calibrate. ``engine``: logs of whole engines (benchmarks/virtual_engine.py), for a and n.
+ingest, segment and calibrate. ``engine``: logs of whole engines (simulated/engine.py), for a and n.
 ``blind``: the cases without an effect of another generator, where its folder is given.
 Results are written as they come to .cache/recovery-*.jsonl; the table goes to docs/recovery.md.
 
@@ -51,9 +51,9 @@ def recover(folder: Path) -> dict[str, Any]:
 
 def read_folder(folder: Path) -> tuple[Any, Any]:
     """Log and definition of a test folder."""
-    from hfanalysis.testdata.definition import load_definition
-    from hfanalysis.testdata.ingest import ingest
-    from hfanalysis.testdata.log import read_log
+    from hfanalysis.record.definition import load_definition
+    from hfanalysis.record.ingest import ingest
+    from hfanalysis.record.log import read_log
 
     definition = load_definition(folder / "test.toml")
     with tempfile.TemporaryDirectory() as scratch:
@@ -64,7 +64,7 @@ def read_folder(folder: Path) -> tuple[Any, Any]:
 
 def own_case(seed: int) -> dict[str, Any]:
     """One log of the virtual stand and what is found in it."""
-    from benchmarks.virtual_stand import make_log
+    from simulated.stand import make_log
 
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / f"S{seed:04d}"
@@ -76,7 +76,7 @@ def own_case(seed: int) -> dict[str, Any]:
 
 def engine_case(seed: int) -> dict[str, Any]:
     """One log of a whole engine, and what is found of its regression."""
-    from benchmarks.virtual_engine import make_log
+    from simulated.engine import make_log
 
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / f"E{seed:04d}"
@@ -91,7 +91,7 @@ def engine_case(seed: int) -> dict[str, Any]:
 
 def recover_regression(folder: Path) -> dict[str, Any]:
     """Take one test folder through to its regression."""
-    from hfanalysis.calibrate.of_test import regress
+    from hfanalysis.calibrate.fuel_law import regress
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.segment.phases import find_phases
 

@@ -18,13 +18,13 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from benchmarks.engines import hf5_like, maelstrom
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from simulated.engines import hf5_like, maelstrom
 
 from hfanalysis.engine.unsteady import Burn, Engine, burn
-from hfanalysis.flight.vehicle import gravity
+from hfanalysis.rocket.vehicle import gravity
 from hfanalysis.thermo import atmosphere
 from hfanalysis.thermo.combustion import Gas, equilibrium
 from hfanalysis.thermo.constants import GAS_CONSTANT, OXIDIZER_MOLAR_MASS

@@ -17,7 +17,7 @@ from typing import Any
 from benchmarks.studies import one_thread, percent, put
 
 from hfanalysis.diagnose.naming.variants import VARIANTS
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -1,4 +1,4 @@
-"""How near tests that lack an effect come to what ``hfanalysis.diagnose.signs`` calls a sign of it.
+"""How near tests that lack an effect come to what ``hfanalysis.diagnose.model_free`` calls a sign of it.
 
 python -m benchmarks.signs DIR ...
 
@@ -13,9 +13,9 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from hfanalysis.diagnose.signs import BAR, opening_of, purge_line_of
+from hfanalysis.diagnose.model_free import BAR, opening_of, purge_line_of
+from hfanalysis.record.log import read_log
 from hfanalysis.segment.phases import Segments
-from hfanalysis.testdata.log import read_log
 
 SHOWN = {"tank_stratification", "tank_nonequilibrium", "n2_purge", "dissolved_nitrogen"}
 """What the signs are of, or of what they might be."""

@@ -20,8 +20,8 @@ ENGINE = ROOT / "engines" / "maelstrom.toml"
 def run_engine() -> None:
     """The reference engine and its sensitivities."""
     from hfanalysis.engine.sensitivity import run_with_tangents
+    from hfanalysis.record.engine_file import load_engine
     from hfanalysis.simulate.unsteady_run import simulate
-    from hfanalysis.testdata.engine_file import load_engine
 
     engine = simulate(load_engine(ENGINE)).engine
     run_with_tangents(engine, ("volume",), times=(0.0, 1.0)).output("impulse", (0.5,))

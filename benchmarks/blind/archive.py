@@ -15,7 +15,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from tests.blind.judged import by_significance
+from simulated.blind.judged import by_significance
 
 from .folder import DONE, UNWRITTEN, Folder, Note, write_json
 

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tests.blind.judged import Case, of_kind
-from tests.blind.outcomes import LEAST
-from tests.blind.plan import OUTSIDE_TARGETS, SHARES, TARGETS
-from tests.blind.score import reliability
+from simulated.blind.judged import Case, of_kind
+from simulated.blind.outcomes import LEAST
+from simulated.blind.plan import OUTSIDE_TARGETS, SHARES, TARGETS
+from simulated.blind.score import reliability
 
 from hfanalysis.diagnose.answer.posterior import LEAST_EVIDENCE
 

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from tests.blind import targets
-from tests.blind.figures import middle, quantile
-from tests.blind.judged import NAMES, Case
-from tests.blind.score import score
+from simulated.blind import targets
+from simulated.blind.figures import middle, quantile
+from simulated.blind.judged import NAMES, Case
+from simulated.blind.score import score
 
 from .effects_table import confusion_table, effects_table
 from .folder import ABSENT, DONE, Folder, scoring_digest

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from tests.blind.figures import share
-from tests.blind.judged import Case, Groups
-from tests.blind.outcomes import SEEN, right_equation, strange
+from simulated.blind.figures import share
+from simulated.blind.judged import Case, Groups
+from simulated.blind.outcomes import SEEN, right_equation, strange
 
 
 def effects_table(cases: Sequence[Case], groups: Groups) -> list[str]:

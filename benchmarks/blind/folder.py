@@ -44,7 +44,7 @@ def probabilities_digest() -> str:
 
 def scoring_digest() -> str:
     """The scorer; the generator's own is in its answers."""
-    from tests.blind.version import GENERATOR  # workers, which load this module, load nothing of the generator's
+    from simulated.blind.version import GENERATOR  # workers, which load this module, load nothing of the generator's
 
     return digest(REPOSITORY / "tests" / "blind", *GENERATOR)
 

@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from tests.blind import write
-from tests.blind.build import Built, build
-from tests.blind.effects import Hidden
-from tests.blind.plan import Case
+from simulated.blind import write
+from simulated.blind.build import Built, build
+from simulated.blind.effects import Hidden
+from simulated.blind.plan import Case
 
 EVERY = 50
 """Logs between two lines of progress."""
@@ -35,7 +35,7 @@ def built_of(case: Case, answer: Mapping[str, Any]) -> Built:
     names = ("d_prime", "against", "given_others", "after_best_of_library")
     known = {name: answer[name] for name in names}
     with patch.multiple(
-        "tests.blind.build",
+        "simulated.blind.build",
         Detector=lambda *_: None,
         _set_strengths=set_strengths,
         _detectability=lambda *_: known,
@@ -52,8 +52,8 @@ def write_log(case: Case, root: Path) -> None:
     """Write what the engineer gets of a case whose answer is there, which stays as it is."""
     answer = json.loads(write.answer_path(case, root).read_text(encoding="utf-8"))
     with (
-        patch("tests.blind.write.build", lambda case: built_of(case, answer)),
-        patch("tests.blind.write.answer", lambda _: answer),
+        patch("simulated.blind.write.build", lambda case: built_of(case, answer)),
+        patch("simulated.blind.write.answer", lambda _: answer),
     ):
         write.write_case(case, root)
 

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from tests.blind.judged import Case, Groups, load, twins
-from tests.blind.plan import MOST_CASES, MOST_SEEDS, SPLITS
+from simulated.blind.judged import Case, Groups, load, twins
+from simulated.blind.plan import MOST_CASES, MOST_SEEDS, SPLITS
 
 from .folder import DONE, LATE, Folder, Note
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tests.blind.plan import Case, plan
-from tests.blind.version import generator_digest
-from tests.blind.write import answer_path, write_all
+from simulated.blind.plan import Case, plan
+from simulated.blind.version import generator_digest
+from simulated.blind.write import answer_path, write_all
 
 from .archive import pack, unpack
 from .folder import DIED, DONE, LATE, UNWRITTEN, Folder, Note, code_digest, probabilities_digest, write_json

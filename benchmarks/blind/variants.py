@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tests.blind.figures import Figure, mean, middle, paired_share, share
-from tests.blind.judged import Case, Groups
-from tests.blind.outcomes import NUMBERS, SHARES
+from simulated.blind.figures import Figure, mean, middle, paired_share, share
+from simulated.blind.judged import Case, Groups
+from simulated.blind.outcomes import NUMBERS, SHARES
 
 from .words import FIGURES
 

@@ -59,7 +59,7 @@ def diagnose(job: Job) -> Result:
 
     Raises AnalysisError where the diagnosis refuses the test.
     """
-    from hfanalysis.stages.opening import open_test
+    from hfanalysis.stages.open_test import open_test
     from hfanalysis.stages.runner import run_to
 
     settings = settings_of(job, known_parameters())

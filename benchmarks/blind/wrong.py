@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
-from tests.blind.figures import share
-from tests.blind.judged import NAMES, Case, Groups
-from tests.blind.outcomes import placed, seen, size_covered, strange, sure_and_wrong
+from simulated.blind.figures import share
+from simulated.blind.judged import NAMES, Case, Groups
+from simulated.blind.outcomes import placed, seen, size_covered, strange, sure_and_wrong
 
 from .folder import Note
 

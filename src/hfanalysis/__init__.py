@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hfanalysis.version import __version__
+
 if TYPE_CHECKING:
     import xarray as xr
 
-__version__ = "0.1.0"
+__all__ = ["__version__", "load_residuals"]
 
 
 def load_residuals(test: str | Path, root: str | Path = ".") -> xr.DataTree:

@@ -9,8 +9,8 @@ import pytest
 
 from acceptance.bad_input import CASES, Bad, write_good
 from hfanalysis.errors import AnalysisError
-from hfanalysis.testdata.definition import find_definition, load_definition
-from hfanalysis.testdata.ingest import ingest
+from hfanalysis.record.definition import find_definition, load_definition
+from hfanalysis.record.ingest import ingest
 
 
 def run(root: Path, test_id: str) -> tuple[int, str]:

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.blind import combustion
-from tests.blind import slots as s
-from tests.blind import stand as st
-from tests.blind.plan import Case
-from tests.blind.write import write_case
+from simulated.blind import combustion
+from simulated.blind import slots as s
+from simulated.blind import stand as st
+from simulated.blind.plan import Case
+from simulated.blind.write import write_case
 
 from hfanalysis.thermo.combustion import equilibrium
 

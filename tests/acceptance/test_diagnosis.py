@@ -12,7 +12,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from tests.adopt.firing import make_root
+from tests.inference.adopted.firing import make_root
 
 from hfanalysis.effects import effect
 

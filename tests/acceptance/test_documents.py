@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from hfanalysis.testdata.definition import load_definition
+from hfanalysis.record.definition import load_definition
 
 REPOSITORY = Path(__file__).parents[2]
 

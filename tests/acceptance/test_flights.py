@@ -19,7 +19,7 @@ import pytest
 
 from hfanalysis.flight import rasp, rocksim
 from hfanalysis.flight.motor import problems
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
 ROOT = Path(__file__).resolve().parents[2]

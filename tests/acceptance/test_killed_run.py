@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from hfanalysis.testdata.log import read_log
-from hfanalysis.testdata.products import sha256_tree
+from hfanalysis.products.disk import sha256_tree
+from hfanalysis.record.log import read_log
 
 REPOSITORY = Path(__file__).parents[2]
 PRODUCTS = ("ingest.h5", "ingest.json", "segments.json", "calibration.json")

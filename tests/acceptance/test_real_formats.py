@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hfanalysis.testdata.definition import find_definition, load_definition
-from hfanalysis.testdata.log import Flag, TestLog, read_log
-from hfanalysis.testdata.logspec import FileSpec
-from hfanalysis.testdata.readers import open_log
+from hfanalysis.record.definition import find_definition, load_definition
+from hfanalysis.record.log import Flag, TestLog, read_log
+from hfanalysis.record.logspec import FileSpec
+from hfanalysis.record.readers import open_log
 
 HERE = Path(__file__).parent / "real"
 LOGS = Path(os.environ.get("HFA_REAL_TESTS", Path(__file__).parents[3] / "shared" / "real_tests"))

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hfanalysis.stages.opening import open_test
+from hfanalysis.record.definition import find_definition, load_definition
+from hfanalysis.record.ingest import ingest
+from hfanalysis.record.log import TestLog, read_log
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
-from hfanalysis.testdata.definition import find_definition, load_definition
-from hfanalysis.testdata.ingest import ingest
-from hfanalysis.testdata.log import TestLog, read_log
 
 HERE = Path(__file__).parent / "real"
 LOGS = Path(os.environ.get("HFA_REAL_TESTS", Path(__file__).parents[3] / "shared" / "real_tests"))

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
 HERE = Path(__file__).parent / "real"

@@ -16,16 +16,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from hfanalysis.calibrate.engine_of_test import Regression
+from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.evidence import Evidence
-from hfanalysis.calibrate.of_test import evidence_for
+from hfanalysis.calibrate.fuel_law import evidence_for
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.campaign.regression import regression_of
+from hfanalysis.record.definition import load_definition
+from hfanalysis.record.log import read_log
 from hfanalysis.segment.phases import Segments
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
-from hfanalysis.testdata.definition import load_definition
-from hfanalysis.testdata.log import read_log
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -17,13 +17,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hfanalysis.flight.aerodynamics import Fins, Nose, Shape, Tail, center_of_pressure, components
 from hfanalysis.flight.ascent import RAIL, SPEED, Ascent, ascend
-from hfanalysis.launch.firing import firing
+from hfanalysis.measured_flight.firing import firing
+from hfanalysis.record.log import read_log
+from hfanalysis.rocket.aerodynamics import Fins, Nose, Shape, Tail, center_of_pressure, components
 from hfanalysis.segment.phases import Segments
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
-from hfanalysis.testdata.log import read_log
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from hfanalysis.calibrate.engine_of_test import Regression
+from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.assembly.engine import combustion_of
 from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar, chamber_at
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn
-from hfanalysis.simulate.build import combustion_of
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
 

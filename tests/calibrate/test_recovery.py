@@ -12,7 +12,7 @@ from stand import HOLE_AREA, HOLES, Stand, Trial, definition, fire, log_of, segm
 
 from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.tank import calibrate
-from hfanalysis.testdata.sections import Injector
+from hfanalysis.record.sections import Injector
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from engine_sample import TRUTH, engine, evidence, rate
 
-from hfanalysis.calibrate.engine_of_test import Regression, pressure_at, starting_for
+from hfanalysis.assembly.calibrated import Regression, pressure_at, starting_for
 from hfanalysis.calibrate.evidence import Evidence, Scalar, burn_time_of
 from hfanalysis.calibrate.likelihood import effective_samples, surface
 from hfanalysis.calibrate.regression import RANGE_N, Fitted, _minimum, fit, fit_together, law_at, result

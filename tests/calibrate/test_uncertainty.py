@@ -11,7 +11,7 @@ from stand import Trial, definition, fire, log_of, segments_of
 from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.quantity import Quantity
-from hfanalysis.testdata.sections import Injector
+from hfanalysis.record.sections import Injector
 from hfanalysis.units import Value
 
 SAMPLES = 120

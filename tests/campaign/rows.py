@@ -9,8 +9,8 @@ from typing import Any
 from hfanalysis.campaign.product import row_of, stand_row
 from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.definition import TestDefinition, load_definition
 from hfanalysis.stages.base import silent
-from hfanalysis.testdata.definition import TestDefinition, load_definition
 
 
 def quantity(value: float, std: float, unit: str = "", verdict: str | None = "identified") -> dict[str, Any]:

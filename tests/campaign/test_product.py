@@ -12,8 +12,8 @@ from hfanalysis.campaign.page import page
 from hfanalysis.campaign.product import _probability, row_of, stand_of, stand_row
 from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.campaign.words import agreement, diagnosed
+from hfanalysis.record.definition import load_definition
 from hfanalysis.stages.base import silent
-from hfanalysis.testdata.definition import load_definition
 
 
 @pytest.fixture(scope="module")

@@ -11,13 +11,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from tests.adopt.firing import make_root
+from tests.inference.adopted.firing import make_root
 
 import hfanalysis
 from hfanalysis.cli import main
 from hfanalysis.cli import perform as performing
 from hfanalysis.errors import AbsentError
-from hfanalysis.testdata.products import sha256_tree
+from hfanalysis.products.disk import sha256_tree
 
 REPOSITORY = Path(__file__).parents[2]
 

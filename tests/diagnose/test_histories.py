@@ -6,11 +6,11 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import h5py
-from tests.diagnose import made
 from tests.diagnose.naming.test_naming import catalogue
+from tests.inference import made
 
-from hfanalysis.diagnose.histories import write_histories
 from hfanalysis.diagnose.naming.naming import name_effects
+from hfanalysis.diagnose.product_histories import write_histories
 
 
 def test_an_effect_and_an_unknown_source_beside_it_may_have_the_same_name(tmp_path: Path) -> None:

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
-from tests.adopt.firing import make_root
+from tests.inference.adopted.firing import make_root
 
 from hfanalysis.errors import AnalysisError
+from hfanalysis.record.definition import load_definition
 from hfanalysis.stages.diagnose import STAGE, _other, _siblings
-from hfanalysis.testdata.definition import load_definition
 
 
 def context(root: Path, proof_test: str = "") -> Any:

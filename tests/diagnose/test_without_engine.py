@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.diagnose import logged
+from tests.inference import logged
 
 from hfanalysis.diagnose.answer.posterior import scale
-from hfanalysis.diagnose.of_test import Subject
 from hfanalysis.diagnose.without_engine import channels_alone
 from hfanalysis.errors import AbsentError
-from hfanalysis.testdata.log import TestLog
+from hfanalysis.inference.subject import Subject
+from hfanalysis.record.log import TestLog
 
 WHY = "tank.volume is not stated"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from benchmarks.engines import hf5_like
+from simulated.engines import hf5_like
 
 from hfanalysis.engine.unsteady import Engine
 

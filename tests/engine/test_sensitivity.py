@@ -10,12 +10,12 @@ import pytest
 from numpy.typing import NDArray
 from tests.engine.stand import engine_on_stand
 
-from hfanalysis.diagnose.fitting.probe import Splines, probe
 from hfanalysis.effects import effect
 from hfanalysis.engine import sensitivity
-from hfanalysis.engine.course import FUEL_OUT, LIQUID_OUT, SHOCK
+from hfanalysis.engine.phases import FUEL_OUT, LIQUID_OUT, SHOCK
 from hfanalysis.engine.sensitivity import ENGINE_PARAMETERS, Tangents, run_with_tangents
 from hfanalysis.engine.unsteady import Burn, Engine, burn
+from hfanalysis.inference.unknowns.smooth_source import Splines, probe
 
 Array = NDArray[np.float64]
 

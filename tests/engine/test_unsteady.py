@@ -9,10 +9,10 @@ from math import pi
 
 import numpy as np
 import pytest
-from benchmarks.engines import hf5_like, maelstrom
 from benchmarks.random_engines import Outcome, attempt, faults, random_engine
 from benchmarks.reference_engine import Reference, Run, differences, in_our_states, solve
 from numpy.typing import NDArray
+from simulated.engines import hf5_like, maelstrom
 
 from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed

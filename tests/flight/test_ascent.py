@@ -8,14 +8,15 @@ from math import cos, radians, sqrt
 
 import numpy as np
 import pytest
-from benchmarks.engines import maelstrom
+from simulated.engines import maelstrom
 
 from hfanalysis.engine.unsteady import Burn, burn
 from hfanalysis.flight.ascent import ACCELERATION, MACH, NOMINAL, RAIL, SPEED, TIME, Ascent, ascend
 from hfanalysis.flight.constant_thrust import apogee
 from hfanalysis.flight.curve import Curve, even_curve
-from hfanalysis.flight.descent import Descent, Parachute, descend, fall
-from hfanalysis.flight.vehicle import STANDARD_GRAVITY, Vehicle, drag_coefficient, gravity
+from hfanalysis.flight.descent import Descent, descend, fall
+from hfanalysis.rocket.parachute import Parachute
+from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, drag_coefficient, gravity
 from hfanalysis.simulate import flown
 from hfanalysis.thermo import air as compiled
 from hfanalysis.thermo import atmosphere

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from test_aerodynamics import HALCYON, HALCYON_CENTER
 
-from hfanalysis.flight.aerodynamics import center_of_pressure, components
 from hfanalysis.flight.ascent import Arguments, arguments, ascend
-from hfanalysis.flight.balance import Part, TankPlace, balance, oxidizer
 from hfanalysis.flight.curve import Curve
 from hfanalysis.flight.margin import margin
 from hfanalysis.flight.pitch import ATTACK, ATTITUDE, HEIGHT, MARGIN, SPEED, STEP, Flights, aero, fly_in_wind
-from hfanalysis.flight.vehicle import Vehicle
+from hfanalysis.rocket.aerodynamics import center_of_pressure, components
+from hfanalysis.rocket.balance import Part, TankPlace, balance, oxidizer
+from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo.air import air
 
 BURN = Curve(0.01, np.minimum(2000.0, np.linspace(5e4, 0.0, 501)), np.linspace(31.0, 26.0, 501), 26.0)

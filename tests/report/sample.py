@@ -10,10 +10,10 @@ import numpy as np
 from diagnosed import DIAGNOSIS
 from diagnosed import store as diagnosed_store
 
+from hfanalysis.record.definition import load_definition
+from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.summary import summary
 from hfanalysis.report.material import Column, Material, Store
-from hfanalysis.testdata.definition import load_definition
-from hfanalysis.testdata.log import Channel, TestLog
-from hfanalysis.testdata.summary import summary
 
 TOML = """\
 schema = 1

@@ -20,10 +20,10 @@ from test_page import hostile
 from tests.campaign.rows import made as campaign
 
 from hfanalysis.campaign.page import page as campaign_page
+from hfanalysis.record.log import Channel
 from hfanalysis.report.compare import compare
 from hfanalysis.report.page import page
 from hfanalysis.report.pdf import print_page
-from hfanalysis.testdata.log import Channel
 
 PRESSURES = '[data-chart="pressures"]'
 

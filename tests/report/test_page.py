@@ -15,16 +15,16 @@ import numpy as np
 import pytest
 from sample import CALIBRATION, SEGMENTS, channel, material, quantity, without
 
-from hfanalysis.report.colours import COLOURS, STYLES
+from hfanalysis.charts.colours import COLOURS, STYLES
+from hfanalysis.charts.style import sheet
+from hfanalysis.charts.svg import Event, events, new_plot, value_range
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.summary import summary
 from hfanalysis.report.index import write_index
 from hfanalysis.report.material import Material, phase_list
 from hfanalysis.report.page import page, render
 from hfanalysis.report.sections import lay_out, sections
 from hfanalysis.report.sections.verdict import sentence, warnings
-from hfanalysis.report.style import sheet
-from hfanalysis.report.svg import Event, events, new_plot, value_range
-from hfanalysis.testdata.log import TestLog
-from hfanalysis.testdata.summary import summary
 
 HOSTILE = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>&{{ 7*7 }}"
 VOID = {"meta", "link", "br", "img", "hr", "input"}

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from stand import AMBIENT, Trial, fire, log_of
 
-from hfanalysis.testdata.log import TestLog
+from hfanalysis.record.log import TestLog
 
 EMPTY = 9.0
 """[s] after the opening: from here on the chamber is at ambient pressure."""

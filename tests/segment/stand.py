@@ -11,16 +11,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from benchmarks.virtual_stand import noise
+from simulated.stand import noise
 
 from hfanalysis.engine.blowdown import FeedSystem, blow_down
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.definition import FileSpec, LogSpec, Test, TestDefinition
+from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.sections import Injector, Model, Nozzle, Purge, Site, Tank
+from hfanalysis.record.signals import Array, Signal, sample_noise
 from hfanalysis.segment.kind import Kind
 from hfanalysis.segment.phases import EVENTS, Segments
-from hfanalysis.segment.signals import Array, Signal, sample_noise
-from hfanalysis.testdata.definition import FileSpec, LogSpec, Test, TestDefinition
-from hfanalysis.testdata.log import Channel, TestLog
-from hfanalysis.testdata.sections import Injector, Model, Nozzle, Purge, Site, Tank
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
 

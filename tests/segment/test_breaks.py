@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from benchmarks.virtual_stand import noise
+from simulated.stand import noise
 from stand import signal
 
+from hfanalysis.record.noise import Noise
+from hfanalysis.record.signals import Array
 from hfanalysis.segment.breaks import Break, combine, find_break, kink, memory_length
-from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.refine import refine_kink, refine_knee, refine_step
-from hfanalysis.segment.signals import Array
 
 RATE = 500.0
 TIME = np.arange(0.0, 6.0, 1.0 / RATE)

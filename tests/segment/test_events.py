@@ -6,18 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.virtual_stand import noise
+from simulated.stand import noise
 from stand import AMBIENT, Stand, Trial, fire, signal
 
 from hfanalysis.engine.tank import mass_along_blowdown
-from hfanalysis.segment.ending import CRITICAL_RATIO, find_unchoking
+from hfanalysis.record.signals import Array, Signal
+from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_unchoking
 from hfanalysis.segment.falls import abrupt_falls
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.fuel import _dated, find_fuel_end
 from hfanalysis.segment.kind import recognise
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.purge import find_nitrogen
-from hfanalysis.segment.signals import Array, Signal
 from hfanalysis.thermo.nitrous import SOURCES, saturation
 
 RATE = 500.0

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from stand import definition, fire, log_of
 
+from hfanalysis.record.holes import holes, told, unasked
+from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.segment.phases import find_phases
-from hfanalysis.testdata.holes import holes, told, unasked
-from hfanalysis.testdata.log import Channel, Flag, TestLog
 
 OPENED = 100.0
 

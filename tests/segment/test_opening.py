@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.virtual_stand import noise
+from simulated.stand import noise
 from stand import AMBIENT, definition, fire, log_of, signal
 
 from hfanalysis.errors import AbsentError
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Array, Signal
 from hfanalysis.segment.opening import find_opening
 from hfanalysis.segment.phases import find_phases
-from hfanalysis.segment.signals import Array, Signal
-from hfanalysis.testdata.log import TestLog
 
 RATE = 500.0
 TIME = np.arange(0.0, 20.0, 1.0 / RATE)

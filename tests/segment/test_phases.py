@@ -11,9 +11,9 @@ import pytest
 from stand import AMBIENT, Stand, Trial, definition, fire, log_of
 
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.log import Flag, TestLog
 from hfanalysis.segment.kind import Kind
 from hfanalysis.segment.phases import EVENTS, Segments, find_phases
-from hfanalysis.testdata.log import Flag, TestLog
 from hfanalysis.units import Value
 
 T_OPEN = 100.0

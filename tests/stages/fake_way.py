@@ -11,7 +11,7 @@ import pytest
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages import base, runner
 from hfanalysis.stages.base import Context, Stage
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 
 TOML = """\
 schema = 1

@@ -12,7 +12,7 @@ from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages import ORDER, way_to
 from hfanalysis.stages import diagnose as stage
 from hfanalysis.stages.base import Context, load_stage
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 
 REPOSITORY = Path(__file__).parents[2]
 

@@ -14,7 +14,7 @@ import fake_way
 import pytest
 from fake_way import ran
 
-from hfanalysis.testdata.products import TEMPORARY, sha256_file
+from hfanalysis.products.disk import TEMPORARY, sha256_file
 
 
 def start(root: Path) -> subprocess.Popen[bytes]:

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hfanalysis.engine.steady import Requirement, ideal_specific_impulse, optimum
+from hfanalysis.design.steady import Requirement, ideal_specific_impulse, optimum
 from hfanalysis.thermo.combustion import (
     FORMATION_OFFSET,
     FUEL_MOLAR_MASS,

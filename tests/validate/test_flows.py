@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.engine.stand import engine_on_stand
 
-from hfanalysis.calibrate.engine_of_test import Regression
+from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.validate.flows import burn_fuel
 
 TIME = np.arange(-1.0, 3.0, 0.02)

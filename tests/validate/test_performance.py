@@ -9,13 +9,13 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from benchmarks.engines import hf5_like
+from simulated.engines import hf5_like
 from stand import AMBIENT, THROAT, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.quantity import Quantity
-from hfanalysis.segment.signals import Signal
-from hfanalysis.testdata.log import Channel, TestLog
-from hfanalysis.testdata.sections import Grain, Observed
+from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.sections import Grain, Observed
+from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
 from hfanalysis.validate.flows import Flows
 from hfanalysis.validate.histories import (
@@ -27,7 +27,7 @@ from hfanalysis.validate.histories import (
     write_histories,
 )
 from hfanalysis.validate.performance import Fire, _impulse, fire_of, measured
-from hfanalysis.validate.sensors import findings
+from hfanalysis.validate.sensor_faults import findings
 from hfanalysis.validate.thrust import Thrust
 
 BURN = Observed(burn_time=Value(9.0, 0.1))

@@ -10,7 +10,7 @@ from heated_cell import heated, quenched
 from stand import Trial, definition, segments_of
 
 from hfanalysis.validate.performance import Fire
-from hfanalysis.validate.sensors import findings
+from hfanalysis.validate.sensor_faults import findings
 from hfanalysis.validate.thrust import thrust_of
 
 

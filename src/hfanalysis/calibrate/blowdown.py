@@ -18,7 +18,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.histories import Histories
+from hfanalysis.calibrate.measured_pressures import Histories
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT
 from hfanalysis.thermo.saturation import Saturation
 

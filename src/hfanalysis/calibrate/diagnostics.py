@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.calibrate.blowdown import Inputs, Reduction
-from hfanalysis.calibrate.histories import Histories
 from hfanalysis.calibrate.loaded_mass import LoadedMass, load_cell_mass
+from hfanalysis.calibrate.measured_pressures import Histories
 from hfanalysis.calibrate.rest import (
     MODEL_MASS_SPREAD,
     STRATIFIED,
@@ -22,8 +22,8 @@ from hfanalysis.calibrate.rest import (
 )
 from hfanalysis.engine.tank import energy_derivatives
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.log import TestLog
 from hfanalysis.segment.phases import Segments
-from hfanalysis.testdata.log import TestLog
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.saturation import Saturation
 

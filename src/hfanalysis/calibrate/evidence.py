@@ -14,7 +14,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.engine_of_test import Regression, starting_for
+from hfanalysis.assembly.calibrated import Regression, starting_for
 from hfanalysis.engine.model import RADIUS
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hfanalysis.calibrate.histories import Histories
+from hfanalysis.calibrate.measured_pressures import Histories
 from hfanalysis.calibrate.rest import MODEL_MASS_SPREAD, blowdown_mass
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.phases import Segments
-from hfanalysis.segment.signals import Signal
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import TestLog
 from hfanalysis.thermo.saturation import Saturation
 
 UNSTATED = 0.01

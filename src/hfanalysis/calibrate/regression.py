@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc
 
-from hfanalysis.calibrate.engine_of_test import Regression
+from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.evidence import Evidence, burn_time_of
 from hfanalysis.calibrate.likelihood import Surface, Weights, first_guess, surface, weights_from
 from hfanalysis.engine.unsteady import Burn

@@ -7,20 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.acting import VaporPhase, acting
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, reduce
 from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
-from hfanalysis.calibrate.histories import Histories, Reading, read_at_break
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
+from hfanalysis.calibrate.measured_pressures import Histories, Reading, read_at_break
 from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
+from hfanalysis.calibrate.with_effects import VaporPhase, acting
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
 from hfanalysis.segment.phases import Segments
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import TestLog
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 

@@ -12,7 +12,7 @@ from hfanalysis.campaign.strips import strip
 from hfanalysis.campaign.words import HIDDEN, agreement, alone, diagnosed, regression_sentence
 from hfanalysis.report import html
 from hfanalysis.report.page import render
-from hfanalysis.report.wording import KINDS, fixed
+from hfanalysis.wording.numbers import KINDS, fixed
 
 _NUMBERS = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure")
 

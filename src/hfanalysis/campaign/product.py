@@ -11,9 +11,9 @@ from hfanalysis.campaign.pooling import pooled
 from hfanalysis.campaign.regression import regression_of
 from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended
 from hfanalysis.errors import AbsentError
+from hfanalysis.progress import Progress
 from hfanalysis.quantity import IDENTIFIED, Quantity
-from hfanalysis.stages.base import Progress
-from hfanalysis.testdata.definition import TestDefinition
+from hfanalysis.record.definition import TestDefinition
 
 HARDWARE = ("C_i", "K_loss", "m")
 """Calibrated numbers that belong to the stand and not to the load of a test."""

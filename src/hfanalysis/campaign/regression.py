@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from hfanalysis.adopt.sensors import corrected
-from hfanalysis.calibrate.of_test import evidence_for
+from hfanalysis.calibrate.fuel_law import evidence_for
 from hfanalysis.calibrate.regression import Joint, fit, fit_together, result
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.errors import AbsentError
+from hfanalysis.inference.adopted.corrected_log import corrected
+from hfanalysis.progress import Progress, silent
+from hfanalysis.record.log import read_log
 from hfanalysis.segment.phases import Segments
-from hfanalysis.stages.base import Progress, silent
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
-from hfanalysis.testdata.log import read_log
 
 
 def regression_of(tests: Sequence[str], root: Path, out: Path | None, progress: Progress = silent) -> dict[str, Any]:

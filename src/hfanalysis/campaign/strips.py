@@ -7,9 +7,9 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from hfanalysis.report.scales import reading_unit, scale, superscript
-from hfanalysis.report.svg import Axis, lettering, nice_ticks, shortened, tick_text
-from hfanalysis.report.wording import exponent_of, in_words
+from hfanalysis.charts.svg import Axis, lettering, nice_ticks, shortened, tick_text
+from hfanalysis.wording.numbers import exponent_of, in_words
+from hfanalysis.wording.scales import reading_unit, scale, superscript
 
 WIDTH, LEFT, RIGHT, TOP, ROW, BOTTOM = 640.0, 130.0, 24.0, 8.0, 26.0, 44.0
 """[px] of a picture; ``ROW`` is the height of a test's."""

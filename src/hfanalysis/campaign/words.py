@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from hfanalysis.report.wording import listed, shown
+from hfanalysis.wording.numbers import listed, shown
 
 HIDDEN = 0.01
 """Probability below which its number is not given."""

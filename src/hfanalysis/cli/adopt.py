@@ -8,16 +8,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import hfanalysis
-from hfanalysis.adopt import file_for
-from hfanalysis.adopt.effects import of_diagnosis, write_adopted
-from hfanalysis.cli.ending import tell
+from hfanalysis.cli.exit_status import tell
 from hfanalysis.cli.perform import Request, stage
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.inference.adopted import file_for
+from hfanalysis.inference.adopted.effects import of_diagnosis, write_adopted
+from hfanalysis.products.disk import read_json
 from hfanalysis.stages.base import Context
-from hfanalysis.stages.opening import open_test
-from hfanalysis.testdata.products import read_json
+from hfanalysis.stages.open_test import open_test
+from hfanalysis.version import __version__
 
 MARK = "Adopted by hfa diagnose"
 """How a file begins that a diagnosis wrote, and another may write over."""
@@ -75,7 +75,7 @@ def _header(context: Context, diagnosis: Mapping[str, Any], stand: bool) -> list
     named = ", ".join(f"{e['name']} with probability {e['probability']:.2f}" for e in diagnosis["effects"])
     option = " --stand" if stand else ""
     return [
-        f"{MARK} {context.id} --apply{option} (hfanalysis {hfanalysis.__version__}).",
+        f"{MARK} {context.id} --apply{option} (hfanalysis {__version__}).",
         f"Verdict {diagnosis['verdict']}: {named}.",
         f"Every stage of {_whose(context, stand)} has it in its model as long as this file is here. To remove it:",
         f"delete the file, or hfa diagnose {context.id} --retract{option}",

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-import hfanalysis
-from hfanalysis.cli.ending import ending
+from hfanalysis.cli.exit_status import ending
 from hfanalysis.errors import InputError
+from hfanalysis.version import __version__
 
 app = typer.Typer(
     name="hfa",
@@ -34,7 +34,7 @@ Set = Annotated[
 
 def _version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"hfa {hfanalysis.__version__}")
+        typer.echo(f"hfa {__version__}")
         raise typer.Exit
 
 
@@ -175,7 +175,8 @@ def _report(
 ) -> None:
     """Write report.html, one page to read offline; on request as PDF, and its plots as PNG and CSV."""
     with ending():
-        from hfanalysis.cli import papers, perform
+        from hfanalysis.cli import exports as papers
+        from hfanalysis.cli import perform
 
         request = perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
         papers.report(request, pdf, plots)
@@ -193,7 +194,8 @@ def _compare(
 ) -> None:
     """Lay two tests over each other: TEST/compare_OTHER.html, curves from the valve's opening, numbers side by side."""
     with ending():
-        from hfanalysis.cli import papers, perform
+        from hfanalysis.cli import exports as papers
+        from hfanalysis.cli import perform
 
         papers.compare(perform.Request(test, root, out, as_json, False, quiet), other, pdf)
 
@@ -283,7 +285,7 @@ def _effects(test: AnyTest = None, root: Root = Path(), out: Out = None, as_json
 
             effects.effects(root, as_json)
         else:
-            from hfanalysis.cli import apart
+            from hfanalysis.cli import separability as apart
 
             apart.apart(test, root, out, as_json)
 
@@ -296,6 +298,6 @@ def _new(
 ) -> None:
     """Draft raw_tests/ID/test.toml from what a log shows. Never overwrites."""
     with ending():
-        from hfanalysis.testdata.draft import new_test
+        from hfanalysis.record.draft import new_test
 
         typer.echo(f"{new_test(root, test, log)}: drafted; complete what is marked there, then: hfa calibrate {test}")

@@ -13,16 +13,16 @@ from hfanalysis.campaign.page import page
 from hfanalysis.campaign.product import row_of, stand_row
 from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended, run_all
 from hfanalysis.campaign.words import agreement, diagnosed, regression_sentence
-from hfanalysis.cli.ending import put, tell
+from hfanalysis.cli.exit_status import put, tell
 from hfanalysis.cli.tables import new_table, paper
 from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.processors import processors
-from hfanalysis.report.wording import in_words, shown
-from hfanalysis.stages.base import Progress
-from hfanalysis.stages.opening import PROCESSED, RAW, open_test
-from hfanalysis.testdata.definition import TestDefinition, find_definition
-from hfanalysis.testdata.products import atomic, to_json, write_json
+from hfanalysis.products.disk import atomic, to_json, write_json
+from hfanalysis.progress import Progress
+from hfanalysis.record.definition import TestDefinition, find_definition
+from hfanalysis.stages.open_test import PROCESSED, RAW, open_test
+from hfanalysis.wording.numbers import in_words, shown
 
 _SHOWN = ("burn_time", "total_impulse", "specific_impulse")
 

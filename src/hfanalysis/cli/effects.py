@@ -6,7 +6,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from hfanalysis.cli.ending import put
+from hfanalysis.cli.exit_status import put
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.errors import InputError
@@ -18,7 +18,7 @@ def effects(root: Path, as_json: bool) -> None:
         raise InputError(f"--root {root}: there is no such folder")
     found = library(root / FOLDER)
     if as_json:
-        from hfanalysis.testdata.products import to_json
+        from hfanalysis.products.disk import to_json
 
         put(to_json(product(found)))
         return

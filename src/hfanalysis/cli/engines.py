@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from hfanalysis.cli.ending import put, tell
+from hfanalysis.cli.exit_status import put, tell
 from hfanalysis.cli.watch import watch
 from hfanalysis.errors import InputError
-from hfanalysis.testdata.engine_file import load_engine
-from hfanalysis.testdata.products import to_json
+from hfanalysis.products.disk import to_json
+from hfanalysis.record.engine_file import load_engine
 
 
 def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: float | None = None) -> None:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hfanalysis.cli.ending import put, tell
+from hfanalysis.cli.exit_status import put, tell
 from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages import ASIDE, ORDER, way_to
 from hfanalysis.stages.base import BASE, Context, load_stage
-from hfanalysis.stages.opening import open_test
+from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 from hfanalysis.units import near
 
@@ -121,7 +121,7 @@ def proof_test(root: Path, test: str, other: str) -> str:
 
     Raises InputError where that is no other test: asked before anything runs, so that no finished product is lost.
     """
-    from hfanalysis.testdata.definition import find_definition
+    from hfanalysis.record.definition import find_definition
 
     if find_definition(root, test) == find_definition(root, other):
         raise InputError(f"--proof-test {other}: found the test itself; expected another one")
@@ -139,7 +139,7 @@ def _show(name: str, context: Context, request: Request) -> None:
 
 def _json(name: str, context: Context) -> str:
     """The stage's JSON product as it is on disk; for stages without one, what they made."""
-    from hfanalysis.testdata.products import to_json
+    from hfanalysis.products.disk import to_json
 
     if name == "run":
         return to_json(

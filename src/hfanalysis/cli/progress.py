@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from hfanalysis.stages.base import Progress as Callback
+from hfanalysis.progress import Progress as Callback
 
 PATIENCE = 2.0
 """[s] before anything shows."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from hfanalysis.campaign.regression import regression_of
-from hfanalysis.cli.ending import put
+from hfanalysis.cli.exit_status import put
 from hfanalysis.errors import InputError
-from hfanalysis.stages.base import Progress, silent
+from hfanalysis.progress import Progress, silent
 
 
 def regression(tests: list[str], root: Path, out: Path | None, as_json: bool, progress: Progress = silent) -> None:
@@ -16,7 +16,7 @@ def regression(tests: list[str], root: Path, out: Path | None, as_json: bool, pr
         raise InputError(f"found {len(set(tests))} test; expected at least two: hfa regression TEST OTHER")
     product = regression_of(tests, root, out, progress)
     if as_json:
-        from hfanalysis.testdata.products import to_json
+        from hfanalysis.products.disk import to_json
 
         put(to_json(product))
         return

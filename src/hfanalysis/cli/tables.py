@@ -9,12 +9,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from hfanalysis.cli.ending import nobody_reads
+from hfanalysis.cli.exit_status import nobody_reads
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
-from hfanalysis.report import wording
-from hfanalysis.report.wording import Shown, in_words, is_quantity, quantities, shown
 from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context
+from hfanalysis.wording import numbers as wording
+from hfanalysis.wording.numbers import Shown, in_words, is_quantity, quantities, shown
 
 _NARROWEST = 140
 """Columns assumed where nobody says (a pipe), so that tables do not break."""

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from hfanalysis.stages.base import Progress, silent
+from hfanalysis.progress import Progress, silent
 
 
 @contextmanager

@@ -7,12 +7,12 @@ from typing import Any
 
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import scale
-from hfanalysis.diagnose.of_test import Subject
-from hfanalysis.diagnose.signs import Shown, Sign, shown
+from hfanalysis.diagnose.model_free import Shown, Sign, shown
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError
+from hfanalysis.inference.subject import Subject
 from hfanalysis.quantity import Quantity
-from hfanalysis.validate.sensors import ZERO, Finding
+from hfanalysis.validate.sensor_faults import ZERO, Finding
 
 DRIFT = "load_cell_drift"
 

@@ -10,12 +10,12 @@ import json
 from dataclasses import replace
 from typing import Any
 
-from hfanalysis.calibrate.of_test import regress
+from hfanalysis.calibrate.fuel_law import regress
 from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.products.disk import to_json
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
 from hfanalysis.segment.phases import Segments
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import TestLog
-from hfanalysis.testdata.products import to_json
 
 SAMPLES = 50
 """Repetitions of the calibration with drawn inputs: a diagnosis takes the load's deviation from them, and no more."""

@@ -1,6 +1,6 @@
 """A second opinion: the same equations integrated by CVODE (backward differentiation formulas), a solver of others.
 
-Ten times slower than :mod:`hfanalysis.engine.course`, for every evaluation passes through Python; it is what the own
+Ten times slower than :mod:`hfanalysis.engine.phases`, for every evaluation passes through Python; it is what the own
 integrator is checked with.
 """
 
@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.course import FUEL_OUT, GROUND, LIQUID_OUT, OWN_EVENTS, SCALES, change, evaluate_events
 from hfanalysis.engine.effect import Composition, compose
 from hfanalysis.engine.model import OUTPUTS, STATES, evaluate_rates
+from hfanalysis.engine.phases import FUEL_OUT, GROUND, LIQUID_OUT, OWN_EVENTS, SCALES, change, evaluate_events
 from hfanalysis.engine.unsteady import Engine, check, constants, initial
 
 Array = NDArray[np.float64]

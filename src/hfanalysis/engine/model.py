@@ -68,7 +68,7 @@ from hfanalysis.engine.sites import (
     call_term,
 )
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, saturated_tank
-from hfanalysis.flight.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, drag
+from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, drag
 from hfanalysis.thermo.air import air
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
 from hfanalysis.thermo.combustion_table import Grid, chamber_pressure

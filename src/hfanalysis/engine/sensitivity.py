@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hfanalysis.engine import tangents
-from hfanalysis.engine.course import SCALES
 from hfanalysis.engine.effect import Active, compose
 from hfanalysis.engine.model import OUTPUTS, STATES
+from hfanalysis.engine.phases import SCALES
 from hfanalysis.engine.unsteady import ACCURACY, Burn, Engine, burn, constants, initial
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ class Tangents:
         return tangents.at_times(where, self.burn.steps.times, source[:, :, row : row + 1])[:, 0]
 
     def event(self, number: int) -> Array:
-        """Sensitivities (parameters,) of the time of an event of :mod:`hfanalysis.engine.course` [s]."""
+        """Sensitivities (parameters,) of the time of an event of :mod:`hfanalysis.engine.phases` [s]."""
         at = np.flatnonzero(self.burn.steps.events == number)
         return self.moments[at[-1]] if at.size else np.full(len(self.parameters), np.nan)
 

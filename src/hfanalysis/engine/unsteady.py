@@ -1,6 +1,6 @@
 """The unsteady engine (report, chapter 3): from ignition to burn-out, and on through cold gas where asked.
 
-The equations are in :mod:`hfanalysis.engine.model`, the integration in :mod:`hfanalysis.engine.course`; here an engine
+The equations are in :mod:`hfanalysis.engine.model`, the integration in :mod:`hfanalysis.engine.phases`; here an engine
 in plain numbers becomes what they read, and their steps become histories.
 """
 
@@ -14,9 +14,8 @@ from math import inf, pi, sqrt
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hfanalysis.engine import course
+from hfanalysis.engine import phases as course
 from hfanalysis.engine.blowdown import FeedSystem
-from hfanalysis.engine.course import History
 from hfanalysis.engine.effect import Active, Composition, compose
 from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
 from hfanalysis.engine.model import (
@@ -33,8 +32,9 @@ from hfanalysis.engine.model import (
     nothing_kept,
     rates,
 )
+from hfanalysis.engine.phases import History
 from hfanalysis.engine.sites import ENVIRONMENT, SITES
-from hfanalysis.flight.vehicle import Vehicle
+from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo.air import air
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
 from hfanalysis.thermo.combustion_table import CombustionTable, gas_at, temperatures
@@ -112,7 +112,7 @@ class Engine:
 
 @dataclass(frozen=True)
 class Steps:
-    """The solver's steps as :func:`hfanalysis.engine.course.integrate` returns them, and what they were made with.
+    """The solver's steps as :func:`hfanalysis.engine.phases.integrate` returns them, and what they were made with.
 
     ``last`` keeps what was asked for last and before that: residuals and their slopes ask at the same instants.
     """

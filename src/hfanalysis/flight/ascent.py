@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from hfanalysis.flight.curve import Curve
-from hfanalysis.flight.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle, drag_coefficient
+from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle, drag_coefficient
 from hfanalysis.thermo.air import air
 from hfanalysis.thermo.atmosphere import HIGHEST
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from hfanalysis.flight.ascent import NOT_FROM_PAD, ascend
 from hfanalysis.flight.curve import Curve
-from hfanalysis.flight.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle, drag_coefficient, gravity
+from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle, drag_coefficient, gravity
 
 __all__ = ["EARTH_RADIUS", "STANDARD_GRAVITY", "Vehicle", "apogee", "drag_coefficient", "gravity"]
 

@@ -9,21 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from hfanalysis.flight.vehicle import STANDARD_GRAVITY, Vehicle, drag, gravity
+from hfanalysis.rocket.parachute import Parachute
+from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, drag, gravity
 from hfanalysis.thermo.atmosphere import density
 
 Array = NDArray[np.float64]
 Rates = Callable[[float, Array], list[float]]
 LONGEST = 3600.0
-
-
-@dataclass(frozen=True)
-class Parachute:
-    """Drag coefficient on its area [m^2]; ``deploy_altitude`` above ground [m] (None: opens at apogee)."""
-
-    drag_coefficient: float
-    area: float
-    deploy_altitude: float | None = None
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hfanalysis.flight.aerodynamics import BODY_LIFT, Shape, center_of_pressure, components, planform
 from hfanalysis.flight.ascent import Arguments
-from hfanalysis.flight.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, drag_coefficient
+from hfanalysis.rocket.aerodynamics import BODY_LIFT, Shape, center_of_pressure, components, planform
+from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, drag_coefficient
 from hfanalysis.thermo.air import air
 
 Array = NDArray[np.float64]

@@ -8,10 +8,10 @@ from pprint import pformat
 
 import numpy as np
 
-from hfanalysis.flight.aerodynamics import Shape
-from hfanalysis.flight.descent import Parachute
 from hfanalysis.flight.motor import Motor, Points
-from hfanalysis.flight.vehicle import Vehicle
+from hfanalysis.rocket.aerodynamics import Shape
+from hfanalysis.rocket.parachute import Parachute
+from hfanalysis.rocket.vehicle import Vehicle
 
 NOSES = {"cone": "conical", "ogive": "ogive", "von_karman": "von karman", "ellipsoid": "elliptical"}
 """What RocketPy calls them."""

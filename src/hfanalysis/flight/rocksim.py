@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from hfanalysis.flight.motor import Motor, Points, as_written, left_by_thrust, problems
-from hfanalysis.flight.vehicle import STANDARD_GRAVITY
+from hfanalysis.rocket.vehicle import STANDARD_GRAVITY
 
 
 def text(motor: Motor, points: Points, comments: Sequence[str] = (), radii: tuple[float, float] = (0.0, 0.0)) -> str:

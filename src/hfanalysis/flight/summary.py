@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.flight.ascent import ACCELERATION, APOGEE, MACH, RAIL, SPEED, TIME, Ascent
-from hfanalysis.flight.descent import Descent, Parachute, descend, fall
-from hfanalysis.flight.vehicle import STANDARD_GRAVITY, Vehicle
+from hfanalysis.flight.descent import Descent, descend, fall
 from hfanalysis.quantity import Quantity
+from hfanalysis.rocket.parachute import Parachute
+from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle
 
 Array = NDArray[np.float64]
 

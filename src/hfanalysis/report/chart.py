@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from markupsafe import Markup
 
-from hfanalysis.report.envelope import Envelope, Floats, envelope
+from hfanalysis.charts.envelope import Envelope, Floats, envelope
+from hfanalysis.charts.svg import Event, Phase
+from hfanalysis.record.log import Channel
 from hfanalysis.report.material import Material, event_list, phase_list, window
-from hfanalysis.report.scales import Scale, scale
-from hfanalysis.report.svg import Event, Phase
-from hfanalysis.testdata.log import Channel
+from hfanalysis.wording.scales import Scale, scale
 
 TIME = "time after the valve opens [s]"
 LOG_TIME = "log time [s]"

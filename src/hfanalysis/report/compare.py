@@ -15,9 +15,9 @@ from hfanalysis.report.figure import figure
 from hfanalysis.report.material import EVENTS, Material
 from hfanalysis.report.page import kind, render
 from hfanalysis.report.payload import payload
-from hfanalysis.report.scales import SYSTEMS
 from hfanalysis.report.sections import charts
-from hfanalysis.report.wording import MINUS, Shown, fixed, quantities, shown
+from hfanalysis.wording.numbers import MINUS, Shown, fixed, quantities, shown
+from hfanalysis.wording.scales import SYSTEMS
 
 _LEFT_OUT = {"raw", "model", "residual"}
 """Lines that say something of one test only."""

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.charts.colours import style_of
+from hfanalysis.charts.svg import value_range
 from hfanalysis.diagnose.answer.words import EQUATIONS
+from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report.chart import Chart, Series, around, over_time
-from hfanalysis.report.colours import style_of
 from hfanalysis.report.material import Material, required
-from hfanalysis.report.svg import value_range
-from hfanalysis.report.wording import fixed, listed, tidy
-from hfanalysis.testdata.channels import LONG_NAMES
+from hfanalysis.wording.numbers import fixed, listed, tidy
 
 READ: dict[str, tuple[str, float]] = {
     "W": ("kW", 1e-3),

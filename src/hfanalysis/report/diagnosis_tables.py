@@ -7,11 +7,11 @@ from typing import Any
 
 from markupsafe import Markup
 
+from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report import html
 from hfanalysis.report.diagnosis_charts import READ, with_what
-from hfanalysis.report.scales import scale
-from hfanalysis.report.wording import MINUS, fixed, in_words
-from hfanalysis.testdata.channels import LONG_NAMES
+from hfanalysis.wording.numbers import MINUS, fixed, in_words
+from hfanalysis.wording.scales import scale
 
 Product = Mapping[str, Any]
 

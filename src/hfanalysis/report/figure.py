@@ -7,11 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 from markupsafe import Markup
 
-from hfanalysis.report import draw, html
+from hfanalysis.charts import draw
+from hfanalysis.charts.envelope import Floats
+from hfanalysis.report import html
 from hfanalysis.report.chart import Chart, Series
-from hfanalysis.report.envelope import Floats
-from hfanalysis.report.scales import SYSTEMS
-from hfanalysis.report.wording import fixed, tidy
+from hfanalysis.wording.numbers import fixed, tidy
+from hfanalysis.wording.scales import SYSTEMS
 
 ROWS = 12
 """Instants of the table between the ends of the chart, besides the events."""

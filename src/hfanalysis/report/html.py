@@ -9,8 +9,8 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
-from hfanalysis.report.scales import scale, superscript
-from hfanalysis.report.wording import MINUS, Shown, decimals_for, fixed, in_words, shown, tidy
+from hfanalysis.wording.numbers import MINUS, Shown, decimals_for, fixed, in_words, shown, tidy
+from hfanalysis.wording.scales import scale, superscript
 
 _UNITS_IN_TEXT = {"bar": ("Pa", 1e5), "Pa": ("Pa", 1.0), "N": ("N", 1.0), "N s": ("N s", 1.0)}
 _NEGATIVE, _POWER = re.compile(r"(?<![\w.)])-(?=\d)"), re.compile(r"(?<=[A-Za-z)])\^(-?\d)(?![\d.])")

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from hfanalysis.products.disk import atomic
 from hfanalysis.report.page import SUMMARY, render
-from hfanalysis.testdata.products import atomic
 
 _HEAD = 64_000
 """Characters from the start of a page within which its summary ends."""

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.charts.envelope import Floats
+from hfanalysis.charts.svg import Event, Phase
 from hfanalysis.errors import AbsentError
-from hfanalysis.report.envelope import Floats
-from hfanalysis.report.svg import Event, Phase
-from hfanalysis.report.wording import adopted_in_words
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import TestLog
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.wording.numbers import adopted_in_words
 
 EVENTS = ("t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
 _BEFORE, _AFTER = 2.0, 3.0

@@ -12,17 +12,17 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from hfanalysis.report import wording
+from hfanalysis.charts.style import sheet
 from hfanalysis.report.chart import Chart
 from hfanalysis.report.figure import figure
 from hfanalysis.report.material import Material
 from hfanalysis.report.payload import as_json, payload
-from hfanalysis.report.scales import SYSTEMS
 from hfanalysis.report.sections import Laid, lay_out
 from hfanalysis.report.sections.verdict import key_numbers, sentence
 from hfanalysis.report.spark import spark
-from hfanalysis.report.style import sheet
-from hfanalysis.report.wording import in_words, listed, shown
+from hfanalysis.wording import numbers as wording
+from hfanalysis.wording.numbers import in_words, listed, shown
+from hfanalysis.wording.scales import SYSTEMS
 
 SUMMARY = '<script type="application/json" id="summary">'
 """How the part of a page begins that the index reads."""

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from hfanalysis.report import draw
+from hfanalysis.charts import draw
+from hfanalysis.charts.envelope import Envelope, Floats
 from hfanalysis.report.chart import Chart, Series
-from hfanalysis.report.envelope import Envelope, Floats
-from hfanalysis.report.scales import SYSTEMS
+from hfanalysis.wording.scales import SYSTEMS
 
 MOST, LEAST = 24_000, 1_500
 """Samples of a line that a page keeps as they are (24 s at 1 kHz), and how few it may be asked to keep."""

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 from hfanalysis.errors import InputError
-from hfanalysis.testdata.products import atomic
+from hfanalysis.products.disk import atomic
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 

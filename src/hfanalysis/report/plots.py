@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from hfanalysis.report import draw
+from hfanalysis.charts import draw
+from hfanalysis.charts.colours import COLOURS
+from hfanalysis.charts.envelope import Floats
+from hfanalysis.products.disk import atomic
 from hfanalysis.report.chart import Chart, Series
-from hfanalysis.report.colours import COLOURS
-from hfanalysis.report.envelope import Floats
-from hfanalysis.testdata.products import atomic
 
 _BINS = 2000
 _INCHES = 10.0

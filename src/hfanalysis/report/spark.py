@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report.chart import of_channel
 from hfanalysis.report.material import Material, window
-from hfanalysis.testdata.channels import LONG_NAMES
 
 WIDTH, HEIGHT = 240.0, 44.0
 _BINS = 80

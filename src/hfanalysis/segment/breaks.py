@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.segment.noise import Noise
-from hfanalysis.segment.signals import Signal
+from hfanalysis.record.noise import Noise
+from hfanalysis.record.signals import Signal
 
 Array = NDArray[np.float64]
 Design = Callable[[Array, float], Array]

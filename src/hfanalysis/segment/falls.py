@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hfanalysis.segment.signals import Array, Signal
+from hfanalysis.record.signals import Array, Signal
 
 WINDOW = 0.03
 """Seconds over which the level is taken before and after a fall."""

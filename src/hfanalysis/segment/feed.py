@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hfanalysis.segment.signals import Signal
+from hfanalysis.record.signals import Signal
 
 FULL = 0.98
 SMOOTHING = 0.06

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hfanalysis.record.signals import Array, Signal, sample_noise
 from hfanalysis.segment.falls import RELAXATION, abrupt_falls
 from hfanalysis.segment.refine import refine_step
-from hfanalysis.segment.signals import Array, Signal, sample_noise
 
 GRID = 0.01
 """Seconds from one value of the chamber's response to the next."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hfanalysis.segment.signals import Signal
+from hfanalysis.record.signals import Signal
 
 COLDEST_FIRE = 700.0
 """Apparent c* [m/s] below which nothing burns: cold nitrous oxide gives 250 to 400, poor combustion 1000 and more."""

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from hfanalysis.engine.tank import mass_along_blowdown, split
+from hfanalysis.record.noise import Noise
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.breaks import Break
 from hfanalysis.segment.falls import abrupt_falls
-from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.refine import refine_knee, refine_step
-from hfanalysis.segment.signals import Signal
 from hfanalysis.thermo.saturation import Saturation
 
 STEEPER = 1.25

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hfanalysis.record.signals import Array, Signal
 from hfanalysis.segment.refine import refine_step
-from hfanalysis.segment.signals import Array, Signal
 
 COARSE_STEP = 0.02
 RISE_TIME = 0.6

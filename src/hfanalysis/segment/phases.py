@@ -10,7 +10,10 @@ import numpy as np
 
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.quantity import Quantity
-from hfanalysis.segment.ending import find_unchoking
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal, live_signals
+from hfanalysis.segment.end_of_burn import find_unchoking
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.fuel import find_fuel_end
 from hfanalysis.segment.kind import Kind, recognise
@@ -18,9 +21,6 @@ from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.segment.sanity import BESIDE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
-from hfanalysis.segment.signals import Signal, live_signals
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import TestLog
 from hfanalysis.thermo.nitrous import saturation
 
 FUEL_LEFT = 0.05

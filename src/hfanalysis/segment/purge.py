@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from hfanalysis.record.noise import Noise
+from hfanalysis.record.signals import Array, Signal
 from hfanalysis.segment.breaks import Break
-from hfanalysis.segment.noise import Noise
 from hfanalysis.segment.refine import refine_kink
-from hfanalysis.segment.signals import Array, Signal
 
 SMALLEST_SAG = 0.01
 """The line has to lose at least this part of its pressure before a sag is believed."""

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from hfanalysis.record.noise import Noise
+from hfanalysis.record.signals import Array, Signal
 from hfanalysis.segment.breaks import RELAXATIONS, Break, Design, combine, find_break, kink, relaxation, rounded_kink
-from hfanalysis.segment.noise import Noise
-from hfanalysis.segment.signals import Array, Signal
 
 COARSE, FINE = 41, 61
 

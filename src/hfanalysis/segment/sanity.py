@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.opening import Opening
-from hfanalysis.segment.signals import Signal
 
 SHOWN_BY = {"t_feed": "p_run", "t_v": "p_tank", "t_purge": "p_purge", "t_fuel_out": "p_chamber", "t_end": "p_chamber"}
 """The channel that an event is looked for in first."""

@@ -12,9 +12,9 @@ from hfanalysis.flight import summary
 from hfanalysis.flight.ascent import Ascent
 from hfanalysis.flight.ascent import ascend as ascend_on
 from hfanalysis.flight.curve import Curve, even_curve
-from hfanalysis.flight.descent import Parachute
-from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.quantity import Quantity
+from hfanalysis.rocket.parachute import Parachute
+from hfanalysis.rocket.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import hfanalysis
+from hfanalysis.assembly.engine import Enthalpy
+from hfanalysis.products.disk import sha256_file
 from hfanalysis.quantity import Quantity
-from hfanalysis.simulate.build import Enthalpy
-from hfanalysis.testdata.engine_file import EngineFile
-from hfanalysis.testdata.products import sha256_file
+from hfanalysis.record.engine_file import EngineFile
+from hfanalysis.version import __version__
 
 
 def heading(file: EngineFile, command: str, enthalpy: Enthalpy) -> dict[str, Any]:
@@ -26,4 +26,4 @@ def provenance(file: EngineFile) -> dict[str, Any]:
     """Package version, and the engine file and its rocket's drag table by name and SHA-256."""
     table = file.rocket.drag_table if file.rocket else None
     tables = {"drag_table": {table: sha256_file(file.path.parent / table)}} if table else {}
-    return {"hfanalysis": hfanalysis.__version__, "engine_toml": {file.path.name: file.sha256}, **tables}
+    return {"hfanalysis": __version__, "engine_toml": {file.path.name: file.sha256}, **tables}

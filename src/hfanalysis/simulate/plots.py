@@ -9,11 +9,11 @@ from itertools import cycle
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.steady import SteadyEngine
-from hfanalysis.report import svg
-from hfanalysis.report.colours import STYLES
-from hfanalysis.report.envelope import Envelope
-from hfanalysis.report.style import sheet
+from hfanalysis.charts import svg
+from hfanalysis.charts.colours import STYLES
+from hfanalysis.charts.envelope import Envelope
+from hfanalysis.charts.style import sheet
+from hfanalysis.design.steady import SteadyEngine
 from hfanalysis.simulate.study import FlowPoint, MixturePoint
 
 Array = NDArray[np.float64]

@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 from scipy.optimize import brentq
 
+from hfanalysis.assembly import engine as build
 from hfanalysis.engine import unsteady
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.flight.ascent import NOT_FROM_PAD
 from hfanalysis.quantity import Quantity
-from hfanalysis.simulate import build
+from hfanalysis.record.engine_file import Needs
 from hfanalysis.simulate.flown import ascend
-from hfanalysis.testdata.engine_file import Needs
 
 STEP = 1.15
 """By which the load is raised or lowered until the target lies between two apogees."""

@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from hfanalysis.engine import steady
-from hfanalysis.engine.steady import Grain, Requirement, SteadyEngine
+from hfanalysis.assembly import engine as build
+from hfanalysis.design import steady
+from hfanalysis.design.steady import Grain, Requirement, SteadyEngine
 from hfanalysis.errors import InputError
 from hfanalysis.flight import constant_thrust
-from hfanalysis.flight.vehicle import Vehicle
 from hfanalysis.quantity import Quantity
-from hfanalysis.simulate import build, heading
-from hfanalysis.testdata.engine_file import EngineFile, Needs
+from hfanalysis.record.engine_file import EngineFile, Needs
+from hfanalysis.rocket.vehicle import Vehicle
+from hfanalysis.simulate import heading
 from hfanalysis.thermo.combustion import restart
 
 COMMAND = "hfa design"

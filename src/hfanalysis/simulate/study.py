@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hfanalysis.engine.steady import Requirement, SteadyEngine, ideal_specific_impulse
+from hfanalysis.design.steady import Requirement, SteadyEngine, ideal_specific_impulse
 from hfanalysis.simulate.steady_run import Task, solve
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 

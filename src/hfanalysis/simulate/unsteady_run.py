@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.assembly import engine as build
 from hfanalysis.engine import closure, unsteady
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
 from hfanalysis.flight import summary
-from hfanalysis.flight.vehicle import STANDARD_GRAVITY, Vehicle, gravity
 from hfanalysis.quantity import Quantity
-from hfanalysis.simulate import build, flown, heading, propellant
-from hfanalysis.testdata.engine_file import EngineFile, Needs
+from hfanalysis.record.engine_file import EngineFile, Needs
+from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, gravity
+from hfanalysis.simulate import flown, heading, propellant
 
 Array = NDArray[np.float64]
 

@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.steady import SteadyEngine
+from hfanalysis.design.steady import SteadyEngine
 from hfanalysis.flight import rasp
+from hfanalysis.products.disk import atomic, write_json
+from hfanalysis.record.engine_file import EngineFile
 from hfanalysis.simulate import plots, study
 from hfanalysis.simulate.steady_run import Design
 from hfanalysis.simulate.study import FlowPoint, MixturePoint
 from hfanalysis.simulate.unsteady_run import Simulation
-from hfanalysis.testdata.engine_file import EngineFile
-from hfanalysis.testdata.products import atomic, write_json
 
 Array = NDArray[np.float64]
 

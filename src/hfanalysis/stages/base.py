@@ -28,23 +28,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hfanalysis.errors import InputError
+from hfanalysis.products import disk as products
+from hfanalysis.progress import Progress, silent
+from hfanalysis.record.definition import TestDefinition
 from hfanalysis.stages import ORDER
-from hfanalysis.testdata import products
-from hfanalysis.testdata.definition import TestDefinition
 from hfanalysis.units import near
 
 if TYPE_CHECKING:
-    from hfanalysis.adopt.effects import Adopted
+    from hfanalysis.inference.adopted.effects import Adopted
 
 BASE = "base_"
 """How a product's name begins that is made without adopted effects, by a stage that also makes one with them."""
-
-Progress = Callable[[str, float | None], None]
-"""Told what is being done, and the fraction done where it is known."""
-
-
-def silent(_text: str, _fraction: float | None = None) -> None:
-    """Progress that nobody watches."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +126,7 @@ class Context:
 
     def adopted(self) -> Adopted:
         """The effects that have been adopted for this test. Raises InputError for a file that is at fault."""
-        from hfanalysis.adopt.effects import read_adopted
+        from hfanalysis.inference.adopted.effects import read_adopted
 
         return read_adopted(self.root, self.definition)
 

@@ -28,10 +28,10 @@ def run(context: Context) -> None:
 
 def _with_effects(context: Context, base: Mapping[str, Any], effects: Sequence[Active]) -> dict[str, Any]:
     """The same with adopted effects; where one acts on the engine, its constants are fitted together."""
-    from hfanalysis.adopt.together import fitted_together
-    from hfanalysis.diagnose.of_test import Subject
+    from hfanalysis.calibrate.joint_fit import fitted_together
+    from hfanalysis.inference.subject import Subject
+    from hfanalysis.record.log import read_log
     from hfanalysis.segment.phases import Segments
-    from hfanalysis.testdata.log import read_log
 
     found = _calibration(context, effects)
     if all(active.effect.of_sensor for active in effects):
@@ -48,11 +48,11 @@ def _with_effects(context: Context, base: Mapping[str, Any], effects: Sequence[A
 
 def _calibration(context: Context, effects: Sequence[Active]) -> dict[str, Any]:
     """The content of calibration.json with these effects acting."""
-    from hfanalysis.adopt.sensors import corrected
-    from hfanalysis.calibrate.of_test import regress
+    from hfanalysis.calibrate.fuel_law import regress
     from hfanalysis.calibrate.tank import calibrate
+    from hfanalysis.inference.adopted.corrected_log import corrected
+    from hfanalysis.record.log import read_log
     from hfanalysis.segment.phases import Segments
-    from hfanalysis.testdata.log import read_log
 
     segments = Segments.from_json(context.read_json("segments.json"))
     log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)

@@ -17,14 +17,14 @@ from hfanalysis.stages.base import Context, Stage
 
 if TYPE_CHECKING:
     from hfanalysis.diagnose.answer.proof import OtherTest
-    from hfanalysis.diagnose.of_test import Subject
+    from hfanalysis.inference.subject import Subject
 
 
 def run(context: Context) -> None:
     """Name what the model lacks."""
-    from hfanalysis.diagnose.histories import write_empty, write_histories
+    from hfanalysis.diagnose.diagnosis import diagnose
     from hfanalysis.diagnose.naming.variants import settings_of
-    from hfanalysis.diagnose.of_test import diagnose
+    from hfanalysis.diagnose.product_histories import write_empty, write_histories
     from hfanalysis.diagnose.without_engine import channels_alone
     from hfanalysis.effects import FOLDER, library
 
@@ -46,10 +46,10 @@ def run(context: Context) -> None:
 
 def subject_of(context: Context) -> Subject:
     """What the products of a test give a diagnosis to work on; without a calibration where none can be had."""
-    from hfanalysis.diagnose.of_test import Subject
     from hfanalysis.diagnose.without_run_line import NOTE, lumped_calibration
+    from hfanalysis.inference.subject import Subject
+    from hfanalysis.record.log import read_log
     from hfanalysis.segment.phases import Segments
-    from hfanalysis.testdata.log import read_log
 
     log = read_log(context.product("ingest.h5"))
     segments = Segments.from_json(context.read_json("segments.json"))
@@ -64,7 +64,7 @@ def subject_of(context: Context) -> Subject:
 
 def _check_proof_test(context: Context) -> None:
     """Before anything long runs: is the test that is asked for there, and another one?"""
-    from hfanalysis.testdata.definition import find_definition
+    from hfanalysis.record.definition import find_definition
 
     asked = str(context.parameter("proof_test"))
     if asked == context.id:
@@ -81,7 +81,7 @@ def _other(context: Context) -> OtherTest | None:
     """
     from hfanalysis.diagnose.answer.proof import OtherTest
     from hfanalysis.stages.freshness import STATE
-    from hfanalysis.stages.opening import open_test
+    from hfanalysis.stages.open_test import open_test
     from hfanalysis.stages.runner import run_to
 
     asked = str(context.parameter("proof_test"))
@@ -98,7 +98,7 @@ def _other(context: Context) -> OtherTest | None:
 
 def _siblings(context: Context) -> list[str]:
     """Other tests of the same stand, hot fires, by name."""
-    from hfanalysis.testdata.definition import load_definition
+    from hfanalysis.record.definition import load_definition
 
     stand = context.definition.test.stand
     if stand is None:

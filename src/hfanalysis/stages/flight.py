@@ -12,13 +12,13 @@ from hfanalysis.stages.base import Context, Stage
 
 def run(context: Context) -> None:
     """Fly the test's rocket."""
-    from hfanalysis.adopt.sensors import corrected
-    from hfanalysis.launch.files import export, rocketpy
-    from hfanalysis.launch.firing import firing
-    from hfanalysis.launch.product import launch, product, write_histories
-    from hfanalysis.launch.stability import stability
+    from hfanalysis.inference.adopted.corrected_log import corrected
+    from hfanalysis.measured_flight.engine_files import export, rocketpy
+    from hfanalysis.measured_flight.firing import firing
+    from hfanalysis.measured_flight.product import launch, product, write_histories
+    from hfanalysis.measured_flight.stability import stability
+    from hfanalysis.record.log import read_log
     from hfanalysis.segment.phases import Segments
-    from hfanalysis.testdata.log import read_log
 
     definition = context.definition
     if definition.rocket is None:

@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import hfanalysis
-from hfanalysis.adopt import adopted_file
 from hfanalysis.errors import InputError
+from hfanalysis.inference.adopted import adopted_file
+from hfanalysis.products import disk as products
+from hfanalysis.products.disk import HashCache
+from hfanalysis.record.definition import TestDefinition
 from hfanalysis.stages import base
 from hfanalysis.stages.base import Context, Stage
-from hfanalysis.testdata import products
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.products import HashCache
+from hfanalysis.version import __version__
 
 LIBRARIES = ("numpy", "scipy", "CoolProp", "pandas", "h5py")
 """Libraries whose version can change a number."""
@@ -56,7 +57,7 @@ def input_files(context: Context, stage: Stage) -> list[Path]:
 def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, Any]:
     """What ``stage``'s products would be made from if it ran now: the ``provenance`` block of a product."""
     return {
-        "hfanalysis": hfanalysis.__version__,
+        "hfanalysis": __version__,
         "code": code_hash(),
         "test_toml": hashes(context.definition.path),
         "raw": {

@@ -10,9 +10,9 @@ from hfanalysis.stages.base import Context, Stage
 
 def run(context: Context) -> None:
     """Ingest the raw files of the test."""
-    from hfanalysis.testdata.ingest import ingest
-    from hfanalysis.testdata.log import read_log
-    from hfanalysis.testdata.summary import summary
+    from hfanalysis.record.ingest import ingest
+    from hfanalysis.record.log import read_log
+    from hfanalysis.record.summary import summary
 
     ingest(context.definition, context.scratch("ingest.h5"), context.progress)
     context.write_json("ingest.json", summary(read_log(context.scratch("ingest.h5"))))

@@ -12,8 +12,8 @@ from hfanalysis.stages.base import Context, Stage
 
 def run(context: Context) -> None:
     """Write the page of the test."""
-    from hfanalysis.report.load import load
     from hfanalysis.report.page import page
+    from hfanalysis.stages.material import load
 
     context.scratch("report.html").write_text(page(load(context)), encoding="utf-8")
 

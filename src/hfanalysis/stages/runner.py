@@ -20,11 +20,12 @@ from typing import Any
 
 import hfanalysis
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
+from hfanalysis.products import disk as products
+from hfanalysis.products.disk import HashCache
 from hfanalysis.stages import ASIDE, ORDER, base, freshness
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.stages.lock import locked
-from hfanalysis.testdata import products
-from hfanalysis.testdata.products import HashCache
+from hfanalysis.version import __version__
 
 RUN_LOG = "run.log"
 _REFUSED = {errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOSPC, errno.EDQUOT}
@@ -36,7 +37,7 @@ def run_to(name: str, context: Context, *, force: bool = False, whole: bool = Fa
 
     Args:
         name: the stage.
-        context: the test, from :func:`hfanalysis.stages.opening.open_test`.
+        context: the test, from :func:`hfanalysis.stages.open_test.open_test`.
         force: redo the stage and all before it, even where nothing changed.
         whole: run the stages that stand aside, too, where they are wanted; else their products are taken as they are.
 
@@ -197,7 +198,7 @@ class _Run:
             "stage": stage.name,
             "seconds": round(time.perf_counter() - started, 3),
             "end": end,
-            "hfanalysis": hfanalysis.__version__,
+            "hfanalysis": __version__,
             "python": platform.python_version(),
             "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
         }

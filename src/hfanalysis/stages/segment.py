@@ -10,8 +10,8 @@ from hfanalysis.stages.base import Context, Stage
 
 def run(context: Context) -> None:
     """Find the phases of the test."""
+    from hfanalysis.record.log import read_log
     from hfanalysis.segment.phases import find_phases
-    from hfanalysis.testdata.log import read_log
 
     log = read_log(context.product("ingest.h5"))
     segments = find_phases(log, context.definition)

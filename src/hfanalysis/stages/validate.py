@@ -11,11 +11,11 @@ from hfanalysis.stages.base import Context, Stage
 
 def run(context: Context) -> None:
     """Compare what can be compared; what cannot says why."""
+    from hfanalysis.record.log import read_log
     from hfanalysis.segment.phases import Segments
-    from hfanalysis.testdata.log import read_log
     from hfanalysis.validate.histories import write_histories
-    from hfanalysis.validate.of_test import validate
     from hfanalysis.validate.residuals import write_residuals
+    from hfanalysis.validate.validation import validate
 
     log = read_log(context.product("ingest.h5"))
     segments = Segments.from_json(context.read_json("segments.json"))

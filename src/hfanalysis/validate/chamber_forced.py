@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from hfanalysis.adopt.sensors import corrected
 from hfanalysis.engine.observe import read_as
+from hfanalysis.inference.adopted.corrected_log import corrected
+from hfanalysis.inference.full_run import FullRun
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.phases import Segments
-from hfanalysis.segment.signals import Signal
-from hfanalysis.testdata.log import TestLog
 from hfanalysis.validate.flows import Flows, nozzle_along
-from hfanalysis.validate.full import FullRun
 from hfanalysis.validate.residuals import Residual, compared
 
 

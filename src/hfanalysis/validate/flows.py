@@ -16,13 +16,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.engine_of_test import Regression, effective_area
+from hfanalysis.assembly.calibrated import Regression, effective_area
 from hfanalysis.engine.nozzle import expand
 from hfanalysis.engine.unsteady import Engine
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.phases import Segments
-from hfanalysis.segment.signals import Signal
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import TestLog
 from hfanalysis.thermo.combustion_table import Grid, gas_at
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.validate.tank_free import TankAlone

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.quantity import Quantity
-from hfanalysis.segment.ending import CRITICAL_RATIO
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.signals import Signal
+from hfanalysis.segment.end_of_burn import CRITICAL_RATIO
 from hfanalysis.segment.phases import Segments
-from hfanalysis.segment.signals import Signal
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import Channel, TestLog
 from hfanalysis.validate.flows import STEP, Flows, ideal_characteristic_velocity, nozzle_along
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import FORMAT

@@ -9,18 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.engine_of_test import mass_of
-from hfanalysis.calibrate.evidence_of_test import VIDEO
+from hfanalysis.assembly.calibrated import mass_of
+from hfanalysis.calibrate.evidence_from_log import VIDEO
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
+from hfanalysis.inference.full_run import FullRun, moved
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.phases import Segments
-from hfanalysis.segment.signals import Signal
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import Channel, TestLog
 from hfanalysis.units import Value
-from hfanalysis.validate.full import FullRun, moved
 from hfanalysis.validate.thrust import Thrust, thrust_of
 
 Array = NDArray[np.float64]

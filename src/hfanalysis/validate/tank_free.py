@@ -9,9 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.adopt.sensors import corrected
-from hfanalysis.calibrate.engine_of_test import effective_area, exponent, loaded_mass, loss_factor, tank_of_test
-from hfanalysis.calibrate.histories import line_at
+from hfanalysis.assembly.calibrated import effective_area, exponent, loaded_mass, loss_factor, tank_of_test
 from hfanalysis.engine.blowdown import FeedSystem, blow_down
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.model import NITROGEN, STATES
@@ -19,10 +17,11 @@ from hfanalysis.engine.observe import read_as
 from hfanalysis.engine.tank import split
 from hfanalysis.engine.tank_alone import TankAlone as WithEffects
 from hfanalysis.errors import AbsentError
+from hfanalysis.inference.adopted.corrected_log import corrected
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal, line_at
 from hfanalysis.segment.phases import Segments
-from hfanalysis.segment.signals import Signal
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import TestLog
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 from hfanalysis.validate.residuals import Residual, compared

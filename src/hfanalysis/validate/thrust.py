@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.phases import Segments
-from hfanalysis.segment.signals import Signal
-from hfanalysis.testdata.definition import TestDefinition
-from hfanalysis.testdata.log import TestLog
 
 Array = NDArray[np.float64]
 

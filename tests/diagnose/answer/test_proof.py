@@ -6,15 +6,15 @@ from dataclasses import replace
 from functools import cache
 
 import pytest
-from tests.diagnose import made
 from tests.engine.stand import engine_on_stand
+from tests.inference import made
 
 from hfanalysis.diagnose.answer.proof import OtherTest, prove
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.effects import effect
+from hfanalysis.inference.candidate import Candidate
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
 
 HEAT = effect("tank_heat").at(power=3000.0)
 

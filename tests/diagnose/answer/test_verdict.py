@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as some
-from tests.diagnose import made
 from tests.diagnose.naming.test_naming import catalogue
 from tests.engine.stand import engine_on_stand
+from tests.inference import made
 
-from hfanalysis.diagnose.answer import gap, posterior
+from hfanalysis.diagnose.answer import posterior
 from hfanalysis.diagnose.answer import verdict as verdict_module
-from hfanalysis.diagnose.answer.acting import Acting, acting
+from hfanalysis.diagnose.answer.effect_source import Acting, acting
 from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judged, lost
 from hfanalysis.diagnose.answer.posterior import (
     BEFORE,
@@ -46,14 +46,15 @@ from hfanalysis.diagnose.answer.verdict import (
 )
 from hfanalysis.diagnose.answer.where import by_equation, elsewhere, likeliest_of
 from hfanalysis.diagnose.answer.words import place_sentence
-from hfanalysis.diagnose.fitting.fit import fit
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate
+from hfanalysis.diagnose.diagnosis import LIKELY, _decisive, _not_it
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.variants import VARIANTS, settings_of
-from hfanalysis.diagnose.of_test import LIKELY, _decisive, _not_it
 from hfanalysis.effects import effect, library
 from hfanalysis.errors import InputError
+from hfanalysis.inference import gap
+from hfanalysis.inference.candidate import Bench, Candidate
+from hfanalysis.inference.fitting.fit import fit
 
 labels = some.dictionaries(
     some.sampled_from(("none", "unknown", "tank_heat", "load_cell_drift", "n2_purge")),

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tests.diagnose import made
 from tests.diagnose.answer.test_verdict import eroded, probable
+from tests.inference import made
 
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.verdict import effects_product, places, verdict_of

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from tests.diagnose import made
+from tests.inference import made
 
-from hfanalysis.diagnose.fitting.fit import fit
-from hfanalysis.diagnose.naming.candidate import FINEST, Bench, candidate
 from hfanalysis.diagnose.naming.dropping import dropped
 from hfanalysis.diagnose.naming.localise import Smooth, linear_sources
 from hfanalysis.effects import effect
+from hfanalysis.inference.candidate import FINEST, Bench, candidate
+from hfanalysis.inference.fitting.fit import fit
 
 
 def test_a_source_called_like_the_effect_that_is_left_out_stays() -> None:

@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.diagnose import made
 from tests.diagnose.naming.test_naming import catalogue
+from tests.inference import made
 
-from hfanalysis.diagnose.fitting.fit import Fit, fit
 from hfanalysis.diagnose.naming import fading
-from hfanalysis.diagnose.naming.candidate import Bench
 from hfanalysis.diagnose.naming.fading import FROM_SHAPES, STRENGTH, fades_unseen, unseen_fits
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.engine.model import RADIUS
+from hfanalysis.inference.candidate import Bench
+from hfanalysis.inference.fitting.fit import Fit, fit
 
 
 @pytest.fixture(scope="module")

@@ -8,19 +8,19 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.diagnose import made
+from tests.inference import made
 
 from hfanalysis.diagnose.answer.verdict import of_unknown
 from hfanalysis.diagnose.answer.words import place_sentence
-from hfanalysis.diagnose.fitting.fit import fit
-from hfanalysis.diagnose.fitting.form import FINEST, Form
-from hfanalysis.diagnose.fitting.probe import Splines
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
-from hfanalysis.diagnose.naming.course import course_of
 from hfanalysis.diagnose.naming.freeform import unknown_sources
 from hfanalysis.diagnose.naming.localise import CORRELATIONS, Smooth, linear_sources
+from hfanalysis.diagnose.naming.source_history import course_of
 from hfanalysis.engine.effect import Active, Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, FEED_LOSS, IS_LIQUID, term
+from hfanalysis.inference.candidate import Bench, Candidate, candidate
+from hfanalysis.inference.fitting.fit import fit
+from hfanalysis.inference.fitting.form import FINEST, Form
+from hfanalysis.inference.unknowns.smooth_source import Splines
 
 
 def misread(channel: str, course: Callable[[np.ndarray], np.ndarray]) -> Active:

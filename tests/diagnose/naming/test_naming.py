@@ -10,24 +10,16 @@ from typing import cast
 
 import numpy as np
 import pytest
-from tests.diagnose import made
 from tests.engine.stand import engine_on_stand
+from tests.inference import made
 
 from hfanalysis.diagnose.answer.limits import inserted, limits
 from hfanalysis.diagnose.answer.verdict import of_unknown, places, verdict_of
 from hfanalysis.diagnose.answer.words import place_sentence
-from hfanalysis.diagnose.fitting.fit import Fit, fit, promised
-from hfanalysis.diagnose.fitting.form import COARSEST, FINEST, Form
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis, mid_flux
-from hfanalysis.diagnose.fitting.late import late
-from hfanalysis.diagnose.fitting.probe import Splines, probe
-from hfanalysis.diagnose.fitting.pulse import OWN, pulse_effect
 from hfanalysis.diagnose.naming import base_model as valley
 from hfanalysis.diagnose.naming import singles
 from hfanalysis.diagnose.naming.base_model import base_model
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
-from hfanalysis.diagnose.naming.course import course_of
 from hfanalysis.diagnose.naming.dropping import dropped
 from hfanalysis.diagnose.naming.freeform import ANYWHERE, LEAST, unknown_sources
 from hfanalysis.diagnose.naming.localise import Smooth, Sudden, linear_sources
@@ -37,11 +29,19 @@ from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
 from hfanalysis.diagnose.naming.singles import Array, _first_children, _promising, singles_of
 from hfanalysis.diagnose.naming.slack import slack_gain
-from hfanalysis.diagnose.observations.clocks import Delay
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.naming.source_history import course_of
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Engine
+from hfanalysis.inference.candidate import Bench, Candidate, attempted, candidate
+from hfanalysis.inference.fitting.fit import Fit, fit, promised
+from hfanalysis.inference.fitting.form import COARSEST, FINEST, Form
+from hfanalysis.inference.fitting.hypothesis import Hypothesis, mid_flux
+from hfanalysis.inference.observations.clocks import Delay
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.unknowns.late_channel import late
+from hfanalysis.inference.unknowns.pulse import OWN, pulse_effect
+from hfanalysis.inference.unknowns.smooth_source import Splines, probe
 
 TRIED = ("injector_choked_vapor", "load_cell_drift", "nozzle_throat_erosion", "tank_heat")
 
@@ -419,7 +419,7 @@ def test_a_form_without_hope_is_not_run(monkeypatch: pytest.MonkeyPatch) -> None
 
     monkeypatch.setattr(Bench, "refitted", seen)
     hopeful, count = found.bench.judged(base), len(ran)
-    monkeypatch.setattr("hfanalysis.diagnose.naming.candidate.FAR_DOUBT", np.inf)
+    monkeypatch.setattr("hfanalysis.inference.candidate.FAR_DOUBT", np.inf)
     all_of_them = found.bench.judged(base)
     assert hopeful.form == all_of_them.form
     assert hopeful.log_evidence == pytest.approx(all_of_them.log_evidence, abs=0.1)

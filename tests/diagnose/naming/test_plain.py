@@ -8,26 +8,26 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.diagnose import made
+from tests.inference import made
 
 from hfanalysis.diagnose.answer.verdict import of_unknown
 from hfanalysis.diagnose.answer.words import place_sentence
-from hfanalysis.diagnose.fitting.failing import SHARE_OF_FLOW, failing_effect, flow_before
-from hfanalysis.diagnose.fitting.fit import fit
-from hfanalysis.diagnose.fitting.form import FINEST
-from hfanalysis.diagnose.fitting.late import late
-from hfanalysis.diagnose.fitting.swing import swinging
-from hfanalysis.diagnose.fitting.valve import slow_valve
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
-from hfanalysis.diagnose.naming.course import Course, course_of
+from hfanalysis.diagnose.naming.places import FAILING, sensor_site, site_of
 from hfanalysis.diagnose.naming.plain import FILLING, plain_sources
-from hfanalysis.diagnose.naming.sites import FAILING, sensor_site, site_of
-from hfanalysis.diagnose.observations.clocks import Delay
-from hfanalysis.diagnose.observations.failing import FailingFlow
-from hfanalysis.diagnose.observations.observed import Plain
-from hfanalysis.diagnose.observations.opening import SlowOpening
-from hfanalysis.diagnose.observations.swinging import Swing
+from hfanalysis.diagnose.naming.source_history import Course, course_of
 from hfanalysis.engine.effect import Active
+from hfanalysis.inference.candidate import Bench, Candidate, candidate
+from hfanalysis.inference.fitting.fit import fit
+from hfanalysis.inference.fitting.form import FINEST
+from hfanalysis.inference.observations.clocks import Delay
+from hfanalysis.inference.observations.failing import FailingFlow
+from hfanalysis.inference.observations.observed import Plain
+from hfanalysis.inference.observations.swinging import Swing
+from hfanalysis.inference.observations.valve_opening import SlowOpening
+from hfanalysis.inference.unknowns.failing_flow import SHARE_OF_FLOW, failing_effect, flow_before
+from hfanalysis.inference.unknowns.late_channel import late
+from hfanalysis.inference.unknowns.slow_valve import slow_valve
+from hfanalysis.inference.unknowns.swing import swinging
 
 
 def with_plain(plain: Plain, *hidden: Active) -> tuple[Candidate, Candidate, Bench]:

@@ -7,15 +7,15 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.diagnose import made
+from tests.inference import made
 
-from hfanalysis.diagnose.fitting.fit import fit
-from hfanalysis.diagnose.fitting.form import FINEST
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import by_what_each_explains, sets_of
 from hfanalysis.effects import effect
+from hfanalysis.inference.candidate import Bench, Candidate, candidate
+from hfanalysis.inference.fitting.fit import fit
+from hfanalysis.inference.fitting.form import FINEST
 
 EROSION, LAG = (effect(name) for name in ("nozzle_throat_erosion", "chamber_tap_lag"))
 

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fit import Fit, usable
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.predict import predict
-from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.score import FIRST_STEP
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.inference.candidate import Bench, Candidate
+from hfanalysis.inference.fitting.fit import Fit, usable
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.predict import predict
+from hfanalysis.inference.fitting.threads import each
+from hfanalysis.inference.observations.observed import Observed
 
 Array = NDArray[np.float64]
 

@@ -16,9 +16,9 @@ from math import sqrt
 
 import numpy as np
 
-from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.freeform import REST
 from hfanalysis.diagnose.naming.naming import Naming
+from hfanalysis.inference.candidate import Candidate
 
 SET = 0.9
 """Probability that the stated set of names holds."""

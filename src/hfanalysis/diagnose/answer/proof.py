@@ -12,11 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from hfanalysis.diagnose.answer.gap import closed, frozen, held_out, root_mean_square, total_gap
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate
 from hfanalysis.diagnose.naming.naming import Naming
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.inference.candidate import Bench, Candidate
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.gap import closed, frozen, held_out, root_mean_square, total_gap
+from hfanalysis.inference.observations.observed import Observed
 
 
 @dataclass(frozen=True)

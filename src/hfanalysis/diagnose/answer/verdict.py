@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.answer.acting import Acting, acting
+from hfanalysis.diagnose.answer.effect_source import Acting, acting
 from hfanalysis.diagnose.answer.limits import limits
 from hfanalysis.diagnose.answer.plausible import judged, lost
 from hfanalysis.diagnose.answer.posterior import (
@@ -23,12 +23,12 @@ from hfanalysis.diagnose.answer.posterior import (
     weights_of,
 )
 from hfanalysis.diagnose.answer.where import elsewhere, likeliest_of, likeliest_source
-from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.naming.candidate import Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
-from hfanalysis.diagnose.naming.course import Course, course_of
 from hfanalysis.diagnose.naming.naming import Naming
+from hfanalysis.diagnose.naming.source_history import Course, course_of
 from hfanalysis.engine.effect import Parameter
+from hfanalysis.inference.candidate import Candidate
+from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.quantity import NORMAL_95, Quantity
 
 Array = NDArray[np.float64]

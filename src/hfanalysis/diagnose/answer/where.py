@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from hfanalysis.diagnose.answer.posterior import counts_as_unknown, kind
-from hfanalysis.diagnose.naming.candidate import Candidate
-from hfanalysis.diagnose.naming.course import course_of
 from hfanalysis.diagnose.naming.naming import Naming
-from hfanalysis.diagnose.naming.sites import OFFSET, site_of
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.naming.places import OFFSET, site_of
+from hfanalysis.diagnose.naming.source_history import course_of
+from hfanalysis.inference.candidate import Candidate
+from hfanalysis.inference.observations.observed import Observed
 
 ALIKE = ("tank_energy", "tank_volume"), ("grain", "chamber_mass", "chamber_energy")
 """Equations whose sources show in one pressure, and may be taken for each other."""

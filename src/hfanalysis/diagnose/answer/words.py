@@ -7,7 +7,7 @@ from typing import Any
 
 from hfanalysis.diagnose.answer.posterior import SET, far
 from hfanalysis.diagnose.answer.verdict import LIKELIER
-from hfanalysis.diagnose.observations.observed import FADE
+from hfanalysis.inference.observations.observed import FADE
 from hfanalysis.quantity import Quantity
 
 EQUATIONS = {

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate, candidate, followed
+from hfanalysis.inference.candidate import Bench, Candidate, candidate, followed
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.threads import each
 
 FROM_EXPONENTS = (0.0, -1.5, 1.5)
 """Where the base model's fit starts in n besides, in standard deviations of its prior, once all else has followed."""

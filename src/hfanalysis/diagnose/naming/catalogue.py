@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.engine.effect import Effect
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
 
 
 @dataclass(frozen=True)

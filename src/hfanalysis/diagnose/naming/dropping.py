@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.inference.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.observations.observed import Observed
 
 CERTAIN = 8.0
 """Standard deviations from nothing, other constants free, from which on an effect is not tried to be left out."""

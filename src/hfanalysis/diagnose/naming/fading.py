@@ -11,13 +11,13 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.predict import faded
-from hfanalysis.diagnose.naming.candidate import followed
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.observations.observed import FADE, Observed
 from hfanalysis.engine.model import RADIUS
+from hfanalysis.inference.candidate import followed
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.predict import faded
+from hfanalysis.inference.observations.observed import FADE, Observed
 
 Array = NDArray[np.float64]
 

@@ -8,18 +8,18 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.form import FINEST
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.predict import predict
-from hfanalysis.diagnose.fitting.pulse import has_pulse
-from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.diagnose.naming.dropping import dropped
 from hfanalysis.diagnose.naming.localise import SCALES, Source, linear_sources
+from hfanalysis.diagnose.naming.places import SITES
 from hfanalysis.diagnose.naming.plain import plain_sources
-from hfanalysis.diagnose.naming.sites import SITES
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.inference.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.form import FINEST
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.predict import predict
+from hfanalysis.inference.fitting.threads import each
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.unknowns.pulse import has_pulse
 
 Array = NDArray[np.float64]
 

@@ -15,14 +15,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.hypothesis import Block, Hypothesis
-from hfanalysis.diagnose.fitting.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
-from hfanalysis.diagnose.fitting.probe import Splines, probe
-from hfanalysis.diagnose.fitting.pulse import Pulse, with_pulse
-from hfanalysis.diagnose.naming.sites import SITES, Site, sensor_site
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.diagnose.naming.places import SITES, Site, sensor_site
 from hfanalysis.engine.sensitivity import run_with_tangents
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.hypothesis import Block, Hypothesis
+from hfanalysis.inference.fitting.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.unknowns.pulse import Pulse, with_pulse
+from hfanalysis.inference.unknowns.smooth_source import Splines, probe
 
 Array = NDArray[np.float64]
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
 from hfanalysis.diagnose.naming.base_model import base_model
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import unknown_sources
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import sets_of
 from hfanalysis.diagnose.naming.singles import singles_of
 from hfanalysis.diagnose.naming.variants import Settings
-from hfanalysis.diagnose.observations.observed import Observed
-from hfanalysis.stages.base import Progress, silent
+from hfanalysis.inference.candidate import Bench, Candidate
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.progress import Progress, silent
 
 
 @dataclass(frozen=True)

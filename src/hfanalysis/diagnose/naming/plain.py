@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.failing import with_failing
-from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.late import with_delay
-from hfanalysis.diagnose.fitting.swing import with_swing
-from hfanalysis.diagnose.fitting.valve import with_valve
-from hfanalysis.diagnose.naming.candidate import SHORT, Bench, Candidate, attempted, candidate
-from hfanalysis.diagnose.naming.sites import FAILING, SWING, VALVE, clock_site
-from hfanalysis.diagnose.observations.clocks import Delay
-from hfanalysis.diagnose.observations.failing import FailingFlow
-from hfanalysis.diagnose.observations.observed import Plain
-from hfanalysis.diagnose.observations.opening import SlowOpening
+from hfanalysis.diagnose.naming.places import FAILING, SWING, VALVE, clock_site
+from hfanalysis.inference.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.observations.clocks import Delay
+from hfanalysis.inference.observations.failing import FailingFlow
+from hfanalysis.inference.observations.observed import Plain
+from hfanalysis.inference.observations.valve_opening import SlowOpening
+from hfanalysis.inference.unknowns.failing_flow import with_failing
+from hfanalysis.inference.unknowns.late_channel import with_delay
+from hfanalysis.inference.unknowns.slow_valve import with_valve
+from hfanalysis.inference.unknowns.swing import with_swing
 
 Array = NDArray[np.float64]
 

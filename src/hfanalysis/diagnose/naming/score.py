@@ -11,12 +11,12 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fit import Fit, usable
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.predict import predict
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.variants import Settings
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.inference.fitting.fit import Fit, usable
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.predict import predict
+from hfanalysis.inference.observations.observed import Observed
 
 Array = NDArray[np.float64]
 

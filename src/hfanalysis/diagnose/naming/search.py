@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from hfanalysis.diagnose.naming.candidate import Bench
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.variants import Settings
-from hfanalysis.stages.base import Progress, silent
+from hfanalysis.inference.candidate import Bench
+from hfanalysis.progress import Progress, silent
 
 
 @dataclass(frozen=True)

@@ -8,16 +8,16 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.predict import predict
-from hfanalysis.diagnose.fitting.threads import each
-from hfanalysis.diagnose.naming.candidate import HOPELESS, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.diagnose.naming.dropping import dropped, without
 from hfanalysis.diagnose.naming.fading import fades, fading_fit
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.slack import slack_gain
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.inference.candidate import HOPELESS, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.predict import predict
+from hfanalysis.inference.fitting.threads import each
+from hfanalysis.inference.observations.observed import Observed
 
 Array = NDArray[np.float64]
 

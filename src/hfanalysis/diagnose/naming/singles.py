@@ -15,12 +15,12 @@ from itertools import count
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fit import Fit
-from hfanalysis.diagnose.fitting.form import FINEST, Form
-from hfanalysis.diagnose.fitting.hypothesis import Hypothesis
-from hfanalysis.diagnose.fitting.threads import each
 from hfanalysis.diagnose.naming.base_model import FAR_BEHIND
-from hfanalysis.diagnose.naming.candidate import (
+from hfanalysis.diagnose.naming.fading import fades, fades_unseen, fading_fit, unseen_fits
+from hfanalysis.diagnose.naming.score import Test, score_tests
+from hfanalysis.diagnose.naming.search import Search
+from hfanalysis.engine.effect import Effect
+from hfanalysis.inference.candidate import (
     CALM,
     HOPELESS,
     SHORT,
@@ -32,12 +32,12 @@ from hfanalysis.diagnose.naming.candidate import (
     held,
     more_probable,
 )
-from hfanalysis.diagnose.naming.fading import fades, fades_unseen, fading_fit, unseen_fits
-from hfanalysis.diagnose.naming.score import Test, score_tests
-from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.observations.observed import Observed
-from hfanalysis.diagnose.observations.recorded import TOGETHER
-from hfanalysis.engine.effect import Effect
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.form import FINEST, Form
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.threads import each
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.observations.recorded import TOGETHER
 
 Array = NDArray[np.float64]
 

@@ -12,11 +12,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.fitting.fit import promised
-from hfanalysis.diagnose.fitting.form import STEPS, Form
-from hfanalysis.diagnose.fitting.predict import signatures
-from hfanalysis.diagnose.naming.candidate import Bench, Candidate, price
-from hfanalysis.diagnose.observations.observed import Observed
+from hfanalysis.inference.candidate import Bench, Candidate, price
+from hfanalysis.inference.fitting.fit import promised
+from hfanalysis.inference.fitting.form import STEPS, Form
+from hfanalysis.inference.fitting.predict import signatures
+from hfanalysis.inference.observations.observed import Observed
 
 Array = NDArray[np.float64]
 

@@ -61,7 +61,7 @@ class Reading(Protocol):
 
 
 class Readings(Protocol):
-    """What a test says: :class:`hfanalysis.diagnose.observations.observed.Observed` is one."""
+    """What a test says: :class:`hfanalysis.inference.observations.observed.Observed` is one."""
 
     @property
     def channels(self) -> Sequence[Reading]:

@@ -13,7 +13,7 @@ from hfanalysis.diagnose.weak_form.linear import History
 from hfanalysis.engine.unsteady import Engine
 
 if TYPE_CHECKING:
-    from hfanalysis.diagnose.fitting.fit import Fit
+    from hfanalysis.inference.fitting.fit import Fit
 
 Array = NDArray[np.float64]
 

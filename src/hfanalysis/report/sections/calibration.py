@@ -8,7 +8,7 @@ from typing import Any
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.wording import quantities
+from hfanalysis.wording.numbers import quantities
 
 _CAPTION = "One standard deviation and the 95 % interval: noise, stated accuracies, masses and phase times together."
 

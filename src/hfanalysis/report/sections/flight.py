@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from hfanalysis.charts.colours import STYLES
+from hfanalysis.charts.svg import Event
 from hfanalysis.report import html
 from hfanalysis.report.chart import Chart, Series, around
-from hfanalysis.report.colours import STYLES
 from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.svg import Event
-from hfanalysis.report.wording import in_words, quantities
+from hfanalysis.wording.numbers import in_words, quantities
 
 _CURVES = {"height": ("Height above ground", "m"), "speed": ("Speed", "m/s"), "acceleration": ("Acceleration", "m/s^2")}
 _SIGNS = {"passed": "good", "failed": "bad"}

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hfanalysis.charts.envelope import Floats
 from hfanalysis.errors import AbsentError
 from hfanalysis.report.chart import Chart, Series, around, over_time
-from hfanalysis.report.envelope import Floats
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.sections.regression import flows_absent

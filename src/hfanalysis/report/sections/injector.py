@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from hfanalysis.report import html, svg
+from hfanalysis.charts import svg
+from hfanalysis.charts.envelope import Floats
+from hfanalysis.report import html
 from hfanalysis.report.chart import Chart, Series, around, over_time
-from hfanalysis.report.envelope import Floats
 from hfanalysis.report.material import Material, window
 from hfanalysis.report.sections import Block, Section
 

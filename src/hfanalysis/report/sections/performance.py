@@ -11,7 +11,7 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.wording import MINUS, fixed, in_words, quantities
+from hfanalysis.wording.numbers import MINUS, fixed, in_words, quantities
 
 _CAPTION = "Measured: peaks of the despiked signal, impulse within the burn and free of the cell's drift."
 

@@ -7,11 +7,11 @@ from typing import Any
 
 from markupsafe import Markup
 
+from hfanalysis.charts.svg import Phase
 from hfanalysis.report import html
 from hfanalysis.report.material import EVENTS, Material, phase_list
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.svg import Phase
-from hfanalysis.report.wording import in_words, is_quantity
+from hfanalysis.wording.numbers import in_words, is_quantity
 
 _CAPTION = Markup("Seconds after the valve opens; t<sub>open</sub> in log time.")
 

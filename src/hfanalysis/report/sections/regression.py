@@ -11,9 +11,9 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.report import html
 from hfanalysis.report.chart import Chart, Series, around, over_time
 from hfanalysis.report.material import Material, Table
-from hfanalysis.report.scales import SLOW
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.wording import is_quantity
+from hfanalysis.wording.numbers import is_quantity
+from hfanalysis.wording.scales import SLOW
 
 _LAW = ("a", "n", "regression_rate_reference")
 

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from hfanalysis.charts.colours import style_of
 from hfanalysis.errors import AbsentError
+from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report import html
 from hfanalysis.report.chart import Chart, Series, around, over_time
-from hfanalysis.report.colours import style_of
 from hfanalysis.report.material import Material, Table, required, window
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.wording import in_words
-from hfanalysis.testdata.channels import LONG_NAMES
+from hfanalysis.wording.numbers import in_words
 
 MODES: dict[str, str] = {
     "tank_free": "Tank alone: the measured chamber pressure goes in",

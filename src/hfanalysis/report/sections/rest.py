@@ -11,7 +11,7 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.wording import in_words, is_quantity
+from hfanalysis.wording.numbers import in_words, is_quantity
 
 
 def render(material: Material) -> Iterator[Block]:

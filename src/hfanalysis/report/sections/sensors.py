@@ -7,12 +7,12 @@ from typing import Any
 
 from markupsafe import Markup
 
+from hfanalysis.charts.colours import COLOURS
 from hfanalysis.report import html
-from hfanalysis.report.colours import COLOURS
 from hfanalysis.report.material import Material
-from hfanalysis.report.scales import SYSTEMS, scale
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.wording import tidy
+from hfanalysis.wording.numbers import tidy
+from hfanalysis.wording.scales import SYSTEMS, scale
 
 _CAPTION = "Ranges are those of the good samples. Accuracy: one standard deviation of the bias."
 _COLUMNS = ("channel", "column in the log", ">range", ">accuracy", ">zero", ">drift", ">rate", "flagged samples")

@@ -5,15 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from hfanalysis.charts.colours import style_of
 from hfanalysis.errors import AbsentError
+from hfanalysis.record.channels import CANONICAL, LONG_NAMES
+from hfanalysis.record.log import Channel
 from hfanalysis.report.chart import Chart, of_channel, over_time
-from hfanalysis.report.colours import style_of
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.sections.pressures import PRESSURES
-from hfanalysis.report.wording import in_words
-from hfanalysis.testdata.channels import CANONICAL, LONG_NAMES
-from hfanalysis.testdata.log import Channel
+from hfanalysis.wording.numbers import in_words
 
 _ELSEWHERE = {*PRESSURES, "thrust", "m_tank"}
 _MOST = 6

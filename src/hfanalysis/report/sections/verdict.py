@@ -8,11 +8,12 @@ from typing import Any
 
 from markupsafe import Markup
 
-from hfanalysis.report import html, wording
+from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.sections.diagnosis import headline
-from hfanalysis.report.wording import in_words, listed, quantities
+from hfanalysis.wording import numbers as wording
+from hfanalysis.wording.numbers import in_words, listed, quantities
 
 KEY_NUMBERS = ("burn_time", "total_impulse", "specific_impulse", "peak_thrust", "peak_chamber_pressure")
 """What is asked for first, where the validation has it."""

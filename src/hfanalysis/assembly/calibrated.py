@@ -1,0 +1,234 @@
+"""The calibrated engine of a test: what test.toml states and the calibration found, as the unsteady model takes it.
+
+The engine stands at the site and does not fly. Its feed line loses K_loss mdot^2 / rho under either conventions: the
+report's constant losses by phase stop the flow before the fuel is gone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import pi
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from hfanalysis.assembly.engine import combustion_of
+from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.effect import Active
+from hfanalysis.engine.tank_alone import TankAlone
+from hfanalysis.engine.unsteady import Engine, burn
+from hfanalysis.errors import AbsentError
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.thermo.combustion import FORMATION_OFFSET, PROPEP_OXIDIZER_ENTHALPY
+from hfanalysis.thermo.nitrous import saturation
+from hfanalysis.thermo.saturation import Property, Saturation
+
+ASSUMED_EXPONENT = (1.15, 0.1)
+"""Polytropic exponent of the vapour and its standard deviation where a test does not tell: the middle of 1.0 to 1.3."""
+
+
+COLDER = 15.0
+"""[K] by which an effect may let a bulk be colder than its tank's pressure says."""
+
+
+@dataclass(frozen=True)
+class Regression:
+    """r = a G^n: ``a`` [m/s (kg/m^2/s)^-n], ``n`` [-]."""
+
+    a: float
+    n: float
+
+    @classmethod
+    def of(cls, calibration: Mapping[str, Any]) -> Regression:
+        """As calibration.json has it. Raises AbsentError where it has none."""
+        a, n = (calibration.get(name) or {"value": None, "reason": "not calibrated"} for name in ("a", "n"))
+        if a["value"] is None or n["value"] is None:
+            raise AbsentError(f"a and n are missing ({a.get('reason') or n.get('reason')})")
+        return cls(float(a["value"]), float(n["value"]))
+
+
+def engine_of_test(
+    definition: TestDefinition,
+    calibration: Mapping[str, Any],
+    temperature: float,
+    law: Regression,
+    effects: Sequence[Active] = (),
+) -> Engine:
+    """The engine with its tank at ``temperature`` [K] and the adopted ``effects``.
+
+    ``calibration`` is the content of calibration.json. Raises AbsentError naming all that test.toml does not state, or
+    what the calibration lacks.
+    """
+    stated = _stated(definition)
+    source = saturation(definition.model.properties)
+    return Engine(
+        saturation=source,
+        combustion=combustion_of(),
+        feed=FeedSystem(stated["volume"], effective_area(definition, calibration), loss_factor(calibration)),
+        oxidizer_mass=loaded_mass(definition, calibration),
+        temperature=temperature,
+        polytropic_exponent=exponent(calibration)[0],
+        fuel_mass=stated["mass"],
+        grain_length=stated["length"],
+        outer_radius=stated["outer_radius"],
+        fuel_density=stated["density"],
+        a=law.a,
+        n=law.n,
+        dead_volume=stated["pre_volume"] + stated["post_volume"],
+        throat_area=pi * stated["throat_radius"] ** 2,
+        exit_area=pi * stated["exit_radius"] ** 2,
+        ambient_pressure=definition.ambient_pressure.value,
+        oxidizer_enthalpy=oxidizer_enthalpy(definition, source, temperature),
+        effects=tuple(effects),
+    )
+
+
+def tank_of_test(
+    definition: TestDefinition, feed: FeedSystem, mass: float, temperature: float, m: float, effects: Sequence[Active]
+) -> TankAlone:
+    """The tank alone with ``effects``, from a load [kg] at a temperature [K]; ``m``: the vapour's exponent.
+
+    The chamber and grain behind it only stand there: the chamber's pressure is to be given.
+    """
+    return TankAlone.of(
+        Engine(
+            saturation=saturation(definition.model.properties),
+            combustion=combustion_of(),
+            feed=feed,
+            oxidizer_mass=mass,
+            temperature=temperature,
+            polytropic_exponent=m,
+            fuel_mass=1.0,
+            grain_length=0.5,
+            outer_radius=0.04,
+            fuel_density=900.0,
+            a=1e-4,
+            n=0.5,
+            dead_volume=1e-3,
+            throat_area=1e-3,
+            exit_area=3e-3,
+            ambient_pressure=definition.ambient_pressure.value,
+            oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY,
+            effects=tuple(effects),
+        )
+    )
+
+
+NEEDED = {
+    "tank": ("volume",),
+    "injector": ("area",),
+    "grain": ("mass", "length", "density", "outer_radius"),
+    "chamber": ("pre_volume", "post_volume"),
+    "nozzle": ("throat_radius", "exit_radius"),
+}
+"""What test.toml has to state for an engine, by section."""
+
+
+def _stated(definition: TestDefinition) -> dict[str, float]:
+    """The values of NEEDED [SI]; raises AbsentError naming all that are missing."""
+    found = {k: getattr(getattr(definition, section), k, None) for section, keys in NEEDED.items() for k in keys}
+    missing = [f"[{s}] {k}" for s, keys in NEEDED.items() for k in keys if found[k] is None]
+    if missing:
+        names = ", ".join(missing).replace("[injector] area", "[injector] holes and hole_area")
+        raise AbsentError(f"test {definition.test.id}: no engine model to run: test.toml does not state {names}")
+    return {k: float(value.value) for k, value in found.items() if value is not None}
+
+
+def effective_area(definition: TestDefinition, calibration: Mapping[str, Any]) -> float:
+    """C_i N_i A_i [m^2]. Raises AbsentError where C_i cannot be had or is not positive."""
+    discharge = calibration["C_i"]
+    if discharge["value"] is None:
+        raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is missing ({discharge['reason']})")
+    if discharge["value"] <= 0.0:
+        raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is not positive ({discharge['why']})")
+    assert definition.injector is not None
+    assert definition.injector.area is not None
+    return float(discharge["value"]) * definition.injector.area.value
+
+
+def loss_factor(calibration: Mapping[str, Any]) -> float:
+    """K_loss [1/m^4]; none where it is not known or negative."""
+    return max(float(calibration["K_loss"]["value"] or 0.0), 0.0)
+
+
+FITTED_MASS, FITTED_TEMPERATURE = "oxidizer_mass_fitted", "tank_temperature"
+"""In calibration.json with adopted effects: the load, and its temperature at the opening, fitted with all else."""
+
+ONE_BY_ONE = "one_by_one"
+"""There too: the constants that are fitted together as they are one after the other, the load as it was weighed."""
+
+
+def loaded_mass(definition: TestDefinition, calibration: Mapping[str, Any]) -> float:
+    """The oxidizer that the calibration worked with [kg]."""
+    found = mass_of(calibration)
+    if found["value"] is None:
+        raise AbsentError(f"test {definition.test.id}: the loaded oxidizer is not known ({found['reason']})")
+    return float(found["value"])
+
+
+def mass_of(calibration: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The load of calibration.json, as a quantity: fitted with adopted effects, else as stated."""
+    found = calibration.get(FITTED_MASS) or calibration.get("oxidizer_mass")
+    return found or {"value": None, "reason": "not calibrated"}
+
+
+def one_by_one(calibration: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The constants as they are one after the other, which close the balance of the load as it was weighed."""
+    found: Mapping[str, Any] = calibration.get(ONE_BY_ONE) or calibration
+    return found
+
+
+def exponent(calibration: Mapping[str, Any]) -> tuple[float, float]:
+    """The vapour's polytropic exponent with its standard deviation: as calibrated, else ASSUMED_EXPONENT."""
+    found = calibration["m"]
+    if found["value"] is None:
+        return ASSUMED_EXPONENT
+    return float(found["value"]), float(found.get("std") or 0.0)
+
+
+def oxidizer_enthalpy(definition: TestDefinition, source: Saturation, temperature: float) -> float:
+    """Of the oxidizer entering the chamber [J/kg]: PROPEP's (report), or the saturated liquid's."""
+    if definition.model.conventions == "report":
+        return PROPEP_OXIDIZER_ENTHALPY
+    return FORMATION_OFFSET + float(source.energy(Property.LIQUID_ENTHALPY, temperature)[0])
+
+
+def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
+    """The engine with the tank temperature from which its tank has ``pressure`` [Pa] at ``instant`` [s].
+
+    The report's extrapolation of phase 2 to the opening (section 4.3.4). Raises AbsentError where no saturated tank
+    with this load does.
+    """
+    coldest = float(engine.saturation.temperature(pressure))
+    low, high = _possible(engine, coldest - (COLDER if engine.effects else 0.0))
+
+    def miss(temperature: float) -> float:
+        return pressure_at(replace(engine, temperature=temperature), instant) - pressure
+
+    if not low < high or not miss(low) <= 0.0 <= miss(high):
+        raise AbsentError(
+            f"no saturated tank of {engine.oxidizer_mass:.2f} kg in {engine.feed.volume * 1e3:.1f} L comes down to "
+            f"{pressure / 1e5:.1f} bar at {instant:.2f} s"
+        )
+    return replace(engine, temperature=float(brentq(miss, low, high, xtol=1e-4)))
+
+
+def pressure_at(engine: Engine, instant: float) -> float:
+    """Modelled tank pressure [Pa] at an instant [s after ignition]."""
+    if instant <= 0.0 and not engine.effects:
+        return float(engine.saturation.pressure(engine.temperature))
+    try:
+        burnt = burn(engine, longest=max(instant, 1e-3))
+    except ArithmeticError as error:
+        raise AbsentError(f"the tank's pressure at {instant:.2f} s: {error}") from error
+    return float(np.interp(instant, burnt.time, burnt.output("tank_pressure")))
+
+
+def _possible(engine: Engine, coldest: float) -> tuple[float, float]:
+    """Temperatures [K] from ``coldest`` up at which the load is liquid and vapour; equal where there are none."""
+    source, density = engine.saturation, engine.oxidizer_mass / engine.feed.volume
+    grid = np.linspace(coldest, source.t_max - 0.05, 400)
+    fits = (source.vapor_density(grid) < density) & (density < source.liquid_density(grid))
+    return (float(grid[fits][0]), float(grid[fits][-1])) if fits.any() else (coldest, coldest)

@@ -1,0 +1,280 @@
+"""An engine file turned into what the models take; the models know nothing of files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import isfinite, pi
+
+from hfanalysis.assembly import rocket
+from hfanalysis.design import sizing, steady
+from hfanalysis.engine import unsteady
+from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.tank import split
+from hfanalysis.errors import InputError
+from hfanalysis.record.engine_file import EngineFile, Needs
+from hfanalysis.rocket.parachute import Parachute
+from hfanalysis.rocket.vehicle import Vehicle
+from hfanalysis.thermo import atmosphere, combustion, combustion_table
+from hfanalysis.thermo.nitrous import saturation
+from hfanalysis.thermo.saturation import Property, Saturation
+
+_STANDARD = 101_325.0
+
+
+@dataclass(frozen=True)
+class TankBuilt:
+    """A tank's volume [m^3], and its lengths [m] where the file says enough (``reason``: what is lacking)."""
+
+    volume: float
+    size: sizing.TankSize | None
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Enthalpy:
+    """Of the oxidizer entering the chamber on the formation scale [J/kg], and whose it is."""
+
+    value: float
+    of: str
+
+
+def properties(file: EngineFile) -> Saturation:
+    """The saturation properties that the file asks for."""
+    return saturation(file.model.properties)
+
+
+def temperature(needs: Needs) -> float:
+    """The tank's initial temperature [K]; InputError where the liquid has no saturated state there."""
+    found = needs.value(needs.file.tank.temperature, "tank", "temperature").value
+    source = properties(needs.file)
+    if not isfinite(float(source.pressure(found))):
+        raise InputError(
+            f"{needs.file.where('tank', 'temperature')}: found {found:.2f} K; expected {source.t_min:.1f} to "
+            f"{source.t_max:.1f} K, where {source.source} knows saturated nitrous oxide"
+        )
+    return found
+
+
+def oxidizer_enthalpy(needs: Needs) -> Enthalpy:
+    """What the conventions take: PROPEP's ideal gas (report), or the liquid at the tank's initial temperature."""
+    if needs.file.model.conventions == "report":
+        return Enthalpy(combustion.PROPEP_OXIDIZER_ENTHALPY, "PROPEP: ideal gas at 298.15 K")
+    t = temperature(needs)
+    liquid = float(properties(needs.file).energy(Property.LIQUID_ENTHALPY, t)[0])
+    return Enthalpy(combustion.FORMATION_OFFSET + liquid, f"saturated liquid at {t:.2f} K")
+
+
+@lru_cache(maxsize=1)
+def combustion_of() -> combustion_table.CombustionTable:
+    """The combustion table, loaded once."""
+    return combustion_table.build()
+
+
+def ambient_pressure(file: EngineFile) -> float:
+    """At the site [Pa]: stated, or of its altitude, or of the launch site's, or of sea level."""
+    if file.site.ambient_pressure is not None:
+        return file.site.ambient_pressure.value
+    return float(atmosphere.pressure(site_altitude(file)))
+
+
+def site_altitude(file: EngineFile) -> float:
+    """Altitude [m] of the site: stated, the launch site's, or (from a pressure, by the atmosphere model) that of it."""
+    if file.site.altitude is not None:
+        return file.site.altitude.value
+    if file.rocket is not None and file.rocket.launch_altitude is not None:
+        return file.rocket.launch_altitude.value
+    pressure = file.site.ambient_pressure
+    return atmosphere.altitude_of(pressure.value if pressure else _STANDARD)
+
+
+def tank(needs: Needs) -> TankBuilt:
+    """The tank from its volume, length or ullage, holding the file's oxidizer as saturated liquid and vapour."""
+    t, source, stated = temperature(needs), properties(needs.file), needs.file.tank
+    mass = needs.value(stated.oxidizer_mass, "tank", "oxidizer_mass").value
+    try:
+        built = _volume(needs, source, mass, t) if stated.volume is not None else _sized(needs, source, mass, t)
+    except ValueError as error:
+        raise InputError(f"{needs.file.where('tank')}: {error}") from None
+    held = split(source, built.volume, mass, t)
+    if held.liquid <= 0.0 or held.vapor < 0.0:
+        least, most = (built.volume * float(d(t)) for d in (source.vapor_density, source.liquid_density))
+        raise InputError(
+            f"{needs.file.where('tank', 'oxidizer_mass')}: found {mass:.4g} kg; expected {least:.4g} to {most:.4g} kg, "
+            f"what {built.volume * 1e3:.4g} L hold as liquid and vapour at {t:.2f} K"
+        )
+    return built
+
+
+def _volume(needs: Needs, source: Saturation, mass: float, t: float) -> TankBuilt:
+    stated = needs.file.tank
+    volume = needs.value(stated.volume, "tank", "volume").value
+    if stated.inner_diameter is None or stated.dip_tube is None:
+        return TankBuilt(volume, None, "tank.inner_diameter and tank.dip_tube are not both given")
+    v_l, v_v = float(source.liquid_volume(t)[0]), float(source.vapor_volume(t)[0])
+    liquid = (mass * v_v - volume) / (v_v - v_l) * v_l
+    if not 0.0 < liquid < volume:
+        return TankBuilt(volume, None, "the tank is not saturated")
+    return TankBuilt(volume, _for_ullage(needs, source, mass, t, volume / liquid - 1.0))
+
+
+def _sized(needs: Needs, source: Saturation, mass: float, t: float) -> TankBuilt:
+    stated = needs.file.tank
+    if stated.length is None:
+        ullage = needs.value(stated.ullage, "tank", "volume (or length, or ullage)")
+        size = _for_ullage(needs, source, mass, t, ullage)
+        return TankBuilt(size.volume, size)
+    diameter = needs.value(stated.inner_diameter, "tank", "inner_diameter").value
+    size = sizing.size_for_length(source, mass, t, diameter, _dip_tube(needs), stated.length.value)
+    return TankBuilt(size.volume, size)
+
+
+def _for_ullage(needs: Needs, source: Saturation, mass: float, t: float, ullage: float) -> sizing.TankSize:
+    diameter = needs.value(needs.file.tank.inner_diameter, "tank", "inner_diameter").value
+    return sizing.size_for_ullage(source, mass, t, diameter, _dip_tube(needs), ullage)
+
+
+def _dip_tube(needs: Needs) -> sizing.DipTube:
+    tube = needs.value(needs.file.tank.dip_tube, "tank", "dip_tube")
+    if needs.file.tank.inner_diameter is not None and tube.outer_diameter.value >= needs.file.tank.inner_diameter.value:
+        raise InputError(f"{needs.file.where('tank', 'dip_tube')}: it is wider than the tank")
+    return sizing.DipTube(tube.outer_diameter.value, tube.inner_diameter.value)
+
+
+def feed(needs: Needs, volume: float) -> FeedSystem:
+    """Feed line and injector on a tank of that volume [m^3]."""
+    injector, line = needs.file.injector, needs.file.feed
+    key = "hole_area (or hole_diameter)" if injector.holes is not None else "holes"
+    area = needs.value(injector.area, "injector", key).value * needs.value(injector.C_i, "injector", "C_i")
+    if not area > 0.0:
+        raise InputError(f"{needs.file.where('injector', 'C_i')}: found 0; expected a number that is more than zero")
+    if line.K_loss is not None:
+        return FeedSystem(volume, area, loss_factor=line.K_loss.value)
+    loss = needs.value(line.p_loss, "feed", "p_loss (or K_loss)").value
+    return FeedSystem(volume, area, constant_losses=(loss, loss))
+
+
+def vehicle(file: EngineFile) -> Vehicle | str:
+    """The rocket of the file, or why it cannot fly."""
+    return rocket.vehicle(file.rocket, file.path.parent, launch_altitude(file))
+
+
+def launch_altitude(file: EngineFile) -> float:
+    """Of the rocket's launch site [m]: stated, or that of the engine's site."""
+    if file.rocket is not None and file.rocket.launch_altitude is not None:
+        return file.rocket.launch_altitude.value
+    return site_altitude(file)
+
+
+def parachutes(file: EngineFile) -> tuple[Parachute, Parachute] | str:
+    """Drogue and main, or why there is no descent under them."""
+    return rocket.parachutes(file.rocket)
+
+
+def steady_grain(needs: Needs) -> steady.Grain:
+    """The grain's casing and regression law."""
+    grain = needs.file.grain
+    return steady.Grain(
+        length=needs.value(grain.length, "grain", "length").value,
+        outer_radius=needs.value(grain.outer_radius, "grain", "outer_radius").value,
+        density=needs.value(grain.density, "grain", "density").value,
+        a=needs.value(grain.a, "grain", "a"),
+        n=needs.value(grain.n, "grain", "n"),
+    )
+
+
+def fuel_mass(needs: Needs) -> float:
+    """Mass of the grain [kg]; the section itself has checked that it fits."""
+    return needs.value(needs.file.grain.mass, "grain", "mass").value
+
+
+def requirement(needs: Needs) -> steady.Requirement:
+    """What a steady design starts from; the exit is ideally expanded where the file gives no radius."""
+    stated, exit_radius = needs.file.design, needs.file.nozzle.exit_radius
+    ambient = ambient_pressure(needs.file)
+    pressure = needs.value(stated.chamber_pressure, "design", "chamber_pressure").value
+    if pressure <= ambient:
+        raise InputError(
+            f"{needs.file.where('design', 'chamber_pressure')}: found {pressure / 1e5:.4g} bar; expected more than the "
+            f"ambient pressure of {ambient / 1e5:.4g} bar"
+        )
+    return steady.Requirement(
+        oxidizer_flow=needs.value(stated.oxidizer_flow, "design", "oxidizer_flow").value,
+        chamber_pressure=pressure,
+        ambient=ambient,
+        exit_radius=exit_radius.value if exit_radius else None,
+        oxidizer_enthalpy=oxidizer_enthalpy(needs).value,
+    )
+
+
+def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
+    """The unsteady engine on its rocket, or on its stand at the site where there is none that can fly."""
+    file, grain = needs.file, steady_grain(needs)
+    flying = vehicle(file)
+    throat = needs.value(file.nozzle.throat_radius, "nozzle", "throat_radius").value
+    exit_radius = needs.value(file.nozzle.exit_radius, "nozzle", "exit_radius").value
+    made = unsteady.Engine(
+        saturation=properties(file),
+        combustion=combustion_of(),
+        feed=feed(needs, built.volume),
+        oxidizer_mass=needs.value(file.tank.oxidizer_mass, "tank", "oxidizer_mass").value,
+        temperature=temperature(needs),
+        polytropic_exponent=_exponent(needs),
+        fuel_mass=fuel_mass(needs),
+        grain_length=grain.length,
+        outer_radius=grain.outer_radius,
+        fuel_density=grain.density,
+        a=grain.a,
+        n=grain.n,
+        dead_volume=_dead_volume(needs),
+        throat_area=pi * throat**2,
+        exit_area=pi * exit_radius**2,
+        vehicle=flying if isinstance(flying, Vehicle) else None,
+        ambient_pressure=ambient_pressure(file),
+        oxidizer_enthalpy=combustion.PROPEP_OXIDIZER_ENTHALPY if file.model.conventions == "report" else None,
+    )
+    return _that_flows(needs, made)
+
+
+def _exponent(needs: Needs) -> float | None:
+    """The polytropic exponent; None for c_p/c_v of the vapour when the liquid runs out."""
+    found = needs.file.tank.polytropic_exponent
+    needs.value(found, "tank", "polytropic_exponent")
+    return None if isinstance(found, str) else found
+
+
+def _dead_volume(needs: Needs) -> float:
+    chamber = needs.file.chamber
+    before = needs.value(chamber.pre_volume, "chamber", "pre_volume").value
+    return before + needs.value(chamber.post_volume, "chamber", "post_volume").value
+
+
+def _that_flows(needs: Needs, made: unsteady.Engine) -> unsteady.Engine:
+    """The engine, if its tank can push anything through the line at all."""
+    at_rest = float(made.saturation.pressure(made.temperature))
+    loss = made.feed.constant_losses[0] if made.feed.constant_losses else 0.0
+    ambient = made.ambient
+    if at_rest - loss <= ambient:
+        raise InputError(
+            f"{needs.file.where('tank', 'temperature')}: the tank's {at_rest / 1e5:.4g} bar less {loss / 1e5:.4g} bar "
+            f"in the feed line do not exceed the ambient {ambient / 1e5:.4g} bar; nothing flows"
+        )
+    return made
+
+
+def scaled(needs: Needs, made: unsteady.Engine, oxidizer_mass: float, of_ratio: float) -> unsteady.Engine:
+    """The same engine with another load at a fixed O/F of loaded masses and the same ullage (tank volume per mass).
+
+    Raises ValueError where the fuel does not fit into the casing.
+    """
+    fuel = oxidizer_mass / of_ratio
+    steady_grain(needs).port_radius(fuel)
+    volume = made.feed.volume * oxidizer_mass / made.oxidizer_mass
+    return replace(made, oxidizer_mass=oxidizer_mass, fuel_mass=fuel, feed=replace(made.feed, volume=volume))
+
+
+def casing_diameter(file: EngineFile) -> float | None:
+    """The wider of tank and grain [m]; None where neither is known."""
+    widths = [2.0 * file.grain.outer_radius.value] if file.grain.outer_radius else []
+    widths += [file.tank.inner_diameter.value] if file.tank.inner_diameter else []
+    return max(widths, default=None)

@@ -1,0 +1,148 @@
+"""[rocket.geometry] turned into a shape, and into where the masses are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+from hfanalysis.record.rocket import Geometry, Rocket
+from hfanalysis.record.sections import Chamber, Grain, Tank
+from hfanalysis.rocket.aerodynamics import REGULAR_PAINT, Fins, Nose, Shape, Tail
+from hfanalysis.rocket.balance import Part, TankPlace
+
+AGREE = 0.02
+"""Relative, within which the dry mass and the sum of structure and engine are the same rocket."""
+
+
+def shape(rocket: Rocket | None) -> Shape | str:
+    """The rocket's outside, or what is not given of it."""
+    geometry = rocket.geometry if rocket is not None else None
+    if rocket is None or geometry is None:
+        return "no [rocket.geometry] is given"
+    if rocket.diameter is None:
+        return "rocket.diameter is not given"
+    if geometry.nose is None or geometry.body is None:
+        return f"rocket.geometry.{'nose' if geometry.nose is None else 'body'} is not given"
+    nose = Nose(geometry.nose.kind, geometry.nose.length.value)
+    aft = nose.length + geometry.body.length.value
+    rough = geometry.roughness.value if geometry.roughness is not None else REGULAR_PAINT
+    return Shape(
+        rocket.diameter.value, nose, geometry.body.length.value, _fins(geometry, aft), _tail(geometry, aft), rough
+    )
+
+
+def _fins(geometry: Geometry, aft: float) -> Fins | None:
+    """Without a sweep the trailing edge is straight; without a position the root ends where the body does."""
+    fins = geometry.fins
+    if fins is None:
+        return None
+    sweep = fins.sweep.value if fins.sweep is not None else fins.root.value - fins.tip.value
+    position = fins.position.value if fins.position is not None else aft - fins.root.value
+    thickness = fins.thickness.value if fins.thickness is not None else 0.0
+    return Fins(fins.count, fins.root.value, fins.tip.value, fins.span.value, sweep, position, thickness)
+
+
+def _tail(geometry: Geometry, aft: float) -> Tail | None:
+    tail = geometry.tail
+    if tail is None:
+        return None
+    return Tail(tail.length.value, tail.diameter.value, tail.position.value if tail.position is not None else aft)
+
+
+@dataclass(frozen=True)
+class Masses:
+    """Parts that stay as they are, where the tank is, and the middles of grain and chamber [m from the nose tip].
+
+    ``front``: the engine's front, from which engine files count; ``length``: of the engine [m]; ``dry``: mass [kg] and
+    centre of gravity of the empty engine, None where the structure holds it.
+    """
+
+    fixed: tuple[Part, ...]
+    tank: TankPlace
+    grain_center: float
+    grain_length: float
+    gas_center: float
+    front: float
+    length: float
+    dry: Part | None
+    remark: str
+
+
+def masses(
+    rocket: Rocket, outside: Shape, tank: Tank | None, grain: Grain | None, chamber: Chamber | None
+) -> Masses | str:
+    """Where the masses are, or what is not given of it."""
+    geometry = rocket.geometry
+    if geometry is None:
+        return "no [rocket.geometry] is given"
+    needed = {
+        "rocket.geometry.structure": geometry.structure,
+        "rocket.geometry.tank_position": geometry.tank_position,
+        "rocket.geometry.chamber_position": geometry.chamber_position,
+        "tank.volume": tank and tank.volume,
+        "tank.inner_diameter (or length)": tank and (tank.inner_diameter or tank.length),
+        "grain.length": grain and grain.length,
+        "grain.outer_radius": grain and grain.outer_radius,
+    }
+    missing = [name for name, found in needed.items() if not found]
+    if missing:
+        return f"{missing[0]} is not given"
+    assert geometry.structure is not None
+    engine = _engine(geometry, outside)
+    parts = (Part(geometry.structure.mass.value, geometry.structure.center_of_gravity.value, outside.length),)
+    place = _tank(geometry, tank)
+    pre, length, post = _chamber(grain, chamber)
+    assert geometry.chamber_position is not None
+    top = geometry.chamber_position.value
+    front, end = min(place.top, top), top + pre + length + post
+    return Masses(
+        (*parts, *((engine,) if engine else ())),
+        place,
+        top + pre + 0.5 * length,
+        length,
+        top + 0.5 * (pre + length + post),
+        front,
+        max(end, place.top + place.length) - front,
+        engine,
+        _remark(rocket, geometry, engine),
+    )
+
+
+def _engine(geometry: Geometry, outside: Shape) -> Part | None:
+    """The empty engine, where it is weighed apart; a rod from its front to the rocket's end."""
+    if geometry.engine_mass is None or geometry.engine_center_of_gravity is None:
+        return None
+    center = geometry.engine_center_of_gravity.value
+    return Part(geometry.engine_mass.value, center, 2.0 * max(outside.length - center, 0.0))
+
+
+def _tank(geometry: Geometry, tank: Tank | None) -> TankPlace:
+    assert tank is not None
+    assert tank.volume is not None
+    assert geometry.tank_position is not None
+    if tank.length is not None:
+        length = tank.length.value
+    else:
+        assert tank.inner_diameter is not None
+        length = tank.volume.value / (0.25 * pi * tank.inner_diameter.value**2)
+    return TankPlace(geometry.tank_position.value, length, tank.volume.value)
+
+
+def _chamber(grain: Grain | None, chamber: Chamber | None) -> tuple[float, float, float]:
+    """Lengths [m] before, along and behind the grain, the casing as wide as the grain."""
+    assert grain is not None
+    assert grain.length is not None
+    assert grain.outer_radius is not None
+    area = pi * grain.outer_radius.value**2
+    volumes = (chamber.pre_volume, chamber.post_volume) if chamber is not None else (None, None)
+    pre, post = (volume.value / area if volume is not None else 0.0 for volume in volumes)
+    return pre, grain.length.value, post
+
+
+def _remark(rocket: Rocket, geometry: Geometry, engine: Part | None) -> str:
+    assert geometry.structure is not None
+    total = geometry.structure.mass.value + (float(engine.mass) if engine is not None else 0.0)
+    if abs(total / rocket.dry_mass.value - 1.0) < AGREE:
+        return ""
+    of = "structure and engine" if engine is not None else "the structure (no engine_mass is given)"
+    return f"{of} weigh {total:.2f} kg, the dry mass is {rocket.dry_mass.value:.2f} kg; the balance takes the former"

@@ -1,0 +1,200 @@
+"""A test's evidence on its fuel's regression, from its log: what is compared, and how sure it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.assembly.calibrated import Regression, engine_of_test, exponent, starting_for
+from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar
+from hfanalysis.calibrate.measured_pressures import quiet_noises
+from hfanalysis.calibrate.uncertainty import Draws
+from hfanalysis.engine.effect import Active
+from hfanalysis.engine.unsteady import burn
+from hfanalysis.errors import AbsentError
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal, line_at
+from hfanalysis.segment.phases import Segments
+from hfanalysis.units import Value
+
+Array = NDArray[np.float64]
+
+BLOCKS = 120
+"""Block means of the chamber pressure that are compared; they are no shorter than FINEST."""
+
+FINEST = 0.02
+"""Seconds."""
+
+SETTLE = 0.15
+"""Seconds left out on either side of the end of the liquid, which model and log do not have at the same instant."""
+
+VIDEO = 0.25
+"""Standard deviation [s] of a burn time that is stated without one: a flame's end is seen to half a second."""
+
+SLIVER = 0.02
+"""Part of the grain below which what is left of it counts as nothing: the fire went out for want of fuel."""
+
+WEIGHED = 0.01
+"""Standard deviation of a fuel mass stated without one, as part of the grain."""
+
+
+def evidence_of(
+    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Mapping[str, Any], draws: Draws,
+    effects: Sequence[Active] = (),
+) -> Evidence:  # fmt: skip
+    """What a test says about a and n, ``effects`` acting.
+
+    Raises AbsentError where the test does not state its engine, where C_i cannot be had, or where the chamber pressure
+    is missing or too short.
+    """
+    t_v = segments.time("t_v")
+    if t_v is None:
+        raise AbsentError(f"no end of the liquid to fit with: {segments.events['t_v'].reason}")
+    origin = segments.t_open.value or 0.0
+    tank, chamber = (Signal.of(log[name]).shifted(origin) for name in ("p_tank", "p_chamber"))
+    start = segments.time("t_feed") or min(0.1, 0.1 * t_v)
+    pressure = line_at(tank, start)
+    engine = engine_of_test(definition, calibration, _saturated(definition, pressure), Regression(1e-3, 0.0), effects)
+    burn_time, fuel_left, end = _seen(segments, definition, t_v)
+    web = engine.outer_radius - engine.port_radius
+    first = starting_for(replace(engine, a=web / end), start, pressure)
+    stop, why = _window_end(segments, calibration, t_v, end, _has_nitrogen(engine.effects))
+    burnt = burn(first, longest=end)
+    width = max((stop - start) / BLOCKS, FINEST)
+    part = _compared(chamber, start, stop, (t_v, burnt.liquid_out or t_v), width)
+    if part.time.size < 8:
+        raise AbsentError("too few good samples of p_chamber after t_feed")
+    late = abs(t_v - burnt.liquid_out) if burnt.liquid_out is not None else 0.0
+    if burn_time is not None:
+        burn_time = replace(burn_time, std=float(np.hypot(burn_time.std, late)))
+    remarks = (
+        f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})",
+        *_remarks(definition, calibration, engine.effects),
+    )
+    covariance = _covariance(draws, definition, calibration)
+    return Evidence(
+        definition.test.id, first, part.time, part.value, burn_time, fuel_left, end, (start, pressure), covariance,
+        chamber.noise / np.sqrt(max(width / chamber.step, 1.0)), _wander(log, segments, part.time), remarks,
+    )  # fmt: skip
+
+
+def _wander(log: TestLog, segments: Segments, time: Array) -> Array:
+    """Covariance by the wander of the chamber's sensor, as all pressure sensors show it before the opening."""
+    noise = quiet_noises(log, segments)["p_chamber"]
+    return replace(noise, white=0.0).covariance(time)
+
+
+def _saturated(definition: TestDefinition, pressure: float) -> float:
+    from hfanalysis.thermo.nitrous import saturation
+
+    source = saturation(definition.model.properties)
+    return float(source.temperature(min(pressure, 0.999 * source.pressure_range[1])))
+
+
+def _compared(chamber: Signal, start: float, stop: float, gone: tuple[float, float], width: float) -> Signal:
+    """Block means of the chamber pressure, without the stretch in which only model or log has liquid left."""
+    low, high = min(gone) - SETTLE, max(gone) + SETTLE
+    parts = [chamber.between(start, min(low, stop)).reduced(width), chamber.between(high, stop).reduced(width)]
+    time, value = (np.concatenate([getattr(p, name) for p in parts]) for name in ("time", "value"))
+    return replace(chamber, time=time, value=value)
+
+
+def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[Scalar | None, Scalar | None, float]:
+    """Burn time and fuel left, as far as they are known, and the end of the fire [s]."""
+    stated, observed = _burn_time(segments, definition), definition.observed
+    end = stated.value if stated is not None else segments.time("t_end") or 2.0 * t_v
+    left = observed.fuel_mass_after if observed is not None else None
+    assert definition.grain is not None
+    assert definition.grain.mass is not None
+    grain = definition.grain.mass.value
+    if left is None or left.value < SLIVER * grain:
+        return stated, None, end
+    return None, Scalar(left.value, _std(left, WEIGHED * grain), "[observed] fuel_mass_after"), end
+
+
+def _burn_time(segments: Segments, definition: TestDefinition) -> Scalar | None:
+    observed = definition.observed
+    if observed is not None and observed.burn_time is not None:
+        return Scalar(observed.burn_time.value, _std(observed.burn_time, VIDEO), "[observed] burn_time")
+    fuel_out = segments.time("t_fuel_out")
+    if fuel_out is None:
+        return None
+    return Scalar(fuel_out, max(segments.std("t_fuel_out"), 0.01), "t_fuel_out of the log")
+
+
+def _std(stated: Value, default: float) -> float:
+    return stated.std if stated.std is not None else default
+
+
+def _window_end(
+    segments: Segments, calibration: Mapping[str, Any], t_v: float, end: float, nitrogen: bool
+) -> tuple[float, str]:
+    """Until when the chamber pressure is one that the model can have, and why."""
+    t_purge, t_fuel_out = segments.time("t_purge"), segments.time("t_fuel_out")
+    ends = [(end - SETTLE, "the end of the burn")]
+    if t_purge is not None:
+        # with an adopted purge too: what is known of the gas in the chamber rests on its nitrogen from there on
+        ends.append((t_purge, "then nitrogen enters" + ("" if nitrogen else ", which the model does not have")))
+    if t_fuel_out is not None:
+        ends.append((t_fuel_out - SETTLE, "then the fuel is gone"))
+    if calibration["m"]["value"] is None:
+        ends.append((t_v, "the vapour's expansion is not calibrated"))
+    return min(ends)
+
+
+def _has_nitrogen(effects: Sequence[Active]) -> bool:
+    return any("nitrogen_inflow" in active.effect.sites for active in effects)
+
+
+def _remarks(definition: TestDefinition, calibration: Mapping[str, Any], effects: Sequence[Active]) -> list[str]:
+    m, std = exponent(calibration)
+    known = "as calibrated" if calibration["m"]["value"] is not None else f"assumed, +/- {std:.2f}"
+    beyond = (
+        f"no effect beyond the model's: adiabatic equilibrium combustion ({definition.model.conventions} conventions), "
+    )
+    if effects:
+        names = ", ".join(active.effect.name for active in effects)
+        beyond = f"adopted effects: {names}; else equilibrium combustion ({definition.model.conventions} conventions), "
+    nitrogen = "" if _has_nitrogen(effects) else ", without nitrogen"
+    return [
+        f"oxidizer flow of the calibrated tank alone{nitrogen}, from the pressure that its liquid phase "
+        f"extrapolates to; feed loss K_loss mdot^2 / rho; vapour exponent {m:.3f} ({known})",
+        beyond + "constant throat, even regression",
+    ]
+
+
+def _covariance(draws: Draws, definition: TestDefinition, calibration: Mapping[str, Any]) -> Array:
+    """Of NUISANCES, from the repeated calibrations."""
+    v, i = draws.values, draws.inputs
+    m, m_std = exponent(calibration)
+    drawn_m = v["m"] if calibration["m"]["value"] is not None else m + m_std * _standard(v["m"].size)
+    columns = (i["mass"], v["C_i"] * i["area"], v["K_loss"], drawn_m, i["volume"], i["p_tank"], i["p_chamber"])
+    table = np.column_stack(columns)
+    good = np.isfinite(table).all(axis=1)
+    if good.sum() < 20:
+        raise AbsentError("the repetitions of the calibration do not give the errors of what a and n rest on")
+    out = np.zeros((len(NUISANCES), len(NUISANCES)))
+    out[: len(columns), : len(columns)] = np.cov(table[good], rowvar=False)
+    return out + np.diag([*[0.0] * len(columns), *_stated_variances(definition)])
+
+
+def _stated_variances(definition: TestDefinition) -> tuple[float, float]:
+    """Of grain mass [kg^2] and throat area [m^4], as far as test.toml states deviations."""
+    grain, nozzle = definition.grain, definition.nozzle
+    assert grain is not None
+    assert grain.mass is not None
+    assert nozzle is not None
+    assert nozzle.throat_radius is not None
+    radius = nozzle.throat_radius
+    return (grain.mass.std or 0.0) ** 2, (2.0 * pi * radius.value * (radius.std or 0.0)) ** 2
+
+
+def _standard(size: int) -> Array:
+    """Standard normal numbers, the same each time."""
+    return np.random.default_rng(1).standard_normal(size)

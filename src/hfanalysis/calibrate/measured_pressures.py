@@ -1,0 +1,152 @@
+"""The measured pressures on one clock, counted from the valve opening: what every reduction starts from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.errors import AbsentError
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.noise import LONG, Noise, pool
+from hfanalysis.record.signals import Signal, live_signals
+from hfanalysis.segment.breaks import kink
+from hfanalysis.segment.phases import Segments
+from hfanalysis.thermo.saturation import Saturation
+
+Array = NDArray[np.float64]
+
+BREAK = 3.0
+"""Standard deviations by which the slopes on both sides of an instant must differ to count as a break."""
+
+PRESSURES = ("p_tank", "p_run", "p_chamber", "p_purge")
+READING_POINTS = 150
+"""Block means over the window of a reading: few enough for a full covariance."""
+
+FINEST = 0.002
+"""Block means over this time [s]: fine against every phase, coarse enough for hundreds of repetitions."""
+
+
+@dataclass(frozen=True)
+class Histories:
+    """Pressures [Pa] at ``time`` [s after opening], all of one length, good samples only (linear between them).
+
+    ``signals`` are the channels they come from, with all their samples; ``assumed`` says what was taken for missing.
+    """
+
+    time: Array
+    tank: Array
+    run: Array
+    chamber: Array
+    signals: dict[str, Signal]
+    noises: dict[str, Noise]
+    assumed: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, log: TestLog, segments: Segments, definition: TestDefinition, end: float) -> Histories:
+        """From the opening to ``end`` [s]. Raises AbsentError where the log has no p_tank or no p_run."""
+        origin = segments.t_open.value or 0.0
+        signals = {name: signal.shifted(origin) for name, signal in live_signals(log).items() if name in PRESSURES}
+        noises = _noises(signals, segments)
+        burning = segments.kind.name == "hot_fire"
+        for name in ("p_tank", "p_run", *(("p_chamber",) if burning else ())):
+            if name not in signals:
+                raise AbsentError(f"test {definition.test.id}: the log has no {name} to calibrate with")
+        blocks = signals["p_tank"].between(0.0, end).reduced(FINEST)
+        if blocks.time.size < 8:
+            raise AbsentError("too few good samples of p_tank after the opening")
+        time = blocks.time
+        run = _on(signals["p_run"], time)
+        if "p_chamber" in signals:
+            return cls(time, blocks.value, run, _on(signals["p_chamber"], time), signals, noises)
+        ambient = np.full(time.size, definition.ambient_pressure.value)
+        return cls(
+            time,
+            blocks.value,
+            run,
+            ambient,
+            signals,
+            noises,
+            ("p_chamber is not in the log of this cold flow: ambient pressure taken",),
+        )
+
+    def mean(self, values: Array, start: float, end: float) -> float:
+        """Mean of values on this clock over [start, end)."""
+        part = (self.time >= start) & (self.time < end)
+        return float(values[part].mean()) if part.any() else float("nan")
+
+    def gap(self, start: float, end: float) -> tuple[str, float]:
+        """The channel with the longest stretch without a good sample between two instants, and that stretch [s]."""
+        longest = ("", 0.0)
+        for name in ("p_tank", "p_run", "p_chamber"):
+            if name not in self.signals:
+                continue
+            time = np.concatenate(([start], self.signals[name].between(start, end).time, [end]))
+            longest = max(longest, (name, float(np.diff(time).max())), key=lambda item: item[1])
+        return longest
+
+    def tank_temperature(self, saturation: Saturation) -> Array:
+        """T_sat(p_tank) [K]; pressures beyond the critical point count as just below it."""
+        low, high = saturation.pressure_range
+        return saturation.temperature(np.clip(self.tank, low, high))
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Value of a signal at an instant, its mean slope there [unit/s], and how it is made from block means."""
+
+    value: float
+    slope: float
+    weights: Array
+    time: Array
+
+
+def read_at_break(signal: Signal, noise: Noise, instant: float, before: float, after: float) -> Reading:
+    """A signal where its slope may break, from smooth curves over ``before`` and ``after`` seconds on both sides.
+
+    Where the slopes on both sides do not differ beyond what the noise does, one cubic through both reads better.
+    """
+    window = signal.between(instant - before, instant + after).reduced((before + after) / READING_POINTS)
+    if window.time.size < 8:
+        nearest = np.array([float(np.interp(instant, signal.time, signal.value))])
+        return Reading(float(nearest[0]), 0.0, np.ones(1), np.array([instant]))
+    weights = np.linalg.pinv(kink(order=2)(window.time, instant), rcond=1e-9)
+    beta = weights @ window.value
+    if abs(beta[3] - beta[1]) > BREAK * noise.std_of(weights[3] - weights[1], window.time):
+        return Reading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
+    weights = np.linalg.pinv(np.vander(window.time - instant, 4, increasing=True), rcond=1e-9)
+    return Reading(float(weights[0] @ window.value), float(weights[1] @ window.value), weights[0], window.time)
+
+
+def quiet_noises(log: TestLog, segments: Segments) -> dict[str, Noise]:
+    """Noise of each live pressure sensor of the log."""
+    origin = segments.t_open.value or 0.0
+    signals = {n: s.shifted(origin) for n, s in live_signals(log).items() if n in PRESSURES}
+    return _noises(signals, segments)
+
+
+def _noises(signals: Mapping[str, Signal], segments: Segments) -> dict[str, Noise]:
+    """Noise of each pressure sensor from before the opening; the purge line's from before it sags.
+
+    The tank's falls so smoothly while the liquid lasts that its wander shows there, too, and for longer.
+    """
+    t_v, t_purge = segments.time("t_v"), segments.time("t_purge")
+    noises = {}
+    for name, signal in signals.items():
+        end = t_purge - 0.1 if name == "p_purge" and t_purge is not None else -0.02
+        stretches = [signal.between(-20.0, end)]
+        if name == "p_tank" and t_v is not None:
+            start = 2.0 * (segments.time("t_feed") or 0.1)
+            liquid = signal.between(start, t_v - 0.05)
+            stretches += [liquid] if liquid.time.size > LONG else []  # in a shorter one its fall passes for wander
+        noises[name] = Noise.of(signal, *stretches)
+    return pool(noises)
+
+
+def _on(signal: Signal, time: Array) -> Array:
+    """A signal on another clock: block means where it is finer than the clock, else linear between its samples."""
+    reduced = signal.between(time[0] - 1.0, time[-1] + 1.0).reduced(FINEST)
+    return reduced.at(time)

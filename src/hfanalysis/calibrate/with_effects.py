@@ -1,0 +1,161 @@
+"""The tank's calibration with adopted effects acting: on the flow of the liquid phase, and on the vapour's expansion.
+
+The tank alone is run with the effects on the measured chamber pressure, from the opening to t_v. What its injector
+passes beside A sqrt(2 rho (p_run - p_c)), and what leaves by another way, enters the balance that gives C_i; where the
+run stands at t_v (nitrogen, states of effects, a pressure beside saturation) is where the vapour phase starts, and m is
+shot along it with the effects in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from hfanalysis.assembly.calibrated import tank_of_test
+from hfanalysis.calibrate.blowdown import EXPONENTS, Inputs, Reduction, Shift, Tables, reduce
+from hfanalysis.calibrate.measured_pressures import Histories
+from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.effect import Active
+from hfanalysis.engine.model import NITROGEN, STATES, TANK
+from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT
+from hfanalysis.engine.tank_alone import TankAlone, TankRun
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.thermo.saturation import Saturation
+
+Array = NDArray[np.float64]
+
+ROUNDS = 6
+"""C_i, K_loss and the flow that the effects leave them are found in turns."""
+
+LIQUID_STEPS, VAPOR_STEPS = 400, 100
+"""Steps of the tank alone over a phase: seconds of smooth course."""
+
+
+@dataclass(frozen=True)
+class VaporPhase:
+    """Where the vapour phase starts with the effects in, and how m is shot from there.
+
+    ``beside`` [Pa]: the tank's pressure less that of saturation at t_v; ``nitrogen`` [kg] and ``own`` states at t_v.
+    """
+
+    tank: TankAlone
+    saturation: Saturation
+    tables: Tables
+    beside: float
+    nitrogen: float
+    own: Array
+
+    def shoot(self, inputs: Inputs, shift: Shift, area: float) -> tuple[float, float]:
+        """m at which the model reaches p_end at t_end, and the tank's nitrous oxide there [kg]; NaN: there is none."""
+        if not (inputs.t_end > inputs.t_v and area > 0.0 and self.start_mass(inputs, shift) > 0.0):
+            return np.nan, np.nan
+        tables, time = self.tables, np.linspace(inputs.t_v, inputs.t_end, VAPOR_STEPS + 1)
+        loss = np.interp(time, tables.time, tables.loss) + shift.tank - shift.run
+        chamber = np.interp(time, tables.time, tables.chamber) + shift.chamber
+
+        def end(m: float) -> TankRun:
+            return self._at(inputs, shift, area, m).run(time, chamber, loss, vapor=True)
+
+        def miss(m: float) -> float:
+            return float(end(m).pressure[-1]) - inputs.p_end - shift.tank
+
+        low, high = self._bracket(miss)
+        if not np.isfinite(low):
+            return np.nan, np.nan
+        m = float(brentq(miss, low, high, xtol=1e-8))
+        return m, float(end(m).states[-1, TANK])
+
+    def _bracket(self, miss: object) -> tuple[float, float]:
+        """Neighbours on the grid between which the pressure at the end falls below the measured one."""
+        assert callable(miss)
+        low, high = 0, EXPONENTS.size - 1
+        if not miss(EXPONENTS[low]) > 0.0 >= miss(EXPONENTS[high]):
+            return np.nan, np.nan
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (middle, high) if miss(EXPONENTS[middle]) > 0.0 else (low, middle)
+        return float(EXPONENTS[low]), float(EXPONENTS[high])
+
+    def start_mass(self, inputs: Inputs, shift: Shift) -> float:
+        """Vapour at t_v [kg]: saturated, at the pressure that is the nitrous oxide's own."""
+        return inputs.volume * float(self.saturation.vapor_density(self._temperature(inputs, shift)))
+
+    def _temperature(self, inputs: Inputs, shift: Shift) -> float:
+        return float(self.saturation.temperature(inputs.p_v + shift.tank - self.beside))
+
+    def _at(self, inputs: Inputs, shift: Shift, area: float, m: float) -> TankAlone:
+        mass, temperature = self.start_mass(inputs, shift), self._temperature(inputs, shift)
+        pressure = inputs.p_v + shift.tank - self.beside
+        z = pressure * inputs.volume / (mass * SPECIFIC_GAS_CONSTANT * temperature)
+        tank = self.tank.with_feed(inputs.volume, area)
+        return tank.at(
+            tank_mass=mass, tank_temperature=temperature, tank_nitrogen=self.nitrogen, vapor_compressibility=z,
+            vapor_exponent=m, own=self.own,
+        )  # fmt: skip
+
+
+def acting(
+    histories: Histories, tables: Tables, saturation: Saturation, definition: TestDefinition, inputs: Inputs,
+    effects: Sequence[Active],
+) -> tuple[Inputs, VaporPhase | None]:  # fmt: skip
+    """The inputs as the effects leave them for the balance that gives C_i, and the vapour phase with them in.
+
+    The load counts less what left by another way than the injector, its area times the mean of what the effects make of
+    the flow. No vapour phase where C_i has no answer. Raises ArithmeticError where the tank's model cannot be run.
+    """
+    balance, phase, share = inputs, None, 1.0
+    for _ in range(ROUNDS):
+        found = reduce(tables, saturation, balance)
+        if not (np.isfinite(found.C_i) and found.C_i > 0.0):
+            return inputs, None
+        run, tank = _liquid_phase(
+            histories, saturation, definition, inputs, replace(found, K_loss=found.K_loss * share), effects
+        )
+        share = share * _loss_share(run, saturation, found.K_loss)
+        factor, leak = _flow_beside(run, saturation, tank.engine.feed.area)
+        balance = replace(inputs, mass=inputs.mass - leak, area=inputs.area * factor)
+        phase = _vapor_phase(run, tank, saturation, tables)
+    return balance, phase
+
+
+def _liquid_phase(
+    histories: Histories, saturation: Saturation, definition: TestDefinition, inputs: Inputs, found: Reduction,
+    effects: Sequence[Active],
+) -> tuple[TankRun, TankAlone]:  # fmt: skip
+    """The tank with the effects from the opening to t_v, or to where its liquid is gone before."""
+    start = histories.mean(histories.tank, inputs.t_feed, inputs.t_feed + 0.1 * (inputs.t_v - inputs.t_feed))
+    temperature = float(saturation.temperature(np.clip(start, *saturation.pressure_range)))
+    feed = FeedSystem(inputs.volume, found.C_i * inputs.area, max(found.K_loss, 0.0))
+    m = found.m if np.isfinite(found.m) else 1.15
+    tank = tank_of_test(definition, feed, inputs.mass, temperature, m, effects)
+    time = np.linspace(0.0, inputs.t_v, LIQUID_STEPS + 1)
+    run = tank.run(time, np.interp(time, histories.time, histories.chamber))
+    if not np.isfinite(run.pressure).all():
+        raise ArithmeticError("the tank's model with the adopted effects cannot be run over the liquid phase")
+    wet = run.time < (run.t_v if np.isfinite(run.t_v) else np.inf)
+    return TankRun(run.time[wet], run.states[wet], run.outputs[wet], run.t_v), tank
+
+
+def _loss_share(run: TankRun, saturation: Saturation, measured: float) -> float:
+    """The measured loss factor over that which the run shows: what it has to be without what effects make of it."""
+    drop = np.maximum(run.pressure - run.run_pressure, 0.0)
+    density = saturation.liquid_density(run.temperature)
+    shown = float(np.trapezoid(drop * density, run.time)) / max(float(np.trapezoid(run.flow**2, run.time)), 1e-12)
+    return float(np.clip(measured / shown, 0.2, 5.0)) if shown > 0.0 and measured > 0.0 else 1.0
+
+
+def _flow_beside(run: TankRun, saturation: Saturation, area: float) -> tuple[float, float]:
+    """Mean of the injector's flow over A sqrt(2 rho (p_run - p_c)), by flow; and what left by another way [kg]."""
+    factor = run.injector_factor(area, saturation.liquid_density(run.temperature))
+    plain = float(np.trapezoid(run.flow / factor, run.time))
+    return float(np.trapezoid(run.flow, run.time)) / plain, float(np.trapezoid(run.leak, run.time))
+
+
+def _vapor_phase(run: TankRun, tank: TankAlone, saturation: Saturation, tables: Tables) -> VaporPhase:
+    beside = float(run.pressure[-1]) - float(saturation.pressure(run.temperature[-1]))
+    last = run.states[-1]
+    return VaporPhase(tank, saturation, tables, beside, float(last[NITROGEN]), last[len(STATES) :].copy())

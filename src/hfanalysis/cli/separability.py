@@ -1,0 +1,162 @@
+"""``hfa effects TEST``: what the channels of a test can tell apart, before its residuals are looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rich.text import Text
+
+from hfanalysis.cli import effects as listing
+from hfanalysis.cli import tables
+from hfanalysis.cli.exit_status import put
+from hfanalysis.cli.perform import Request, bring
+from hfanalysis.diagnose.naming.catalogue import Catalogue
+from hfanalysis.diagnose.separability import NOMINAL, SEEN, TWINS, Outlook, look_ahead
+from hfanalysis.effects import FOLDER, library
+from hfanalysis.errors import AbsentError
+from hfanalysis.stages.diagnose import subject_of
+from hfanalysis.wording import numbers as wording
+
+RIVALS = 3
+"""How many of its closest rivals are listed for every effect."""
+
+
+def apart(test: str, root: Path, out: Path | None, as_json: bool) -> None:
+    """Show it; calibrates first what has not been calibrated. Raises AbsentError where there is no engine to run."""
+    context = bring("calibrate", Request(test, root, out, as_json, force=False, quiet=False))
+    subject, found = subject_of(context), library(root / FOLDER)
+    try:
+        outlook = look_ahead(*subject.compared(), Catalogue(found, subject.stated()))
+    except (ValueError, ArithmeticError) as error:
+        raise AbsentError(f"{test}: the calibrated engine cannot be run: {error}") from error
+    product = product_of(test, outlook)
+    if as_json:
+        from hfanalysis.products.disk import to_json
+
+        put(to_json({**listing.product(found), "test": product}))
+        return
+    show(product)
+
+
+def product_of(test: str, outlook: Outlook) -> dict[str, Any]:
+    """What can be told apart, as data in SI."""
+    twins = outlook.twins
+    return {
+        "id": test,
+        "channels": list(outlook.channels),
+        "seen_from": SEEN,
+        "nominal": NOMINAL,
+        "twins_below": TWINS,
+        "effects": {name: _visibility(name, outlook) for name in outlook.effects},
+        "twins": [{**_pair(p, d), "declared": _declared(p, outlook)} for p, d in twins.items()],
+        "declared_twins_apart": [_pair(p, outlook.now.apart(*p)) for p in _declarations(outlook) if p not in twins],
+        "sensors": {
+            sensor.name: {
+                "words": sensor.words,
+                "accuracy": sensor.accuracy,
+                "unit": sensor.unit,
+                "twins": [_pair(p, d) for p, d in outlook.twins_with(sensor).items()],
+                "shows": outlook.shown(sensor),
+            }
+            for sensor in outlook.extra
+        },
+    }
+
+
+def _visibility(name: str, outlook: Outlook) -> dict[str, Any]:
+    effect, strength = outlook.effects[name], outlook.strength_at(name, SEEN)
+    rivals = [n for n in outlook.visible if n != name] if name in outlook.visible else []
+    closest = sorted((outlook.now.at_nominal(name, rival), rival) for rival in rivals)[:RIVALS]
+    return {
+        "strength": effect.strength.name,
+        "unit": effect.strength.unit,
+        "typical": effect.strength.typical,
+        "detectability": outlook.now.detectability(name),
+        "seen_at": strength if outlook.in_reach(name) else None,
+        "in_reach": outlook.in_reach(name),
+        "decisive": effect.decisive,
+        "rivals": [{"name": n, "apart": d, "correlation": outlook.now.correlation(name, n)} for d, n in closest],
+    }
+
+
+def _pair(pair: tuple[str, str], apart: float) -> dict[str, Any]:
+    return {"effects": list(pair), "apart": apart}
+
+
+def _declared(pair: tuple[str, str], outlook: Outlook) -> bool:
+    one, other = pair
+    return other in outlook.effects[one].twins or one in outlook.effects[other].twins
+
+
+def _declarations(outlook: Outlook) -> list[tuple[str, str]]:
+    """Pairs of visible effects that the library declares twins."""
+    seen = outlook.visible
+    return [(a, b) for i, a in enumerate(seen) for b in seen[i + 1 :] if _declared((a, b), outlook)]
+
+
+def show(product: Mapping[str, Any]) -> None:
+    """Print it for people."""
+    console = tables.paper()
+    title = f"{product['id']}: what {', '.join(product['channels'])} can show"
+    table = tables.new_table("effect", "typical", "d'", "seen from", "closest rivals", title=title)
+    for name, row in product["effects"].items():
+        rivals = ", ".join(f"{r['name']} {r['apart']:.1f}" for r in row["rivals"][:2])
+        table.add_row(name, _size(row, "typical"), f"{row['detectability']:.1f}", _seen(row), rivals)
+    console.print(table)
+    for sentence in sentences(product):
+        console.print(Text(sentence), soft_wrap=True)
+
+
+def _size(row: Mapping[str, Any], key: str) -> str:
+    """Two digits, in the unit of people at a stand."""
+    factor, unit = wording.people_unit(row["unit"])
+    return f"{wording.tidy(float(f'{factor * row[key]:.2g}'), 6)} {unit.strip('-')}".strip()
+
+
+def _seen(row: Mapping[str, Any]) -> str:
+    return _size(row, "seen_at") if row["in_reach"] else "never"
+
+
+def sentences(product: Mapping[str, Any]) -> list[str]:
+    """Twins, what would separate them, and what the numbers mean."""
+    out = []
+    for one, other, d in ((*t["effects"], t["apart"]) for t in product["twins"]):
+        out += [f"twins: {one} and {other}: {d:.1f} of {NOMINAL:g}", f"  {_advice(one, other, product)}"]
+    if not out:
+        out = ["twins: none"]
+    declared = [f"{' and '.join(pair['effects'])} {pair['apart']:.1f}" for pair in product["declared_twins_apart"]]
+    if declared:
+        out.append(f"called twins in the library, but told apart here: {', '.join(declared)}")
+    for name, sensor in product["sensors"].items():
+        if sensor["shows"]:
+            out.append(
+                f"{name} ({sensor['words']}) would show {', '.join(sensor['shows'])} of typical strength as well"
+            )
+    return [
+        *out,
+        f"d': standard deviations by which the typical strength stands out; seen from: d' = {SEEN:g}; closest rivals: "
+        f"what they leave of d' = {NOMINAL:g}, twins less than {TWINS:g}.",
+        "Only noise, times and constants of the test are used.",
+    ]
+
+
+def _advice(one: str, other: str, product: Mapping[str, Any]) -> str:
+    """What would tell two twins apart."""
+    tried = {
+        f"{name} ({sensor['words']})": pair["apart"]
+        for name, sensor in product["sensors"].items()
+        for pair in sensor["twins"]
+        if set(pair["effects"]) == {one, other}
+    }
+    good = [words for words, d in tried.items() if d >= product["twins_below"]]
+    if good:
+        return f"told apart by: {', '.join(good)}"
+    best = max(tried, key=lambda words: tried[words], default="none")
+    decisive = dict.fromkeys(product["effects"][n]["decisive"] for n in (one, other))
+    known = "; or ".join(filter(None, decisive)) or "nothing that is known"
+    return (
+        f"told apart by none of the sensors that were tried; best is {best}: {tried.get(best, 0.0):.1f}. "
+        f"The library asks for: {known}"
+    )

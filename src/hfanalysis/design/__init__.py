@@ -1,0 +1,1 @@
+"""The steady-state design of an engine, and the size of its tank."""

@@ -1,0 +1,231 @@
+"""Missing effects that a test's channels show without any model: what a saturated tank and a shut valve do not do.
+
+A saturated tank's pressure falls all but evenly while liquid flows, from what it was at rest. The line through the
+second half of that fall meets the pressure at rest, and what lies between, within about a bar; in a line behind a check
+valve that lets nothing pass, what is shut in follows the tank (``python -m benchmarks.signs``; docs/diagnosis.md).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal
+from hfanalysis.segment.phases import Segments
+from hfanalysis.validate.performance import fire_of
+from hfanalysis.validate.sensor_faults import Finding, findings
+
+Array = NDArray[np.float64]
+
+BAR = 1e5
+
+COURSE = 0.5 * BAR
+"""Standard deviation of the pressure at rest by the line through the later fall."""
+
+LEAST_FALL, LEAST_DIP, LEAST_FLOW = 2.0 * BAR, 1.5 * BAR, 5.0 * BAR
+"""What is called a fall at the opening, a dip below the bulk's pressure, and a valve that nitrogen passes. Chosen as
+twice of what 231 tests of the calibration split have at most that lack these; 1,308 of the scored split have 1.06, 0.66
+and 2.39 bar at most."""
+
+SURE = 3.0
+"""Standard deviations that a fall has to have besides."""
+
+SAGS = 0.05
+"""Part of its pressure by which a purge line has to fall if something leaves it."""
+
+LATER = (0.5, 0.9)
+"""The part of the liquid's time through which the line is laid."""
+
+WIDTH = 0.1
+"""Seconds of a running median, which no single wild sample moves."""
+
+FEWEST = 8
+"""Samples that a line takes."""
+
+
+@dataclass(frozen=True)
+class Sign:
+    """What is seen in a ``channel`` from ``start`` to ``end`` [s], how large it is, and which effect it may be.
+
+    ``besides``: what may have a part in it, or not.
+    """
+
+    names: tuple[str, ...]
+    channel: str
+    start: float
+    end: float
+    size: Quantity
+    text: str
+    besides: tuple[str, ...] = ()
+
+
+def signs(log: TestLog, segments: Segments) -> list[Sign]:
+    """All that is seen; nothing of a tank that is supercharged, whose pressure falls for other reasons."""
+    found = [] if segments.supercharged else [fall_at_opening(log, segments)]
+    found.append(open_check_valve(log, segments))
+    return [sign for sign in found if sign is not None]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What the channels of a test show by themselves: sensors that are ``wrong``, and signs of missing effects."""
+
+    wrong: tuple[Finding, ...]
+    signs: tuple[Sign, ...]
+
+    @property
+    def sentences(self) -> list[str]:
+        """All of it, sensors first."""
+        texts = [*(found.text for found in self.wrong), *(sign.text for sign in self.signs)]
+        return [f"{text if text[1] == '_' else text[0].upper() + text[1:]}." for text in texts]
+
+
+def shown(log: TestLog, segments: Segments, definition: TestDefinition) -> Shown:
+    """Everything that takes no model to see."""
+    wrong = findings(log, segments, definition, fire_of(segments, definition))
+    return Shown(tuple(wrong), tuple(signs(log, segments)))
+
+
+@dataclass(frozen=True)
+class Opening:
+    """How far a tank at rest was above the line through its later fall, and how far it then came below it [Pa].
+
+    ``straight``: standard deviation of where that line begins; ``lowest``: when it is furthest below [s].
+    """
+
+    fall: float
+    dip: float
+    straight: float
+    lowest: float
+
+    @property
+    def std(self) -> float:
+        """Standard deviation of the fall [Pa]."""
+        return float(np.hypot(self.straight, COURSE))
+
+
+def opening_of(log: TestLog, segments: Segments) -> Opening | None:
+    """What the tank's pressure does as the valve opens; None where its later fall cannot be told."""
+    tank, end = _signal(log, segments, "p_tank"), _steady_until(segments)
+    if tank is None or end is None:
+        return None
+    still, later = tank.between(-2.0, -0.1), tank.between(LATER[0] * end, LATER[1] * end)
+    if min(still.time.size, later.time.size) < FEWEST:
+        return None
+    line, spread = np.polyfit(later.time, later.value, 1, cov=True)
+    lowest, dip = _dip(tank, line, LATER[0] * end)
+    return Opening(float(np.median(still.value) - line[1]), dip, float(np.sqrt(spread[1, 1])), lowest)
+
+
+def fall_at_opening(log: TestLog, segments: Segments) -> Sign | None:
+    """A tank at rest that was warmer above than its bulk, or boils late: its pressure falls fast as the valve opens."""
+    found = opening_of(log, segments)
+    if found is None:
+        return None
+    falls = found.fall >= max(LEAST_FALL, SURE * found.std)
+    dips = found.dip >= max(LEAST_DIP, SURE * found.straight)
+    if not falls and not dips:
+        return None
+    size = Quantity(-found.fall if falls else -found.dip, "Pa", found.std)
+    names = ("tank_nonequilibrium",) if dips else ("tank_stratification", "tank_nonequilibrium")
+    besides = ("tank_stratification",) if dips and falls else ()
+    return Sign(names, "p_tank", 0.0, found.lowest, size, _in_words(found, falls, dips), besides)
+
+
+def _in_words(found: Opening, falls: bool, dips: bool) -> str:
+    parts = []
+    if falls:
+        parts.append(
+            f"p_tank falls by {found.fall / BAR:.1f} ± {found.std / BAR:.1f} bar as the valve opens, beyond what it "
+            "goes on to fall by while liquid flows: at rest it was not the pressure of the bulk"
+        )
+    if dips:
+        parts.append(
+            f"at {found.lowest:.1f} s p_tank is {found.dip / BAR:.1f} bar below the course of its later fall, and "
+            "comes back to it: vapour is made late (tank_nonequilibrium)"
+        )
+    if not dips:
+        parts.append(
+            "it was that of a hot ullage over a colder bulk (tank_stratification), or vapour is made late "
+            "(tank_nonequilibrium): these channels do not tell which"
+        )
+    elif falls:
+        parts.append("how much of the fall is a hot ullage's (tank_stratification) these channels do not tell")
+    return "; ".join(parts)
+
+
+def _steady_until(segments: Segments) -> float | None:
+    """Up to when nothing but the liquid's flow moves the tank's pressure [s]; None where that is too short."""
+    liquid_out = segments.time("t_v")
+    if liquid_out is None:
+        return None
+    times = (liquid_out, segments.time("t_purge"), segments.time("t_fuel_out"))
+    end = min(t for t in times if t is not None)
+    return end if LATER[0] * end > (segments.time("t_feed") or 0.0) else None
+
+
+def _dip(tank: Signal, line: Array, end: float) -> tuple[float, float]:
+    """When a tank is furthest below a line before ``end`` [s], and by how much it is [Pa]."""
+    middle = np.arange(WIDTH, end, 0.5 * WIDTH)
+    around = [tank.between(t - 0.5 * WIDTH, t + 0.5 * WIDTH).value for t in middle]
+    if not middle.size:
+        return 0.0, 0.0
+    level = np.array([np.median(v) if v.size else np.inf for v in around])
+    below = np.polyval(line, middle) - level
+    return float(middle[np.argmax(below)]), float(below.max())
+
+
+@dataclass(frozen=True)
+class PurgeLine:
+    """How far a purge line is above the tank as its check valve opens and at the end, and how far it fell [Pa]."""
+
+    opens: float
+    end: float
+    above: float
+    above_at_end: float
+    fell: float
+    pressure: float
+
+    @property
+    def more(self) -> float:
+        """By how much more it is above the tank at the end [Pa]."""
+        return self.above_at_end - self.above
+
+
+def purge_line_of(log: TestLog, segments: Segments) -> PurgeLine | None:
+    """What a purge line does from the opening of its valve on; None where that is not recorded."""
+    tank, line = _signal(log, segments, "p_tank"), _signal(log, segments, "p_purge")
+    opens, end = segments.time("t_purge"), segments.time("t_end")
+    if tank is None or line is None or opens is None or end is None:
+        return None
+    tank_0, line_0, tank_1, line_1 = (s.mean(t - 3.0 * WIDTH, t) for t in (opens, end) for s in (tank, line))
+    if not np.isfinite([tank_0, line_0, tank_1, line_1]).all():
+        return None
+    return PurgeLine(opens, end, line_0 - tank_0, line_1 - tank_1, line_0 - line_1, line_0)
+
+
+def open_check_valve(log: TestLog, segments: Segments) -> Sign | None:
+    """A purge line that stays above the tank by more than its valve opens at, and falls: nitrogen flows."""
+    found = purge_line_of(log, segments)
+    if found is None or found.more < LEAST_FLOW or found.fell < SAGS * found.pressure:
+        return None
+    std = float(np.sqrt(2.0) * np.hypot(log["p_tank"].accuracy, log["p_purge"].accuracy))
+    text = (
+        f"the purge line falls from {found.opens:.1f} s on, but stays {found.above_at_end / BAR:.1f} bar above the "
+        f"tank at the end, {found.more / BAR:.1f} bar more than as its check valve opened: nitrogen flows into the "
+        "tank (n2_purge)"
+    )
+    return Sign(("n2_purge",), "p_purge", found.opens, found.end, Quantity(found.more, "Pa", std), text)
+
+
+def _signal(log: TestLog, segments: Segments, name: str) -> Signal | None:
+    """A channel's good samples, in seconds after the opening; None without them."""
+    if name not in log or segments.t_open.value is None:
+        return None
+    signal = Signal.of(log[name]).shifted(segments.t_open.value)
+    return None if signal.dead else signal

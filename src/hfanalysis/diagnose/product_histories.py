@@ -1,0 +1,72 @@
+"""diagnosis.h5: sources over time with their bands, and the residuals without and with them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.diagnose.diagnosis import Diagnosis
+from hfanalysis.inference.gap import residuals_of
+
+Array = NDArray[np.float64]
+
+UNITS = {"thrust": "N", "m_tank": "kg"}
+
+
+def write_histories(path: Path, found: Diagnosis, provenance: Mapping[str, Any]) -> None:
+    """Groups ``sources/SITE`` {time, mean, low90, high90}, ``residuals/CHANNEL`` {time, before, after, noise_std}.
+
+    A second source at a site is ``sources/SITE 2``.
+    """
+    import h5py
+
+    observed = found.naming.bench.observed
+    before, after = (residuals_of(f, observed) for f in (found.naming.base.fit, found.verdict.chosen.fit))
+    with h5py.File(path, "w", libver="latest") as file:
+        file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
+        rows = found.product["localisation"]
+        for name, row in zip(numbered([row["site"] for row in rows]), rows, strict=True):
+            group = file.create_group(f"sources/{name}")
+            group.attrs["equation"] = row["equation"]
+            history = row["history"]
+            columns = {key: np.array(history[key]) for key in ("time", "mean", "low90", "high90")}
+            _write(group, history["unit"], **columns)
+        for channel in observed.channels:
+            burning = ~channel.resting
+            columns = {
+                "time": channel.time[burning],
+                "before": before[channel.name][burning],
+                "after": after[channel.name][burning],
+                "noise_std": channel.noise_std[burning],
+            }
+            _write(file.create_group(f"residuals/{channel.name}"), UNITS.get(channel.name, "Pa"), **columns)
+
+
+def numbered(names: Sequence[str]) -> list[str]:
+    """The names, each different: an effect and an unknown source beside it may have the same.
+
+    >>> numbered(["tank_heat", "valve", "tank_heat"])
+    ['tank_heat', 'valve', 'tank_heat 2']
+    """
+    return [
+        name if (nth := names[: place + 1].count(name)) == 1 else f"{name} {nth}" for place, name in enumerate(names)
+    ]
+
+
+def write_empty(path: Path, provenance: Mapping[str, Any]) -> None:
+    """The file of a test for which no model could be run."""
+    import h5py
+
+    with h5py.File(path, "w", libver="latest") as file:
+        file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
+
+
+def _write(group: Any, unit: str, **columns: Array) -> None:
+    for name, values in columns.items():
+        data = group.create_dataset(name, data=values, track_times=False)
+        data.attrs["units"] = "s" if name == "time" else unit

@@ -1,0 +1,209 @@
+"""A candidate explanation: a set of effects, or an unknown source, with its fit at the model-form error it asks for.
+
+What no candidate explains is model-form error; how large it is, is part of the question. Each candidate is judged at
+the size that makes the data most probable, at a price per step: an explanation that leaves much open is tempered by it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.inference.fitting.fit import Fit, fit, fit_on, promised
+from hfanalysis.inference.fitting.form import COARSEST, FINEST, Form
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.threads import each
+from hfanalysis.inference.observations.observed import Observed
+
+Array = NDArray[np.float64]
+
+FIRST_STEP, STEP = 1.0, 5.0
+"""Log of the odds against the first step of the model-form error, on either side, and against each further one.
+
+The finest suits a generator whose gas is as ideal as the model's; a step coarser is as good a guess for a stand. How
+many right explanations of simulated tests ask for more `make blind-calibrate` prints."""
+
+FURTHER = 5.0
+"""Log of the odds against each effect beyond the first: several at once are rarer than one."""
+
+HOPELESS = 30.0
+"""Log evidence behind the best at the same form from which on a candidate is not fitted any finer."""
+
+DOUBT, FAR_DOUBT = 30.0, 100.0
+"""Log evidence that a form may promise to lose, by the slopes of a fit, and still be tried, for nothing is linear: by
+sets of effects, which are near the data, and by the rest. In HF4, HF5 and five practice cases no form that gained
+something had promised to lose more than 30, but for free sources; of those of sets that gained nothing three in four
+had."""
+
+SHORT, LONG = 12, 25
+"""Steps of a fit that looks around, and of one that is to converge."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A set of ``names``, the fit, and its log evidence; the ``form`` that it asks for."""
+
+    names: tuple[str, ...]
+    fit: Fit
+    log_evidence: float
+    form: Form = FINEST
+    unknown: bool = False
+
+    @property
+    def chi2(self) -> float:
+        """What is left, in squared standard deviations."""
+        return float(self.fit.residual @ self.fit.residual)
+
+    @property
+    def leftover(self) -> float:
+        """The same per observation."""
+        return self.chi2 / self.fit.residual.size
+
+
+class Bench:
+    """The data at every model-form error, each made once."""
+
+    def __init__(self, observed: Observed, tempering: bool = True) -> None:
+        self.observed = observed
+        self.tempering = tempering
+        self._at: dict[Form, Observed] = {FINEST: observed}
+
+    def at(self, form: Form) -> Observed:
+        """The data at a form."""
+        if form not in self._at:
+            self._at[form] = self.observed.with_errors(*form.errors)
+        return self._at[form]
+
+    def settled(self, hypothesis: Hypothesis) -> Candidate | None:
+        """A model at the form that suits it, from the coarsest on: a fine one at once is lost where it starts far away.
+
+        None where it cannot be run.
+        """
+        coarse = attempted(hypothesis, self.at(COARSEST), np.zeros(hypothesis.size), SHORT)
+        return None if coarse is None else self.converged(self.judged(candidate((), coarse, COARSEST)))
+
+    def judged(self, found: Candidate) -> Candidate:
+        """A candidate at the form that makes the data most probable: finer or coarser as long as that helps.
+
+        Without tempering it is the finest one, whatever that leaves.
+        """
+        if not self.tempering:
+            return self.refitted(found, FINEST) or found
+        best = found
+        while (better := self._better(best)) is not None:
+            best = better
+        return best
+
+    def _better(self, found: Candidate) -> Candidate | None:
+        """As :meth:`finer`, or else as :meth:`eased`; what may all be needed is fitted side by side."""
+        if not found.form.finer:
+            return self.eased(found)
+        both, either = found.form.finer
+        if (finer := self._best_of(found, self._refitted(found, both))) is not None:
+            return finer
+        coarser = self._coarser(found)
+        tried = self._refitted(found, [*either, *coarser])
+        finer = self._best_of(found, tried[: len(either)])
+        return finer if finer is not None else self._best_of(found, tried[len(either) :])
+
+    def finer(self, found: Candidate) -> Candidate | None:
+        """The candidate one step finer, on both sides or else on one; None where it has no more evidence."""
+        for forms in found.form.finer:
+            if (better := self._best_of(found, self._refitted(found, forms))) is not None:
+                return better
+        return None
+
+    def eased(self, found: Candidate) -> Candidate | None:
+        """The candidate one step coarser where it leaves much open; None where it has no more evidence."""
+        return self._best_of(found, self._refitted(found, self._coarser(found)))
+
+    def _coarser(self, found: Candidate) -> list[Form]:
+        """The form one step coarser where a candidate leaves much open; none where it does not."""
+        form = found.form.coarser(*(left > CALM for left in self.at(found.form).left_open(found.fit.residual)))
+        return [] if form == found.form else [form]
+
+    def _refitted(self, found: Candidate, forms: Sequence[Form]) -> list[Candidate | None]:
+        """At forms of which something may be hoped for; None for the others."""
+        doubt = FAR_DOUBT if found.unknown or len(found.names) < 2 else DOUBT
+        hopeful = [form for form in forms if not found.fit.converged or self._promised(found, form) > -doubt]
+        made = dict(zip(hopeful, each(partial(self.refitted, found), hopeful), strict=True))
+        return [made.get(form) for form in forms]
+
+    def _promised(self, found: Candidate, form: Form) -> float:
+        """What another form gains in log evidence where the slopes of the fit hold: no run is needed to see that."""
+        evidence = promised(found.fit, self.at(found.form), self.at(form))
+        return evidence - found.fit.log_evidence - price(form) + price(found.form)
+
+    @staticmethod
+    def _best_of(found: Candidate, tried: Sequence[Candidate | None]) -> Candidate | None:
+        """The best of those that are more probable than the candidate."""
+        better = [c for c in tried if c is not None and more_probable(c, found)]
+        return max(better, key=lambda c: c.log_evidence, default=None)
+
+    def refitted(self, found: Candidate, form: Form) -> Candidate | None:
+        """The candidate at another form, None where it cannot be run."""
+        again = self._gone_on(found, form, SHORT)
+        return None if again is None else candidate(found.names, again, form, found.unknown)
+
+    def converged(self, found: Candidate) -> Candidate:
+        """The candidate, its fit brought to its end."""
+        if found.fit.converged:
+            return found
+        again = self._gone_on(found, found.form, LONG)
+        better = None if again is None else candidate(found.names, again, found.form, found.unknown)
+        return better if better is not None and more_probable(better, found) else found
+
+    def _gone_on(self, found: Candidate, form: Form, most: int) -> Fit | None:
+        """The candidate's fit, gone on with at a form; None where that cannot be run."""
+        try:
+            return fit_on(found.fit, self.at(found.form), self.at(form), most)
+        except (ValueError, ArithmeticError):
+            return None
+
+
+def price(form: Form) -> float:
+    """Log of the odds against a form."""
+    return sum(FIRST_STEP * min(steps, 1) + STEP * max(steps - 1, 0) for steps in form)
+
+
+def candidate(names: tuple[str, ...], found: Fit, form: Form, unknown: bool = False) -> Candidate:
+    """A fit at a form as a candidate, at the price of the form and of effects beyond the first."""
+    further = max(len(names) - unknown - 1, 0)
+    return Candidate(names, found, found.log_evidence - price(form) - FURTHER * further, form, unknown)
+
+
+def more_probable(one: Candidate, other: Candidate) -> bool:
+    """Whether one candidate has more evidence than another."""
+    return one.log_evidence > other.log_evidence
+
+
+CALM = 1.15
+"""Chi-square per observation, on a side, below which no larger model-form error is asked for there."""
+
+
+def attempted(hypothesis: Hypothesis, observed: Observed, start: Array, most: int = LONG) -> Fit | None:
+    """A fit, or None where its start cannot be run."""
+    try:
+        return fit(hypothesis, observed, start, most)
+    except (ValueError, ArithmeticError):
+        return None
+
+
+def followed(made: Hypothesis, own: slice, observed: Observed, start: Array) -> Fit | None:
+    """A fit in which the constants follow to an effect of a given size before its ``own`` parameters are free.
+
+    Far from what suits them they would take the effect along on their way. None where it cannot be run.
+    """
+    near = attempted(held(made, own, start), observed, start, SHORT)
+    return None if near is None else attempted(made, observed, near.x, SHORT)
+
+
+def held(hypothesis: Hypothesis, places: slice, x: Array) -> Hypothesis:
+    """The same with some of its free parameters held where they are."""
+    free = list(hypothesis.free)
+    free[places] = [replace(f, least=at, most=at) for f, at in zip(free[places], x[places].tolist(), strict=True)]
+    return replace(hypothesis, free=tuple(free))

@@ -1,0 +1,192 @@
+"""Fitting a hypothesis to what a test says: Gauss-Newton steps on exact tangents, with a trust region, priors, bounds.
+
+The result is the most probable set of parameters, their covariance, and the evidence by Laplace's approximation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.engine.unsteady import Burn
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.noise_level import louder_or_quieter
+from hfanalysis.inference.fitting.predict import Prediction, predict, with_slopes
+from hfanalysis.inference.fitting.size import of_any_size
+from hfanalysis.inference.fitting.trust import box_about, grown, length_of, shrunk, step_within
+from hfanalysis.inference.observations.observed import Observed
+
+Array = NDArray[np.float64]
+
+ITERATIONS = 25
+CONVERGED = 0.02
+"""Change of the objective below which a fit is done, in units of log probability."""
+
+STEEPEST = 1e8
+"""Standard deviations of an observation per one of a parameter beyond which a slope is none."""
+
+TRUST = 0.1
+"""Part of what the slopes promise of a step that it must bring: a step that brings less leads along a wrong valley."""
+
+TRIALS = 12
+"""Steps that are tried from one point, each shorter than the last."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The most probable ``x`` of a hypothesis, its covariance, the whitened residual there and the log evidence.
+
+    The evidence is a density, in units that do not depend on the hypothesis or on the model-form error. ``converged``:
+    going on would bring nothing, for the slopes promise nothing or no step along them that was tried is better.
+    """
+
+    hypothesis: Hypothesis
+    x: Array
+    covariance: Array
+    residual: Array
+    slopes: Array
+    burnt: Burn
+    log_evidence: float
+    converged: bool
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Parameters by name [SI]."""
+        return self.hypothesis.values(self.x)
+
+    @property
+    def stds(self) -> dict[str, float]:
+        """Standard deviations of :attr:`values`."""
+        jacobian = self.hypothesis.jacobian(self.x)
+        spread = np.sqrt(np.maximum(np.diag(jacobian @ self.covariance @ jacobian.T), 0.0))
+        return dict(zip(self.hypothesis.names, spread.tolist(), strict=True))
+
+    @property
+    def objective(self) -> float:
+        """Minus the log of posterior density, up to a constant."""
+        return 0.5 * float(self.residual @ self.residual + self.x @ self.x)
+
+
+def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, most: int = ITERATIONS) -> Fit:
+    """The most probable parameters: Gauss-Newton steps, damped where one does not lower the objective.
+
+    Raises ValueError or ArithmeticError where the start cannot be run.
+    """
+    least, highest = hypothesis.bounds
+    x = np.clip(np.zeros(hypothesis.size) if start is None else np.asarray(start, dtype=np.float64), least, highest)
+    return _fitted(hypothesis, observed, x, predict(hypothesis, observed, x, tangents=True), most)
+
+
+def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATIONS) -> Fit:
+    """A fit to ``before`` gone on with, to the same data with another model-form error if that is asked for.
+
+    Where it ended its slopes are known: no run is needed to begin with. Raises as :func:`fit`.
+    """
+    residual, slopes = found.residual, found.slopes
+    if observed is not before:
+        residual, slopes = (observed.rewhitened(rows, before) for rows in (residual, slopes))
+    return _fitted(found.hypothesis, observed, found.x, Prediction(residual, slopes, found.burnt), most)
+
+
+def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Prediction, most: int) -> Fit:
+    """From ``x``, where the prediction is ``here``."""
+    if not usable(here):
+        raise ArithmeticError("the model has no slopes where its fit starts")
+    radius, done = np.inf, False
+    for _ in range(most):
+        assert here.slopes is not None
+        before, moved = _objective(here, x), None
+        gradient, curvature = here.slopes.T @ here.residual + x, here.slopes.T @ here.slopes + np.eye(x.size)
+        box = box_about(x, *hypothesis.bounds)
+        for _ in range(TRIALS):
+            step = step_within(radius, gradient, curvature, box)
+            expected = _expected(here, x, step)
+            trial = _try(hypothesis, observed, x + step)
+            part = np.nan if trial is None else (before - _objective(trial, x + step)) / max(expected, 1e-300)
+            length = length_of(step, curvature)
+            if trial is not None and part > TRUST:
+                moved, radius = trial, grown(radius, length, part)
+                break
+            if expected < CONVERGED:
+                break  # a shorter step brings less
+            radius = shrunk(length, part)
+        if moved is None:
+            done = True
+            break
+        if before - _objective(moved, x + step) < CONVERGED:
+            x, here, done = x + step, replace(moved, slopes=here.slopes), True  # so near by, slopes are the same
+            break
+        there = with_slopes(hypothesis, observed, x + step, moved)
+        if not usable(there):
+            radius = shrunk(length, np.nan)  # a point without slopes leads nowhere: a shorter step
+            continue
+        x, here = x + step, there
+    assert here.slopes is not None
+    evidence = log_evidence(here.residual, here.slopes, x, observed, hypothesis)
+    covariance = np.asarray(np.linalg.inv(here.slopes.T @ here.slopes + np.eye(x.size)))
+    return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, done)
+
+
+def log_evidence(residual: Array, slopes: Array, x: Array, observed: Observed, hypothesis: Hypothesis) -> float:
+    """Log of the probability of the data, by Laplace's approximation about the most probable ``x``.
+
+    Strengths of effects are of any size there; ``x`` may go on beyond the parameters of the hypothesis.
+    """
+    curvature = slopes.T @ slopes + np.eye(x.size)
+    objective = 0.5 * float(residual @ residual + x @ x)
+    size = float(np.linalg.slogdet(curvature)[1])
+    noise = louder_or_quieter(residual, slopes, x, observed.slow_noise)
+    return -objective - 0.5 * size - observed.log_size + noise + _of_any_size(curvature, x, hypothesis)
+
+
+def _of_any_size(curvature: Array, x: Array, hypothesis: Hypothesis) -> float:
+    """What the log evidence changes by as strengths are of any size."""
+    groups = hypothesis.strengths
+    if not groups:
+        return 0.0
+    where = np.concatenate(groups)
+    columns = np.linalg.solve(curvature, np.eye(x.size)[:, where])
+    return of_any_size(np.linalg.inv(columns[where]), x[where], [group.size for group in groups])
+
+
+def promised(found: Fit, observed: Observed, other: Observed, slack: Array | None = None) -> float:
+    """The log evidence that a fit to ``observed`` has at the model-form error of ``other``, if its slopes hold.
+
+    ``slack`` (blocks of all channels, columns): what may be added to what the sensors read besides, each column times
+    an N(0, 1) number.
+    """
+    residual, slopes = (other.rewhitened(rows, observed) for rows in (found.residual, found.slopes))
+    x = found.x
+    if slack is not None:
+        columns = np.zeros((residual.size, slack.shape[1]))
+        white = other.whiten(slack)
+        columns[: white.shape[0]] = -white
+        slopes, x = np.hstack([slopes, columns]), np.concatenate([x, np.zeros(slack.shape[1])])
+    step = -np.linalg.solve(slopes.T @ slopes + np.eye(x.size), slopes.T @ residual + x)
+    return log_evidence(residual + slopes @ step, slopes, x + step, other, found.hypothesis)
+
+
+def _expected(here: Prediction, x: Array, step: Array) -> float:
+    """By how much a step lowers the objective if the slopes hold."""
+    assert here.slopes is not None
+    moved = here.residual + here.slopes @ step
+    return _objective(here, x) - 0.5 * float(moved @ moved + (x + step) @ (x + step))
+
+
+def usable(prediction: Prediction) -> bool:
+    """Whether slopes are numbers that a step can be made from: where a run chatters they grow beyond all bounds."""
+    return prediction.slopes is not None and bool((np.abs(prediction.slopes) < STEEPEST).all())
+
+
+def _objective(prediction: Prediction, x: Array) -> float:
+    return 0.5 * float(prediction.residual @ prediction.residual + x @ x)
+
+
+def _try(hypothesis: Hypothesis, observed: Observed, x: Array) -> Prediction | None:
+    try:
+        found = predict(hypothesis, observed, x, tangents=False)
+    except (ValueError, ArithmeticError):
+        return None
+    return found if np.isfinite(found.residual).all() else None

@@ -1,0 +1,41 @@
+"""What a model would read if the table of nitrous oxide were another one: no test tells that from heat of some watts.
+
+The table's departures are constants of every hypothesis, and linear: a run with each of them says what it adds to the
+channels' blocks, and to the instant at which the liquid ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from hfanalysis.inference.fitting.hypothesis import TABLE, Free, Hypothesis
+from hfanalysis.inference.fitting.predict import predict, readings
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.thermo.departures import DEPARTURES, departed
+
+
+def with_other_tables(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothesis, Observed]:
+    """The hypothesis with the departures free, and the observations with what these add where it starts.
+
+    One that cannot be run there is left as it is: its fit will say so.
+    """
+    start, saturation = np.zeros(hypothesis.size), hypothesis.engine.saturation
+    engines = [replace(hypothesis.engine, saturation=departed(saturation, by)) for by in DEPARTURES]
+    try:
+        here, *others = (
+            predict(replace(hypothesis, engine=engine), observed, start, tangents=False).burnt
+            for engine in (hypothesis.engine, *engines)
+        )
+    except (ValueError, ArithmeticError):
+        return hypothesis, observed
+    read = readings(observed, here)
+    more = [{name: values - read[name] for name, values in readings(observed, other).items()} for other in others]
+    channels = tuple(
+        replace(c, tables=np.column_stack([c.averaged(added[c.name]) for added in more])) for c in observed.channels
+    )
+    gone = [other.liquid_out for other in others]
+    later = np.array([0.0 if g is None or here.liquid_out is None else g - here.liquid_out for g in gone])
+    free = tuple(Free(f"{TABLE}{by.name}", 0.0, 1.0) for by in DEPARTURES)
+    return replace(hypothesis, free=(*hypothesis.free, *free)), replace(observed, channels=channels, later=later)

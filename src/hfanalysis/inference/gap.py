@@ -1,0 +1,142 @@
+"""The gap between model and measurement, by channel and phase, and which part of it an explanation closes.
+
+Where a sensor's offset and gain are uncertain, what they explain is no gap of the model: it is taken off first. The gap
+is what is left beyond the noise: sqrt(max(0, rms^2 - noise^2)). The mean square of noise varies by chance, the more the
+slower it is, and how large slow noise is a quiet time tells to a factor only: where fractions are taken, an excess that
+either makes of no gap counts as none, before and after.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.inference.candidate import SHORT, attempted
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.predict import added, readings
+from hfanalysis.inference.fitting.threads import each
+from hfanalysis.inference.observations.channel import Channel
+from hfanalysis.inference.observations.observed import Observed
+
+Array = NDArray[np.float64]
+
+FOLDS, FOLD_TIME = 2, 0.5
+"""Interleaved parts of the data that are held out in turn, and the seconds that each stretch of them lasts."""
+
+CHANCE = 2.0
+"""Standard deviations of the mean square of noise beyond which an excess is no chance. Were it normal, one in nine
+tests of five channels would have one by chance alone."""
+
+LEAST_GAP = 0.5
+"""Gap, in units of the noise, below which there is no fraction of it to close."""
+
+
+def residuals_of(found: Fit, observed: Observed) -> dict[str, Array]:
+    """Measured less model of every channel over its blocks [SI], less what offset and gain of the sensor explain."""
+    read = readings(observed, found.burnt)
+    out = {}
+    for c in observed.channels:
+        raw = c.value - c.averaged(read[c.name]) - added(found.hypothesis, observed, found.x, c)
+        out[c.name] = raw - _bias(c, raw, observed.errors)
+    return out
+
+
+def _bias(channel: Channel, residual: Array, errors: tuple[float, float]) -> Array:
+    """The most probable offset and gain error of a sensor, as its stated accuracy allows."""
+    burning = ~channel.resting
+    shapes = np.column_stack([burning, burning * channel.value / float(np.abs(channel.value).max())])
+    noise = np.diag(channel.noise_std**2) + channel.form_covariance(errors)
+    weighted = np.linalg.solve(noise, shapes)
+    prior = np.eye(2) / channel.accuracy**2
+    return np.asarray(shapes @ np.linalg.solve(shapes.T @ weighted + prior, weighted.T @ residual))
+
+
+def root_mean_square(found: Fit, observed: Observed) -> dict[str, float]:
+    """Of :func:`residuals_of` from the full line on, by channel [SI]."""
+    left = residuals_of(found, observed)
+    return {c.name: float(np.sqrt(np.mean(left[c.name][flowing(c, observed)] ** 2))) for c in observed.channels}
+
+
+def flowing(channel: Channel, observed: Observed) -> NDArray[np.bool_]:
+    """Blocks between the filling of the line, which the base model does not have, and the end of the flow."""
+    return ~channel.resting & (channel.time >= observed.phases["liquid"]) & (channel.time > 0.0)
+
+
+def noise_of(observed: Observed) -> dict[str, float]:
+    """Root mean square of the noise of blocks, by channel [SI]."""
+    return {c.name: float(np.sqrt(np.mean(c.noise_std[flowing(c, observed)] ** 2))) for c in observed.channels}
+
+
+def by_phase(found: Fit, observed: Observed) -> dict[str, dict[str, float]]:
+    """The gap by channel and phase [SI]."""
+    left = residuals_of(found, observed)
+    names = [n for n in observed.phases if n != "end"]
+    starts = [observed.phases[n] for n in names]
+    out: dict[str, dict[str, float]] = {}
+    for c in observed.channels:
+        number = np.searchsorted(starts, c.time, side="right") - 1
+        for i, phase in enumerate(names):
+            inside = (number == i) & ~c.resting
+            if inside.sum() > 3:
+                excess = float(np.mean(left[c.name][inside] ** 2) - np.mean(c.noise_std[inside] ** 2))
+                out.setdefault(c.name, {})[phase] = float(np.sqrt(max(excess, 0.0)))
+    return out
+
+
+def total_gap(found: Fit, observed: Observed, where: dict[str, NDArray[np.bool_]] | None = None) -> float:
+    """The gap of all channels together, each in units of its noise, as far as it is no chance."""
+    left = residuals_of(found, observed)
+    total = 0.0
+    for c in observed.channels:
+        mask = flowing(c, observed) if where is None else where[c.name] & flowing(c, observed)
+        if mask.any():
+            noise = float(np.mean(c.noise_std[mask] ** 2))
+            excess = float(np.mean(left[c.name][mask] ** 2)) / noise - 1.0
+            total += excess if excess > CHANCE * _chance(c, mask, noise) else 0.0
+    return float(np.sqrt(total))
+
+
+def _chance(channel: Channel, mask: NDArray[np.bool_], noise: float) -> float:
+    """Standard deviation of the mean square of noise over ``noise``: by chance, and for its slow part is known to a
+    factor only, as the evidence has it."""
+    slow = 0.0 if channel.slow is None else float(np.mean(channel.slow.diagonal()[mask])) / noise
+    return float(np.hypot(np.sqrt(2.0 * channel.coherence / mask.sum()), 2.0 * channel.unsure * min(slow, 1.0)))
+
+
+def closed(before: float, after: float) -> float | None:
+    """The part of a gap that is closed; None where there was none."""
+    return None if before < LEAST_GAP else 1.0 - after / before
+
+
+def held_out(before: Fit, after: Fit, fitted: Observed, observed: Observed) -> float | None:
+    """The part of the gap closed in stretches that neither model was fitted to.
+
+    ``fitted``: the observations at the model-form error of the fits; ``observed``: those that the gap is measured by.
+    """
+    folds = [_fold(observed, fold) for fold in range(FOLDS)]
+    rest = [fitted.without({name: mask & _burning(fitted, name) for name, mask in inside.items()}) for inside in folds]
+    tried = [(fold, model) for fold in range(FOLDS) for model in (before, after)]
+    fits = each(lambda t: attempted(t[1].hypothesis, rest[t[0]], t[1].x, SHORT), tried)
+    found = [f for f in fits if f is not None]
+    if len(found) < len(tried):
+        return None
+    gaps = [total_gap(f, observed, folds[fold]) for f, (fold, _) in zip(found, tried, strict=True)]
+    return closed(*np.sqrt(np.mean(np.reshape(gaps, (FOLDS, 2)) ** 2, axis=0)).tolist())
+
+
+def _fold(observed: Observed, fold: int) -> dict[str, NDArray[np.bool_]]:
+    """The blocks of each channel that are held out in turn."""
+    return {c.name: np.floor(c.time / FOLD_TIME).astype(int) % FOLDS == fold for c in observed.channels}
+
+
+def _burning(observed: Observed, name: str) -> NDArray[np.bool_]:
+    return ~next(c for c in observed.channels if c.name == name).resting
+
+
+def frozen(hypothesis: Hypothesis, found: Fit) -> Hypothesis:
+    """A hypothesis of another test with the effects of a fit, their constants as found there."""
+    effects = tuple(a for a in found.hypothesis.at(found.x).effects if not a.effect.name.startswith("probe_"))
+    return replace(hypothesis, engine=replace(hypothesis.engine, effects=effects))

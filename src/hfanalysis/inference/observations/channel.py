@@ -1,0 +1,96 @@
+"""Block means of one channel with the covariance of what they may be off by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.inference.observations.recorded import TOGETHER
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+FORM_ERROR, FORM_TIME = 7e-5, 1.0
+"""The finest model-form error: part of a channel's range, and the time [s] over which it is coherent."""
+
+CHAMBER_FORM = 4.0
+"""How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealised further."""
+
+SHARE = 0.7071
+"""Part of a stated accuracy that is the zero's error; as much is the span's: squares add up to the whole."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Block means of one channel: ``time`` [s after the opening], ``value`` and stated ``accuracy`` [SI].
+
+    ``first`` and ``count`` say which points of the common grid are averaged into each block. ``covariance`` is that of
+    sensor noise, oscillation, bias and gain. ``resting`` blocks lie before the opening or after the end of the flow.
+    ``coherence``: blocks whose noise is worth one independent value. ``slow``: the part of the covariance that is slow
+    noise, whose size a quiet time of seconds does not tell exactly, but to the standard deviation ``unsure`` of the log
+    of its amplitude; None where there is none. ``span``: the range that the model-form error is a part of, where it is
+    not the channel's own. ``tables`` (blocks, departures): what a model would read more if the table of nitrous oxide
+    departed by a standard deviation; None where that was not asked.
+    """
+
+    name: str
+    time: Array
+    value: Array
+    first: Integers
+    count: Integers
+    resting: NDArray[np.bool_]
+    noise_std: Array
+    accuracy: float
+    covariance: Array
+    coherence: float = 1.0
+    slow: Array | None = None
+    span: float | None = None
+    unsure: float = 1.0
+    tables: Array | None = None
+
+    def only(self, rows: Integers) -> Channel:
+        """The same with some of its blocks."""
+        picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
+        slow = None if self.slow is None else self.slow[np.ix_(rows, rows)]
+        tables = None if self.tables is None else self.tables[rows]
+        return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)], slow=slow, tables=tables)
+
+    def with_white_noise(self) -> Channel:
+        """The same with independent noise of the same size, beside offset and gain."""
+        burning = np.where(self.resting, 0.0, 1.0)
+        gain = self.value * burning / float(np.abs(self.value).max())
+        shared = (SHARE * self.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
+        return replace(self, covariance=shared + np.diag(self.noise_std**2), coherence=1.0, slow=None)
+
+    def form_covariance(self, errors: tuple[float, float]) -> Array:
+        """Covariance of a model-form error, given as part of the range of tank channels, and of chamber and thrust."""
+        return form_covariance(self.time, self.form_size(errors))
+
+    def form_size(self, errors: tuple[float, float]) -> Array:
+        """Standard deviation of a model-form error in each block."""
+        span = range_of(self.time, self.value) if self.span is None else self.span
+        return np.where(self.resting, 0.0, errors[self.name in TOGETHER] * span)
+
+    def averaged(self, rows: Array) -> Array:
+        """Block means of rows (grid, ...) on the common grid."""
+        return averaged(rows, self.first, self.count)
+
+
+def form_covariance(time: Array, size: Array) -> Array:
+    """Covariance of a model-form error of this ``size`` in blocks at these times: it is smooth (Matern, 3/2)."""
+    smooth = np.sqrt(3.0) * np.abs(time[:, None] - time[None, :]) / FORM_TIME
+    return np.asarray((1.0 + smooth) * np.exp(-smooth) * np.outer(size, size))
+
+
+def range_of(time: Array, value: Array) -> float:
+    """The range of a channel, from its largest value to the least since the opening: the open air is no part of it."""
+    return float(value.max() - value[time >= 0.0].min())
+
+
+def averaged(rows: Array, first: Integers, count: Integers) -> Array:
+    """Means over ``count`` rows (grid, ...) from ``first`` on."""
+    total = np.concatenate([np.zeros((1, *rows.shape[1:])), np.cumsum(rows, axis=0)])
+    shape = (-1, *([1] * (rows.ndim - 1)))
+    return np.asarray((total[first + count] - total[first]) / count.reshape(shape))

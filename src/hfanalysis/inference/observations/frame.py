@@ -1,0 +1,198 @@
+"""When a test is compared: the grid of its blocks, the changes of phase, and where each channel's comparison ends."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.inference.observations.flow_end import AROUND_END, flow_end_without_fuel, noted_flow_end
+from hfanalysis.inference.observations.recorded import LONGEST, log_end, log_start
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.noise import Noise
+from hfanalysis.record.signals import Signal
+from hfanalysis.segment.phases import Segments
+
+Array = NDArray[np.float64]
+
+BLOCK = 0.02
+"""Seconds over which samples are averaged near the opening and the changes of phase."""
+
+AROUND_CHANGE = 0.04
+"""Seconds on either side of a phase change (beside its own deviation) without blocks: knees are rounded."""
+
+FIRST = 0.03
+"""Seconds after the opening before which nothing is compared: the chamber fills, the igniter is not modelled."""
+
+TANK_SIDE = ("p_tank", "p_run", "m_tank", "p_purge")
+"""Channels that go on telling when the nozzle has unchoked."""
+
+EVENT_STD = 0.005
+"""Least standard deviation [s] of the instant of a phase change. It is found better than that (by a millisecond in
+blind cases), but that a model's liquid ends as sharply is not known: where another generator than the blind cases'
+made a test without an effect, 2 ms asked for heat in the tank."""
+
+FUEL_STD = 0.05
+"""Least standard deviation [s] of the end of the fuel, which fades rather than stops."""
+
+SETTLING, SHORTEST_REST, LONGEST_REST = 0.5, 0.4, 10.0
+"""Seconds after the end of the flow before the chamber is at rest, and how long a rest that is looked at may be."""
+
+REST_BLOCKS = 4
+"""Blocks that such a rest is cut into."""
+
+BEFORE_BLOCKS, BEFORE_BLOCK, BEFORE_END = 8, 0.5, 0.1
+"""The rest before the opening: at most so many blocks of so many seconds, the last of which ends so long before it."""
+
+LEAST_BEFORE = 0.1
+"""Seconds of a shorter block where a log begins shortly before the opening; a still shorter rest tells nothing."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The common grid, the changes of phase (instant, deviation), and from when to when is compared [s].
+
+    The grid has ``before`` wide blocks of the rest before the opening, the opening itself, points while something
+    flows, and wide blocks of the rest after it; ``width`` [s] of the wide ones, 0 of points. ``filled``: the feed line
+    is; ``ends`` of "chamber" (and thrust) and "tank"; ``fuel_out``: the end of the fuel where the tank is compared
+    beyond it; ``failing``: seconds before the end of the liquid in which the flow fails; ``opening``: the deviation of
+    the opening's instant.
+    """
+
+    grid: Array
+    resting: NDArray[np.bool_]
+    width: Array
+    before: int
+    changes: Mapping[str, tuple[float, float]]
+    start: float
+    filled: float
+    ends: Mapping[str, float]
+    fuel_out: float | None = None
+    failing: float = 0.0
+    opening: float = 0.0
+
+    def end(self, channel: str) -> float:
+        """Where the comparison of a channel ends [s]."""
+        return self.ends["tank" if channel in TANK_SIDE else "chamber"]
+
+    @property
+    def flowing(self) -> slice:
+        """The points of the grid while something flows."""
+        return slice(self.before + 1, self.before + 1 + int((~self.resting).sum()))
+
+    @property
+    def after(self) -> slice:
+        """The blocks of the rest after the flow."""
+        return slice(self.flowing.stop, self.grid.size)
+
+
+def frame_of(
+    log: TestLog, segments: Segments, definition: TestDefinition, origin: float, failing: float = 0.0
+) -> Frame:
+    """The frame of a test that opens at ``origin`` [s of the log], whose flow fails so many seconds before its end."""
+    last = log_end(log, origin)
+    end = min(_end(segments), last)
+    ends = {"chamber": end, "tank": min(_tank_end(segments, definition, end), last)}
+    fuel_out = segments.time("t_fuel_out")
+    flow_end = flow_end_without_fuel(log, segments, definition, origin)
+    if flow_end is None:
+        fuel_out = None
+    else:
+        ends["tank"] = min(flow_end - AROUND_END, LONGEST)
+    changes = {
+        name: (value, segments.std(name))
+        for name in ("t_v", "t_fuel_out")
+        if (value := segments.time(name)) is not None
+    }
+    over = noted_flow_end(definition, max(segments.time("t_end") or end, end))
+    rest = _rest(log, origin, over if flow_end is None else max(over, flow_end))
+    before, burning = _before(log, origin), np.arange(0.5 * BLOCK, ends["tank"], BLOCK)
+    after = _blocks(*rest, REST_BLOCKS) if rest is not None else np.zeros((2, 0))
+    opening, points = np.zeros((2, 1)), np.stack([burning, np.zeros(burning.size)])
+    grid, width = np.concatenate([before, opening, points, after], axis=1)
+    resting = np.ones(grid.size, dtype=bool)
+    resting[before.shape[1] + 1 : grid.size - after.shape[1]] = False
+    filled, opened = segments.time("t_feed") or 0.0, segments.t_open.std or 0.0
+    return Frame(grid, resting, width, before.shape[1], changes, FIRST, filled, ends, fuel_out, failing, opened)
+
+
+def _blocks(first: float, last: float, count: int) -> Array:
+    """Middles and widths (2, count) of the blocks that a stretch [s] is cut into."""
+    width = (last - first) / count
+    return np.stack([first + width * (np.arange(count) + 0.5), np.full(count, width)])
+
+
+def _before(log: TestLog, origin: float) -> Array:
+    """Middles and widths (2, blocks) of the blocks of the rest before the opening."""
+    rest = -log_start(log, origin) - BEFORE_END
+    if rest < LEAST_BEFORE:
+        return np.zeros((2, 0))
+    count = min(max(int(rest / BEFORE_BLOCK), 1), BEFORE_BLOCKS)
+    return _blocks(-BEFORE_END - min(rest, count * BEFORE_BLOCK), -BEFORE_END, count)
+
+
+def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | None:
+    """A stretch after the flow [s] in which the chamber is at rest; None where the log does not show one.
+
+    The nozzle unchokes long before the last gas has left, so that the chamber's pressure has to stand still as well.
+    """
+    if "p_chamber" not in log:
+        return None
+    signal = Signal.of(log["p_chamber"]).shifted(origin)
+    if signal.dead:
+        return None
+    last = float(signal.time[-1])
+    first = max(over + SETTLING, last - LONGEST_REST)
+    if last - first < SHORTEST_REST:
+        return None
+    half = 0.5 * (first + last)
+    noise = Noise.of(signal, signal.between(-LONGEST, -0.1))
+    fall = signal.mean(first, half) - signal.mean(half, last)
+    if not abs(fall) <= 3.0 * noise.difference_std((first, half), (half, last)):
+        return None
+    return first, last
+
+
+def _tank_end(segments: Segments, definition: TestDefinition, end: float) -> float:
+    """The tank goes on emptying after the nozzle has unchoked, until the end of the flow that was seen at the stand."""
+    if segments.time("t_fuel_out") is not None:
+        return end
+    return min(max(noted_flow_end(definition, end) - AROUND_END, end), LONGEST)
+
+
+def _end(segments: Segments) -> float:
+    """Where the comparison ends [s]: with the fuel, for what follows is another story, or where the flow ends."""
+    known = [(segments.time(name), segments.std(name)) for name in ("t_fuel_out", "t_end")]
+    # where the fuel fades, its fading is to be seen: no wide berth for a wide deviation
+    given = [t - AROUND_CHANGE - min(2.0 * deviation, AROUND_CHANGE) for t, deviation in known if t is not None]
+    return min([*given, LONGEST])
+
+
+def events_of(segments: Segments, end: float) -> dict[str, tuple[float, float]]:
+    """The instants [s] of the changes of phase that are observations, with their standard deviations.
+
+    ``end``: where the comparison of the tank ends.
+    """
+    t_v = segments.time("t_v")
+    events = {}
+    if t_v is not None and t_v < end - AROUND_CHANGE:
+        events["t_v"] = (t_v, max(segments.std("t_v"), EVENT_STD))
+    gone = segments.time("t_fuel_out")
+    if gone is not None and gone < LONGEST:
+        events["t_fuel_out"] = (gone, max(segments.std("t_fuel_out"), FUEL_STD))
+    return events
+
+
+def phases_of(segments: Segments, end: float) -> dict[str, float]:
+    """Where each phase begins [s], one after the other: nitrogen that could enter before the liquid is gone makes no
+    phase of its own up to there."""
+    found = {"filling": 0.0, "liquid": segments.time("t_feed") or 0.0}
+    t_v, t_purge = segments.time("t_v"), segments.time("t_purge")
+    if t_v is not None:
+        found["vapor"] = t_v
+    if t_purge is not None:
+        found["nitrogen"] = max(t_purge, t_v if t_v is not None else t_purge)
+    return {**found, "end": end}

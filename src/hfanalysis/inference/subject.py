@@ -1,0 +1,77 @@
+"""A test as inference takes it: what was recorded, what was stated, and the base model with its constants free."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from hfanalysis.inference.fitting.fade import with_abrupt_end
+from hfanalysis.inference.fitting.hypothesis import Hypothesis, base_hypothesis
+from hfanalysis.inference.fitting.tables import with_other_tables
+from hfanalysis.inference.full_run import run_full
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.observations.reduction import observe_test
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal
+from hfanalysis.segment.phases import Segments
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What a diagnosis is made from: a test's log, its segments and base calibration, and what was stated.
+
+    The calibration is empty where none could be had; ``notes`` say what stands for a missing channel.
+    """
+
+    log: TestLog
+    segments: Segments
+    calibration: Mapping[str, Any]
+    definition: TestDefinition
+    notes: tuple[str, ...] = ()
+
+    def observed(self) -> Observed:
+        """What is compared."""
+        return observe_test(self.log, self.segments, self.definition)
+
+    def stated(self) -> dict[str, dict[str, float]]:
+        """What it states of parameters of effects [SI], by effect."""
+        return {"n2_purge": _purge(self)}
+
+    def hypothesis(self) -> Hypothesis:
+        """The base model with its constants free."""
+        full = run_full(self.log, self.segments, self.calibration, self.definition)
+        return base_hypothesis(full.engine, self.calibration, self.definition.model.conventions != "report")
+
+    def compared(self, any_table: bool = True) -> tuple[Hypothesis, Observed]:
+        """The base model and the observations, with what only the model says of these.
+
+        ``any_table``: what the table of nitrous oxide may be wrong by is free, which it is in no engine that is run.
+        """
+        hypothesis = self.hypothesis()
+        observed = with_abrupt_end(self.observed(), hypothesis.engine)
+        return with_other_tables(hypothesis, observed) if any_table else (hypothesis, observed)
+
+
+def _purge(subject: Subject) -> dict[str, float]:
+    """The purge line's pressure before nitrogen can enter, as measured, and its valve's, as stated [Pa].
+
+    Afterwards the line follows the tank through its check valve, whether or not much flows: what drives the nitrogen is
+    the pressure that its regulator was set to.
+    """
+    out: dict[str, float] = {}
+    t_purge, origin = subject.segments.time("t_purge"), subject.segments.t_open.value
+    if origin is not None and "p_purge" in subject.log:
+        last = 0.0 if t_purge is None else t_purge
+        level = Signal.of(subject.log["p_purge"]).shifted(origin).mean(last - LEVEL, last - 0.1)
+        if level == level:
+            out["supply_pressure"] = level
+    section = subject.definition.purge
+    if section is not None and section.cracking_pressure is not None:
+        out["cracking_pressure"] = section.cracking_pressure.value
+    return out
+
+
+LEVEL = 1.0
+"""Seconds over which the purge line's pressure is taken."""

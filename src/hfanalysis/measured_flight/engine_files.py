@@ -1,0 +1,125 @@
+"""Engine files of a firing, as its rocket feels it, for flight simulators."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.assembly.shape import shape
+from hfanalysis.flight import rasp, rocksim
+from hfanalysis.flight.motor import Motor, Points, points_of
+from hfanalysis.flight.rocketpy_script import Scripted, script
+from hfanalysis.measured_flight.product import Launch
+from hfanalysis.measured_flight.stability import Stability
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.rocket.aerodynamics import Shape
+from hfanalysis.rocket.vehicle import Vehicle
+
+Array = NDArray[np.float64]
+
+SLENDER = 25.0
+"""Length over diameter of a rocket whose geometry is not known; only RocketPy's inertia follows it."""
+
+NO_LENGTH = "length: not known; the diameter stands in for it"
+
+BY_THEMSELVES = "total mass: propellant alone, the empty engine belongs to the rocket's dry mass"
+
+
+@dataclass(frozen=True)
+class Export:
+    """A motor, its curve, comments for people, and radii [m] of throat and exit (0: not known)."""
+
+    motor: Motor
+    points: Points
+    comments: tuple[str, ...]
+    radii: tuple[float, float]
+
+    @property
+    def eng(self) -> str:
+        """As a RASP file."""
+        return rasp.of_points(self.motor, self.points, self.comments)
+
+    @property
+    def rse(self) -> str:
+        """As a RockSim file."""
+        return rocksim.text(self.motor, self.points, self.comments, self.radii)
+
+
+def rocketpy(found: Launch, definition: TestDefinition, stable: Stability | str, motor: Export) -> str:
+    """The flight as a script for RocketPy; without a geometry the rocket has no surfaces and flies in still air."""
+    firing, weighed = found.firing, None if isinstance(stable, str) else stable
+    outside = shape(definition.rocket)
+    known = outside if isinstance(outside, Shape) else None
+    length = known.length if known is not None else SLENDER * 2.0 * float(np.sqrt(firing.vehicle.frontal_area / np.pi))
+    engine = weighed.place.dry if weighed is not None else None
+    return script(
+        Scripted(
+            vehicle=firing.vehicle,
+            motor=motor.motor,
+            points=motor.points,
+            shape=known,
+            canopies=None if isinstance(firing.canopies, str) else firing.canopies,
+            rail_length=firing.rail_length,
+            empty_mass=float(engine.mass) if engine is not None else 0.0,
+            pitch_inertia=firing.vehicle.dry_mass * length**2 / 12.0,
+            center_of_mass=length - (float(weighed.place.fixed[0].center) if weighed is not None else 0.5 * length),
+            nozzle_radius=motor.radii[1],
+        ),
+        f"{definition.test.id}_rocketpy.py",
+        motor.comments[0],
+    )
+
+
+def export(found: Launch, definition: TestDefinition, stable: Stability | str) -> Export:
+    """The firing along its flight: thrust at the altitudes flown through, propellant that burns.
+
+    The engine's centre of gravity is that of ``stable``, where it is known.
+    """
+    center = None if isinstance(stable, str) else stable.engine_center
+    curve, trace = found.firing.curve, found.ascent
+    time = curve.time
+    thrust = np.interp(time, trace.column("time"), trace.column("thrust"))
+    mass = np.maximum(curve.mass - curve.mass_after, 0.0)
+    points = points_of(time, thrust, mass, center)
+    motor = _motor(found, definition, float(mass[0]), stable)
+    return Export(motor, points, _comments(found, definition), _radii(definition))
+
+
+def _motor(found: Launch, definition: TestDefinition, burnt: float, stable: Stability | str) -> Motor:
+    geometry = definition.rocket.geometry if definition.rocket is not None else None
+    engine = geometry.engine_mass.value if geometry is not None and geometry.engine_mass is not None else 0.0
+    loaded = float(found.firing.propellant.total[0])
+    diameter, length = _size(definition, found.firing.vehicle)
+    length = length if isinstance(stable, str) else stable.place.length
+    return Motor(definition.test.id, diameter, length, burnt, engine + loaded)
+
+
+def _size(definition: TestDefinition, vehicle: Vehicle) -> tuple[float, float]:
+    """Diameter and length [m] of the motor, from what is known of casing, tank and grain; else as wide as the rocket.
+
+    A length that is not known is the diameter's, since no file can do without one.
+    """
+    grain, tank = definition.grain, definition.tank
+    widths = [2.0 * grain.outer_radius.value] if grain is not None and grain.outer_radius is not None else []
+    widths += [tank.inner_diameter.value] if tank is not None and tank.inner_diameter is not None else []
+    width = max(widths, default=2.0 * float(np.sqrt(vehicle.frontal_area / np.pi)))
+    return width, grain.length.value if grain is not None and grain.length is not None else width
+
+
+def _radii(definition: TestDefinition) -> tuple[float, float]:
+    nozzle = definition.nozzle
+    throat, leave = (None, None) if nozzle is None else (nozzle.throat_radius, nozzle.exit_radius)
+    return (throat.value if throat else 0.0), (leave.value if leave else 0.0)
+
+
+def _comments(found: Launch, definition: TestDefinition) -> tuple[str, ...]:
+    source = {"replica": "REPLICA, generated, not measured", "synthetic": "SYNTHETIC, generated, not measured"}
+    altitude = found.firing.vehicle.launch_altitude
+    geometry = definition.rocket.geometry if definition.rocket is not None else None
+    said = [f"{definition.test.id}: {source.get(definition.test.source, 'measured on the stand')}"]
+    said += [f"thrust {found.firing.thrust_is}, along the flight from {altitude:.0f} m"]
+    said += [] if geometry is not None and geometry.engine_mass is not None else [BY_THEMSELVES]
+    said += [] if definition.grain is not None and definition.grain.length is not None else [NO_LENGTH]
+    return tuple(said)

@@ -1,0 +1,174 @@
+"""flight.json and flight.h5: what a test's firing does to its rocket, with bands."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.assembly.rocket import drag_from
+from hfanalysis.errors import AbsentError
+from hfanalysis.flight import summary
+from hfanalysis.flight.ascent import TRACE, Ascent, ascend
+from hfanalysis.flight.descent import Leg, descend, fall
+from hfanalysis.measured_flight import stability
+from hfanalysis.measured_flight.firing import Firing
+from hfanalysis.measured_flight.uncertainty import Dispersion, disperse, inputs, rows
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.rocket import Rocket
+from hfanalysis.rocket.vehicle import gravity
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, float | None], None]
+
+LEAST_RAIL_DEPARTURE = 30.48
+"""[m/s]: 100 ft/s, which competitions recommend at least (report, section 3.2.4)."""
+
+UNITS = dict(zip(TRACE, ("s", "m", "m/s", "m/s^2", "N", "N", "kg", "1"), strict=True))
+
+
+@dataclass(frozen=True)
+class Launch:
+    """A firing, its flight, and the flights that differ in what is uncertain."""
+
+    firing: Firing
+    ascent: Ascent
+    dispersion: Dispersion
+    inputs: dict[str, Any]
+    samples: int
+    seed: int
+
+
+def launch(firing: Firing, rocket: Rocket, samples: int, seed: int, progress: Progress | None = None) -> Launch:
+    """Fly it. Raises AbsentError for a rocket that stays on its pad or leaves the atmosphere model."""
+    try:
+        flown = ascend(firing.curve, firing.vehicle, firing.rail_length)
+    except ValueError as error:
+        raise AbsentError(str(error)) from None
+    drawn = rows(firing, rocket, samples, seed)
+    return Launch(firing, flown, disperse(firing, drawn, 1.25 * flown.end[0], progress), inputs(firing, rocket),
+                  samples, seed)  # fmt: skip
+
+
+def product(found: Launch, rocket: Rocket, stable: stability.Stability | str) -> dict[str, Any]:
+    """The content of flight.json."""
+    firing = found.firing
+    flown = summary.quantities(
+        firing.vehicle, found.ascent, firing.rail_length, firing.canopies, found.dispersion.spreads()
+    )
+    return {
+        **flown,
+        **_on_pad(found),
+        "checks": {
+            "rail_departure_velocity": rail_check(flown["rail_departure_velocity"]),
+            **stability.checks(stable),
+        },
+        "thrust": firing.thrust_is,
+        "drag": drag_from(rocket),
+        "masses": dict(firing.propellant.how),
+        "dispersion": {"flights": found.samples, "seed": found.seed, "inputs": found.inputs},
+        "stability": stability.product(stable),
+        "notes": list(firing.notes),
+    }
+
+
+def _on_pad(found: Launch) -> dict[str, Quantity]:
+    firing = found.firing
+    propellant, dry = found.inputs["propellant"].std, found.inputs["dry_mass"].std
+    std = float(np.hypot(propellant, dry))
+    peak = float(found.ascent.column("thrust").max())
+    weight = firing.wet_mass * gravity(firing.vehicle.launch_altitude)
+    return {
+        "wet_mass": Quantity(firing.wet_mass, "kg", std),
+        "pad_thrust_to_weight": Quantity(peak / weight),
+        "total_impulse": Quantity(firing.curve.impulse, "N s"),
+        "burn_time": Quantity(firing.curve.burn_time, "s"),
+        "average_thrust": Quantity(firing.curve.impulse / firing.curve.burn_time, "N"),
+    }
+
+
+def rail_check(speed: Quantity) -> dict[str, Any]:
+    """Whether the rail is left fast enough: passed, failed, or unknown where the 95 % interval holds the limit."""
+    limit = {"limit": LEAST_RAIL_DEPARTURE, "unit": "m/s", "is": "at least"}
+    if speed.value is None:
+        return {**limit, "result": "unknown", "why": speed.reason}
+    low, high = speed.interval or (speed.value, speed.value)
+    result = "passed" if low >= LEAST_RAIL_DEPARTURE else "failed" if high < LEAST_RAIL_DEPARTURE else "unknown"
+    return {**limit, "result": result, "why": f"{speed.value:.1f} m/s, 95 % from {low:.1f} to {high:.1f}"}
+
+
+def write_histories(
+    path: Path, found: Launch, stable: stability.Stability | str, provenance: Mapping[str, Any]
+) -> None:
+    """flight.h5: groups ``ascent``, ``bands``, the ways down, ``balance`` and ``stability``, in SI."""
+    with h5py.File(path, "w") as file:
+        file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
+        file.attrs["launch_altitude"] = found.firing.vehicle.launch_altitude
+        ascent = {name: found.ascent.column(name) for name in TRACE}
+        _write(file, "ascent", ascent | _drawn_on(found, ascent["time"]), UNITS | {"height": "m"} | MASSES)
+        bands = {
+            f"{name}_{side}": band[i]
+            for name, band in found.dispersion.bands.items()
+            for i, side in enumerate(("low", "median", "high"))
+        }
+        units = {name: {"h": "m", "s": "m/s", "a": "m/s^2"}[name[0]] for name in bands}
+        _write(file, "bands", {"time": found.dispersion.time} | bands, {"time": "s"} | units)
+        for name, leg in _legs(found).items():
+            columns = {
+                "time": leg.time,
+                "height": leg.altitude - found.firing.vehicle.launch_altitude,
+                "speed": leg.speed,
+            }
+            _write(file, name, columns, {"time": "s", "height": "m", "speed": "m/s"})
+        if not isinstance(stable, str):
+            _write_stability(file, found, stable)
+
+
+def _write_stability(file: Any, found: Launch, stable: stability.Stability) -> None:
+    """Group ``balance`` over the burn, and ``stability/N`` for every wind."""
+    weighed = stable.balance
+    columns = {"mass": weighed.mass, "center_of_gravity": weighed.center, "pitch_inertia": weighed.inertia}
+    units = {"time": "s", "mass": "kg", "center_of_gravity": "m", "pitch_inertia": "kg m^2"}
+    _write(file, "balance", {"time": found.firing.curve.time, **columns}, units)
+    for i, margin in enumerate(stable.margins):
+        series = {"time": margin.time, "margin_mean": margin.mean, "margin_std": margin.std}
+        units = {"time": "s", "margin_mean": "1", "margin_std": "1", "angle_of_attack": "rad"}
+        _write(file, f"stability/{i}", {**series, "angle_of_attack": margin.attack}, units)
+        file[f"stability/{i}"].attrs["wind"] = margin.wind
+
+
+MASSES = {"oxidizer_mass": "kg", "fuel_mass": "kg"}
+
+
+def _drawn_on(found: Launch, time: Array) -> dict[str, Array]:
+    """Height above the pad and the propellant's masses at the flight's times."""
+    load = found.firing.propellant
+    height = found.ascent.column("altitude") - found.firing.vehicle.launch_altitude
+    return {
+        "height": height,
+        "oxidizer_mass": np.interp(time, load.time, load.oxidizer),
+        "fuel_mass": np.interp(time, load.time, load.fuel),
+    }
+
+
+def _legs(found: Launch) -> dict[str, Leg]:
+    """The ways down; each downwards negative in speed."""
+    firing, top = found.firing, found.ascent.end
+    legs = {"ballistic": fall(firing.vehicle, 0.0, (top[0], top[1], 0.0), firing.vehicle.launch_altitude)}
+    if isinstance(firing.canopies, str):
+        return legs
+    down = descend(firing.vehicle, top, *firing.canopies)
+    return {"drogue": down.legs[0], "main": down.legs[1], **legs}
+
+
+def _write(file: Any, name: str, columns: Mapping[str, Array], units: Mapping[str, str]) -> None:
+    group = file.create_group(name)
+    for key, values in columns.items():
+        made = group.create_dataset(key, data=np.asarray(values, dtype=np.float64), track_times=False)
+        made.attrs["units"] = units[key]

@@ -1,0 +1,141 @@
+"""The rocket's static margin along its flight in winds, from geometry and what the burn leaves of the propellant."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.assembly.shape import Masses, masses, shape
+from hfanalysis.flight import summary
+from hfanalysis.flight.ascent import arguments
+from hfanalysis.flight.margin import Margin, margin
+from hfanalysis.flight.pitch import GUST_INTENSITY, HIGH, LOW, aero, fly_in_wind
+from hfanalysis.measured_flight.firing import Firing
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.rocket.aerodynamics import Shape, center_of_pressure, components, drag_parts
+from hfanalysis.rocket.balance import Balance, Part, balance, oxidizer
+from hfanalysis.thermo.nitrous import saturation
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, float | None], None]
+
+SLOW = 0.3
+"""Mach number at which slopes and the drag's parts are listed."""
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Centre of gravity and inertia on the thrust curve's clock, the shape, the margins by wind, and remarks.
+
+    ``engine_center``: of the engine with its propellant [m from its front], None where it is not weighed apart.
+    """
+
+    outside: Shape
+    balance: Balance
+    place: Masses
+    margins: tuple[Margin, ...]
+    engine_center: Array | None
+    notes: tuple[str, ...]
+
+
+def stability(
+    firing: Firing, definition: TestDefinition, winds: Sequence[float], seeds: int, longest: float, progress: Progress
+) -> Stability | str:
+    """Fly in every wind; or why there is no stability to tell."""
+    rocket = definition.rocket
+    outside = shape(rocket)
+    if isinstance(outside, str) or rocket is None:
+        return str(outside)
+    place = masses(rocket, outside, definition.tank, definition.grain, definition.chamber)
+    if isinstance(place, str):
+        return place
+    weighed = balance(_parts(firing, place, definition))
+    aerodynamics, reads = aero(outside), arguments(firing.curve, firing.vehicle, firing.rail_length)
+    found = []
+    for i, wind in enumerate(winds):
+        progress("flying in winds", i / len(winds))
+        flights = fly_in_wind(reads, (weighed.center, weighed.inertia), aerodynamics, wind, seeds, longest)
+        found.append(margin(flights))
+    known = tuple(m for m in found if m is not None)
+    if not known:
+        return summary.NO_RAIL if firing.rail_length is None else summary.RAIL_TOO_LONG
+    notes = tuple(filter(None, (place.remark, _tank_note(firing))))
+    return Stability(outside, weighed, place, known, _engine_center(firing, place, definition), notes)
+
+
+def _tank_note(firing: Firing) -> str:
+    known = np.isfinite(firing.propellant.temperature).all()
+    return "" if known else "how the oxidizer divides into liquid and vapour is not known: taken as all liquid"
+
+
+def _parts(firing: Firing, place: Masses, definition: TestDefinition) -> list[Part]:
+    return [*place.fixed, *_load(firing, place, definition)]
+
+
+def _load(firing: Firing, place: Masses, definition: TestDefinition) -> list[Part]:
+    """Oxidizer, fuel and chamber gas on the thrust curve's clock."""
+    time, load = firing.curve.time, firing.propellant
+    histories = (load.oxidizer, load.liquid, load.fuel, load.temperature)
+    mass, liquid, fuel, t = (np.interp(time, load.time, history) for history in histories)
+    tank = oxidizer(place.tank, liquid, mass - liquid, _liquid_volume(t, definition))
+    gas = [] if firing.gas_mass is None else [Part(firing.gas_mass, place.gas_center)]
+    return [*tank, Part(fuel, place.grain_center, place.grain_length), *gas]
+
+
+def _liquid_volume(temperature: Array, definition: TestDefinition) -> Array:
+    """Of the saturated liquid [m^3/kg]; where the tank's temperature is not known, at 20 degC."""
+    source = saturation(definition.model.properties)
+    return np.asarray(source.liquid_volume(np.where(np.isfinite(temperature), temperature, 293.15))[0])
+
+
+def _engine_center(firing: Firing, place: Masses, definition: TestDefinition) -> Array | None:
+    if place.dry is None:
+        return None
+    return np.asarray(balance([place.dry, *_load(firing, place, definition)]).center - place.front)
+
+
+def product(found: Stability | str) -> dict[str, Any]:
+    """What flight.json says of stability."""
+    if isinstance(found, str):
+        return {"margin_at_rail_departure": Quantity.absent(found)}
+    parts = components(found.outside, SLOW)
+    slope, place = center_of_pressure(parts)
+    calmest = found.margins[0]
+    return {
+        "margin_at_rail_departure": Quantity(float(calmest.mean[0]), "", float(calmest.std[0]) or None),
+        "static_margin_on_pad": Quantity((place - float(found.balance.center[0])) / found.outside.diameter),
+        "normal_force_slope": Quantity(slope, "1/rad"),
+        "center_of_pressure": Quantity(place, "m"),
+        "center_of_gravity_loaded": Quantity(float(found.balance.center[0]), "m"),
+        "center_of_gravity_empty": Quantity(float(found.balance.center[-1]), "m"),
+        "mach": SLOW,
+        "slopes": {part.name: {"slope": part.slope, "position": part.position} for part in parts},
+        "drag_parts": drag_parts(found.outside, SLOW, 0.0),
+        "limits": [LOW, HIGH],
+        "gust_intensity": GUST_INTENSITY,
+        "winds": [m.to_json() for m in found.margins],
+        "notes": list(found.notes),
+    }
+
+
+def checks(found: Stability | str) -> dict[str, dict[str, Any]]:
+    """Whether the margin keeps within its limits, two standard deviations included, in every wind."""
+    return {
+        "least_static_margin": _check(found, {"limit": LOW, "is": "at least"}, "least", lambda margin: margin >= LOW),
+        "largest_static_margin": _check(found, {"limit": HIGH, "is": "at most"}, "largest", lambda m: m <= HIGH),
+    }
+
+
+def _check(found: Stability | str, limit: dict[str, Any], key: str, holds: Callable[[float], bool]) -> dict[str, Any]:
+    stated = {**limit, "unit": "calibers"}
+    if isinstance(found, str):
+        return {**stated, "result": "unknown", "why": found}
+    said = [m.to_json() for m in found.margins]
+    words = ", ".join(f"{m[key]:.2f} in a wind of {m['wind']:.1f} m/s" for m in said)
+    kept = all(holds(m[key]) for m in said)
+    return {**stated, "result": "passed" if kept else "failed", "why": f"{words}; mean and two standard deviations"}

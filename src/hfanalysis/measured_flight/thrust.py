@@ -1,0 +1,103 @@
+"""The measured thrust over the burn, tare and drift removed, and how well it is known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.errors import AbsentError
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.signals import Signal
+from hfanalysis.segment.phases import Segments
+from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
+
+Array = NDArray[np.float64]
+
+SPAN_SHARE = 0.25
+"""Part of the cell's accuracy that a tare does not take away: its error of span, as for the pressures."""
+
+UNSEEN_DRIFT = 0.01
+"""Of the peak thrust: standard deviation of a drift that no settled level after the burn shows."""
+
+SHAPE_OF_DRIFT = 12.0**-0.5
+"""Of the drift: standard deviation of how far along it a moment is, where all courses are as likely."""
+
+UNSTATED_GAIN = 0.01
+"""Standard deviation of a load cell's gain where nothing is said of its calibration."""
+
+
+@dataclass(frozen=True)
+class MeasuredThrust:
+    """Thrust [N] at increasing times [s after opening] over the burn, which starts at 0.
+
+    ``bias_std``, ``drift_std`` [N]: of its zero and of its zero's change over the burn; ``gain_std``: relative.
+    """
+
+    time: Array
+    thrust: Array
+    bias_std: float
+    drift_std: float
+    gain_std: float
+    notes: tuple[str, ...]
+
+    @property
+    def burn_time(self) -> float:
+        """[s]"""
+        return float(self.time[-1])
+
+
+def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDefinition) -> MeasuredThrust:
+    """The thrust from the valve's opening to the burn's end, the same that the performance table has.
+
+    Raises AbsentError where the log has no thrust or no firing.
+    """
+    channel = log["thrust"]
+    if Signal.of(channel).dead:
+        raise AbsentError(f"test {definition.test.id}: the thrust channel is dead; there is nothing to fly")
+    if segments is None or segments.t_open.value is None:
+        raise AbsentError(f"test {definition.test.id}: no valve opening is known to count the thrust from")
+    found = thrust_of(log, segments, definition)
+    end, of = burn_end(segments, definition, float(found.signal.time[-1]))
+    burn = found.signal.between(0.0, end)
+    if burn.time.size < 8:
+        raise AbsentError(f"test {definition.test.id}: the log has {burn.time.size} samples of thrust over the burn")
+    time = np.unique(np.concatenate(([0.0], burn.time, [end])))
+    notes = (f"burn from the opening to {end:.2f} s: {of}", *_drift_taken(found))
+    return MeasuredThrust(time, found.signal.at(time), *_spreads(channel, found, burn), notes)
+
+
+def _left(found: Thrust) -> float:
+    """What the corrected cell reads [N] with the chamber at ambient pressure; 0 where the log does not show it."""
+    return 0.0 if np.isnan(found.since) else found.signal.mean(found.since, found.since + FIRST)
+
+
+def _drift_taken(found: Thrust) -> tuple[str, ...]:
+    taken = found.error - _left(found)
+    return (f"{taken:.0f} N of the load cell's drift taken off over the burn",) if abs(taken) >= 0.5 else ()
+
+
+def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tuple[float, str]:
+    """When thrust ends [s after opening], and who says so: the engineer, else the later of chamber and fuel, else the
+    log."""
+    observed = definition.observed.burn_time if definition.observed is not None else None
+    if observed is not None and observed.value <= last:
+        return observed.value, "[observed] burn_time"
+    found = {name: segments.time(name) for name in ("t_fuel_out", "t_end")}
+    times = {name: time for name, time in found.items() if time is not None and 0.0 < time <= last}
+    if times:
+        name = max(times, key=lambda key: times[key])
+        return times[name], name
+    return last, "the log's end"
+
+
+def _spreads(channel: Channel, found: Thrust, burn: Signal) -> tuple[float, float, float]:
+    """Standard deviations of zero, drift [N] and gain; a drift that is seen but not taken off counts in full."""
+    peak = float(np.max(np.abs(burn.value)))
+    zero = channel.accuracy if channel.zero_std is None else channel.zero_std
+    seen = float(np.hypot(SHAPE_OF_DRIFT * found.error, _left(found)))
+    drift = UNSEEN_DRIFT * peak if seen == 0.0 else seen
+    gain = SPAN_SHARE * channel.accuracy / peak if channel.accuracy_stated else UNSTATED_GAIN
+    return float(zero), drift, max(float(gain), 1e-4)

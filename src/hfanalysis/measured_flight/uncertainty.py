@@ -1,0 +1,170 @@
+"""What is uncertain of a flight, and thousands of flights that differ in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.flight.ascent import (
+    ANGLE,
+    APOGEE,
+    CROSSWIND,
+    DRAG,
+    MASS,
+    NOMINAL,
+    PROPELLANT,
+    RESULTS,
+    THRUST_BIAS,
+    THRUST_DRIFT,
+    THRUST_SCALE,
+    TIME,
+    WIND,
+    arguments,
+    fly_all,
+)
+from hfanalysis.flight.summary import ASCENT, Spread
+from hfanalysis.measured_flight.firing import Firing
+from hfanalysis.processors import processors
+from hfanalysis.record.rocket import Rocket
+from hfanalysis.units import Value
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, float | None], None]
+
+DRAG_UNSTATED = 0.10
+"""Relative: what separates drag build-ups from flights of rockets like these."""
+DRY_MASS_UNSTATED = 0.005
+"""Relative: a rocket that was weighed, and then worked on."""
+ANGLE_UNSTATED = np.radians(1.0)
+"""[rad] to which a rail is set and holds."""
+WIND_UNSTATED = 2.0
+"""[m/s] of each horizontal component: calm to a moderate breeze."""
+STATED_WIND_SHARE = 0.3
+"""Of a wind speed that is stated without a standard deviation: gusts."""
+
+CHUNK = 250
+"""Flights that one core takes at a time."""
+
+PATHS = 2000
+"""Flights whose course is kept for the bands over time; more add nothing to them."""
+
+POINTS = 241
+"""Times of the bands."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """One uncertain input: standard deviation with its unit, and whether test.toml states it."""
+
+    std: float
+    unit: str
+    stated: bool
+    of: str
+
+    def to_json(self) -> dict[str, Any]:
+        """As flight.json has it."""
+        return {"std": self.std, "unit": self.unit, "from": "test.toml" if self.stated else "default", "of": self.of}
+
+
+def inputs(firing: Firing, rocket: Rocket) -> dict[str, Input]:
+    """Every uncertain input of a flight by name."""
+    thrust, angle, wind = firing.thrust, rocket.launch_angle, rocket.wind_speed
+    drag, load = rocket.drag_uncertainty, firing.propellant
+    speed = _wind(wind)
+    return {
+        "thrust_gain": Input(thrust.gain_std, "", False, "relative, of the load cell"),
+        "thrust_bias": Input(thrust.bias_std, "N", False, "of the load cell's zero"),
+        "thrust_drift": Input(thrust.drift_std, "N", False, "of the zero's change over the burn"),
+        "dry_mass": Input(*_stated(rocket.dry_mass, DRY_MASS_UNSTATED * rocket.dry_mass.value, "kg"), "of the rocket"),
+        "propellant": Input(load.loaded_std, "kg", load.stated_std, "oxidizer and fuel loaded"),
+        "drag": Input(drag or DRAG_UNSTATED, "", drag is not None, "relative, coefficient and air density together"),
+        "launch_angle": Input(*_stated(angle, float(ANGLE_UNSTATED), "rad"), "of the rail"),
+        "wind": Input(speed[1], "m/s", wind is not None, f"about {speed[0]:.3g} m/s, from any direction"),
+    }
+
+
+def _stated(value: Value | None, default: float, unit: str) -> tuple[float, str, bool]:
+    known = value is not None and value.std is not None
+    return (value.std if value is not None and value.std is not None else default), unit, known
+
+
+def _wind(stated: Value | None) -> tuple[float, float]:
+    """Mean speed and standard deviation of each component [m/s]."""
+    if stated is None:
+        return 0.0, WIND_UNSTATED
+    return stated.value, STATED_WIND_SHARE * stated.value if stated.std is None else stated.std
+
+
+def rows(firing: Firing, rocket: Rocket, samples: int, seed: int) -> Array:
+    """Flights to be flown, one by row, as NOMINAL; the same from run to run."""
+    rng = np.random.default_rng(seed)
+    std = {name: found.std for name, found in inputs(firing, rocket).items()}
+    drawn = np.tile(NOMINAL, (samples, 1))
+    normal = rng.standard_normal((samples, 9))
+    propellant = float(firing.propellant.total[0])
+    drawn[:, THRUST_SCALE] += std["thrust_gain"] * normal[:, 0]
+    drawn[:, THRUST_BIAS] = std["thrust_bias"] * normal[:, 1]
+    drawn[:, THRUST_DRIFT] = std["thrust_drift"] * normal[:, 2]
+    drawn[:, MASS] = std["dry_mass"] * normal[:, 3]
+    drawn[:, PROPELLANT] += std["propellant"] / propellant * normal[:, 4]
+    drawn[:, DRAG] = np.maximum(1.0 + std["drag"] * normal[:, 5], 0.05)
+    drawn[:, ANGLE] = np.abs(firing.vehicle.launch_angle + std["launch_angle"] * normal[:, 6])
+    direction = rng.uniform(0.0, 2.0 * np.pi, samples)
+    mean = _wind(rocket.wind_speed)[0]
+    drawn[:, WIND] = mean * np.cos(direction) + std["wind"] * normal[:, 7]
+    drawn[:, CROSSWIND] = mean * np.sin(direction) + std["wind"] * normal[:, 8]
+    return drawn
+
+
+@dataclass(frozen=True)
+class Dispersion:
+    """Drawn flights: ``results`` (n, 8) of each, and bands (2.5, 50, 97.5 %) over ``time``: (3, n) by column."""
+
+    results: Array
+    time: Array
+    bands: dict[str, Array]
+
+    def spreads(self) -> dict[str, Spread]:
+        """Standard deviation and 95 % interval of every quantity of the ascent that most flights have."""
+        found = {}
+        for name, (index, _) in ASCENT.items():
+            values = self.results[:, index][np.isfinite(self.results[:, index]) & (self.results[:, APOGEE] > 0.0)]
+            if values.size > 0.9 * len(self.results):
+                low, high = np.percentile(values, (2.5, 97.5))
+                found[name] = Spread(float(values.std(ddof=1)), (float(low), float(high)))
+        return found
+
+
+def disperse(firing: Firing, drawn: Array, last: float, progress: Progress | None = None) -> Dispersion:
+    """Fly every row of ``drawn`` on all cores; the bands end at ``last`` [s] or when the first flights have turned."""
+    results = np.empty((len(drawn), RESULTS))
+    paths = np.empty((min(len(drawn), PATHS), POINTS, 3))
+    fixed = arguments(firing.curve, firing.vehicle, firing.rail_length)
+    every = last / (POINTS - 1)
+
+    def fly_some(start: int) -> None:
+        part = slice(start, start + CHUNK)
+        path = paths[part] if start < PATHS else np.empty((len(drawn[part]), 0, 3))
+        fly_all(*fixed, drawn[part], results[part], every, path)
+
+    starts = range(0, len(drawn), CHUNK)
+    with ThreadPoolExecutor(processors()) as cores:
+        for done, _ in enumerate(cores.map(fly_some, starts), 1):
+            if progress is not None:
+                progress("flying with drawn inputs", done / len(starts))
+    flying = results[:, APOGEE] > 0.0
+    turned = float(np.percentile(results[flying, TIME], 2.5)) if flying.mean() > 0.5 else -1.0
+    time: Array = every * np.arange(POINTS, dtype=np.float64)
+    kept = time <= turned
+    return Dispersion(results, time[kept], dict(_bands(paths[:, kept], firing.vehicle.launch_altitude)))
+
+
+def _bands(paths: Array, ground: float) -> Iterator[tuple[str, Array]]:
+    offsets = {"height": ground, "speed": 0.0, "acceleration": 0.0}
+    for column, (name, offset) in enumerate(offsets.items()):
+        yield name, np.nanpercentile(paths[:, :, column], (2.5, 50.0, 97.5), axis=0) - offset

@@ -1,0 +1,133 @@
+"""Time stamps: where a channel's come from, and which of them run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from hfanalysis.errors import InputError
+from hfanalysis.record.logspec import TimeSpec
+from hfanalysis.record.spool import Spool
+from hfanalysis.units import unit_factor
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The stamps of a group of samples: ``time`` [s, log time] of the rows in ``keep``; ``stale`` where it stands or
+    steps back.
+
+    ``stale`` marks samples whose stamp is not later than an earlier good one: of a group with one stamp all but the
+    first; where time steps back, whichever side of the step leaves fewer samples out.
+    """
+
+    time: Floats
+    keep: Mask | None
+    stale: Mask
+    warnings: tuple[str, ...] = ()
+
+
+def read_clock(spool: Spool, column: int | None, spec: TimeSpec, rows: int, where: str) -> Clock:
+    """The clock of a file's column, or of its sample rate; raises :class:`InputError` where no stamp can be read."""
+    if column is None:
+        return _regular(spec, rows)
+    stamps = spool.look(column)
+    keep = np.isfinite(stamps)
+    if not keep.any():
+        raise InputError(_no_stamps(spool, column, where))
+    warnings = [f"{where}: {n} rows without a readable time stamp are left out"] if (n := int((~keep).sum())) else []
+    written = spec.unit in ("datetime", "clock") or column in spool.written
+    whole = bool(keep.all())
+    time = (stamps if whole else stamps[keep]) * (1.0 if written else unit_factor(spec.unit, "time", where)[0])
+    if spec.spread:
+        time, note = _spread(time, where)
+        warnings += note
+    stale = stale_stamps(time)
+    warnings += _noted(time, stale, where)
+    time += spec.offset.value
+    return Clock(time, None if whole else keep, stale, tuple(warnings))
+
+
+def _regular(spec: TimeSpec, rows: int) -> Clock:
+    assert spec.rate is not None
+    return Clock(np.arange(rows) / spec.rate.value + spec.offset.value, None, np.zeros(rows, dtype=bool))
+
+
+def _no_stamps(spool: Spool, column: int, where: str) -> str:
+    text = spool.text.get(column)
+    found = f"line {text.line} has {text.first!r}" if text else "the column is empty"
+    return f"{where}, time: not one stamp can be read: {found}; expected numbers, dates or times of day"
+
+
+def stale_stamps(time: Floats) -> Mask:
+    """Samples to leave out for the rest to increase strictly in time, as few as can be.
+
+    >>> stale_stamps(np.array([0.0, 1.0, 1.0, 2.0, 99.0, 3.0, 4.0]))
+    array([False, False,  True, False,  True, False, False])
+    """
+    if _increases(time):
+        return np.zeros(len(time), dtype=bool)
+    return _outside_longest_rise(np.ascontiguousarray(time))
+
+
+def _increases(time: Floats) -> bool:
+    return bool(np.all(time[1:] > time[:-1]))
+
+
+@njit(cache=True)
+def _outside_longest_rise(time: Floats) -> Mask:
+    """Complement of a longest strictly increasing subsequence; among equal stamps the first is kept."""
+    n = len(time)
+    ends = np.empty(n, np.int64)
+    before = np.full(n, -1)
+    length = 0
+    for i in range(n):
+        low, high = 0, length
+        while low < high:
+            middle = (low + high) // 2
+            if time[ends[middle]] < time[i]:
+                low = middle + 1
+            else:
+                high = middle
+        if low > 0:
+            before[i] = ends[low - 1]
+        if low == length or time[i] < time[ends[low]]:
+            ends[low] = i
+        length = max(length, low + 1)
+    out = np.ones(n, np.bool_)
+    i = ends[length - 1]
+    while i >= 0:
+        out[i] = False
+        i = before[i]
+    return out
+
+
+def _noted(time: Floats, stale: Mask, where: str) -> list[str]:
+    """What to say about stamps that do not run."""
+    if not stale.any():
+        return []
+    repeated = int(np.count_nonzero(np.diff(time) == 0.0))
+    back = int(np.count_nonzero(np.diff(time) < 0.0))
+    count = int(stale.sum())
+    notes = [f"{where}: {count} samples flagged time ({repeated} repeated stamps, {back} steps back)"]
+    if repeated > 0.05 * len(time):
+        notes.append(f"{where}: stamps look truncated; spread = true beside its time column spreads them evenly")
+    return notes
+
+
+def _spread(time: Floats, where: str) -> tuple[Floats, list[str]]:
+    """Samples that share a stamp spread evenly up to the next stamp, as the engineer asked."""
+    starts = np.flatnonzero(np.diff(time, prepend=-np.inf) != 0.0)
+    counts = np.diff(np.append(starts, len(time)))
+    if len(starts) < 2:
+        return time, []
+    steps = np.diff(time[starts])
+    steps = np.append(steps, np.median(steps))
+    place = np.arange(len(time)) - np.repeat(starts, counts)
+    spread = np.repeat(time[starts], counts) + place * np.repeat(steps / counts, counts)
+    return spread, [f"{where}: samples that share a stamp are spread evenly, as test.toml asks"]

@@ -1,0 +1,80 @@
+"""Engine files: an engine that is no test, in the words of test.toml; what a test would calibrate is given."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+from pydantic import BeforeValidator
+
+from hfanalysis.errors import InputError
+from hfanalysis.record.definition import check_version
+from hfanalysis.record.document import place, read_toml, validate
+from hfanalysis.record.rocket import Rocket
+from hfanalysis.record.schema import Refused, Section, section
+from hfanalysis.record.sections import Chamber, Design, Engine, Feed, Grain, Injector, Model, Nozzle, Purge, Site, Tank
+
+T = TypeVar("T")
+
+TANK_SIZES = ("volume", "length", "ullage")
+"""The keys of [tank], one of which says how large it is."""
+
+
+@section
+class Statements(Section):
+    """The whole of an engine file; sections that are not stated have no key."""
+
+    engine: Engine
+    schema: Annotated[int, BeforeValidator(check_version)]
+    model: Model = Model()
+    tank: Tank = Tank()
+    feed: Feed = Feed()
+    injector: Injector = Injector()
+    purge: Purge | None = None
+    grain: Grain = Grain()
+    chamber: Chamber = Chamber()
+    nozzle: Nozzle = Nozzle()
+    site: Site = Site()
+    rocket: Rocket | None = None
+    design: Design = Design()
+
+    def check(self) -> None:
+        given = [key for key in TANK_SIZES if getattr(self.tank, key) is not None]
+        if len(given) > 1:
+            raise Refused(f"both {given[0]!r} and {given[1]!r} are given; expected one of them", "tank")
+
+
+@dataclass(frozen=True, kw_only=True)
+class EngineFile(Statements):
+    """A validated engine file and where it is; every number in SI."""
+
+    path: Path
+    sha256: str
+
+    def where(self, *keys: str) -> str:
+        """A place in this file, for messages."""
+        return place(str(self.path), *keys)
+
+
+def load_engine(path: Path) -> EngineFile:
+    """The engine file at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
+    raw, content = read_toml(path)
+    stated = validate(Statements, {"schema": None, **content}, path)
+    return EngineFile(**vars(stated), path=path, sha256=hashlib.sha256(raw).hexdigest())
+
+
+@dataclass(frozen=True)
+class Needs:
+    """What a command needs of an engine file: a missing key is refused with the name of both."""
+
+    file: EngineFile
+    command: str
+
+    def value(self, found: T | None, section: str, key: str) -> T:
+        """``found``, the value of a key; raises :class:`InputError` where it is not given."""
+        if found is None:
+            table = self.file.where(section)
+            raise InputError(f"{table}: key {key!r} is missing; {self.command} needs it")
+        return found

@@ -1,0 +1,111 @@
+"""Quality flags per sample. Nothing is repaired: a flag says why a reading is not to be trusted.
+
+The rules compare a channel with itself, so that a quantised, quiet or clamped channel is not flagged wholesale, and a
+fast step (valve opening, liquid depletion) or an oscillation is no spike. What is doubtful is left alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.record import flag_kernels
+from hfanalysis.record.log import Flag, Flags
+
+Floats = NDArray[np.float64]
+
+SENTINELS = (999.0, 9999.0, 999.9, 99999.0, -999.0, -9999.0, -99999.0, 32767.0, -32768.0, 65535.0)
+"""Readings that loggers write where there is none."""
+DETACHED = 0.2
+"""Share of a channel's range by which an exact level must stand apart from its neighbours to be no reading."""
+IMPOSSIBLE = {"temperature": (1.0, 6000.0), "pressure": (-5e5, 1e9)}
+"""[SI] outside of which no sensor reads, however badly zeroed."""
+
+
+def flag_readings(readings: Floats, dimension: str, missing: Sequence[float] = ()) -> Flags:
+    """The flags of a channel's readings as logged (before unit, zero and tare)."""
+    flags = np.zeros(len(readings), dtype=np.uint8)
+    if len(readings) and not np.isfinite(readings.min() + readings.max()):
+        flags[~np.isfinite(readings)] = Flag.DROPOUT
+    for value in missing:
+        flags[readings == value] = Flag.DROPOUT
+    if dimension == "dimensionless":
+        return flags
+    _flag_unread(readings, flags)
+    _flag_live(readings, flags)
+    return flags
+
+
+def flag_impossible(values: Floats, dimension: str, flags: Flags) -> None:
+    """Flags samples [SI] that no sensor of this dimension can read."""
+    if dimension in IMPOSSIBLE and len(values):
+        low, high = IMPOSSIBLE[dimension]
+        if not low <= np.nanmin(values) <= np.nanmax(values) <= high:
+            flags[(values < low) | (values > high)] |= np.uint8(Flag.DROPOUT)
+
+
+def _flag_unread(readings: Floats, flags: Flags) -> None:
+    """Flags exact levels that stand for no reading: sentinels, zeros and extremes apart from all else.
+
+    Once one is found the next extreme is looked at, which may be another.
+    """
+    for _ in range(3):
+        live = readings[flags == 0] if flags.any() else readings
+        if not len(live):
+            return
+        low, high = float(live.min()), float(live.max())
+        if low == high and low in SENTINELS:
+            flags[readings == low] = Flag.DROPOUT
+        doubtful = {low, high, 0.0} if low < 0.0 < high else {low, high}
+        levels = [level for level in sorted(doubtful) if _may_be_none(level, live)]
+        if low == high or not levels:
+            return
+        gap = _gap(readings, flags)
+        if not sum(_flag_detached(readings, level, gap, flags) for level in levels):
+            return
+
+
+def _may_be_none(level: float, live: Floats) -> bool:
+    count = int(np.count_nonzero(live == level))
+    return count >= 3 or (count > 0 and (level == 0.0 or level in SENTINELS))
+
+
+def _flag_detached(readings: Floats, level: float, gap: float, flags: Flags) -> int:
+    """Flags runs of ``level``; a mere extreme must stand apart from every other reading, not only from those next."""
+    sentinel = level in SENTINELS
+    if not sentinel and level != 0.0 and flag_kernels.nearest(readings, level, flags) <= gap:
+        return 0
+    return int(flag_kernels.detached(readings, level, gap, sentinel, flags))
+
+
+def _gap(readings: Floats, flags: Flags) -> float:
+    """The jump that sets a level apart: a good part of the channel's usual range, and many of its usual steps."""
+    every = max(1, len(readings) // 20_000)
+    sample = readings[::every][flags[::every] == 0]
+    some = readings[:20_000]
+    steps = np.abs(np.diff(some[np.isfinite(some)]))
+    steps = steps[steps > 0]
+    low, high = np.percentile(sample, (5, 95)) if len(sample) else (0.0, 0.0)
+    return float(max(DETACHED * (high - low), 10.0 * np.median(steps) if len(steps) else 0.0, 1e-300))
+
+
+def _flag_live(readings: Floats, flags: Flags) -> None:
+    """Stuck, saturated and spiking samples among those that are readings."""
+    whole = not flags.any()
+    live = slice(None) if whole else flags == 0
+    values = readings[live]
+    if len(values) < 20:
+        return
+    found = np.zeros(len(values), dtype=np.uint8)
+    flag_kernels.repeats(values, float(values.min()), float(values.max()), found)
+    flag_kernels.spikes(values, flag_kernels.local_noise(values), _quantum(values), found)
+    flags[live] |= found
+
+
+def _quantum(values: Floats) -> float:
+    """The usual size of a change of reading, which for a quantised channel is its resolution."""
+    steps = np.abs(np.diff(values[:20_000]))
+    steps = steps[steps > 0]
+    return float(np.percentile(steps, 10)) if len(steps) else 0.0

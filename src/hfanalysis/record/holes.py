@@ -1,0 +1,62 @@
+"""Holes of a log: stretches in which a channel that goes on afterwards has no good sample."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.record.log import Channel, Flag
+
+Floats = NDArray[np.float64]
+
+LEAST = 0.1
+"""[s] that a hole lasts at least."""
+
+STEPS = 10.0
+"""Usual steps between samples that it lasts at least."""
+
+TOLD = 3
+"""Holes that a warning places; of more it gives the number."""
+
+
+def holes(time: Floats) -> Floats:
+    """From when to when [s] the instants ``time``, which increase, leave a hole: (holes, 2).
+
+    >>> holes(np.array([0.0, 0.1, 0.2, 3.0, 3.1])).tolist()
+    [[0.2, 3.0]]
+    """
+    steps = np.diff(time)
+    if not steps.size:
+        return np.empty((0, 2))
+    places = np.flatnonzero(steps > max(LEAST, STEPS * float(np.median(steps))))
+    return np.column_stack([time[places], time[places + 1]])
+
+
+def unasked(channel: Channel) -> Floats:
+    """The holes of a channel that are not stretches which the engineer excluded."""
+    found = holes(channel.time[channel.good])
+    left_out = channel.time[(channel.flags & Flag.EXCLUDED) != 0]
+    asked = [bool(((left_out > start) & (left_out < end)).any()) for start, end in found]
+    return found[~np.array(asked, dtype=bool)] if asked else found
+
+
+def told(found: Iterable[tuple[str, str, Floats]], channels: dict[str, int]) -> Iterator[str]:
+    """One line for every set of holes.
+
+    Args:
+        found: file, channel, and the channel's holes.
+        channels: how many channels each file has.
+    """
+    together: dict[tuple[str, tuple[tuple[float, float], ...]], list[str]] = defaultdict(list)
+    for file, name, places in found:
+        if places.size:
+            together[file, tuple((round(a, 2), round(b, 2)) for a, b in places.tolist())].append(name)
+    for (file, places_), names in together.items():
+        whose = file if len(names) == channels[file] > 1 else ", ".join(names)
+        longest = sorted(sorted(places_, key=lambda hole: hole[0] - hole[1])[:TOLD])
+        spans = ", ".join(f"{a:.2f} to {b:.2f} s" for a, b in longest)
+        more = f" and in {len(places_) - TOLD} shorter stretches" if len(places_) > TOLD else ""
+        yield f"{whose}: no good samples from {spans} of log time{more}; what happens there is not known"

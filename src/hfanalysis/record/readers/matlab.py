@@ -1,0 +1,90 @@
+"""MATLAB's .mat: arrays and (nested) structs of arrays, by names such as ``PT1``, ``CF1.mass`` or ``data.PTRAN_1``.
+
+An array of two columns the first of which rises, but for a few steps back, is taken as [time, value]. Text, cells,
+single numbers and MATLAB's own classes are left out; of other matrices the columns are ``NAME.1``, ``NAME.2``, ...
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.errors import InputError
+from hfanalysis.record.logspec import FileSpec
+from hfanalysis.record.readers.table import Series, Table
+
+WIDEST = 256
+"""Columns of a matrix beyond which it is no set of channels."""
+BACK = 0.02
+"""Share of steps back that a logger's clock may have."""
+
+
+def open_source(path: Path, spec: FileSpec) -> Table:
+    """The file's arrays; raises :class:`InputError` where it cannot be read."""
+    with path.open("rb") as file:
+        is_hdf5 = file.read(10) == b"MATLAB 7.3"
+    try:
+        found = list(_from_hdf5(path) if is_hdf5 else _from_mat5(path))
+    except Exception as error:  # damaged files fail in every way that there is
+        raise InputError(f"{path}: cannot be read as a MATLAB file: {error or type(error).__name__}") from None
+    return Table(path, found)
+
+
+def _from_mat5(path: Path) -> Iterator[Series]:
+    from scipy.io import loadmat
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about variables of MATLAB's own classes, which are left out
+        content: Mapping[str, Any] = loadmat(path)
+    for name, value in content.items():
+        if not name.startswith("__"):
+            yield from _series(name, value)
+
+
+def _from_hdf5(path: Path) -> Iterator[Series]:
+    """MATLAB 7.3 is HDF5 with groups for structs, and arrays transposed."""
+    import h5py
+
+    def walk(name: str, item: Any) -> Iterator[Series]:
+        if isinstance(item, h5py.Group):
+            for key in item:
+                yield from walk(f"{name}.{key}", item[key])
+        elif item.attrs.get("MATLAB_class", b"double") != b"char" and not item.attrs.get("MATLAB_empty", 0):
+            yield from _series(name, np.asarray(item).T)
+
+    with h5py.File(path, "r") as file:
+        for key in file:
+            if not key.startswith("#"):
+                yield from walk(key, file[key])
+
+
+def _series(name: str, value: Any) -> Iterator[Series]:
+    """The series of a variable or a field."""
+    if type(value) is not np.ndarray:  # MATLAB's own classes come as arrays of a kind
+        return
+    if value.dtype.names and value.size == 1:
+        for field in value.dtype.names:
+            yield from _series(f"{name}.{field}", value[field].item())
+    elif value.dtype.kind in "fiub" and value.ndim == 2 and value.size > 1:
+        yield from _columns(name, np.asarray(value, dtype=np.float64))
+
+
+def _columns(name: str, array: NDArray[np.float64]) -> Iterator[Series]:
+    if 1 in array.shape:
+        yield Series(name, array.ravel())
+    elif array.shape[1] == 2 and _is_time(array[:, 0]):
+        yield Series(name, array[:, 1], time=array[:, 0])
+    elif array.shape[1] <= WIDEST:
+        for i, column in enumerate(array.T, start=1):
+            yield Series(f"{name}.{i}", column)
+
+
+def _is_time(numbers: NDArray[np.float64]) -> bool:
+    steps = np.diff(numbers)
+    rises = len(steps) > 1 and numbers[-1] > numbers[0]
+    return bool(rises and np.count_nonzero(steps < 0.0) <= BACK * len(steps))

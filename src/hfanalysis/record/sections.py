@@ -1,0 +1,223 @@
+"""The sections that test.toml and engine files share; values in SI."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import PlainValidator
+
+from hfanalysis.record.schema import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Altitude,
+    Area,
+    Count,
+    Duration,
+    Length,
+    Mass,
+    NotNegative,
+    Positive,
+    PressureDifference,
+    Refused,
+    Remainder,
+    Room,
+    Section,
+    Text,
+    UpToTwo,
+    Volume,
+    between,
+    quantity,
+    section,
+)
+from hfanalysis.units import Value
+
+LIQUID_DENSITY_LIMIT = 1250.0
+"""[kg/m^3] above any liquid nitrous oxide that can be loaded (1230 at its normal boiling point)."""
+
+_DENSITY = between(100.0, 20e3, "between 100 and 20000 kg/m^3")
+_AMBIENT = between(20e3, 120e3, "an absolute ambient pressure, between 0.2 and 1.2 bar")
+_LOADABLE = between(182.0, 350.0, "a temperature at which nitrous oxide can be in a tank, 182 to 350 K")
+
+
+@section
+class Model(Section):
+    """[model]: what the physics assumes."""
+
+    conventions: Literal["corrected", "report"] = "corrected"
+    properties: Literal["coolprop", "report"] = "coolprop"
+
+
+@section
+class DipTube(Section):
+    """[tank] dip_tube: diameters [m]."""
+
+    outer_diameter: Length
+    inner_diameter: Length
+
+    def check(self) -> None:
+        if self.inner_diameter.value >= self.outer_diameter.value:
+            raise Refused("the inner diameter is not smaller than the outer diameter")
+
+
+def _exponent(found: Any) -> float | str:
+    if found == "c_p/c_v":
+        return "c_p/c_v"
+    if isinstance(found, bool) or not isinstance(found, (int, float)) or not 0.0 < found < math.inf:
+        raise ValueError("'c_p/c_v', or a number that is more than zero")
+    return float(found)
+
+
+@section
+class Tank(Section):
+    """[tank]: tank and feed line; volume [m^3], oxidizer mass loaded before the valve opens [kg], temperature [K]."""
+
+    volume: Volume | None = None
+    oxidizer_mass: Mass | None = None
+    temperature: Annotated[Value, quantity("temperature", _LOADABLE)] | None = None
+    inner_diameter: Length | None = None
+    length: Length | None = None
+    ullage: NotNegative | None = None
+    dip_tube: DipTube | None = None
+    polytropic_exponent: Annotated[float | str, PlainValidator(_exponent)] | None = None
+
+    def check(self) -> None:
+        if self.volume is None or self.oxidizer_mass is None:
+            return
+        most = self.volume.value * LIQUID_DENSITY_LIMIT
+        if self.oxidizer_mass.value > most:
+            raise Refused(
+                f"found {self.oxidizer_mass.value:.4g} kg in a tank of {self.volume.value * 1e3:.4g} L; "
+                f"expected no more than {most:.4g} kg, a tank full of liquid",
+                "oxidizer_mass",
+            )
+
+
+@section
+class Feed(Section):
+    """[feed] of an engine file: constant loss [Pa] or loss coefficient [1/m^4]."""
+
+    p_loss: PressureDifference | None = None
+    K_loss: Annotated[Value, quantity("loss_coefficient", NOT_NEGATIVE)] | None = None
+
+    def check(self) -> None:
+        self._not_both("p_loss", "K_loss")
+
+
+@section
+class Injector(Section):
+    """[injector]: number of holes, area [m^2] or diameter [m] of one."""
+
+    holes: Count | None = None
+    hole_area: Area | None = None
+    hole_diameter: Length | None = None
+    C_i: UpToTwo | None = None
+
+    def check(self) -> None:
+        self._not_both("hole_area", "hole_diameter")
+
+    @property
+    def area(self) -> Value | None:
+        """Area of all holes together [m^2]; None where it is not known."""
+        one = _circle(self.hole_diameter) if self.hole_diameter else self.hole_area
+        if self.holes is None or one is None:
+            return None
+        return Value(self.holes * one.value, None if one.std is None else self.holes * one.std)
+
+
+@section
+class Purge(Section):
+    """[purge]: pressure difference [Pa] at which the check valve between purge line and tank opens."""
+
+    cracking_pressure: PressureDifference | None = None
+
+
+@section
+class Grain(Section):
+    """[grain]: mass [kg], length [m], density [kg/m^3], outer radius [m]; regression a [SI], n."""
+
+    mass: Mass | None = None
+    length: Length | None = None
+    density: Annotated[Value, quantity("density", _DENSITY)] | None = None
+    outer_radius: Length | None = None
+    a: Positive | None = None
+    n: UpToTwo | None = None
+
+    def check(self) -> None:
+        if not (self.mass and self.length and self.density and self.outer_radius):
+            return
+        room = math.pi * self.outer_radius.value**2 * self.length.value
+        needed = self.mass.value / self.density.value
+        if needed >= room:
+            raise Refused(
+                f"found {self.outer_radius.value * 1e3:.4g} mm; expected room for the grain: "
+                f"{self.mass.value:.4g} kg needs {needed * 1e3:.4g} L, a full cylinder of that radius and length holds "
+                f"{room * 1e3:.4g} L",
+                "outer_radius",
+            )
+
+
+@section
+class Chamber(Section):
+    """[chamber]: volumes before and after the grain [m^3]."""
+
+    pre_volume: Room | None = None
+    post_volume: Room | None = None
+
+
+@section
+class Nozzle(Section):
+    """[nozzle]: radii [m]."""
+
+    throat_radius: Length | None = None
+    exit_radius: Length | None = None
+
+    def check(self) -> None:
+        if self.throat_radius and self.exit_radius and self.exit_radius.value < self.throat_radius.value:
+            raise Refused(
+                f"found {self.exit_radius.value * 1e3:.4g} mm; expected no less than the throat radius, "
+                f"{self.throat_radius.value * 1e3:.4g} mm",
+                "exit_radius",
+            )
+
+
+@section
+class Site(Section):
+    """[site]: altitude [m] or ambient pressure [Pa, absolute]."""
+
+    altitude: Altitude | None = None
+    ambient_pressure: Annotated[Value, quantity("pressure", _AMBIENT)] | None = None
+
+
+@section
+class Observed(Section):
+    """[observed]: seen or measured outside the log; time [s], radius [m], masses [kg]."""
+
+    burn_time: Duration | None = None
+    throat_radius_after: Length | None = None
+    fuel_mass_after: Remainder | None = None
+    oxidizer_mass_after: Remainder | None = None
+
+
+@section
+class Engine(Section):
+    """[engine] of an engine file."""
+
+    id: Text
+    description: Text = ""
+    stand: Text | None = None
+
+
+@section
+class Design(Section):
+    """[design] of an engine file: flow [kg/s], chamber pressure [Pa], target apogee [m]."""
+
+    oxidizer_flow: Annotated[Value, quantity("mass_flow", POSITIVE)] | None = None
+    chamber_pressure: Annotated[Value, quantity("pressure", POSITIVE)] | None = None
+    target_apogee: Length | None = None
+
+
+def _circle(diameter: Value) -> Value:
+    """Area [m^2] of a hole of this diameter [m]."""
+    std = None if diameter.std is None else math.pi / 2.0 * diameter.value * diameter.std
+    return Value(math.pi / 4.0 * diameter.value**2, std)

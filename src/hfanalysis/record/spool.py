@@ -1,0 +1,164 @@
+"""The columns of the log files on their way through: read in chunks, then taken one at a time.
+
+They stay in memory up to a bound and move to temporary files beyond it. These have no name on disk, so a killed run
+leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.record.readers import Source, Text
+
+Floats = NDArray[np.float64]
+IN_MEMORY = 1 << 30
+"""Bytes of one log file's columns that may stay in memory."""
+WORKERS = 2
+"""Threads that put columns away: most of it is waiting for the system to hand out memory."""
+BLOCK = 1 << 23
+"""Samples of a column kept together: so many that the system hands out memory in large pages, as it is touched."""
+
+
+@dataclass
+class Growing:
+    """A column in memory: a short log's as it came, else in blocks so large that most columns are in one piece."""
+
+    blocks: list[Floats] = field(default_factory=list)
+    size: int = 0
+
+    def append(self, part: Floats) -> None:
+        """Add numbers at the end."""
+        if not self.blocks:
+            self.blocks, self.size = [part], len(part)
+            return
+        if len(self.blocks[0]) != BLOCK:
+            first, self.blocks, self.size = self.blocks[0], [], 0
+            self._fill(first)
+        self._fill(part)
+
+    def _fill(self, part: Floats) -> None:
+        while len(part):
+            start = self.size % BLOCK
+            if not start:
+                self.blocks.append(np.empty(BLOCK))
+            count = min(BLOCK - start, len(part))
+            self.blocks[-1][start : start + count] = part[:count]
+            part, self.size = part[count:], self.size + count
+
+    def parts(self) -> list[Floats]:
+        """The numbers, in order."""
+        return [*self.blocks[:-1], self.blocks[-1][: self.size - BLOCK * (len(self.blocks) - 1)]]
+
+
+@dataclass
+class Spool:
+    """Columns of one log file as numbers."""
+
+    source: Source
+    folder: Path
+    text: dict[int, Text] = field(default_factory=dict)
+    written: set[int] = field(default_factory=set)
+    """Columns of stamps that are dates or times of day, here in seconds."""
+    idle: NDArray[np.bool_] | None = None
+    """Rows in which every column reads exactly zero; None where that says nothing."""
+    _columns: dict[int, Growing] = field(default_factory=dict)
+    _files: dict[int, IO[bytes]] = field(default_factory=dict)
+
+    def fill(self, columns: Sequence[int], stamps: Sequence[int], progress: Callable[[float], None]) -> None:
+        """Read the columns of the file once."""
+        np.empty(31 << 17)  # 31 MB given back: from then on glibc keeps freed memory of this size at hand
+        size, idle = 0, []
+        with ThreadPoolExecutor(WORKERS) as pool:
+            for chunk in self.source.chunks(columns, stamps, progress):
+                idle.append(_all_zero([chunk.columns[c] for c in columns]))
+                for column in chunk.columns:
+                    self._columns.setdefault(column, Growing())
+                halves = [list(chunk.columns.items())[i::WORKERS] for i in range(WORKERS)]
+                size += sum(pool.map(self._append, halves))
+                if size > IN_MEMORY:
+                    self._to_disk()
+                    size = 0
+                self._note(chunk.text)
+                self.written |= chunk.written
+        self.idle = _telling(np.concatenate(idle)) if idle and len(columns) > 1 else None
+
+    def _append(self, numbers: Sequence[tuple[int, Floats]]) -> int:
+        """Keep the numbers of some columns; returns their bytes."""
+        for column, part in numbers:
+            self._columns[column].append(part)
+        return sum(part.nbytes for _, part in numbers)
+
+    def _note(self, met: dict[int, Text]) -> None:
+        for column, text in met.items():
+            before = self.text.get(column)
+            self.text[column] = replace(before, count=before.count + text.count) if before else text
+
+    def _to_disk(self) -> None:
+        for column, grown in self._columns.items():
+            if column not in self._files:
+                self._files[column] = tempfile.TemporaryFile(dir=self.folder)  # noqa: SIM115
+            for part in grown.parts():
+                self._files[column].write(np.ascontiguousarray(part).data)
+        self._columns.clear()
+
+    def rows(self, column: int) -> int:
+        """How many numbers a column has."""
+        on_disk = self._files[column].seek(0, 2) // 8 if column in self._files else 0
+        return on_disk + (self._columns[column].size if column in self._columns else 0)
+
+    def look(self, column: int) -> Floats:
+        """The numbers of a column, not to be changed."""
+        if column in self._files:
+            return self._gathered(column)
+        parts = self._columns[column].parts() if column in self._columns else []
+        return parts[0] if len(parts) == 1 else np.concatenate([np.empty(0), *parts])
+
+    def _gathered(self, column: int) -> Floats:
+        """A column part of which is on disk."""
+        numbers = np.empty(self.rows(column))
+        self._files[column].seek(0)
+        start = self._files[column].readinto(numbers.view(np.uint8)) // 8  # type: ignore[attr-defined]
+        for part in self._columns[column].parts() if column in self._columns else ():
+            numbers[start : start + len(part)] = part
+            start += len(part)
+        return numbers
+
+    def take(self, column: int) -> Floats:
+        """The numbers of a column, which are the caller's from now on."""
+        numbers = np.require(self.look(column), requirements="W")
+        self._drop(column)
+        return numbers
+
+    def _drop(self, column: int) -> None:
+        self._columns.pop(column, None)
+        if column in self._files:
+            self._files.pop(column).close()
+
+    def close(self) -> None:
+        """Give back everything."""
+        for column in [*self._columns, *self._files]:
+            self._drop(column)
+
+
+def _all_zero(columns: Sequence[Floats]) -> NDArray[np.bool_]:
+    if len({len(column) for column in columns}) != 1:
+        return np.zeros(0, dtype=bool)
+    idle: NDArray[np.bool_] = columns[0] == 0.0
+    for column in columns[1:]:
+        if not idle.any():
+            break
+        idle &= column == 0.0
+    return idle
+
+
+def _telling(idle: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
+    """Rows of zeros are a dropped-out logger only where they are rare."""
+    return idle if 0 < np.count_nonzero(idle) < 0.05 * len(idle) else None

@@ -1,0 +1,99 @@
+"""Zero and tare: what is subtracted from a channel, from the quiet time around the firing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.record.logspec import ChannelSpec
+from hfanalysis.record.quiet import Firing, Level, Trace, after, before, level
+from hfanalysis.units import Value, si_unit
+
+Floats = NDArray[np.float64]
+
+FAR = 50e3
+"""[Pa] from ambient at which a quiet reading is no longer the open air, whatever the sensor's accuracy."""
+
+
+@dataclass(frozen=True)
+class Zero:
+    """What is subtracted from a channel: ``value`` [SI] at the zero, drifting linearly between two times.
+
+    ``std``: standard deviation of the bias left; None where no zero was taken.
+    """
+
+    value: float = 0.0
+    std: float | None = None
+    drift: float = 0.0
+    times: tuple[float, ...] = ()
+    history: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def at(self, time: Floats) -> Floats | float:
+        """What is subtracted at these times [s]."""
+        if len(self.times) < 2:
+            return self.value
+        curve: Floats = np.interp(time, self.times, (self.value, self.value + self.drift))
+        return curve
+
+
+def ambient_zero(spec: ChannelSpec, trace: Trace, firing: Firing | None, ambient: Value, accuracy: float) -> Zero:
+    """The zero of a pressure that is open to the air before ignition."""
+    found, reason = _quiet_level(trace, firing)
+    if found is None:
+        return _none(f"channel {spec.name}: zero not taken: {reason}")
+    error = found.value - ambient.value
+    if abs(error) > max(5.0 * accuracy, FAR):
+        return _none(
+            f"channel {spec.name}: zero not taken: it reads {found.value / 1e5:.3f} bar in the quiet time, "
+            f"not ambient {ambient.value / 1e5:.3f} bar"
+        )
+    std = float(np.hypot(found.std, ambient.std or 0.0))
+    return Zero(error, std, history=(f"zero: {error:.6g} Pa taken off, so that {found.time:.3f} s reads ambient",))
+
+
+def tare(spec: ChannelSpec, trace: Trace, firing: Firing | None, accuracy: float) -> Zero:
+    """The zero of a load cell: from before the firing, and after it where the cell is at rest again."""
+    first, reason = _quiet_level(trace, firing)
+    if first is None or firing is None:
+        return _none(f"channel {spec.name}: tare not taken: {reason}")
+    only = Zero(first.value, first.std, history=(f"tare: {first.value:.6g} taken off, the level before the firing",))
+    if spec.tare == "before":
+        return only
+    window = after(trace, firing)
+    last = level(window) if window is not None else None
+    if last is None:
+        return _only_before(only, spec)
+    return _with_drift(spec, first, last, trace, firing.start, accuracy)
+
+
+def _quiet_level(trace: Trace, firing: Firing | None) -> tuple[Level | None, str]:
+    if firing is None:
+        return None, "no firing found, hence no quiet time before it"
+    found = level(before(trace, firing)) if len(trace.time) else None
+    return found, f"the quiet time before the firing at {firing.start:.2f} s is too short"
+
+
+def _only_before(only: Zero, spec: ChannelSpec) -> Zero:
+    note = "no settled level after the firing: drift not removed"
+    warned = (f"channel {spec.name}: {note}",) if spec.tare == "before_after" else ()
+    return Zero(only.value, only.std, history=(*only.history, f"tare: {note}"), warnings=warned)
+
+
+def _with_drift(spec: ChannelSpec, first: Level, last: Level, trace: Trace, start: float, accuracy: float) -> Zero:
+    """The drift is linear from the firing's ``start`` [s], before which nothing warms the cell, to the last level."""
+    drift = last.value - first.value
+    std = float(np.sqrt((first.std**2 + last.std**2) / 2.0))
+    history = (f"tare: {first.value:.6g} taken off at {first.time:.3f} s, {last.value:.6g} at {last.time:.3f} s",)
+    lot = max(5.0 * accuracy, 0.02 * float(np.max(np.abs(trace.values - first.value))))
+    unit = si_unit(spec.dimension)
+    note = f"channel {spec.name}: does not return to zero after the firing: {drift:.4g} {unit}"
+    return Zero(
+        first.value, std, drift, (max(first.time, start), last.time), history, (note,) if abs(drift) > lot else ()
+    )
+
+
+def _none(warning: str) -> Zero:
+    return Zero(history=(warning.split(": ", 1)[1],), warnings=(warning,))

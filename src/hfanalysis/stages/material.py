@@ -1,0 +1,24 @@
+"""From a test's product folder to the material of its page."""
+
+from __future__ import annotations
+
+from hfanalysis.record.log import read_log
+from hfanalysis.report.material import Material, read_store
+from hfanalysis.stages.base import BASE, Context, load_stage
+
+_LOG = "ingest.h5"
+
+
+def load(context: Context) -> Material:
+    """Every product of the stages that ran, and why the others have none."""
+    products, stores, absent = {}, {}, {}
+    page = load_stage("report")
+    for stage in map(load_stage, page.upstream):
+        for path in map(context.product, stage.products):
+            if stage.name in context.absent:
+                absent[path.stem] = context.absent[stage.name]
+            elif path.suffix == ".json" and not path.name.startswith(BASE):
+                products[path.stem] = context.read_json(path.name)
+            elif path.suffix == ".h5" and path.name != _LOG:
+                stores[path.stem] = read_store(path)
+    return Material(context.definition, read_log(context.product(_LOG)), products, stores, absent)

@@ -1,0 +1,146 @@
+"""What looks wrong with the sensors of the engine: verdicts that need no calibration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import Any
+
+import numpy as np
+
+from hfanalysis.engine.nozzle import choked_flow_factor, expand
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import Signal
+from hfanalysis.segment.phases import Segments
+from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.thrust import thrust_of
+
+ZERO = "does not return to zero"
+"""Of this ingest has warned already."""
+
+ZERO_SHARE = 0.02
+"""Part of the largest thrust from which on a cell that does not come back to zero is called so."""
+
+GAMMAS = (1.14, 1.35)
+"""Heat capacity ratio of burnt nitrous oxide and paraffin, from fuel-rich and hot to lean and cool."""
+
+TOLERANCE = 0.08
+"""Relative error of the thrust coefficient that nozzle losses, burning and alignment may make on either side."""
+
+BALANCE = (1350.0, 1680.0)
+"""Characteristic velocity [m/s] of nitrous oxide and paraffin at O/F 3 to 9, burnt to 90 to 100 %."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A sensor that cannot be right: which ``channels``, a short ``verdict``, the sentence ``text``, and its size."""
+
+    channels: tuple[str, ...]
+    verdict: str
+    text: str
+    size: Quantity
+
+    def to_json(self) -> dict[str, Any]:
+        """As validation.json has it."""
+        return {"channels": list(self.channels), "verdict": self.verdict, "text": self.text, "size": self.size}
+
+
+def findings(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire | str) -> list[Finding]:
+    """Everything that looks wrong."""
+    if isinstance(fire, str) or "thrust" not in log:
+        return []
+    found = [_zero(log, segments, definition, fire), _coefficient(log, segments, definition, fire)]
+    return [f for f in found if f is not None]
+
+
+def _zero(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> Finding | None:
+    """The thrust cell that does not come back to its zero after the burn."""
+    channel, thrust = log["thrust"], thrust_of(log, segments, definition)
+    burning = thrust.signal.between(0.0, fire.end)
+    if not burning.time.size:
+        return None
+    error, peak = thrust.error, float(np.percentile(burning.value, 99.0))
+    std = channel.zero_std if channel.zero_std is not None else channel.accuracy
+    if abs(error) < max(ZERO_SHARE * peak, 5.0 * std):
+        return None
+    where = f"with the chamber back at ambient ({thrust.since:.1f} s)" if thrust.since > 0.0 else "after the burn"
+    text = (
+        f"the thrust cell does not return to zero: it reads {error:+.0f} N {where}, "
+        f"{100.0 * abs(error) / peak:.0f} % of the peak; where it is left in, up to {abs(error) * fire.end:.0f} N s of "
+        "impulse are its drift"
+    )
+    return Finding(("thrust",), ZERO, text, Quantity(error, "N", std))
+
+
+def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> Finding | None:
+    """Thrust and p_c A_t that no nozzle brings together."""
+    if "p_chamber" not in log:
+        return None
+    ambient = definition.ambient_pressure.value
+    means = _steady(log, segments, definition, fire)
+    throat = _throat(log, segments, definition, fire)
+    if means is None or throat is None:
+        return None
+    (thrust, pressure), (area, relative, source) = means, throat
+    if pressure < 2.0 * ambient:
+        return None
+    low, high = _possible(definition, pressure, ambient, area)
+    value, error = thrust / (pressure * area), 2.0 * relative
+    if low * (1.0 - TOLERANCE - error) <= value <= high * (1.0 + TOLERANCE + error):
+        return None
+    text = (
+        f"thrust and p_c A_t disagree: F/(p_c A_t) is {value:.2f} while liquid flows, a nozzle gives {low:.2f} to "
+        f"{high:.2f} at {pressure / 1e5:.1f} bar (throat of {area * 1e6:.0f} mm^2: {source}); thrust cell, chamber "
+        "gauge or throat is off"
+    )
+    return Finding(("thrust", "p_chamber"), "thrust and p_c A_t disagree", text, Quantity(value, "", value * relative))
+
+
+def _steady(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> tuple[float, float] | None:
+    """Mean thrust [N] and chamber pressure [Pa] of the steady part: line full, liquid and fuel still there."""
+    origin = segments.t_open.value or 0.0
+    ends = [t for name in ("t_v", "t_fuel_out", "t_end") if (t := segments.time(name)) is not None]
+    start, end = max(segments.time("t_feed") or 0.0, 0.5), min([*ends, fire.end])
+    chamber = Signal.of(log["p_chamber"]).shifted(origin)
+    means = [s.mean(start, end) for s in (thrust_of(log, segments, definition).signal, chamber)]
+    return (means[0], means[1]) if np.isfinite(means).all() and end > start + 0.5 else None
+
+
+def _throat(
+    log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire
+) -> tuple[float, float, str] | None:
+    """Throat area [m^2], its relative standard deviation, and where it is from."""
+    nozzle = definition.nozzle
+    if nozzle is not None and nozzle.throat_radius is not None:
+        radius = nozzle.throat_radius
+        return pi * radius.value**2, 2.0 * (radius.std or 0.0) / radius.value, "stated"
+    tank, grain = definition.tank, definition.grain
+    if tank is None or tank.oxidizer_mass is None or grain is None or grain.mass is None:
+        return None
+    chamber = Signal.of(log["p_chamber"]).shifted(segments.t_open.value or 0.0).between(0.0, fire.end)
+    total = float(np.trapezoid(chamber.value, chamber.time)) if chamber.time.size > 8 else 0.0
+    if total <= 0.0:
+        return None
+    areas = [(tank.oxidizer_mass.value + grain.mass.value) * c / total for c in BALANCE]
+    middle = sqrt(areas[0] * areas[1])
+    return middle, 0.25 * (areas[1] - areas[0]) / middle, "not stated; from propellant, c* and p_c"
+
+
+def _possible(definition: TestDefinition, pressure: float, ambient: float, throat: float) -> tuple[float, float]:
+    """Thrust coefficients that a nozzle can have: of the stated exit, else from convergent to fully expanded."""
+    nozzle = definition.nozzle
+    if nozzle is not None and nozzle.exit_radius is not None:
+        exits = [pi * nozzle.exit_radius.value**2]
+        found = [expand(g, 1e6, pressure, ambient, throat, e)[1] / (pressure * throat) for g in GAMMAS for e in exits]
+        return min(found), max(found)
+    low = min(expand(g, 1e6, pressure, ambient, throat, throat)[1] / (pressure * throat) for g in GAMMAS)
+    return low, max(_fully_expanded(g, pressure, ambient) for g in GAMMAS)
+
+
+def _fully_expanded(gamma: float, pressure: float, ambient: float) -> float:
+    """Thrust coefficient with the exit at ambient pressure."""
+    power = (gamma - 1.0) / gamma
+    velocity = sqrt(2.0 / power * (1.0 - (ambient / pressure) ** power))
+    return float(choked_flow_factor(gamma) * velocity)

@@ -1,0 +1,224 @@
+"""How a number reads: its name in words, the unit people use, and no more digits than it deserves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from hfanalysis.wording.scales import reading_unit, scale, superscript
+
+NAMES: dict[str, str] = {
+    "C_i": "injector coefficient",
+    "m": "polytropic exponent",
+    "Z": "vapour compressibility",
+    "K_loss": "feed loss coefficient",
+    "p_loss_liquid": "liquid-phase feed loss",
+    "p_loss_vapor": "vapour-phase feed loss",
+    "t_open": "valve opens (log time)",
+    "t_feed": "feed line full",
+    "t_v": "liquid gone",
+    "t_purge": "nitrogen enters",
+    "t_fuel_out": "solid fuel gone",
+    "t_end": "chamber unchokes",
+    "a": "regression coefficient",
+    "n": "regression exponent",
+    "regression_rate_reference": "regression rate at the reference flux",
+    "oxidizer_flow_peak": "peak oxidizer flow",
+    "oxidizer_mass_liquid_phase": "oxidizer used as liquid",
+    "mass_at_t_feed": "oxidizer at t_feed",
+    "vapor_mass_at_t_v": "vapour left at t_v",
+    "burn_time": "burn time",
+    "total_impulse": "total impulse",
+    "specific_impulse": "specific impulse",
+    "peak_chamber_pressure": "peak chamber pressure",
+    "mean_chamber_pressure": "mean chamber pressure",
+    "peak_thrust": "peak thrust",
+    "average_thrust": "average thrust",
+    "oxidizer_mass": "oxidizer used",
+    "oxidizer_mass_fitted": "load that the model needs",
+    "tank_temperature": "oxidizer's temperature at the opening",
+    "fuel_mass": "fuel burned",
+    "total_impulse_of_file": "the file's whole integral",
+    "apogee": "apogee above ground",
+    "time_to_apogee": "time to apogee",
+    "rail_departure_velocity": "velocity leaving the rail",
+    "peak_velocity": "peak velocity",
+    "peak_mach": "peak Mach number",
+    "peak_acceleration": "peak acceleration",
+    "pad_thrust_to_weight": "thrust to weight on the pad",
+    "wet_mass": "wet mass",
+    "terminal_velocity_drogue": "terminal velocity, drogue",
+    "terminal_velocity_main": "terminal velocity, main",
+    "impact_velocity_ballistic": "impact velocity, ballistic",
+    "margin_at_rail_departure": "static margin at rail departure (calibers)",
+    "static_margin_on_pad": "static margin on the pad (calibers)",
+}
+"""The quantities of the products, in the order in which they are shown."""
+
+EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+MASTHEAD = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "a", "n", "regression_rate_reference")
+"""What a calibration is asked for first."""
+
+SOURCES: dict[str, str] = {
+    "replica": "REPLICA: generated, not measured",
+    "synthetic": "SYNTHETIC: generated, not measured",
+    "measured": "measured",
+}
+"""What is said of a test's source wherever its results show."""
+
+KINDS: dict[str, str] = {"hot_fire": "hot fire", "cold_flow": "cold flow"}
+
+_FINEST: dict[str, int] = {"s": 4}
+"""Decimals beyond which nobody reads."""
+_KILOWATTS = 500.0
+"""[W] from which on a power reads better in kW."""
+
+_NOTHING = 1e-200
+MINUS = "\N{MINUS SIGN}"
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A quantity as text: each part empty where it is not known."""
+
+    value: str
+    std: str
+    interval: str
+    unit: str
+    verdict: str
+    why: str
+
+    @property
+    def with_unit(self) -> str:
+        """Value and unit, for a line of text."""
+        return f"{self.value} {self.unit}".strip()
+
+
+def people_unit(unit: str) -> tuple[float, str]:
+    """(factor, unit): multiply an SI value to have it in the unit people at a test stand use."""
+    found = scale(unit)
+    return found.factor, found.unit
+
+
+def shown(quantity: Mapping[str, Any], system: str = "si", name: str = "", difference: bool = False) -> Shown:
+    """A quantity of a product (``{"value": …}``) as people read it in one of the systems of units.
+
+    Args:
+        quantity: as products state it.
+        system: of units: "si" or "team".
+        name: the quantity's, which may ask for a unit of its own.
+        difference: whether no zero point of a unit concerns it.
+    """
+    verdict = str(quantity.get("verdict") or "")
+    if quantity.get("value") is None:
+        return Shown("–", "", "", "", verdict or "absent", str(quantity.get("reason") or ""))
+    found = scale(reading_unit(name, str(quantity.get("unit") or "")), system)
+    factor, zero, unit = found.factor, 0.0 if difference else found.zero, found.unit
+    value, std = factor * quantity["value"] + zero, factor * (quantity.get("std") or 0.0)
+    exponent = 0 if unit == "s" else exponent_of(max(abs(value), std))
+    if exponent:
+        unit = f"×10{superscript(exponent)} {unit}".strip()
+        factor, zero, value, std = (x / 10.0**exponent for x in (factor, zero, value, std))
+    decimals = min(decimals_for(value, std), _FINEST.get(unit, 8))
+    interval = [fixed(factor * end + zero, decimals) for end in quantity.get("ci95") or ()]
+    return Shown(
+        fixed(value, decimals),
+        fixed(std, decimals) if quantity.get("std") else "",
+        " … ".join(interval),
+        unit,
+        verdict,
+        str(quantity.get("why") or ""),
+    )
+
+
+def exponent_of(size: float) -> int:
+    """The power of ten to take out of numbers that are awkward to read: 0 for most."""
+    if size < _NOTHING or 1e-3 <= size < 1e5:
+        return 0
+    return math.floor(math.log10(size))
+
+
+def decimals_for(value: float, std: float) -> int:
+    """Decimals that show two digits of the standard deviation, or four digits of a value that has none."""
+    scale = std if std > 0.0 else abs(value) * 1e-2
+    if not (scale > 0.0 and math.isfinite(scale)):
+        return 3
+    return min(8, max(0, 1 - math.floor(math.log10(scale))))
+
+
+def fixed(value: float, decimals: int) -> str:
+    """The number with a true minus sign.
+
+    >>> fixed(-1.25, 1)
+    '−1.2'
+    """
+    text = f"{value:.{decimals}f}"
+    return text.replace("-", MINUS) if float(text) else text.replace("-", "")
+
+
+def tidy(value: float, digits: int = 4) -> str:
+    """A number without uncertainty, to a few digits.
+
+    >>> tidy(-0.001234567)
+    '−0.001235'
+    """
+    return f"{value:.{digits}g}".replace("-", MINUS)
+
+
+def adopted_in_words(effects: Sequence[Mapping[str, Any]]) -> str:
+    """A sentence about the adopted effects that a product states; empty where it states none."""
+    if not effects:
+        return ""
+    named = [f"{e['name']} {_values_in_words(e['parameters'])}" for e in effects]
+    return f"With {listed(named)} adopted (engines/{effects[0]['file']})."
+
+
+def _values_in_words(parameters: Mapping[str, Mapping[str, Any]]) -> str:
+    """The strength of an effect, then what else is stated of it."""
+    texts = [(name, _plainly(quantity)) for name, quantity in parameters.items()]
+    others = ", ".join(f"{name} {text}" for name, text in texts[1:])
+    return texts[0][1] + (f" ({others})" if others else "")
+
+
+def _plainly(quantity: Mapping[str, Any]) -> str:
+    """A value with its deviation and unit, to few digits; differences of temperature stay differences."""
+    unit, value, std = str(quantity["unit"]), float(quantity["value"]), float(quantity.get("std") or 0.0)
+    factor, unit = (1.0, unit) if unit == "K" else people_unit("" if unit == "-" else unit)
+    if unit == "W" and abs(value) >= _KILOWATTS:
+        factor, unit = 1e-3, "kW"
+    if not std:
+        return f"{tidy(factor * value)} {unit}".strip()
+    decimals = decimals_for(factor * value, factor * std)
+    return f"{fixed(factor * value, decimals)} ± {fixed(factor * std, decimals)} {unit}".strip()
+
+
+def is_quantity(data: Any) -> bool:
+    """Whether a part of a product is a quantity."""
+    return isinstance(data, Mapping) and "value" in data and ("unit" in data or "reason" in data)
+
+
+def quantities(product: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """The quantities of a product, the known ones in their usual order, then the others as they come."""
+    found = {name: data for name, data in product.items() if is_quantity(data)}
+    order = [*(name for name in NAMES if name in found), *(name for name in found if name not in NAMES)]
+    return {name: found[name] for name in order}
+
+
+def in_words(name: str) -> str:
+    """The name of a quantity in words.
+
+    >>> in_words("t_v"), in_words("tank_rest_pressure")
+    ('liquid gone', 'tank rest pressure')
+    """
+    return NAMES.get(name, name.replace("_", " "))
+
+
+def listed(names: list[str]) -> str:
+    """Names in a sentence.
+
+    >>> listed(["a", "b", "c"])
+    'a, b and c'
+    """
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

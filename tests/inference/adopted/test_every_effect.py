@@ -1,0 +1,40 @@
+"""Every effect of the library, adopted at a typical strength, goes through all stages that have effects in them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from tests.effects.runs import typical
+from tests.inference.adopted.firing import make_root
+
+from hfanalysis.effects import library
+from hfanalysis.inference.adopted.effects import of_diagnosis, write_adopted
+from hfanalysis.stages.open_test import open_test
+from hfanalysis.stages.runner import run_to
+
+SETTINGS = {"calibrate.samples": 40}
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make_root(tmp_path_factory.mktemp("root"))
+
+
+@pytest.mark.parametrize("name", sorted(library()))
+def test_it_is_calibrated_and_validated_with(name: str, root: Path) -> None:
+    active = typical(name)
+    parameters = {
+        p.name: {"value": v, "unit": "" if p.unit == "-" else p.unit}
+        for p, v in zip(active.effect.parameters, active.values, strict=True)
+    }
+    path = root / "engines" / "T1.effects.toml"
+    path.parent.mkdir(exist_ok=True)
+    write_adopted(path, of_diagnosis([{"name": name, "parameters": parameters}], library()), [])
+    out = run_to("validate", open_test(root, "T1", settings=SETTINGS)).out
+    for product in ("calibration", "validation"):
+        found = json.loads((out / f"{product}.json").read_text(encoding="utf-8"))
+        assert [row["name"] for row in found["effects"]] == [name], product
+    calibrated = json.loads((out / "calibration.json").read_text(encoding="utf-8"))
+    assert 0.1 < calibrated["C_i"]["value"] < 1.0
