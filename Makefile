@@ -66,9 +66,10 @@ all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_test
 test: lint rocketpy ## ruff, mypy and the tests
 	OMP_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder $(FLAGS)
 
-lint: $(STAMP) ## ruff and mypy
+lint: $(STAMP) ## ruff, mypy, and that no room of the package imports one above it
 	$(BIN)/ruff check --no-cache
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache --no-logo
 
 format: $(STAMP) ## format the code with ruff
 	$(BIN)/ruff format

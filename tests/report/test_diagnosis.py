@@ -13,7 +13,7 @@ from diagnosed import DIAGNOSIS, NOTHING
 from sample import material, without
 from test_page import HOSTILE, Reader
 
-from hfanalysis.report.chart import Chart
+from hfanalysis.charts.chart import Chart
 from hfanalysis.report.diagnosis_tables import parameters, probabilities
 from hfanalysis.report.html import switchable
 from hfanalysis.report.page import page

@@ -13,9 +13,9 @@ import pytest
 from PIL import Image
 from sample import CALIBRATION, material, quantity
 
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import InputError
 from hfanalysis.report import pdf
-from hfanalysis.report.chart import Chart, Series
 from hfanalysis.report.compare import both_charts, compare
 from hfanalysis.report.payload import LEAST, MOST, detail
 from hfanalysis.report.plots import csv, write_plots

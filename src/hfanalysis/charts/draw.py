@@ -8,8 +8,8 @@ import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.charts import svg
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.charts.envelope import BINS, Envelope
-from hfanalysis.report.chart import Chart, Series
 from hfanalysis.wording.numbers import fixed, tidy
 from hfanalysis.wording.scales import SYSTEMS, Scale
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from markupsafe import Markup
 
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.report import html
-from hfanalysis.report.chart import Chart, Series
 from hfanalysis.report.figure import figure
 from hfanalysis.report.material import EVENTS, Material
 from hfanalysis.report.page import kind, render

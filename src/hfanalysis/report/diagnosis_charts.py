@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.colours import style_of
 from hfanalysis.charts.svg import value_range
 from hfanalysis.diagnose.answer.words import EQUATIONS
 from hfanalysis.record.channels import LONG_NAMES
-from hfanalysis.report.chart import Chart, Series, around, over_time
 from hfanalysis.report.material import Material, required
+from hfanalysis.report.time_charts import over_time
 from hfanalysis.wording.numbers import fixed, listed, tidy
 
 READ: dict[str, tuple[str, float]] = {

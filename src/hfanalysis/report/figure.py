@@ -8,9 +8,9 @@ import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.charts import draw
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.charts.envelope import Floats
 from hfanalysis.report import html
-from hfanalysis.report.chart import Chart, Series
 from hfanalysis.wording.numbers import fixed, tidy
 from hfanalysis.wording.scales import SYSTEMS
 

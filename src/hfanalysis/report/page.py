@@ -12,8 +12,8 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from hfanalysis.charts.chart import Chart
 from hfanalysis.charts.style import sheet
-from hfanalysis.report.chart import Chart
 from hfanalysis.report.figure import figure
 from hfanalysis.report.material import Material
 from hfanalysis.report.payload import as_json, payload

@@ -11,8 +11,8 @@ import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.charts import draw
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.charts.envelope import Envelope, Floats
-from hfanalysis.report.chart import Chart, Series
 from hfanalysis.wording.scales import SYSTEMS
 
 MOST, LEAST = 24_000, 1_500

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from hfanalysis.charts import draw
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.charts.colours import COLOURS
 from hfanalysis.charts.envelope import Floats
 from hfanalysis.products.disk import atomic
-from hfanalysis.report.chart import Chart, Series
 
 _BINS = 2000
 _INCHES = 10.0

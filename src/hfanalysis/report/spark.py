@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from hfanalysis.record.channels import LONG_NAMES
-from hfanalysis.report.chart import of_channel
 from hfanalysis.report.material import Material, window
+from hfanalysis.report.time_charts import of_channel
 
 WIDTH, HEIGHT = 240.0, 44.0
 _BINS = 80

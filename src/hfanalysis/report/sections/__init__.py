@@ -21,8 +21,8 @@ from dataclasses import dataclass, replace
 
 from markupsafe import Markup
 
+from hfanalysis.charts.chart import Chart
 from hfanalysis.errors import AbsentError
-from hfanalysis.report.chart import Chart
 from hfanalysis.report.material import Material
 
 Block = Chart | Markup | None

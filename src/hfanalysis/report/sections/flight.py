@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.colours import STYLES
 from hfanalysis.charts.svg import Event
 from hfanalysis.report import html
-from hfanalysis.report.chart import Chart, Series, around
 from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.wording.numbers import in_words, quantities

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.envelope import Floats
 from hfanalysis.errors import AbsentError
-from hfanalysis.report.chart import Chart, Series, around, over_time
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.sections.regression import flows_absent
+from hfanalysis.report.time_charts import over_time
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 
 MOLES_TO_KG = 1e-3 * OXIDIZER_MOLAR_MASS

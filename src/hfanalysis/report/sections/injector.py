@@ -9,11 +9,12 @@ import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.charts import svg
+from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.envelope import Floats
 from hfanalysis.report import html
-from hfanalysis.report.chart import Chart, Series, around, over_time
 from hfanalysis.report.material import Material, window
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.time_charts import over_time
 
 _FIRST = 0.1
 """The share of the history, from its start, that does not set the chart's range: the line is still filling."""

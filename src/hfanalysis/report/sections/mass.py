@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hfanalysis.errors import AbsentError
-from hfanalysis.report.chart import over_time
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.sections.thrust import about_zero, cell
+from hfanalysis.report.time_charts import over_time
 
 
 def render(material: Material) -> Iterator[Block]:

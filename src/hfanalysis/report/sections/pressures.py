@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hfanalysis.report.chart import Series, of_channel, over_time
+from hfanalysis.charts.chart import Series
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.time_charts import of_channel, over_time
 
 PRESSURES = {"p_tank": "tank", "p_run": "run line", "p_chamber": "chamber", "p_purge": "purge line", "p_fill": "fill"}
 _CAPTION = "Absolute. Line: mean of the samples; lighter: their extremes. Flagged samples are left out."

@@ -7,11 +7,12 @@ from typing import Any
 
 from markupsafe import Markup
 
+from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.errors import AbsentError
 from hfanalysis.report import html
-from hfanalysis.report.chart import Chart, Series, around, over_time
 from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.time_charts import over_time
 from hfanalysis.wording.numbers import is_quantity
 from hfanalysis.wording.scales import SLOW
 

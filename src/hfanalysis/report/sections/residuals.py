@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.colours import style_of
 from hfanalysis.errors import AbsentError
 from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report import html
-from hfanalysis.report.chart import Chart, Series, around, over_time
 from hfanalysis.report.material import Material, Table, required, window
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.time_charts import over_time
 from hfanalysis.wording.numbers import in_words
 
 MODES: dict[str, str] = {

@@ -5,14 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from hfanalysis.charts.chart import Chart
 from hfanalysis.charts.colours import style_of
 from hfanalysis.errors import AbsentError
 from hfanalysis.record.channels import CANONICAL, LONG_NAMES
 from hfanalysis.record.log import Channel
-from hfanalysis.report.chart import Chart, of_channel, over_time
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.sections.pressures import PRESSURES
+from hfanalysis.report.time_charts import of_channel, over_time
 from hfanalysis.wording.numbers import in_words
 
 _ELSEWHERE = {*PRESSURES, "thrust", "m_tank"}

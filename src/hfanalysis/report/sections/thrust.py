@@ -7,13 +7,14 @@ from collections.abc import Iterator
 import numpy as np
 from markupsafe import Markup
 
+from hfanalysis.charts.chart import Series
 from hfanalysis.charts.svg import value_range
 from hfanalysis.errors import AbsentError
 from hfanalysis.record.log import Channel
 from hfanalysis.report import html
-from hfanalysis.report.chart import Series, of_channel, over_time
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.report.time_charts import of_channel, over_time
 
 
 def render(material: Material) -> Iterator[Block]:
