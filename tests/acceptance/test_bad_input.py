@@ -6,8 +6,8 @@ import hashlib
 from pathlib import Path
 
 import pytest
+from tests.acceptance.bad_input import CASES, Bad, write_good
 
-from acceptance.bad_input import CASES, Bad, write_good
 from hfanalysis.errors import AnalysisError
 from hfanalysis.record.definition import find_definition, load_definition
 from hfanalysis.record.ingest import ingest

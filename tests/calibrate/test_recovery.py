@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from stand import HOLE_AREA, HOLES, Stand, Trial, definition, fire, log_of, segments_of
+from tests.segment.stand import HOLE_AREA, HOLES, Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.tank import calibrate

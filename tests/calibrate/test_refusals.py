@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from stand import AMBIENT, Stand, Trial, definition, fire, log_of, segments_of
+from tests.segment.stand import AMBIENT, Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.tank import calibrate

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from engine_sample import TRUTH, engine, evidence, rate
+from tests.calibrate.engine_sample import TRUTH, engine, evidence, rate
 
 from hfanalysis.assembly.calibrated import Regression, pressure_at, starting_for
 from hfanalysis.calibrate.evidence import Evidence, Scalar, burn_time_of

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from stand import Stand, Trial, definition, fire, log_of, segments_of
+from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.rest import blowdown_mass, fit_bulk, liquid_phase_heat, state_remarks

@@ -6,7 +6,7 @@ from math import radians
 
 import numpy as np
 import pytest
-from test_aerodynamics import HALCYON, HALCYON_CENTER
+from tests.rocket.test_aerodynamics import HALCYON, HALCYON_CENTER
 
 from hfanalysis.flight.ascent import Arguments, arguments, ascend
 from hfanalysis.flight.curve import Curve

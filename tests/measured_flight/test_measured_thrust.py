@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from heated_cell import EMPTY, heated, quenched
-from stand import Trial, definition, segments_of
+from tests.segment.heated_cell import EMPTY, heated, quenched
+from tests.segment.stand import Trial, definition, segments_of
 
 from hfanalysis.measured_flight.thrust import SHAPE_OF_DRIFT, UNSEEN_DRIFT, MeasuredThrust, measured_thrust
 from hfanalysis.quantity import Quantity

@@ -6,11 +6,11 @@ import codecs
 import tempfile
 from pathlib import Path
 
-import make
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.record import make
 
 from hfanalysis.record.log import Flag
 

@@ -6,8 +6,8 @@ from dataclasses import FrozenInstanceError
 from pathlib import Path
 
 import pytest
+from tests.acceptance.bad_input import TOML, write_good
 
-from acceptance.bad_input import TOML, write_good
 from hfanalysis.errors import InputError
 from hfanalysis.record.definition import load_definition
 from hfanalysis.record.document import read_toml, validate

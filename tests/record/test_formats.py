@@ -6,11 +6,11 @@ import io
 from pathlib import Path
 
 import h5py
-import make
 import numpy as np
 import pytest
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
+from tests.record import make
 
 from hfanalysis.errors import InputError
 from hfanalysis.record.log import Flag, TestLog

@@ -7,10 +7,10 @@ import json
 from pathlib import Path
 
 import h5py
-import make
 import numpy as np
 import pytest
 import xarray as xr
+from tests.record import make
 
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.record import spool

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from simulated.stand import noise
-from stand import signal
+from tests.segment.stand import signal
 
 from hfanalysis.record.noise import Noise, pool
 from hfanalysis.record.signals import Array, sample_noise

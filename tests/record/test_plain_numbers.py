@@ -5,10 +5,10 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-import make
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.record import make
 
 from hfanalysis.record import spool
 from hfanalysis.record.logspec import FileSpec

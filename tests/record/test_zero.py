@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import make
 import numpy as np
 import pytest
+from tests.record import make
 
 from hfanalysis.record.log import TestLog
 

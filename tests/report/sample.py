@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from diagnosed import DIAGNOSIS
-from diagnosed import store as diagnosed_store
+from tests.report.diagnosed import DIAGNOSIS
+from tests.report.diagnosed import store as diagnosed_store
 
 from hfanalysis.record.definition import load_definition
 from hfanalysis.record.log import Channel, TestLog

@@ -13,11 +13,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from browser import CHROMIUM, Page, browser
 from PIL import Image
-from sample import channel, material
-from test_page import hostile
 from tests.campaign.rows import made as campaign
+from tests.report.browser import CHROMIUM, Page, browser
+from tests.report.sample import channel, material
+from tests.report.test_page import hostile
 
 from hfanalysis.campaign.page import page as campaign_page
 from hfanalysis.record.log import Channel

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from diagnosed import DIAGNOSIS, NOTHING
-from sample import material, without
-from test_page import HOSTILE, Reader
+from tests.report.diagnosed import DIAGNOSIS, NOTHING
+from tests.report.sample import material, without
+from tests.report.test_page import HOSTILE, Reader
 
 from hfanalysis.charts.chart import Chart
 from hfanalysis.report.diagnosis_tables import parameters, probabilities

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sample import CALIBRATION, SEGMENTS, channel, material, quantity, without
+from tests.report.sample import CALIBRATION, SEGMENTS, channel, material, quantity, without
 
 from hfanalysis.charts.colours import COLOURS, STYLES
 from hfanalysis.charts.style import sheet

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from sample import CALIBRATION, material, quantity
+from tests.report.sample import CALIBRATION, material, quantity
 
 from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import InputError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from stand import AMBIENT, Trial, fire, log_of
+from tests.segment.stand import AMBIENT, Trial, fire, log_of
 
 from hfanalysis.record.log import TestLog
 

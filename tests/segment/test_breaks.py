@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from simulated.stand import noise
-from stand import signal
+from tests.segment.stand import signal
 
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Array

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from simulated.stand import noise
-from stand import AMBIENT, Stand, Trial, fire, signal
+from tests.segment.stand import AMBIENT, Stand, Trial, fire, signal
 
 from hfanalysis.engine.tank import mass_along_blowdown
 from hfanalysis.record.signals import Array, Signal

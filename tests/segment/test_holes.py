@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from stand import definition, fire, log_of
+from tests.segment.stand import definition, fire, log_of
 
 from hfanalysis.record.holes import holes, told, unasked
 from hfanalysis.record.log import Channel, Flag, TestLog

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from simulated.stand import noise
-from stand import AMBIENT, definition, fire, log_of, signal
+from tests.segment.stand import AMBIENT, definition, fire, log_of, signal
 
 from hfanalysis.errors import AbsentError
 from hfanalysis.record.log import TestLog

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from stand import AMBIENT, Stand, Trial, definition, fire, log_of
+from tests.segment.stand import AMBIENT, Stand, Trial, definition, fire, log_of
 
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import Flag, TestLog

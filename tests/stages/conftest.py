@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import fake_way
 import pytest
+from tests.stages import fake_way
 
 
 @pytest.fixture

@@ -10,9 +10,9 @@ import sys
 import time
 from pathlib import Path
 
-import fake_way
 import pytest
-from fake_way import ran
+from tests.stages import fake_way
+from tests.stages.fake_way import ran
 
 from hfanalysis.products.disk import TEMPORARY, sha256_file
 

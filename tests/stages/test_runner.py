@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from fake_way import FAULTS, RUNS, STAGES, AbsentError, InputError, ran
+from tests.stages.fake_way import FAULTS, RUNS, STAGES, AbsentError, InputError, ran
 
 from hfanalysis.stages import freshness, runner
 
@@ -145,7 +145,7 @@ def test_processed_may_be_deleted_while_a_stage_runs(root: Path, monkeypatch: py
     import shutil
     from dataclasses import replace
 
-    from fake_way import STAGES, first
+    from tests.stages.fake_way import STAGES, first
 
     def robbed(context: object) -> None:
         if len(RUNS) == 0:
@@ -199,7 +199,7 @@ def test_products_that_no_longer_follow_from_the_input_are_removed(root: Path) -
 def test_a_log_that_changes_while_it_is_read_is_refused(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from dataclasses import replace
 
-    from fake_way import STAGES, first
+    from tests.stages.fake_way import STAGES, first
 
     def grown(context: object) -> None:
         first(context)  # type: ignore[arg-type]

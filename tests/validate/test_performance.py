@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from simulated.engines import hf5_like
-from stand import AMBIENT, THROAT, Trial, definition, fire, log_of, segments_of
+from tests.segment.stand import AMBIENT, THROAT, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import Channel, TestLog

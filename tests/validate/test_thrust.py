@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from heated_cell import heated, quenched
-from stand import Trial, definition, segments_of
+from tests.segment.heated_cell import heated, quenched
+from tests.segment.stand import Trial, definition, segments_of
 
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.sensor_faults import findings

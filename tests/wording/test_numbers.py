@@ -7,7 +7,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sample import quantity
+from tests.report.sample import quantity
 
 from hfanalysis.wording.numbers import adopted_in_words, fixed, people_unit, quantities, shown
 from hfanalysis.wording.scales import pretty_unit, scale
