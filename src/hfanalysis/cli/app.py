@@ -9,6 +9,7 @@ import typer
 
 from hfanalysis.cli.exit_status import ending
 from hfanalysis.errors import InputError
+from hfanalysis.stages import RUN, STAGES
 from hfanalysis.version import __version__
 
 app = typer.Typer(
@@ -61,17 +62,6 @@ def _do(
         from hfanalysis.cli import perform
 
         perform.stage(stage, perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ())))
-
-
-_STAGES = {
-    "ingest": "Read the raw log onto canonical channels in SI, with quality flags per sample.",
-    "segment": "Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end.",
-    "calibrate": "Injector coefficient, feed losses, polytropic exponent and regression, with intervals.",
-    "validate": "Measure the performance and run the model against the measurement.",
-    "diagnose": "Which effect the model lacks, with probabilities and proof.",
-    "flight": "Fly the rocket on the measured thrust: apogee, rail departure, stability; engine files.",
-    "run": "Every stage; the diagnosis takes longest.",
-}
 
 
 def _add(stage: str, text: str) -> None:
@@ -148,38 +138,39 @@ def _add_diagnose(text: str) -> None:
             (adopt.apply if apply else adopt.retract)(request, stand)
 
 
-_OF_THEIR_OWN = {"diagnose": _add_diagnose, "flight": _add_flight}
-
-for _name, _text in _STAGES.items():
-    if _name in _OF_THEIR_OWN:
-        _OF_THEIR_OWN[_name](_text)
-    else:
-        _add(_name, _text)
-
-
 Pdf = Annotated[bool, typer.Option("--pdf", help="Also print the page to PDF; needs Chromium or Chrome.")]
 Plots = Annotated[bool, typer.Option("--plots", help="Also write every chart as PNG and CSV to TEST/plots/.")]
 
 
-@app.command("report")
-def _report(
-    test: Test,
-    root: Root = Path(),
-    out: Out = None,
-    as_json: Json = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    settings: Set = None,
-    pdf: Pdf = False,
-    plots: Plots = False,
-) -> None:
-    """Write report.html, one page to read offline; on request as PDF, and its plots as PNG and CSV."""
-    with ending():
-        from hfanalysis.cli import exports as papers
-        from hfanalysis.cli import perform
+def _add_report(text: str) -> None:
+    """The stage with words of its own for its other forms."""
 
-        request = perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
-        papers.report(request, pdf, plots)
+    @app.command("report", help=text)
+    def command(
+        test: Test,
+        root: Root = Path(),
+        out: Out = None,
+        as_json: Json = False,
+        force: Force = False,
+        quiet: Quiet = False,
+        settings: Set = None,
+        pdf: Pdf = False,
+        plots: Plots = False,
+    ) -> None:
+        with ending():
+            from hfanalysis.cli import exports, perform
+
+            request = perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+            exports.report(request, pdf, plots)
+
+
+_OF_THEIR_OWN = {"diagnose": _add_diagnose, "flight": _add_flight, "report": _add_report}
+
+for _name, _text in {**STAGES, RUN: "Every stage; the diagnosis takes longest."}.items():
+    if _name in _OF_THEIR_OWN:
+        _OF_THEIR_OWN[_name](_text)
+    else:
+        _add(_name, _text)
 
 
 @app.command("compare")
@@ -194,10 +185,9 @@ def _compare(
 ) -> None:
     """Lay two tests over each other: TEST/compare_OTHER.html, curves from the valve's opening, numbers side by side."""
     with ending():
-        from hfanalysis.cli import exports as papers
-        from hfanalysis.cli import perform
+        from hfanalysis.cli import exports, perform
 
-        papers.compare(perform.Request(test, root, out, as_json, False, quiet), other, pdf)
+        exports.compare(perform.Request(test, root, out, as_json, False, quiet), other, pdf)
 
 
 EngineToml = Annotated[Path, typer.Argument(metavar="ENGINE.toml", help="An engine file, see engines/.")]
@@ -285,9 +275,9 @@ def _effects(test: AnyTest = None, root: Root = Path(), out: Out = None, as_json
 
             effects.effects(root, as_json)
         else:
-            from hfanalysis.cli import separability as apart
+            from hfanalysis.cli import separability
 
-            apart.apart(test, root, out, as_json)
+            separability.apart(test, root, out, as_json)
 
 
 @app.command("new")
