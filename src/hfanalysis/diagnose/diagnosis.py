@@ -13,10 +13,10 @@ from hfanalysis.diagnose.answer.posterior import far, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import (
     Verdict,
+    acting_in,
     effects_product,
     likeliest_place,
     places,
-    sizes,
     upper_limits,
     verdict_of,
 )
@@ -180,8 +180,8 @@ def _plausibility(found: Naming, chosen: Candidate) -> dict[str, dict[str, Any]]
     out: dict[str, dict[str, Any]] = {}
     for candidate in found.singles:
         name = candidate.names[0]
-        out.setdefault(name, judged(name, sizes(candidate.fit)[name]))
-    return out | {name: judged(name, values) for name, values in sizes(chosen.fit).items()}
+        out.setdefault(name, judged(acting_in(candidate.fit)[name]))
+    return out | {name: judged(active) for name, active in acting_in(chosen.fit).items()}
 
 
 LIKELY = 0.02

@@ -94,7 +94,7 @@ def _drift(found: Finding) -> dict[str, Any]:
         "equation": "sensor",
         "meaning": effect(DRIFT).meaning,
         "parameters": parameters,
-        "plausibility": judged(DRIFT, {"drift": value}),
+        "plausibility": judged(effect(DRIFT).at(drift=value)),
     }
 
 

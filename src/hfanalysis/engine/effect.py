@@ -59,6 +59,25 @@ class OwnState:
 
 
 @dataclass(frozen=True)
+class Believable:
+    """The largest size of a strength that a careful engineer believes of a small stand, and why no larger.
+
+    ``parameter``: the strength it is of (of all of them where an effect has several of one kind); ``most`` [SI]; shown
+    in ``unit``, of which there are ``factor`` to one of SI.
+    """
+
+    parameter: str
+    most: float
+    why: str
+    unit: str = ""
+    factor: float = 1.0
+
+    def text(self, value: float) -> str:
+        """A size [SI] as people read it."""
+        return f"{value * self.factor:.3g} {self.unit}".strip()
+
+
+@dataclass(frozen=True)
 class Effect:
     """A physical or sensor effect that the report's model lacks; the first parameter is its strength.
 
@@ -67,7 +86,8 @@ class Effect:
     all of them are 0. ``fading_web``: from its values, the web [m] over which the burning surface goes as the fuel
     ends; how fast the fire goes out is compared beside the channels. ``reads``: sites that others set and its term
     asks for; it comes after them. ``far_starts``: strengths [SI] from which a fit starts besides, where calibrated
-    constants take the effect's place so well that a small one leads elsewhere. An effect of the engine may have a
+    constants take the effect's place so well that a small one leads elsewhere. ``plain_name``: what people call it who
+    do not know the code; ``believable``: the largest size that can be on a stand. An effect of the engine may have a
     distortion besides, where a channel that no equation has shows it.
     """
 
@@ -89,6 +109,8 @@ class Effect:
     fading_web: FadingWeb | None = None
     reads: tuple[str, ...] = ()
     far_starts: tuple[float, ...] = ()
+    plain_name: str = ""
+    believable: Believable | None = None
 
     def __post_init__(self) -> None:
         if self.equation not in EQUATIONS:
@@ -127,9 +149,14 @@ class Active:
         return {p.name: v for p, v in zip(self.effect.parameters, self.values, strict=True)}
 
     @property
+    def strengths(self) -> dict[str, float]:
+        """Values of its strengths by their names."""
+        return dict(list(self.named.items())[: self.effect.strengths])
+
+    @property
     def idle(self) -> bool:
         """Whether every strength is 0."""
-        return not any(self.values[: self.effect.strengths])
+        return not any(self.strengths.values())
 
 
 @dataclass(frozen=True)

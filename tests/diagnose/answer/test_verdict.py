@@ -18,7 +18,7 @@ from tests.inference import made
 from hfanalysis.diagnose.answer import posterior
 from hfanalysis.diagnose.answer import verdict as verdict_module
 from hfanalysis.diagnose.answer.effect_source import Acting, acting
-from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judged, lost
+from hfanalysis.diagnose.answer.plausible import MOST_LOST, excess, judged, lost
 from hfanalysis.diagnose.answer.posterior import (
     BEFORE,
     FAR,
@@ -51,6 +51,7 @@ from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.variants import VARIANTS, settings_of
 from hfanalysis.effects import effect, library
+from hfanalysis.engine.effect import Active, Believable
 from hfanalysis.errors import InputError
 from hfanalysis.inference import gap
 from hfanalysis.inference.candidate import Bench, Candidate
@@ -236,25 +237,38 @@ def test_none_is_the_zero_of_evidence_and_a_set_counts_for_its_first_name() -> N
     assert "tank_heat" not in with_set
 
 
+def of_size(name: str, size: float) -> Active:
+    """An effect of the library, its believable strength that many times the largest believable one."""
+    known = effect(name)
+    assert known.believable is not None
+    return known.at(**{known.believable.parameter: size * known.believable.most})
+
+
 def test_a_size_beyond_belief_costs_evidence() -> None:
-    for name, limit in LIMITS.items():
-        # only the parameter that a limit is of, or all transducers
-        typical, huge = ({limit.parameter: share * limit.most} for share in (0.9, 5.0))
-        assert lost(name, typical) == 0.0, name
-        assert 1.0 < lost(name, huge) <= MOST_LOST, name
-        assert lost(name, {limit.parameter: -5.0 * limit.most}) == lost(name, huge), name
-        assert judged(name, huge)["plausible"] is False, name
-        assert judged(name, typical)["plausible"] is True, name
-    assert lost("tank_heat", {"power": 1e9}) == MOST_LOST
-    assert excess("an_effect_of_a_team", {"x": 1e9}) == 0.0
-    assert judged("an_effect_of_a_team", {"x": 1e9})["plausible"] is None
+    for name in library():
+        typical, huge = of_size(name, 0.9), of_size(name, 5.0)
+        assert lost(typical) == 0.0, name
+        assert 1.0 < lost(huge) <= MOST_LOST, name
+        assert lost(of_size(name, -5.0)) == lost(huge), name
+        assert judged(huge)["plausible"] is False, name
+        assert judged(typical)["plausible"] is True, name
+    assert lost(effect("tank_heat").at(power=1e9)) == MOST_LOST
 
 
-def test_every_limit_is_of_a_strength_that_the_library_has() -> None:
-    assert set(LIMITS) == set(library())
-    for name, limit in LIMITS.items():
-        known = library()[name]
-        assert limit.parameter in [p.name for p in known.parameters[: known.strengths]], name
+def test_an_effect_of_a_team_is_judged_by_what_it_says_itself() -> None:
+    silent = replace(effect("tank_heat"), name="of_a_team", believable=None).at(power=1e9)
+    assert excess(silent) == 0.0
+    assert judged(silent)["plausible"] is None
+    spoken = replace(effect("tank_heat"), name="of_a_team", believable=Believable("power", 500.0, "no pump", "W"))
+    assert judged(spoken.at(power=600.0))["why"] == "power of 600 W is beyond 500 W: no pump"
+
+
+def test_what_is_believable_is_of_a_strength_and_every_effect_has_a_plain_name() -> None:
+    for name, known in library().items():
+        assert known.believable is not None, name
+        assert known.believable.parameter in [p.name for p in known.parameters[: known.strengths]], name
+        assert known.plain_name, name
+        assert "_" not in known.plain_name, name
 
 
 def test_an_impossible_size_makes_a_name_less_probable() -> None:
@@ -266,7 +280,7 @@ def test_an_impossible_size_makes_a_name_less_probable() -> None:
     burnt = replace(single.fit.burnt, steps=replace(single.fit.burnt.steps, engine=worn))
     large = replace(single, fit=replace(single.fit, burnt=burnt))
     odds = [verdict_of(replace(found, singles=(c,))).evidences["nozzle_throat_erosion"] for c in (single, large)]
-    assert odds[0] - odds[1] == pytest.approx(lost("nozzle_throat_erosion", {"rate": 1.2e-3}))
+    assert odds[0] - odds[1] == pytest.approx(lost(effect("nozzle_throat_erosion").at(rate=1.2e-3)))
 
 
 def probable(*gains: tuple[str, float]) -> Naming:

@@ -22,6 +22,7 @@ from hfanalysis.diagnose.answer.words import (
     shown,
     story,
 )
+from hfanalysis.effects import effect
 from hfanalysis.quantity import Quantity
 
 
@@ -125,7 +126,7 @@ def test_a_fire_that_dies_slowly_is_said_beside_what_an_empty_chamber_takes(seco
 def test_an_impossible_size_is_said() -> None:
     row = effects_product(verdict_of(eroded()))[0]
     assert "hard to believe" not in effect_sentence(row)
-    unlikely = {**row, "plausibility": judged("nozzle_throat_erosion", {"rate": 2e-3})}
+    unlikely = {**row, "plausibility": judged(effect("nozzle_throat_erosion").at(rate=2e-3))}
     assert "hard to believe" in effect_sentence(unlikely)
     assert "2 mm/s is beyond 0.4 mm/s" in effect_sentence(unlikely)
 

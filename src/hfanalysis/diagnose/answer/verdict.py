@@ -26,7 +26,7 @@ from hfanalysis.diagnose.answer.where import elsewhere, likeliest_of, likeliest_
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.diagnose.naming.source_history import Course, course_of
-from hfanalysis.engine.effect import Parameter
+from hfanalysis.engine.effect import Active, Parameter
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.quantity import NORMAL_95, Quantity
@@ -115,17 +115,14 @@ def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], far
 
 def _believed(candidate: Candidate) -> Candidate:
     """The candidate with what impossible sizes cost it."""
-    cost = sum(lost(name, values) for name, values in sizes(candidate.fit).items() if name in candidate.names)
+    cost = sum(lost(active) for name, active in acting_in(candidate.fit).items() if name in candidate.names)
     return replace(candidate, log_evidence=candidate.log_evidence - cost)
 
 
-def sizes(found: Fit) -> dict[str, dict[str, float]]:
-    """Strengths of the effects of a fit, by effect and parameter [SI]."""
-    return {
-        a.effect.name: {p.name: a.named[p.name] for p in a.effect.parameters[: a.effect.strengths]}
-        for a in found.burnt.steps.engine.effects
-        if not a.effect.name.startswith("probe_")
-    }
+def acting_in(found: Fit) -> dict[str, Active]:
+    """The effects of a fit by their names, without unknown sources."""
+    acting = found.burnt.steps.engine.effects
+    return {active.effect.name: active for active in acting if not active.effect.name.startswith("probe_")}
 
 
 def _chosen(found: Naming, top: str) -> Candidate:
@@ -152,7 +149,7 @@ def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
     values, stds = found.values, found.stds
     out = []
     for name in verdict.chosen.names:
-        active = next(a for a in found.burnt.steps.engine.effects if a.effect.name == name)
+        active = acting_in(found)[name]
         parameters = {
             p.name: _within(p, values[full], stds[full])
             for p in active.effect.parameters
@@ -165,7 +162,7 @@ def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
                 "equation": active.effect.equation,
                 "meaning": active.effect.meaning,
                 "parameters": parameters,
-                "plausibility": judged(name, sizes(found)[name]),
+                "plausibility": judged(active),
             }
         )
     return out
