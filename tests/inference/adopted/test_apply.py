@@ -13,7 +13,7 @@ from tests.inference.adopted.firing import make_root
 
 from hfanalysis.cli import main
 from hfanalysis.cli.adopt import adopt, proved_as_before
-from hfanalysis.cli.perform import Request
+from hfanalysis.cli.request import Request
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
