@@ -11,6 +11,7 @@ from hfanalysis.calibrate.regression import Joint, fit, fit_together, result
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
+from hfanalysis.inference.adopted.effects import read_adopted
 from hfanalysis.progress import Progress, silent
 from hfanalysis.record.log import read_log
 from hfanalysis.segment.phases import Segments
@@ -23,7 +24,8 @@ def regression_of(tests: Sequence[str], root: Path, out: Path | None, progress: 
     evidence = []
     for name in dict.fromkeys(tests):
         context = run_to("segment", open_test(root, name, out, progress=progress))
-        segments, effects = Segments.from_json(context.read_json("segments.json")), context.adopted().acting
+        segments = Segments.from_json(context.read_json("segments.json"))
+        effects = read_adopted(root, context.definition).acting
         log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)
         try:
             tank = calibrate(log, segments, context.definition, 400, effects)

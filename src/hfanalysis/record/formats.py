@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Format(NamedTuple):
-    """``reader``: module below ``record.readers`` with ``open_source(path, spec) -> Source``, loaded when it is met.
+    """``reader``: module of ``record.readers`` with ``open_source(path, spec) -> Source``, loaded when it is met.
 
     ``name`` is how people call it in a message, ``suffix`` that of its files, ``beginnings`` their first bytes.
     """

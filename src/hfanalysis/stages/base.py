@@ -16,7 +16,9 @@ absence, AbsentError, does not stop this one: ask ``context.absent``), ``paramet
 read with ``context.parameter("name")``; they are part of what decides whether a product is up to date), ``least`` (the
 smallest value of those that have one) and ``adopts``
 (False for a stage that adopted effects do not change: neither their file nor products made with them are its input),
-``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input).
+``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input), ``runs``
+(stages that this one runs itself, on other tests: what their code and that of the stages before them says is part of
+what it rests on, as everything is that the module imports).
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from hfanalysis.errors import InputError
 from hfanalysis.products import disk as products
@@ -33,9 +35,6 @@ from hfanalysis.progress import Progress, silent
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.stages import ORDER
 from hfanalysis.units import near
-
-if TYPE_CHECKING:
-    from hfanalysis.inference.adopted.effects import Adopted
 
 BASE = "base_"
 """How a product's name begins that is made without adopted effects, by a stage that also makes one with them."""
@@ -54,6 +53,7 @@ class Stage:
     least: Mapping[str, float] = field(default_factory=dict)
     adopts: bool = True
     tries_effects: bool = False
+    runs: tuple[str, ...] = ()
 
     def reads(self, other: Stage) -> tuple[str, ...]:
         """The products of an upstream stage that this one's products follow from."""
@@ -123,12 +123,6 @@ class Context:
         if self.stage is None or name not in self.stage.products:
             raise ValueError(f"{name} is not declared as a product of this stage")
         return products.temporary_path(self.product(name))
-
-    def adopted(self) -> Adopted:
-        """The effects that have been adopted for this test. Raises InputError for a file that is at fault."""
-        from hfanalysis.inference.adopted.effects import read_adopted
-
-        return read_adopted(self.root, self.definition)
 
     def write_json(self, name: str, data: Mapping[str, Any]) -> None:
         """Write a JSON product of the running stage, with the test's name first and its provenance last."""

@@ -13,10 +13,10 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from hfanalysis.assembly.calibrated import Regression, effective_area
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.nozzle import expand
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.record.definition import TestDefinition
@@ -123,7 +123,7 @@ def nozzle_along(
     return Nozzle(*found)
 
 
-@njit(cache=True)
+@compiled
 def _nozzle_along(
     gas: Grid, pressure: Array, ratio: Array, ambient: float, throat: Array, exit_area: float, enthalpy: float
 ) -> Array:
