@@ -54,7 +54,10 @@ from hfanalysis.effects import effect, library
 from hfanalysis.errors import InputError
 from hfanalysis.inference import gap
 from hfanalysis.inference.candidate import Bench, Candidate
-from hfanalysis.inference.fitting.fit import fit
+from hfanalysis.inference.fitting.fit import Fit, fit
+from hfanalysis.inference.places import PLACES
+from hfanalysis.inference.splines import Splines
+from hfanalysis.inference.unknowns.smooth_source import SmoothSource, sensor_place
 
 labels = some.dictionaries(
     some.sampled_from(("none", "unknown", "tank_heat", "load_cell_drift", "n2_purge")),
@@ -269,12 +272,21 @@ def test_an_impossible_size_makes_a_name_less_probable() -> None:
     assert odds[0] - odds[1] == pytest.approx(lost("nozzle_throat_erosion", {"rate": 1.2e-3}))
 
 
+def unnamed(place: str, fitted: Fit, evidence: float) -> Candidate:
+    """An unknown source somewhere, which explains so much."""
+    sensors = [sensor_place(made.observed(), name) for name in made.NOISE]
+    at = next(p for p in (*PLACES, *sensors) if p.name == place)
+    nothing = np.zeros(4)
+    source = SmoothSource(at, 0.0, np.zeros(fitted.x.size), at.typical, 1.5, nothing, Splines.over(0.0, 1.0, 1.0))
+    return Candidate((place,), fitted, evidence, source=source)
+
+
 def probable(*gains: tuple[str, float]) -> Naming:
     """A naming in which these names have such log evidences beyond none."""
     found, single = eroded(), eroded().singles[0]
     base = found.base.log_evidence
     singles = tuple(replace(single, names=(n,), log_evidence=base + g) for n, g in gains if n != "unknown")
-    strange = tuple(Candidate(("tank_leak",), single.fit, base + g, unknown=True) for n, g in gains if n == "unknown")
+    strange = tuple(unnamed("tank_leak", single.fit, base + g) for n, g in gains if n == "unknown")
     equations = found.equations | {n: effect(n).equation for n, _ in gains if n != "unknown"}
     return replace(found, singles=singles, sets=(), unknown=strange, equations=equations)
 
@@ -349,7 +361,7 @@ def strange(*sources: tuple[str, float]) -> Naming:
     """Throat erosion that explains 20 units, and unknown sources alone at these sites that explain so much."""
     found = probable(("nozzle_throat_erosion", 20.0))
     fit, base = found.singles[0].fit, found.base.log_evidence
-    return replace(found, unknown=tuple(Candidate((site,), fit, base + gain, unknown=True) for site, gain in sources))
+    return replace(found, unknown=tuple(unnamed(place, fit, base + gain) for place, gain in sources))
 
 
 @pytest.mark.parametrize(

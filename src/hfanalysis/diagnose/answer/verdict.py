@@ -25,10 +25,10 @@ from hfanalysis.diagnose.answer.posterior import (
 from hfanalysis.diagnose.answer.where import elsewhere, likeliest_of, likeliest_source
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming
-from hfanalysis.diagnose.naming.source_history import Course, course_of
 from hfanalysis.engine.effect import Parameter
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.unknown import History, has_name
 from hfanalysis.quantity import NORMAL_95, Quantity
 
 Array = NDArray[np.float64]
@@ -124,7 +124,7 @@ def sizes(found: Fit) -> dict[str, dict[str, float]]:
     return {
         a.effect.name: {p.name: a.named[p.name] for p in a.effect.parameters[: a.effect.strengths]}
         for a in found.burnt.steps.engine.effects
-        if not a.effect.name.startswith("probe_")
+        if has_name(a.effect)
     }
 
 
@@ -186,13 +186,13 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     gain = chosen.log_evidence - found.base.log_evidence
     out = []
     if chosen.unknown:
-        out.append(of_unknown(course_of(chosen.fit, chosen.names[-1], observed), gain, observed.phases))
+        out.append(of_unknown(chosen.history(observed), gain, observed.phases))
     for name in verdict.added:
         source = acting(chosen.fit, name, observed)
         out.append(of_acting(name, source, gain / (len(out) + 1), observed.phases))
     beside = next((c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]), None)
     if beside is not None and (rest := beside.log_evidence - chosen.log_evidence) > 0.0:
-        row = of_unknown(course_of(beside.fit, beside.names[-1], observed), rest, observed.phases)
+        row = of_unknown(beside.history(observed), rest, observed.phases)
         out.append({**row, "beside": True, "significance": min(rest, 0.5 * out[-1]["significance"])})
     return out
 
@@ -214,16 +214,16 @@ def _of_candidate(candidate: Candidate, found: Naming) -> dict[str, Any]:
     """The row of a single effect or a source that is not claimed."""
     observed, gain = found.bench.observed, candidate.log_evidence - found.base.log_evidence
     if candidate.unknown:
-        return of_unknown(course_of(candidate.fit, candidate.names[-1], observed), gain, observed.phases)
+        return of_unknown(candidate.history(observed), gain, observed.phases)
     return of_acting(candidate.names[0], acting(candidate.fit, candidate.names[0], observed), gain, observed.phases)
 
 
-def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:
+def of_unknown(history: History, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:
     """A row for an unknown source."""
-    site = course.site
-    made = Acting(course.equation, site.unit, course.time, course.mean, course.std, site.sensor)
-    row = of_acting(site.name, made, gain, phases, course.blur, course.stretch)
-    return {**row, "phase": _phase(course.time, course.of_equation, phases), **course.sizes}
+    place = history.place
+    made = Acting(place.equation, place.unit, history.time, history.mean, history.std, place.sensor)
+    row = of_acting(place.name, made, gain, phases, history.blur, history.stretch)
+    return {**row, "phase": _phase(history.time, history.of_equation, phases), **history.sizes}
 
 
 SEEN = 0.05

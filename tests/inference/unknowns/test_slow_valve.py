@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hfanalysis.inference.observations.valve_opening import slow_opening
+from hfanalysis.inference.unknowns.slow_valve import slow_opening
 from hfanalysis.record.signals import Signal
 
 STEP, LEVEL = 1e-3, 35e5

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hfanalysis.inference.observations.swinging import SLOWEST, Swing, swing_of
+from hfanalysis.inference.unknowns.swing import SLOWEST, Swing, swing_of
 from hfanalysis.record.signals import Signal
 
 STEP, END = 1e-3, 5.0

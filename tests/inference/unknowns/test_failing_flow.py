@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 from tests.inference import logged
 
-from hfanalysis.inference.observations.failing import UNEVEN, failing_flow
 from hfanalysis.inference.observations.frame import AROUND_CHANGE, BLOCK
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
 from hfanalysis.inference.observations.reduction import observe_test
+from hfanalysis.inference.unknowns.failing_flow import UNEVEN, failing_flow
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
 
@@ -81,8 +81,8 @@ def reduced(share: float) -> Observed:
 
 def test_no_blocks_are_compared_while_the_flow_fails() -> None:
     steady, failing = reduced(0.0), reduced(0.4)
-    assert not steady.plain
-    assert [type(plain).__name__ for plain in failing.plain] == ["FailingFlow"]
+    assert not steady.unknowns
+    assert [type(unknown).__name__ for unknown in failing.unknowns] == ["FailingFlow"]
     for before, after in zip(steady.channels, failing.channels, strict=True):
         gone = np.setdiff1d(before.time, after.time)
         assert gone.size > 0
