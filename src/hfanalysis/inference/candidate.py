@@ -63,9 +63,8 @@ class Candidate:
         return self.source is not None
 
     def history(self, observed: Observed) -> History:
-        """Its source over time. Raises ValueError where it has none."""
-        if self.source is None:
-            raise ValueError(f"{self.names} have no unknown source")
+        """Its source over time."""
+        assert self.source is not None
         return self.source.history(self.fit, observed)
 
     @property

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,25 +41,23 @@ class Projected:
 
 @dataclass(frozen=True)
 class Linearized:
-    """A fit to observations, with what splines at any place change in them: every run that it takes is made once.
+    """A fit to observations, with what splines at any place change in them.
 
     Raises ValueError or ArithmeticError where the engine cannot be run with all places open.
     """
 
     fitted: Fit
     observed: Observed
-    _made: dict[Splines, list[tuple[Place, Projected]]] = field(default_factory=dict)
 
     @property
     def splines(self) -> Splines:
         """From the opening to the end of what is compared."""
         return Splines.over(0.0, self.observed.last, SPACING)
 
+    @cached_property
     def everywhere(self) -> list[tuple[Place, Projected]]:
         """All places of the model that have no source yet, with :attr:`splines` at each."""
-        if self.splines not in self._made:
-            self._made[self.splines] = self.at(PLACES, self.splines)
-        return self._made[self.splines]
+        return self.at(PLACES, self.splines)
 
     def at(self, places: Sequence[Place], splines: Splines) -> list[tuple[Place, Projected]]:
         """Those of the places that have no source yet, with splines at each."""

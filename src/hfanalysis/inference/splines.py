@@ -66,10 +66,6 @@ class Splines:
         width = (end - start) / pieces
         return cls(start - width, width, pieces + 3, liquid_out=end if wet else inf)
 
-    def reach(self, peak: float) -> tuple[float, float]:
-        """From when to when [s] the spline that peaks there is not 0."""
-        return peak - 2.0 * self.spacing, peak + 2.0 * self.spacing
-
     def at(self, times: Array) -> Array:
         """Values (times, count) of the splines."""
         if self.held:
@@ -95,8 +91,9 @@ def probe(site: str, splines: Splines, typical: float) -> Effect:
         Parameter(name, "", "of the probe", 1.0, center=float(v), given=True)
         for name, v in zip(GIVEN, given, strict=True)
     ]
+    reach = 2.0 * splines.spacing
     coefficients = [
-        Parameter(f"c{i}", "", f"source about {at:.2f} s", typical, acting=splines.reach(at))
+        Parameter(f"c{i}", "", f"source about {at:.2f} s", typical, acting=(at - reach, at + reach))
         for i, at in enumerate(splines.first + splines.spacing * np.arange(splines.count))
     ]
     return nameless_effect(

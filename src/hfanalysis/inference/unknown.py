@@ -38,11 +38,9 @@ PREFIX = "probe_"
 """How the names of effects begin that model an unknown."""
 
 
-def nameless_effect(
-    name: str, equation: str, meaning: str, parameters: tuple[Parameter, ...], phases: tuple[str, ...] = (), **acts: Any
-) -> Effect:
+def nameless_effect(name: str, equation: str, meaning: str, parameters: tuple[Parameter, ...], **acts: Any) -> Effect:
     """The effect that an unknown is in a hypothesis; what ``acts`` are the fields of an effect that act."""
-    return Effect(PREFIX + name, equation, meaning, "free form", parameters, phases, **acts)
+    return Effect(PREFIX + name, equation, meaning, "free form", parameters, (), **acts)
 
 
 def has_name(effect: Effect) -> bool:

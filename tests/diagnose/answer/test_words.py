@@ -19,7 +19,6 @@ from hfanalysis.diagnose.answer.words import (
     headline,
     place_sentence,
     proof_sentences,
-    shown,
     story,
 )
 from hfanalysis.quantity import Quantity
@@ -93,8 +92,6 @@ def test_sentences_give_sizes_in_the_units_of_engineers() -> None:
     assert "the tank's energy differs by 0.9 ± 0.15 kW" in place_sentence(heat)
     assert "(thrust)" in place_sentence({**row, "channel": "thrust"})
     assert place_sentence({**row, "beside": True}).endswith("still open.")
-    assert shown(Quantity(2.5e5, "Pa", 1e4)) == "2.5 ± 0.1 bar"
-    assert shown(Quantity.absent("not recorded")) == "not known"
     assert gap_line("thrust", product("named")["gap"]) == "thrust: rms 10 N without, 5 N with it; noise 5 N."
     assert proof_sentences(product("named"))[0].startswith("98 % of the gap closes")
     assert proof_sentences({"gap": {"closed_fraction": {}}}) == []

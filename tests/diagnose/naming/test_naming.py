@@ -38,7 +38,8 @@ from hfanalysis.inference.fitting.hypothesis import Hypothesis, mid_flux
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.splines import Splines, probe
 from hfanalysis.inference.unknowns import in_slopes
-from hfanalysis.inference.unknowns.late_channel import LateChannel, late
+from hfanalysis.inference.unknowns.late_channel import EFFECT as LATE
+from hfanalysis.inference.unknowns.late_channel import LateChannel
 from hfanalysis.inference.unknowns.pulse import OWN, Pulse, pulse_effect
 from hfanalysis.inference.unknowns.smooth_source import SmoothSource
 
@@ -280,7 +281,7 @@ def test_what_comes_and_goes_at_once_is_unknown_with_its_instants() -> None:
 
 @cache
 def late_thrust() -> Naming:
-    test = made.observed(late("thrust").at(delay=0.1))
+    test = made.observed(LATE.at(delay=0.1))
     return name_effects(made.hypothesis(), replace(test, unknowns=(LateChannel(0.102, 40.0),)), catalogue())
 
 

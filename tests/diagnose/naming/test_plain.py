@@ -20,11 +20,12 @@ from hfanalysis.inference.fitting.form import FINEST
 from hfanalysis.inference.places import PLACES
 from hfanalysis.inference.splines import Splines
 from hfanalysis.inference.unknown import History, Unknown
-from hfanalysis.inference.unknowns.failing_flow import SHARE_OF_FLOW, FailingFlow, failing_effect, flow_before
-from hfanalysis.inference.unknowns.late_channel import LateChannel, late
-from hfanalysis.inference.unknowns.slow_valve import SlowValve, slow_valve
+from hfanalysis.inference.unknowns import failing_flow, late_channel, slow_valve, swing
+from hfanalysis.inference.unknowns.failing_flow import SHARE_OF_FLOW, FailingFlow, flow_before
+from hfanalysis.inference.unknowns.late_channel import LateChannel
+from hfanalysis.inference.unknowns.slow_valve import SlowValve
 from hfanalysis.inference.unknowns.smooth_source import SmoothSource, seen_at, sensor_place
-from hfanalysis.inference.unknowns.swing import Swing, swinging
+from hfanalysis.inference.unknowns.swing import Swing
 
 
 def with_plain(plain: Unknown, *hidden: Active) -> tuple[Candidate, Candidate, Bench]:
@@ -41,7 +42,7 @@ def row_of(found: Candidate, bench: Bench) -> dict[str, Any]:
 
 def test_a_valve_that_opens_slowly_is_a_source_in_the_feed_with_its_time() -> None:
     plain = SlowValve(0.35, 40.0)
-    base, found, bench = with_plain(plain, slow_valve().at(seconds=0.3))
+    base, found, bench = with_plain(plain, slow_valve.EFFECT.at(seconds=0.3))
     assert found.unknown
     assert found.log_evidence - base.log_evidence > plain.log_evidence + 50.0  # 0.3 s are seen in the blocks as well
     row = row_of(found, bench)
@@ -56,7 +57,7 @@ def test_a_valve_that_opens_slowly_is_a_source_in_the_feed_with_its_time() -> No
 
 def test_what_a_filling_line_shows_as_well_is_no_evidence_for_a_slow_valve() -> None:
     plain = SlowValve(0.3, 40.0)
-    base, alone, bench = with_plain(plain, slow_valve().at(seconds=0.3))
+    base, alone, bench = with_plain(plain, slow_valve.EFFECT.at(seconds=0.3))
     filling = replace(base, names=(SlowValve.also_by,))
     assert plain_sources(filling, filling, bench) == []
     beside = plain_sources(base, filling, bench)[0]
@@ -83,7 +84,7 @@ def test_a_flow_that_fails_is_a_source_in_the_injector_with_its_time() -> None:
 
 def test_a_hidden_failing_flow_is_found_as_large_as_it_is() -> None:
     """Blocks beside the end of the liquid show what the samples there were misread as."""
-    hidden = failing_effect().at(share=0.5, liquid=0.3)
+    hidden = failing_flow.EFFECT.at(share=0.5, liquid=0.3)
     test = made.observed(hidden)
     plain = FailingFlow(test.events["t_v"][0], 0.4, 0.4, 60.0)
     base, found, _ = with_plain(plain, hidden)
@@ -92,10 +93,10 @@ def test_a_hidden_failing_flow_is_found_as_large_as_it_is() -> None:
 
 
 def test_a_flow_that_swings_is_a_source_in_the_injector_with_its_frequency() -> None:
-    swing = Swing(0.03, 4.0, 1.0, 0.8, 2.6, 60.0)
-    given = {name: getattr(swing, name) for name in ("share", "frequency", "phase", "start", "end")}
-    base, found, bench = with_plain(replace(swing, share=0.025, phase=1.2), swinging().at(**given))
-    assert found.log_evidence - base.log_evidence > swing.log_evidence + 50.0  # slower than the blocks
+    hidden = Swing(0.03, 4.0, 1.0, 0.8, 2.6, 60.0)
+    given = {name: getattr(hidden, name) for name in ("share", "frequency", "phase", "start", "end")}
+    base, found, bench = with_plain(replace(hidden, share=0.025, phase=1.2), swing.EFFECT.at(**given))
+    assert found.log_evidence - base.log_evidence > hidden.log_evidence + 50.0  # slower than the blocks
     row = row_of(found, bench)
     assert row["equation"] == "injector"
     assert abs(row["source"].value - 0.03) < 3.0 * row["source"].std
@@ -105,7 +106,7 @@ def test_a_flow_that_swings_is_a_source_in_the_injector_with_its_frequency() -> 
 
 
 def test_a_clock_that_is_late_is_a_source_in_the_sensor_with_its_delay() -> None:
-    base, found, bench = with_plain(LateChannel(0.04, 60.0), late("thrust").at(delay=0.05))
+    base, found, bench = with_plain(LateChannel(0.04, 60.0), late_channel.EFFECT.at(delay=0.05))
     assert found.log_evidence > base.log_evidence + 60.0
     row = row_of(found, bench)
     assert (row["equation"], row["channel"], row["source"].unit) == ("sensor", "thrust", "N")

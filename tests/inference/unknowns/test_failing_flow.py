@@ -12,9 +12,10 @@ from hfanalysis.inference.observations.frame import AROUND_CHANGE, BLOCK
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
 from hfanalysis.inference.observations.reduction import observe_test
-from hfanalysis.inference.unknowns.failing_flow import UNEVEN, failing_flow
+from hfanalysis.inference.unknowns.failing_flow import UNEVEN, FailingFlow
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
+from hfanalysis.segment.phases import Segments
 
 SEGMENTS = logged.segments(t_fuel_out=Quantity.absent("not seen"))
 T_V = SEGMENTS.time("t_v") or 0.0
@@ -31,6 +32,10 @@ def read(share: float, seconds: float, step: float = STEP, noise: float = 0.01) 
         value = np.where(time < 0.0, rest, burning) + noise * level * rng.standard_normal(time.size)
         out[name] = Signal(name, time, value, noise * level, step)
     return out
+
+
+def failing_flow(signals: dict[str, Signal], segments: Segments) -> FailingFlow | None:
+    return logged.seen(FailingFlow, signals, phases=segments)
 
 
 @settings(max_examples=15)

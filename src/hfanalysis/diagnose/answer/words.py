@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from hfanalysis.diagnose.answer.posterior import SET, far
@@ -10,8 +10,8 @@ from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.inference.observations.observed import FADE
 from hfanalysis.inference.unknown import Amount
 from hfanalysis.inference.unknowns import kind_of
-from hfanalysis.quantity import Quantity
 from hfanalysis.record.channels import unit_of
+from hfanalysis.wording.numbers import listed
 
 EQUATIONS = {
     "tank_energy": "the tank's energy",
@@ -125,15 +125,6 @@ def equation_sentence(product: Mapping[str, Any]) -> list[str]:
     return [f"Whatever its name, it is in {EQUATIONS[equation]} ({probability:.2f})."] if probability >= SET else []
 
 
-def listed(names: Sequence[str]) -> str:
-    """Names as a sentence lists them.
-
-    >>> listed(["heat", "a wall", "a lag"])
-    'heat, a wall and a lag'
-    """
-    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else "".join(names)
-
-
 def left_over(product: Mapping[str, Any]) -> list[str]:
     """That more is left than the noise, where nothing was found that could be it."""
     chi_square, gap = product["compared"]["chi_square"], product["gap"]
@@ -213,16 +204,3 @@ def proof_sentences(product: Mapping[str, Any]) -> list[str]:
         what = "smaller than the noise of single means, or in instants and the filling of the line"
         said.append(f"{where}: what names the effect is {what}, where no gap is measured.")
     return said
-
-
-def shown(quantity: Quantity | Mapping[str, Any]) -> str:
-    """A quantity in people's units."""
-    value, unit, std = (
-        (quantity.value, quantity.unit, quantity.std)
-        if isinstance(quantity, Quantity)
-        else (quantity["value"], quantity.get("unit", ""), quantity.get("std"))
-    )
-    name, factor = _UNITS.get(unit, (unit, 1.0))
-    if value is None:
-        return "not known"
-    return f"{factor * value:.3g}" + (f" ± {factor * std:.2g}" if std else "") + f" {name}"

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Parameter
 from hfanalysis.engine.model import O_OXIDIZER_FLOW
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, M_LIQUID, switch, term
 from hfanalysis.inference.fitting.fit import Fit
@@ -26,7 +25,6 @@ from hfanalysis.inference.places import Place
 from hfanalysis.inference.unknown import POINTS, SHAPE, Amount, History, Samples, Unknown, nameless_effect
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 
 Array = NDArray[np.float64]
 
@@ -54,8 +52,6 @@ LEAST_GAIN = 8.0
 HIDDEN = 0.05
 """Seconds before the end of the liquid in which every sample has to be good."""
 
-PLACE = Place("failing flow", "injector", "kg/s", 0.1)
-
 SHARE, LIQUID = range(2)
 
 SURE = 0.25
@@ -80,25 +76,20 @@ def _begins(t, env, c, p, x):  # type: ignore[no-untyped-def]
     return env[M_LIQUID] - p[LIQUID]
 
 
-@lru_cache(maxsize=1)
-def failing_effect() -> Effect:
-    """An injector that passes less and less as the last ``liquid`` leaves, by ``share`` at its end."""
-    return nameless_effect(
-        "failing",
-        "injector",
-        "a flow that fails before the liquid is gone",
-        (
-            Parameter("share", "-", "of the flow that has failed when the liquid is gone", 0.1),
-            Parameter("liquid", "kg", "left when it begins to fail", 0.1, center=0.1),
-        ),
-        ("liquid",),
-        sites=("injector_factor",),
-        term=_failing,
-        switch=_begins,
-    )
+EFFECT = nameless_effect(
+    "failing",
+    "injector",
+    "a flow that fails before the liquid is gone",
+    (
+        Parameter("share", "-", "of the flow that has failed when the liquid is gone", 0.1),
+        Parameter("liquid", "kg", "left when it begins to fail", 0.1, center=0.1),
+    ),
+    term=_failing,
+    switch=_begins,
+)
+"""An injector that passes less and less as the last ``liquid`` leaves, by ``share`` at its end."""
 
-
-SHARE_OF_FLOW, LIQUID_LEFT = (f"{failing_effect().name}.{name}" for name in ("share", "liquid"))
+SHARE_OF_FLOW, LIQUID_LEFT = (f"{EFFECT.name}.{p.name}" for p in EFFECT.parameters)
 """Names of its parameters in a hypothesis."""
 
 
@@ -111,12 +102,31 @@ class FailingFlow(Unknown):
     seconds: float
     share: float
     log_evidence: float
-    place: Place = PLACE
+    place = Place("failing flow", "injector", "kg/s", 0.1)
     known_by = "fails_within"
 
     @classmethod
     def in_samples(cls, samples: Samples) -> FailingFlow | None:
-        return failing_flow(samples.signals, samples.segments)
+        """How long before the end of the liquid chamber pressure and thrust fall."""
+        signals, segments = samples.signals, samples.segments
+        t_v, gone = segments.time("t_v"), segments.time("t_fuel_out")
+        if t_v is None or segments.std("t_v") > DATED or "p_tank" not in signals or not set(TOGETHER) <= set(signals):
+            return None
+        if t_v < COURSE + LOOKED_AT or (gone is not None and gone < t_v + LOOKED_AT):
+            return None
+        time = np.arange(-COURSE, -CLEAR - segments.std("t_v") - BIN, BIN) + 0.5 * BIN
+        time -= time[-1] + 0.5 * BIN + CLEAR + segments.std("t_v")
+        lost = [_lost(signals[name], t_v, time) for name in TOGETHER]
+        if any(part is None for part in lost):
+            return None
+        together = np.mean([part for part in lost if part is not None], axis=0)
+        steady = time < -LOOKED_AT
+        noise = float(np.hypot(np.std(together[steady]), UNEVEN))
+        gains, shares = np.array([_gain(together, time, seconds, noise) for seconds in DURATIONS]).T
+        best = int(np.argmax(gains))
+        if gains[best] < LEAST_GAIN or shares[best] < LEAST_FALL or best == DURATIONS.size - 1:
+            return None  # a fall that takes longer than all that are tried is a course that blocks show
+        return FailingFlow(t_v, float(DURATIONS[best]), float(shares[best]), float(gains[best]))
 
     @property
     def hides(self) -> float:
@@ -127,7 +137,7 @@ class FailingFlow(Unknown):
         liquid = flow_before(fitted, self.t_v, self.seconds) * self.seconds * (1.0 - 0.5 * self.share)
         lost = Free(SHARE_OF_FLOW, self.share, SURE, "positive")
         free = (replace(lost, most=lost.place(MOST)), Free(LIQUID_LEFT, liquid, SURE, "positive"))
-        return fitted.hypothesis.with_active(failing_effect().at(share=self.share, liquid=liquid), free), np.zeros(2)
+        return fitted.hypothesis.with_active(EFFECT.at(share=self.share, liquid=liquid), free), np.zeros(2)
 
     def history(self, fitted: Fit, observed: Observed) -> History:
         """What the flow lacks as the last liquid leaves, with points enough for it."""
@@ -157,32 +167,6 @@ def flow_before(fitted: Fit, t_v: float, seconds: float) -> float:
     gone = fitted.burnt.liquid_out if fitted.burnt.liquid_out is not None else t_v
     outputs = fitted.burnt.steps.at(np.array([max(gone - seconds - STEADY, 0.0)]))[1]
     return max(float(outputs[0, O_OXIDIZER_FLOW]), 1e-6)
-
-
-def failing_flow(signals: Mapping[str, Signal], segments: Segments) -> FailingFlow | None:
-    """How long before the end of the liquid chamber pressure and thrust fall; None where they do not, or that does not
-    show.
-
-    ``signals``: by channel, their times [s] after the opening; ``segments`` date the end of the liquid by the tank.
-    """
-    t_v, gone = segments.time("t_v"), segments.time("t_fuel_out")
-    if t_v is None or segments.std("t_v") > DATED or "p_tank" not in signals or not set(TOGETHER) <= set(signals):
-        return None
-    if t_v < COURSE + LOOKED_AT or (gone is not None and gone < t_v + LOOKED_AT):
-        return None
-    time = np.arange(-COURSE, -CLEAR - segments.std("t_v") - BIN, BIN) + 0.5 * BIN
-    time -= time[-1] + 0.5 * BIN + CLEAR + segments.std("t_v")
-    lost = [_lost(signals[name], t_v, time) for name in TOGETHER]
-    if any(part is None for part in lost):
-        return None
-    together = np.mean([part for part in lost if part is not None], axis=0)
-    steady = time < -LOOKED_AT
-    noise = float(np.hypot(np.std(together[steady]), UNEVEN))
-    gains, shares = np.array([_gain(together, time, seconds, noise) for seconds in DURATIONS]).T
-    best = int(np.argmax(gains))
-    if gains[best] < LEAST_GAIN or shares[best] < LEAST_FALL or best == DURATIONS.size - 1:
-        return None  # a fall that takes longer than all that are tried is a course that blocks show
-    return FailingFlow(t_v, float(DURATIONS[best]), float(shares[best]), float(gains[best]))
 
 
 def _lost(signal: Signal, t_v: float, time: Array) -> Array | None:

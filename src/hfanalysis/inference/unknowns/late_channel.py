@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.effect import Channels, Effect, Parameter
+from hfanalysis.engine.effect import Channels, Parameter
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.fitting.predict import misread
@@ -24,9 +23,11 @@ from hfanalysis.inference.places import Place
 from hfanalysis.inference.unknown import SHAPE, Amount, History, Samples, Unknown, nameless_effect
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.channels import unit_of
-from hfanalysis.record.signals import Signal
 
 Array = NDArray[np.float64]
+
+CHANNEL = "thrust"
+"""The channel that may be late."""
 
 BEFORE, AFTER = 0.05, 0.45
 """Seconds before and after the opening between which thrust is laid over the chamber's pressure."""
@@ -49,10 +50,25 @@ BLOCK = 0.02
 TYPICAL = 0.03
 """Seconds by which clocks of two loggers typically differ."""
 
-PLACE = Place("clock of thrust", "sensor", "s", TYPICAL, sensor="thrust")
-
 START_UP = 0.1
 """Seconds from the opening in which a late reading is not drawn."""
+
+
+def _late(times: Array, channels: Channels, values: Mapping[str, float]) -> dict[str, Array]:
+    return {**channels, CHANNEL: np.interp(times - values["delay"], times, channels[CHANNEL])}
+
+
+EFFECT = nameless_effect(
+    f"clock_of_{CHANNEL}",
+    "sensor",
+    f"an unknown delay of {CHANNEL}",
+    (Parameter("delay", "s", "by which the channel is read late", TYPICAL),),
+    distort=_late,
+)
+"""A channel that is read ``delay`` seconds late, or early where that is negative."""
+
+DELAY = f"{EFFECT.name}.delay"
+"""Its name in a hypothesis."""
 
 
 @dataclass(frozen=True)
@@ -61,15 +77,31 @@ class LateChannel(Unknown):
 
     seconds: float
     log_evidence: float
-    place: Place = PLACE
+    place = Place(f"clock of {CHANNEL}", "sensor", "s", TYPICAL, sensor=CHANNEL)
     known_by = "delay"
 
     @classmethod
     def in_samples(cls, samples: Samples) -> LateChannel | None:
-        return late_thrust(samples.signals)
+        """By how much thrust is read later than the chamber's pressure; None where it is not, or does not show."""
+        signals = samples.signals
+        if not {CHANNEL, "p_chamber"} <= set(signals):
+            return None
+        thrust, chamber = signals[CHANNEL], signals["p_chamber"]
+        step = max(thrust.step, chamber.step, FINEST)
+        time = np.arange(-BEFORE, AFTER, step)
+        delays = step * np.arange(round(MOST / step) + 1)
+        if time.size < FEWEST or thrust.between(-BEFORE, AFTER).time.size < FEWEST:
+            return None
+        read = thrust.at(time)
+        apart = np.array([_misfit(read, chamber.at(time - delay)) for delay in delays])
+        best = int(np.argmin(apart))
+        if not LEAST <= delays[best] < MOST - step or apart[0] < CLEAR * apart[best]:
+            return None
+        closer = apart[0] / max(apart[best], 1e-12 * apart[0])
+        return LateChannel(float(delays[best]), 0.5 * (BEFORE + AFTER) / BLOCK * float(np.log(closer)))
 
     def added_to(self, fitted: Fit) -> tuple[Hypothesis, Array]:
-        free, active = Free(self._parameter, 0.0, TYPICAL), self._effect.at(delay=self.seconds)
+        free, active = Free(DELAY, 0.0, TYPICAL), EFFECT.at(delay=self.seconds)
         return fitted.hypothesis.with_active(active, (free,)), np.array([free.place(self.seconds)])
 
     def history(self, fitted: Fit, observed: Observed) -> History:
@@ -77,12 +109,12 @@ class LateChannel(Unknown):
 
         It is late all the time, though that shows where its reading changes; what it lacks at the start is in the mean.
         """
-        channel, flowing = self._channel, ~observed.resting
-        time, mean = observed.grid[flowing], misread(observed, fitted.burnt, self._effect.name)[channel][flowing]
-        unit, drawn = unit_of(channel), time > START_UP
+        flowing = ~observed.resting
+        time, mean = observed.grid[flowing], misread(observed, fitted.burnt, EFFECT.name)[CHANNEL][flowing]
+        unit, drawn = unit_of(CHANNEL), time > START_UP
         sizes = {
             "source": Quantity(float(mean.mean()), unit, SHAPE * abs(float(mean.mean()))),
-            "delay": Quantity(fitted.values[self._parameter], "s", fitted.stds[self._parameter]),
+            "delay": Quantity(fitted.values[DELAY], "s", fitted.stds[DELAY]),
         }
         std = SHAPE * np.abs(mean[drawn])
         place, whole = replace(self.place, unit=unit), (0.0, float(time[-1]))
@@ -92,58 +124,6 @@ class LateChannel(Unknown):
     def words(row: Mapping[str, Any], where: str, amount: Amount) -> str:
         delay = row["delay"]
         return f"{where[0].upper()}{where[1:]} is read {1e3 * delay.value:.3g} ± {1e3 * delay.std:.2g} ms late."
-
-    @property
-    def _channel(self) -> str:
-        assert self.place.sensor is not None
-        return self.place.sensor
-
-    @property
-    def _effect(self) -> Effect:
-        return late(self._channel)
-
-    @property
-    def _parameter(self) -> str:
-        return f"{self._effect.name}.delay"
-
-
-@lru_cache(maxsize=16)
-def late(channel: str) -> Effect:
-    """A channel that is read ``delay`` seconds late, or early where that is negative."""
-
-    def distort(times: Array, channels: Channels, values: Mapping[str, float]) -> dict[str, Array]:
-        return {**channels, channel: np.interp(times - values["delay"], times, channels[channel])}
-
-    return nameless_effect(
-        f"clock_of_{channel}",
-        "sensor",
-        f"an unknown delay of {channel}",
-        (Parameter("delay", "s", "by which the channel is read late", TYPICAL),),
-        sites=(channel,),
-        distort=distort,
-    )
-
-
-def late_thrust(signals: Mapping[str, Signal]) -> LateChannel | None:
-    """By how much thrust is read later than the chamber's pressure; None where it is not, or does not show.
-
-    ``signals``: by channel, their times [s] after the opening.
-    """
-    if not {"thrust", "p_chamber"} <= set(signals):
-        return None
-    thrust, chamber = signals["thrust"], signals["p_chamber"]
-    step = max(thrust.step, chamber.step, FINEST)
-    time = np.arange(-BEFORE, AFTER, step)
-    delays = step * np.arange(round(MOST / step) + 1)
-    if time.size < FEWEST or thrust.between(-BEFORE, AFTER).time.size < FEWEST:
-        return None
-    read = thrust.at(time)
-    apart = np.array([_misfit(read, chamber.at(time - delay)) for delay in delays])
-    best = int(np.argmin(apart))
-    if not LEAST <= delays[best] < MOST - step or apart[0] < CLEAR * apart[best]:
-        return None
-    closer = apart[0] / max(apart[best], 1e-12 * apart[0])
-    return LateChannel(float(delays[best]), 0.5 * (BEFORE + AFTER) / BLOCK * float(np.log(closer)))
 
 
 def _misfit(thrust: Array, pressure: Array) -> float:

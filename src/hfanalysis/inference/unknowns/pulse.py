@@ -92,7 +92,7 @@ class Pulse(LinearUnknown):
 
     @classmethod
     def in_slopes(cls, about: Linearized) -> list[Pulse]:
-        return [_best(place, projected, about) for place, projected in about.everywhere()]
+        return [_best(place, projected, about) for place, projected in about.everywhere]
 
     def added_to(self, fitted: Fit, share: float = 1.0) -> tuple[Hypothesis, Array]:
         effect = pulse_effect(self.place.name)
@@ -109,18 +109,14 @@ class Pulse(LinearUnknown):
 
         def pulse(x: Array) -> Array:
             values = fitted.hypothesis.values(x)
-            return pulse_at(time, *(values[name] for name in names))
+            size, start, duration, edge = (values[name] for name in names)
+            return np.asarray(0.5 * size * (np.tanh((time - start) / edge) - np.tanh((time - start - duration) / edge)))
 
         mean = pulse(fitted.x)
         slopes = np.column_stack([(pulse(fitted.x + STEP * np.eye(fitted.x.size)[k]) - mean) / STEP for k in own])
         std = spread_of(slopes, fitted.covariance[np.ix_(own, own)])
         whole = self.place.whole(fitted, time, observed)
         return History(self.place, time, mean, std, fitted.stds[names[START]], whole=whole)
-
-
-def pulse_at(times: Array, size: float, start: float, duration: float, edge: float) -> Array:
-    """A pulse at ``times`` (n,) [s], in the unit of its size."""
-    return np.asarray(0.5 * size * (np.tanh((times - start) / edge) - np.tanh((times - start - duration) / edge)))
 
 
 def _free(name: str, scale: float, end: float) -> tuple[Free, ...]:

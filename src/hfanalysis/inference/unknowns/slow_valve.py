@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Parameter
 from hfanalysis.engine.model import O_TANK_PRESSURE, OUTPUTS
 from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, switch, term
 from hfanalysis.inference.fitting.fit import Fit
@@ -23,7 +23,6 @@ from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import Place
 from hfanalysis.inference.unknown import POINTS, SHAPE, Amount, History, Samples, Unknown, nameless_effect
 from hfanalysis.quantity import Quantity
-from hfanalysis.record.signals import Signal
 
 Array = NDArray[np.float64]
 
@@ -54,8 +53,6 @@ AROUND = 0.02
 BLOCK = 2e-3
 """Seconds of samples that count as one observation."""
 
-PLACE = Place("valve", "feed", "Pa", 1e5)
-
 SECONDS = 0
 
 JAR = 0.03
@@ -78,22 +75,18 @@ def _open(t, env, c, p, x):  # type: ignore[no-untyped-def]
     return t - p[SECONDS]
 
 
-@lru_cache(maxsize=1)
-def slow_valve() -> Effect:
-    """A valve that is open after ``seconds``."""
-    return nameless_effect(
-        "valve",
-        "feed",
-        "a valve that opens slowly",
-        (Parameter("seconds", "s", "until it is open", 0.1, center=0.1),),
-        sites=("feed_factor",),
-        term=_opening,
-        switch=_open,
-    )
+EFFECT = nameless_effect(
+    "valve",
+    "feed",
+    "a valve that opens slowly",
+    (Parameter("seconds", "s", "until it is open", 0.1, center=0.1),),
+    term=_opening,
+    switch=_open,
+)
+"""A valve that is open after ``seconds``."""
 
-
-PARAMETER = f"{slow_valve().name}.seconds"
-"""Its name in a hypothesis."""
+PARAMETER = f"{EFFECT.name}.seconds"
+"""Their name in a hypothesis."""
 
 
 @dataclass(frozen=True)
@@ -102,17 +95,39 @@ class SlowValve(Unknown):
 
     seconds: float
     log_evidence: float
-    place: Place = PLACE
+    place = Place("valve", "feed", "Pa", 1e5)
     known_by = "opens_in"
     also_by = "feed_line_fill"
 
     @classmethod
     def in_samples(cls, samples: Samples) -> SlowValve | None:
-        return slow_opening(samples.signals)
+        """How long the valve takes; None where it opens at once, or where that does not show."""
+        signals = samples.signals
+        if "p_run" not in signals or not signals["p_run"].step <= SLOW_LOG:
+            return None
+        line = signals["p_run"]
+        step = max(line.step, FINEST)
+        time = np.arange(-BEFORE, AFTER, step)
+        still, open_ = line.between(-5.0 * BEFORE, -BEFORE).value, line.between(0.7 * AFTER, AFTER).value
+        if min(still.size, open_.size) < GRADUAL:
+            return None
+        closed, level = float(np.median(still)), float(np.median(open_))
+        if not line.noise < NOISE * (level - closed):
+            return None
+        risen = np.maximum.accumulate(median_filter((line.at(time) - closed) / (level - closed), 3, mode="nearest"))
+        first, second, last = (float(time[int(np.argmax(risen >= part))]) for part in (*EARLY, NEARLY))
+        if second - first < (GRADUAL - 0.5) * step or line.between(first, second).time.size < GRADUAL - 1:
+            return None  # a leap, or one in a hole of the log
+        begins = first - EARLY[0] / (EARLY[1] - EARLY[0]) * (second - first)
+        near = (time > begins - AROUND) & (time < last + AROUND)
+        at_once = min(_misfit(risen[near], time[near] >= instant) for instant in time[near])
+        gradually = _misfit(risen[near], np.clip((time[near] - begins) / max(last - begins, step), 0.0, 1.0))
+        closer = np.log(at_once / max(gradually, 1e-12 * at_once))
+        return SlowValve(last - begins, 0.5 * float(closer) * (last - begins + 2.0 * AROUND) / BLOCK)
 
     def added_to(self, fitted: Fit) -> tuple[Hypothesis, Array]:
         free = Free(PARAMETER, self.seconds, SURE, "positive")
-        return fitted.hypothesis.with_active(slow_valve().at(seconds=self.seconds), (free,)), np.zeros(1)
+        return fitted.hypothesis.with_active(EFFECT.at(seconds=self.seconds), (free,)), np.zeros(1)
 
     def history(self, fitted: Fit, observed: Observed) -> History:
         """What the valve takes of the pressure while it opens."""
@@ -140,42 +155,8 @@ def loss_share(times: Array, seconds: float) -> Array:
     return np.asarray(1.0 - np.clip(times / seconds, JAR, 1.0) ** 2)
 
 
-def slow_opening(signals: Mapping[str, Signal]) -> SlowValve | None:
-    """How long the valve takes; None where it opens at once, or where that does not show.
-
-    ``signals``: by channel, their times [s] after the opening.
-    """
-    if "p_run" not in signals or not signals["p_run"].step <= SLOW_LOG:
-        return None
-    line = signals["p_run"]
-    step = max(line.step, FINEST)
-    time = np.arange(-BEFORE, AFTER, step)
-    still, open_ = line.between(-5.0 * BEFORE, -BEFORE).value, line.between(0.7 * AFTER, AFTER).value
-    if min(still.size, open_.size) < GRADUAL:
-        return None
-    closed, level = float(np.median(still)), float(np.median(open_))
-    if not line.noise < NOISE * (level - closed):
-        return None
-    risen = np.maximum.accumulate(_median_of_three((line.at(time) - closed) / (level - closed)))
-    first, second, last = (float(time[int(np.argmax(risen >= part))]) for part in (*EARLY, NEARLY))
-    if second - first < (GRADUAL - 0.5) * step or line.between(first, second).time.size < GRADUAL - 1:
-        return None  # a leap, or one in a hole of the log
-    begins = first - EARLY[0] / (EARLY[1] - EARLY[0]) * (second - first)
-    near = (time > begins - AROUND) & (time < last + AROUND)
-    at_once = min(_misfit(risen[near], time[near] >= instant) for instant in time[near])
-    gradually = _misfit(risen[near], np.clip((time[near] - begins) / max(last - begins, step), 0.0, 1.0))
-    closer = np.log(at_once / max(gradually, 1e-12 * at_once))
-    return SlowValve(last - begins, 0.5 * float(closer) * (last - begins + 2.0 * AROUND) / BLOCK)
-
-
 def _misfit(one: Array, other: Array) -> float:
     return float(np.sum((one - other) ** 2))
-
-
-def _median_of_three(values: Array) -> Array:
-    """Single wild samples are left out."""
-    neighbours = np.stack([np.r_[values[:1], values[:-1]], values, np.r_[values[1:], values[-1:]]])
-    return np.asarray(np.median(neighbours, axis=0))
 
 
 UNKNOWN = SlowValve

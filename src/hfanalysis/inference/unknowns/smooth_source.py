@@ -57,7 +57,7 @@ class SmoothSource(LinearUnknown):
     def in_slopes(cls, about: Linearized) -> list[SmoothSource]:
         """The best at every place of the model, also of those that end with the liquid, and in every sensor."""
         splines, observed = about.splines, about.observed
-        found = [_best(place, projected, splines) for place, projected in about.everywhere()]
+        found = [_best(place, projected, splines) for place, projected in about.everywhere]
         if "t_v" in observed.events:
             wet = Splines.over(0.0, observed.events["t_v"][0], SPACING, wet=True)
             found += [_best(place, projected, wet) for place, projected in about.at(WETTED, wet)]

@@ -8,16 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from math import pi, sin, tanh
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, median_filter
 from scipy.signal.windows import hann
 
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Parameter
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, switch, term
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
@@ -69,8 +68,6 @@ LEAST_LOSS = 1e4
 LEAD_IN = 0.3
 """Seconds after the opening that are left out."""
 
-PLACE = Place("swing of the flow", "injector", "1", 0.01)
-
 SHARE, PHASE, FREQUENCY, START, END = range(5)
 
 EDGE = 0.1
@@ -95,28 +92,23 @@ def _begins(t, env, c, p, x):  # type: ignore[no-untyped-def]
     return t - p[START] + 2.0 * EDGE
 
 
-@lru_cache(maxsize=1)
-def swinging() -> Effect:
-    """An injector that passes more and less by ``share``, and with it a flow that swings."""
-    return nameless_effect(
-        "swing",
-        "injector",
-        "a flow that swings",
-        (
-            Parameter("share", "-", "of the flow", 0.01),
-            Parameter("phase", "-", "at the opening", 1.0),
-            *(
-                Parameter(name, unit, "of the swing", 1.0, center=1.0, given=True)
-                for name, unit in (("frequency", "Hz"), ("start", "s"), ("end", "s"))
-            ),
-        ),
-        sites=("injector_factor",),
-        term=_swinging,
-        switch=_begins,
-    )
+EFFECT = nameless_effect(
+    "swing",
+    "injector",
+    "a flow that swings",
+    (
+        Parameter("share", "-", "of the flow", 0.01),
+        Parameter("phase", "-", "at the opening", 1.0),
+        Parameter("frequency", "Hz", "of the swing", 1.0, center=1.0, given=True),
+        Parameter("start", "s", "of the swing", 1.0, center=1.0, given=True),
+        Parameter("end", "s", "of the swing", 1.0, center=1.0, given=True),
+    ),
+    term=_swinging,
+    switch=_begins,
+)
+"""An injector that passes more and less by ``share``, and with it a flow that swings."""
 
-
-SHARE_OF_SWING, PHASE_OF_SWING = (f"{swinging().name}.{name}" for name in ("share", "phase"))
+SHARE_OF_SWING, PHASE_OF_SWING = (f"{EFFECT.name}.{p.name}" for p in EFFECT.parameters[:2])
 """Names of its size and phase in a hypothesis."""
 
 
@@ -131,17 +123,39 @@ class Swing(Unknown):
     start: float
     end: float
     log_evidence: float
-    place: Place = PLACE
+    place = Place("swing of the flow", "injector", "1", 0.01)
     known_by = "frequency"
 
     @classmethod
     def in_samples(cls, samples: Samples) -> Swing | None:
-        return swing_of(samples.signals, samples.steady)
+        """The oscillation that run line and chamber share before ``end`` [s]; None where they share none."""
+        signals, end = samples.signals, samples.steady
+        time = np.arange(LEAD_IN, end, STEP)
+        if not {"p_tank", "p_run", "p_chamber"} <= set(signals) or time.size * STEP < WINDOWS[0]:
+            return None
+        if max(signals["p_run"].step, signals["p_chamber"].step) > STEP:
+            return None
+        rough = {name: _rough(signals[name], time) for name in ("p_run", "p_chamber", "thrust") if name in signals}
+        combustion = _combustion(rough)
+        found: list[_Peak] = []
+        trials = 0
+        for length in WINDOWS:
+            count = round(length / STEP)
+            if count <= time.size:
+                frequency, spectra = _spectra(rough, count)
+                trials += spectra["p_run"].power.size
+                found += _peaks(frequency, spectra, time[:: count // 4], length, combustion)
+        if not found:
+            return None
+        best = max(found, key=lambda peak: peak.evidence)
+        tank, line, chamber = (float(np.median(signals[name].at(time))) for name in ("p_tank", "p_run", "p_chamber"))
+        # by the feed's loss, which goes with the flow's square; the line's pressure holds a part of the swing back
+        share = 0.5 * (tank - chamber) / max((tank - line) * (line - chamber), LEAST_LOSS**2)
+        swing = _swing_at(rough["p_run"], time, best, share, float(np.log(trials)))
+        return swing if (swing.end - swing.start) * swing.frequency >= TURNS else None
 
     def added_to(self, fitted: Fit) -> tuple[Hypothesis, Array]:
-        active = swinging().at(
-            share=self.share, phase=self.phase, frequency=self.frequency, start=self.start, end=self.end
-        )
+        active = EFFECT.at(**{p.name: getattr(self, p.name) for p in EFFECT.parameters})
         free = (Free(SHARE_OF_SWING, self.share, SURE * self.share), Free(PHASE_OF_SWING, self.phase, SURE))
         return fitted.hypothesis.with_active(active, free), np.zeros(2)
 
@@ -170,48 +184,14 @@ class Swing(Unknown):
         )
 
 
-def swing_of(signals: Mapping[str, Signal], end: float) -> Swing | None:
-    """The oscillation that run line and chamber share before ``end`` [s]; None where they share none.
-
-    ``signals``: by channel, their times [s] after the opening.
-    """
-    if not {"p_tank", "p_run", "p_chamber"} <= set(signals) or any(
-        signals[name].step > STEP for name in ("p_run", "p_chamber")
-    ):
-        return None
-    time = np.arange(LEAD_IN, end, STEP)
-    if time.size * STEP < WINDOWS[0]:
-        return None
-    rough = {name: _rough(signals[name], time) for name in ("p_run", "p_chamber", "thrust") if name in signals}
-    combustion = _combustion(rough)
-    found: list[_Peak] = []
-    trials = 0
-    for length in WINDOWS:
-        count = round(length / STEP)
-        if count <= time.size:
-            frequency, spectra = _spectra(rough, count)
-            trials += spectra["p_run"].power.size
-            found += _peaks(frequency, spectra, time[:: count // 4], length, combustion)
-    if not found:
-        return None
-    best = max(found, key=lambda peak: peak.evidence)
-    tank, line, chamber = (float(np.median(signals[name].at(time))) for name in ("p_tank", "p_run", "p_chamber"))
-    # by the feed's loss, which goes with the flow's square; the line's pressure holds a part of the swing back
-    share = 0.5 * (tank - chamber) / max((tank - line) * (line - chamber), LEAST_LOSS**2)
-    swing = _swing_at(rough["p_run"], time, best, share, float(np.log(trials)))
-    return swing if (swing.end - swing.start) * swing.frequency >= TURNS else None
-
-
-@dataclass(frozen=True)
-class _Spectrum:
+class _Spectrum(NamedTuple):
     """Of every window (windows, frequencies), and its power over the background."""
 
     values: NDArray[np.complex128]
     power: Array
 
 
-@dataclass(frozen=True)
-class _Peak:
+class _Peak(NamedTuple):
     """The frequency [Hz], the window [s], and the log evidence, but for the number of those that it is chosen from."""
 
     frequency: float
@@ -278,7 +258,9 @@ def _swing_at(line: Array, time: Array, peak: _Peak, by_pascal: float, price: fl
     """Size, phase and duration; ``by_pascal``: the injector's share for each pascal that the run line swings by."""
     inside = (time >= peak.start) & (time < peak.start + peak.length)
     near = peak.frequency + np.linspace(-0.5, 0.5, FINE) / peak.length
-    strength = [abs(np.sum((line * _hann_over(inside)) * np.exp(-2j * np.pi * f * time))) for f in near]
+    window = np.zeros(time.size)
+    window[inside] = hann(int(inside.sum()))
+    strength = [abs(np.sum((line * window) * np.exp(-2j * np.pi * f * time))) for f in near]
     frequency = float(near[int(np.argmax(strength))])
     turning = gaussian_filter1d(2.0 * line * np.exp(-2j * np.pi * frequency * time), BLUR / STEP, mode="constant")
     mean = complex(np.mean(turning[inside]))
@@ -291,13 +273,6 @@ def _swing_at(line: Array, time: Array, peak: _Peak, by_pascal: float, price: fl
     # more flow, more loss, less pressure in the run line: a sine of the flow is minus a sine there
     phase = (float(np.angle(mean)) - 0.5 * np.pi) % (2.0 * np.pi)
     return Swing(by_pascal * swing, frequency, phase, float(time[begin]), float(time[end - 1]), peak.evidence - price)
-
-
-def _hann_over(inside: NDArray[np.bool_]) -> Array:
-    """Hann's window over a stretch, and nothing elsewhere."""
-    out = np.zeros(inside.size)
-    out[inside] = hann(int(inside.sum()))
-    return out
 
 
 UNKNOWN = Swing
