@@ -137,7 +137,7 @@ class Bench:
 
     def _coarser(self, found: Candidate) -> list[Form]:
         """The form one step coarser where a candidate leaves much open; none where it does not."""
-        form = found.form.coarser(*(left > CALM for left in self.at(found.form).left_open(found.fit.residual)))
+        form = found.form.coarser(*(left > WELL_FITTED for left in self.at(found.form).left_open(found.fit.residual)))
         return [] if form == found.form else [form]
 
     def _refitted(self, found: Candidate, forms: Sequence[Form]) -> list[Candidate | None]:
@@ -195,7 +195,7 @@ def more_probable(one: Candidate, other: Candidate) -> bool:
     return one.log_evidence > other.log_evidence
 
 
-CALM = 1.15
+WELL_FITTED = 1.15
 """Chi-square per observation, on a side, below which no larger model-form error is asked for there."""
 
 

@@ -14,10 +14,10 @@ from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import (
     effect_sentence,
     equation_sentence,
-    far_sentence,
     gap_line,
     headline,
     place_sentence,
+    poor_fit_sentence,
     proof_sentences,
     story,
 )
@@ -168,8 +168,8 @@ def test_where_names_leave_a_choice_the_equation_may_be_sure(
 def test_it_is_said_that_no_model_comes_near_a_test_and_which_comes_nearest() -> None:
     rows = [(["n2_purge"], False, 80.0), (["n2_purge", "tank_heat"], False, 90.0), (["offset of p_tank"], True, 95.0)]
     tried = [{"names": names, "unknown": strange, "log_evidence": gain} for names, strange, gain in rows]
-    assert far_sentence({"leftover": 2.0, "tried": tried}) == []
-    (said,) = far_sentence({"leftover": 18.76, "tried": tried})
+    assert poor_fit_sentence({"leftover": 2.0, "tried": tried}) == []
+    (said,) = poor_fit_sentence({"leftover": 18.76, "tried": tried})
     assert "(n2_purge and tank_heat) leaves a chi-square of 18.8" in said
-    (bare,) = far_sentence({"leftover": 18.76, "tried": tried[2:]})
+    (bare,) = poor_fit_sentence({"leftover": 18.76, "tried": tried[2:]})
     assert "the best with names leaves" in bare

@@ -176,7 +176,7 @@ def test_an_effect_whose_place_the_constants_take_starts_far_from_nothing(monkey
     base = candidate((), fitted, FINEST)
     promising = singles._promising
     monkeypatch.setattr(singles, "_promising", lambda *of: (promising(*of)[0], []))
-    monkeypatch.setattr(singles, "CALM", np.inf)  # nor is a moderate size tried
+    monkeypatch.setattr(singles, "WELL_FITTED", np.inf)  # nor is a moderate size tried
     for one, seen in ((grain, True), (replace(grain, far_starts=()), False)):
         found = _first_children(base, [], Search(bench, Catalogue({grain.name: one}, {})), [grain.name])
         assert [c.names for c in found] == [(grain.name,)] * seen

@@ -16,8 +16,8 @@ from hfanalysis.diagnose.answer.posterior import (
     LEAST_EVIDENCE,
     SET,
     evidences_of,
-    far,
     partners_of,
+    poor_fit,
     scale,
     smallest_set,
     weights_of,
@@ -90,7 +90,7 @@ def verdict_of(found: Naming) -> Verdict:
 def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, float]) -> Verdict:
     """What probabilities amount to."""
     set90 = smallest_set(posterior)
-    top = _claimed(posterior, evidences, far(found.named.leftover))
+    top = _claimed(posterior, evidences, poor_fit(found.named.leftover))
     chosen = _chosen(found, top)
     if top in ("none", "unknown"):
         return Verdict(top, posterior, evidences, set90, chosen)
@@ -101,13 +101,13 @@ def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, fl
     return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
 
 
-def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], far_off: bool = False) -> str:
+def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], poor: bool = False) -> str:
     """The most probable label but none, where it may be claimed, or else none.
 
-    Where all models are ``far_off`` and no unknown source was found, a name is what there is to go by.
+    Where all models are ``poor`` and no unknown source was found, a name is what there is to go by.
     """
     labels = [k for k in posterior if k != "none"]
-    if far_off and evidences.get("unknown", 0.0) < LEAST_EVIDENCE:
+    if poor and evidences.get("unknown", 0.0) < LEAST_EVIDENCE:
         labels = [k for k in labels if k != "unknown"]
     top = max(labels, key=lambda k: (posterior[k], k))
     return top if posterior["none"] < CLAIM and evidences[top] >= LEAST_EVIDENCE else "none"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from hfanalysis.diagnose.answer.posterior import SET, far
+from hfanalysis.diagnose.answer.posterior import SET, poor_fit
 from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.inference.observations.observed import FADE
 from hfanalysis.inference.unknown import Amount
@@ -62,7 +62,7 @@ _CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
 
 def story(product: Mapping[str, Any]) -> list[str]:
     """The whole verdict, sentence by sentence."""
-    out = [headline(product), *far_sentence(product), *equation_sentence(product)]
+    out = [headline(product), *poor_fit_sentence(product), *equation_sentence(product)]
     out += [place_sentence(row) for row in product["localisation"]]
     out += [effect_sentence(row) for row in product["effects"]]
     out += fade_sentence(product["compared"])
@@ -101,10 +101,10 @@ def headline(product: Mapping[str, Any]) -> str:
     return f"The model lacks {names}{doubt}{either}."
 
 
-def far_sentence(product: Mapping[str, Any]) -> list[str]:
+def poor_fit_sentence(product: Mapping[str, Any]) -> list[str]:
     """That even the best model is far from the test, and what explains most of it all the same."""
     left = product["leftover"]
-    if not far(left):
+    if not poor_fit(left):
         return []
     named = [row for row in product["tried"] if not row["unknown"]]
     best = max(named, key=lambda row: row["log_evidence"], default=None)
