@@ -83,7 +83,7 @@ class SmoothSource(LinearUnknown):
 
     def history(self, fitted: Fit, observed: Observed) -> History:
         time = np.linspace(0.0, observed.last, POINTS)
-        block, own = next(found for found in fitted.hypothesis.places() if found[0].names == self._names)
+        block, own = next(it for it in fitted.hypothesis.places() if it[0].names == self._names)
         basis = block.splines.at(time) @ block.matrix
         mean, std = basis @ fitted.x[own], spread_of(basis, fitted.covariance[own, own])
         place, whole = seen_at(self.place, mean, std), self.place.whole(fitted, time, observed)
