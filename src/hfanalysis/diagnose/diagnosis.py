@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hfanalysis.diagnose.answer.plausible import judged
-from hfanalysis.diagnose.answer.posterior import far, scale
+from hfanalysis.diagnose.answer.posterior import poor_fit, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import (
     Verdict,
@@ -69,7 +69,7 @@ def diagnose(
     product = _product(found, verdict, proof, catalogue)
     product["notes"] = [*subject.notes, *product["notes"]]
     product["sentences"] = story(product)
-    if far(found.named.leftover):
+    if poor_fit(found.named.leftover):
         product["sentences"] += shown(subject.log, subject.segments, subject.definition).sentences
     return Diagnosis(found, verdict, product)
 
@@ -99,7 +99,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         "gap": _gap(found.base, chosen, proof, observed),
         "upper_limits": upper_limits(verdict, found, catalogue),
         "twins": _twins(verdict, catalogue),
-        "not_it": [] if far(found.named.leftover) else _not_it(verdict),
+        "not_it": [] if poor_fit(found.named.leftover) else _not_it(verdict),
         "decisive_measurements": _decisive(verdict, catalogue),
         "plausibility": {
             name: row for name, row in _plausibility(found, chosen).items() if name in (*verdict.set90, *verdict.added)

@@ -20,19 +20,19 @@ from hfanalysis.diagnose.answer import verdict as verdict_module
 from hfanalysis.diagnose.answer.effect_source import Acting, acting
 from hfanalysis.diagnose.answer.plausible import MOST_LOST, excess, judged, lost
 from hfanalysis.diagnose.answer.posterior import (
+    ABOVE_CHANCE,
     BEFORE,
-    FAR,
     LEAST_EVIDENCE,
+    POOR_FIT,
     SET,
-    TELLING,
     UNSEEN,
     Scale,
+    above_chance,
     evidences_of,
-    far,
     kind,
+    poor_fit,
     scale,
     smallest_set,
-    telling,
 )
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import (
@@ -55,7 +55,10 @@ from hfanalysis.engine.effect import Active, Believable
 from hfanalysis.errors import InputError
 from hfanalysis.inference import gap
 from hfanalysis.inference.candidate import Bench, Candidate
-from hfanalysis.inference.fitting.fit import fit
+from hfanalysis.inference.fitting.fit import Fit, fit
+from hfanalysis.inference.places import PLACES
+from hfanalysis.inference.splines import Splines
+from hfanalysis.inference.unknowns.smooth_source import SmoothSource, sensor_place
 
 labels = some.dictionaries(
     some.sampled_from(("none", "unknown", "tank_heat", "load_cell_drift", "n2_purge")),
@@ -71,12 +74,12 @@ def eroded() -> Naming:
     return name_effects(made.hypothesis(), made.observed(EROSION), tried)
 
 
-@given(labels, some.floats(0.5, 20.0), some.floats(0.0, 5.0), some.floats(0.0, FAR))
+@given(labels, some.floats(0.5, 20.0), some.floats(0.0, 5.0), some.floats(0.0, POOR_FIT))
 def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: float, leftover: float) -> None:
     found = Scale(t, more).probabilities(evidences, leftover)
     assert set(found) == set(evidences)
     assert sum(found.values()) == pytest.approx(1.0)
-    little = "none" in evidences and not telling(evidences)
+    little = "none" in evidences and not above_chance(evidences)
     order = sorted((k for k in evidences if k != "unknown" or not little), key=lambda k: evidences[k])
     assert all(found[a] <= found[b] for a, b in pairwise(order))
     assert not little or found.get("unknown", 0.0) <= found["none"]
@@ -101,23 +104,21 @@ def test_a_temperature_takes_evidences_less_seriously() -> None:
     assert left.probabilities(evidences, 2.0) == warm
 
 
-@given(some.floats(-20.0, 5000.0), some.floats(-20.0, 5000.0), some.floats(FAR, 100.0))
-def test_of_a_test_that_no_model_comes_near_names_keep_what_is_described(
-    name: float, strange: float, leftover: float
-) -> None:
+@given(some.floats(-20.0, 5000.0), some.floats(-20.0, 5000.0), some.floats(POOR_FIT, 100.0))
+def test_of_a_test_that_no_model_comes_near_names_keep_a_share(name: float, strange: float, leftover: float) -> None:
     evidences = {"none": 0.0, "tank_heat": name, "unknown": strange}
     near, far = (Scale().probabilities(evidences, left) for left in (1.0, leftover))
     assert sum(far.values()) == pytest.approx(1.0)
     for label in ("none", "tank_heat"):
-        assert far[label] == pytest.approx(near[label] * FAR / leftover)
-    assert far["unknown"] >= 1.0 - FAR / leftover
+        assert far[label] == pytest.approx(near[label] * POOR_FIT / leftover)
+    assert far["unknown"] >= 1.0 - POOR_FIT / leftover
 
 
 def test_far_from_all_models_a_name_is_claimed_only_where_no_source_is_found() -> None:
     stated = Scale().probabilities({"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, 19.0)
-    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, far(19.0)) == "unknown"
-    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}, far(19.0)) == "tank_heat"
-    assert _claimed(stated, {"none": 0.0, "tank_heat": 8.0, "unknown": -5.0}, far(19.0)) == "none"
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, poor_fit(19.0)) == "unknown"
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}, poor_fit(19.0)) == "tank_heat"
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8.0, "unknown": -5.0}, poor_fit(19.0)) == "none"
     assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}) == "none"
 
 
@@ -199,10 +200,10 @@ def test_where_nothing_is_seen_unknown_is_not_more_probable_than_none() -> None:
         found = Scale(offsets=offsets).probabilities({"none": 0.0, "tank_heat": name, "unknown": unknown}, 1.0)
         return float(np.log(found["unknown"] / found["none"]))
 
-    least = TELLING["unknown"]
+    least = ABOVE_CHANCE["unknown"]
     assert odds(least - 0.1) == pytest.approx(0.0)
     assert odds(least) == pytest.approx(least)
-    assert odds(6.0, name=TELLING["named"]) == pytest.approx(6.0)  # something is there
+    assert odds(6.0, name=ABOVE_CHANCE["named"]) == pytest.approx(6.0)  # something is there
     assert odds(6.0, offset=-8.0) == pytest.approx(-2.0)  # what is less probable anyhow stays as it is
 
 
@@ -283,12 +284,21 @@ def test_an_impossible_size_makes_a_name_less_probable() -> None:
     assert odds[0] - odds[1] == pytest.approx(lost(effect("nozzle_throat_erosion").at(rate=1.2e-3)))
 
 
+def unnamed(place: str, fitted: Fit, evidence: float) -> Candidate:
+    """An unknown source somewhere, which explains so much."""
+    sensors = [sensor_place(made.observed(), name) for name in made.NOISE]
+    at = next(p for p in (*PLACES, *sensors) if p.name == place)
+    nothing = np.zeros(4)
+    source = SmoothSource(at, 0.0, np.zeros(fitted.x.size), at.typical, 1.5, nothing, Splines.over(0.0, 1.0, 1.0))
+    return Candidate((place,), fitted, evidence, source=source)
+
+
 def probable(*gains: tuple[str, float]) -> Naming:
     """A naming in which these names have such log evidences beyond none."""
     found, single = eroded(), eroded().singles[0]
     base = found.base.log_evidence
     singles = tuple(replace(single, names=(n,), log_evidence=base + g) for n, g in gains if n != "unknown")
-    strange = tuple(Candidate(("tank_leak",), single.fit, base + g, unknown=True) for n, g in gains if n == "unknown")
+    strange = tuple(unnamed("tank_leak", single.fit, base + g) for n, g in gains if n == "unknown")
     equations = found.equations | {n: effect(n).equation for n, _ in gains if n != "unknown"}
     return replace(found, singles=singles, sets=(), unknown=strange, equations=equations)
 
@@ -363,7 +373,7 @@ def strange(*sources: tuple[str, float]) -> Naming:
     """Throat erosion that explains 20 units, and unknown sources alone at these sites that explain so much."""
     found = probable(("nozzle_throat_erosion", 20.0))
     fit, base = found.singles[0].fit, found.base.log_evidence
-    return replace(found, unknown=tuple(Candidate((site,), fit, base + gain, unknown=True) for site, gain in sources))
+    return replace(found, unknown=tuple(unnamed(place, fit, base + gain) for place, gain in sources))
 
 
 @pytest.mark.parametrize(

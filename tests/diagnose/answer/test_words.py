@@ -14,12 +14,11 @@ from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import (
     effect_sentence,
     equation_sentence,
-    far_sentence,
     gap_line,
     headline,
     place_sentence,
+    poor_fit_sentence,
     proof_sentences,
-    shown,
     story,
 )
 from hfanalysis.effects import effect
@@ -94,8 +93,6 @@ def test_sentences_give_sizes_in_the_units_of_engineers() -> None:
     assert "the tank's energy differs by 0.9 ± 0.15 kW" in place_sentence(heat)
     assert "(thrust)" in place_sentence({**row, "channel": "thrust"})
     assert place_sentence({**row, "beside": True}).endswith("still open.")
-    assert shown(Quantity(2.5e5, "Pa", 1e4)) == "2.5 ± 0.1 bar"
-    assert shown(Quantity.absent("not recorded")) == "not known"
     assert gap_line("thrust", product("named")["gap"]) == "thrust: rms 10 N without, 5 N with it; noise 5 N."
     assert proof_sentences(product("named"))[0].startswith("98 % of the gap closes")
     assert proof_sentences({"gap": {"closed_fraction": {}}}) == []
@@ -172,8 +169,8 @@ def test_where_names_leave_a_choice_the_equation_may_be_sure(
 def test_it_is_said_that_no_model_comes_near_a_test_and_which_comes_nearest() -> None:
     rows = [(["n2_purge"], False, 80.0), (["n2_purge", "tank_heat"], False, 90.0), (["offset of p_tank"], True, 95.0)]
     tried = [{"names": names, "unknown": strange, "log_evidence": gain} for names, strange, gain in rows]
-    assert far_sentence({"leftover": 2.0, "tried": tried}) == []
-    (said,) = far_sentence({"leftover": 18.76, "tried": tried})
+    assert poor_fit_sentence({"leftover": 2.0, "tried": tried}) == []
+    (said,) = poor_fit_sentence({"leftover": 18.76, "tried": tried})
     assert "(n2_purge and tank_heat) leaves a chi-square of 18.8" in said
-    (bare,) = far_sentence({"leftover": 18.76, "tried": tried[2:]})
+    (bare,) = poor_fit_sentence({"leftover": 18.76, "tried": tried[2:]})
     assert "the best with names leaves" in bare

@@ -16,8 +16,8 @@ from hfanalysis.diagnose.answer.posterior import (
     LEAST_EVIDENCE,
     SET,
     evidences_of,
-    far,
     partners_of,
+    poor_fit,
     scale,
     smallest_set,
     weights_of,
@@ -25,10 +25,10 @@ from hfanalysis.diagnose.answer.posterior import (
 from hfanalysis.diagnose.answer.where import elsewhere, likeliest_of, likeliest_source
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming
-from hfanalysis.diagnose.naming.source_history import Course, course_of
 from hfanalysis.engine.effect import Active, Parameter
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.unknown import History, has_name
 from hfanalysis.quantity import NORMAL_95, Quantity
 
 Array = NDArray[np.float64]
@@ -90,7 +90,7 @@ def verdict_of(found: Naming) -> Verdict:
 def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, float]) -> Verdict:
     """What probabilities amount to."""
     set90 = smallest_set(posterior)
-    top = _claimed(posterior, evidences, far(found.named.leftover))
+    top = _claimed(posterior, evidences, poor_fit(found.named.leftover))
     chosen = _chosen(found, top)
     if top in ("none", "unknown"):
         return Verdict(top, posterior, evidences, set90, chosen)
@@ -101,13 +101,13 @@ def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, fl
     return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
 
 
-def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], far_off: bool = False) -> str:
+def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], poor: bool = False) -> str:
     """The most probable label but none, where it may be claimed, or else none.
 
-    Where all models are ``far_off`` and no unknown source was found, a name is what there is to go by.
+    Where all models are ``poor`` and no unknown source was found, a name is what there is to go by.
     """
     labels = [k for k in posterior if k != "none"]
-    if far_off and evidences.get("unknown", 0.0) < LEAST_EVIDENCE:
+    if poor and evidences.get("unknown", 0.0) < LEAST_EVIDENCE:
         labels = [k for k in labels if k != "unknown"]
     top = max(labels, key=lambda k: (posterior[k], k))
     return top if posterior["none"] < CLAIM and evidences[top] >= LEAST_EVIDENCE else "none"
@@ -122,7 +122,7 @@ def _believed(candidate: Candidate) -> Candidate:
 def acting_in(found: Fit) -> dict[str, Active]:
     """The effects of a fit by their names, without unknown sources."""
     acting = found.burnt.steps.engine.effects
-    return {active.effect.name: active for active in acting if not active.effect.name.startswith("probe_")}
+    return {active.effect.name: active for active in acting if has_name(active.effect)}
 
 
 def _chosen(found: Naming, top: str) -> Candidate:
@@ -183,13 +183,13 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     gain = chosen.log_evidence - found.base.log_evidence
     out = []
     if chosen.unknown:
-        out.append(of_unknown(course_of(chosen.fit, chosen.names[-1], observed), gain, observed.phases))
+        out.append(of_unknown(chosen.history(observed), gain, observed.phases))
     for name in verdict.added:
         source = acting(chosen.fit, name, observed)
         out.append(of_acting(name, source, gain / (len(out) + 1), observed.phases))
     beside = next((c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]), None)
     if beside is not None and (rest := beside.log_evidence - chosen.log_evidence) > 0.0:
-        row = of_unknown(course_of(beside.fit, beside.names[-1], observed), rest, observed.phases)
+        row = of_unknown(beside.history(observed), rest, observed.phases)
         out.append({**row, "beside": True, "significance": min(rest, 0.5 * out[-1]["significance"])})
     return out
 
@@ -211,16 +211,16 @@ def _of_candidate(candidate: Candidate, found: Naming) -> dict[str, Any]:
     """The row of a single effect or a source that is not claimed."""
     observed, gain = found.bench.observed, candidate.log_evidence - found.base.log_evidence
     if candidate.unknown:
-        return of_unknown(course_of(candidate.fit, candidate.names[-1], observed), gain, observed.phases)
+        return of_unknown(candidate.history(observed), gain, observed.phases)
     return of_acting(candidate.names[0], acting(candidate.fit, candidate.names[0], observed), gain, observed.phases)
 
 
-def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:
+def of_unknown(history: History, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:
     """A row for an unknown source."""
-    site = course.site
-    made = Acting(course.equation, site.unit, course.time, course.mean, course.std, site.sensor)
-    row = of_acting(site.name, made, gain, phases, course.blur, course.stretch)
-    return {**row, "phase": _phase(course.time, course.of_equation, phases), **course.sizes}
+    place = history.place
+    made = Acting(place.equation, place.unit, history.time, history.mean, history.std, place.sensor)
+    row = of_acting(place.name, made, gain, phases, history.blur, history.stretch)
+    return {**row, "phase": _phase(history.time, history.of_equation, phases), **history.sizes}
 
 
 SEEN = 0.05

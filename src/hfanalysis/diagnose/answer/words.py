@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-from hfanalysis.diagnose.answer.posterior import SET, far
+from hfanalysis.diagnose.answer.posterior import SET, poor_fit
 from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.inference.observations.observed import FADE
-from hfanalysis.quantity import Quantity
+from hfanalysis.inference.unknown import Amount
+from hfanalysis.inference.unknowns import kind_of
+from hfanalysis.record.channels import unit_of
+from hfanalysis.wording.numbers import listed
 
 EQUATIONS = {
     "tank_energy": "the tank's energy",
@@ -55,12 +58,11 @@ BRIEF = 0.5
 
 _UNITS = {"Pa": ("bar", 1e-5), "W": ("kW", 1e-3), "kg/s": ("g/s", 1e3), "1": ("%", 100.0)}
 _CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
-_UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
 
 
 def story(product: Mapping[str, Any]) -> list[str]:
     """The whole verdict, sentence by sentence."""
-    out = [headline(product), *far_sentence(product), *equation_sentence(product)]
+    out = [headline(product), *poor_fit_sentence(product), *equation_sentence(product)]
     out += [place_sentence(row) for row in product["localisation"]]
     out += [effect_sentence(row) for row in product["effects"]]
     out += fade_sentence(product["compared"])
@@ -99,10 +101,10 @@ def headline(product: Mapping[str, Any]) -> str:
     return f"The model lacks {names}{doubt}{either}."
 
 
-def far_sentence(product: Mapping[str, Any]) -> list[str]:
+def poor_fit_sentence(product: Mapping[str, Any]) -> list[str]:
     """That even the best model is far from the test, and what explains most of it all the same."""
     left = product["leftover"]
-    if not far(left):
+    if not poor_fit(left):
         return []
     named = [row for row in product["tried"] if not row["unknown"]]
     best = max(named, key=lambda row: row["log_evidence"], default=None)
@@ -121,15 +123,6 @@ def equation_sentence(product: Mapping[str, Any]) -> list[str]:
         return []
     equation, probability = next(iter(product["by_equation"].items()))
     return [f"Whatever its name, it is in {EQUATIONS[equation]} ({probability:.2f})."] if probability >= SET else []
-
-
-def listed(names: Sequence[str]) -> str:
-    """Names as a sentence lists them.
-
-    >>> listed(["heat", "a wall", "a lag"])
-    'heat, a wall and a lag'
-    """
-    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else "".join(names)
 
 
 def left_over(product: Mapping[str, Any]) -> list[str]:
@@ -151,27 +144,8 @@ def place_sentence(row: Mapping[str, Any]) -> str:
     where = _BY_UNIT.get((row["equation"], row["source"].unit), EQUATIONS[row["equation"]])
     where += f" ({row['channel']})" if row.get("channel") else ""
     left = " Beside what is named, this is still open." if row.get("beside") else ""
-    if "opens_in" in row:
-        opens = row["opens_in"]
-        return (
-            f"The valve takes {1e3 * opens.value:.3g} ± {1e3 * opens.std:.2g} ms to open, by the run line's pressure; "
-            f"the model's opens at once.{left}"
-        )
-    if "fails_within" in row:
-        within = row["fails_within"]
-        return (
-            f"In the last {1e3 * within.value:.2g} ± {1e3 * within.std:.1g} ms of the liquid the injector's flow "
-            f"fails, by {-value:.2g} ± {std:.1g} {unit} on average: chamber pressure and thrust fall before the tank's "
-            f"shows the end of the liquid, as where gas comes in with it.{left}"
-        )
-    if "frequency" in row:
-        return (
-            f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s the flow swings by {value:.2g} ± {std:.1g} "
-            f"{unit} at {row['frequency'].value:.2g} Hz: run line and chamber show it in opposite directions.{left}"
-        )
-    if "delay" in row:
-        delay = row["delay"]
-        return f"{where[0].upper()}{where[1:]} is read {1e3 * delay.value:.3g} ± {1e3 * delay.std:.2g} ms late.{left}"
+    if (kind := kind_of(row)) is not None:
+        return kind.words(row, where, Amount(value, std, unit)) + left
     start, end = row["t_start"], row["t_end"]
     digits = 1 if end.value - start.value > BRIEF else 2
     latest = " s (at the latest)" if start.value - start.interval[0] > GRADUAL * start.std else ""
@@ -204,7 +178,7 @@ def fade_sentence(compared: Mapping[str, Any]) -> list[str]:
 
 def gap_line(channel: str, gap: Mapping[str, Any]) -> str:
     """Residual of a channel without and with the effects, and its noise."""
-    unit, factor = _CHANNELS[_UNIT_OF_CHANNEL.get(channel, "Pa")]
+    unit, factor = _CHANNELS[unit_of(channel)]
     before, after, noise = (factor * gap[key][channel] for key in ("before", "after", "noise"))
     return f"{channel}: rms {before:.3g} {unit} without, {after:.3g} {unit} with it; noise {noise:.2g} {unit}."
 
@@ -230,16 +204,3 @@ def proof_sentences(product: Mapping[str, Any]) -> list[str]:
         what = "smaller than the noise of single means, or in instants and the filling of the line"
         said.append(f"{where}: what names the effect is {what}, where no gap is measured.")
     return said
-
-
-def shown(quantity: Quantity | Mapping[str, Any]) -> str:
-    """A quantity in people's units."""
-    value, unit, std = (
-        (quantity.value, quantity.unit, quantity.std)
-        if isinstance(quantity, Quantity)
-        else (quantity["value"], quantity.get("unit", ""), quantity.get("std"))
-    )
-    name, factor = _UNITS.get(unit, (unit, 1.0))
-    if value is None:
-        return "not known"
-    return f"{factor * value:.3g}" + (f" ± {factor * std:.2g}" if std else "") + f" {name}"
