@@ -22,6 +22,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent
 
+_BEFORE = f"{PACKAGE}{os.sep}"
 _TEXTS = ("'" * 3, '"' * 3)
 _TYPING = re.compile(r"\nif TYPE_CHECKING:\n(?:[ \t].*\n|\n)*")
 _STATEMENT = re.compile(r"\n([ \t]*)(?:from ([\w.]+) import (\([^)]*\)|.*)|import (.*))")
@@ -76,13 +77,19 @@ def digest(files: frozenset[Path]) -> str:
 
 @cache
 def _content(path: Path) -> str:
-    return sha256(path.read_bytes()).hexdigest()
+    return sha256(_read(path)).hexdigest()
+
+
+@cache
+def _read(path: Path) -> bytes:
+    with open(path, "rb", buffering=0) as file:
+        return file.readall()
 
 
 @cache
 def short(path: Path) -> str:
     """A file's path in the package; of one that is not in it the name."""
-    return path.relative_to(PACKAGE).as_posix() if path.is_relative_to(PACKAGE) else path.name
+    return str(path).removeprefix(_BEFORE) if str(path).startswith(_BEFORE) else path.name
 
 
 @cache
@@ -102,7 +109,7 @@ def _packages(folder: Path) -> tuple[Path, ...]:
 
 @cache
 def _names(path: Path) -> Found:
-    code = _without_texts(path.read_text(encoding="utf-8", errors="replace"))
+    code = _without_texts(_read(path).decode("utf-8", "replace"))
     walks = path.name == "__init__.py" and any(mark in code for mark in _WALKS)
     top: set[str] = set()
     inner = set(_NAMED.findall(code)) | (_of_package(path) if walks else set())
@@ -113,6 +120,7 @@ def _names(path: Path) -> Found:
 
 def _without_texts(source: str) -> str:
     """A source without its docstrings and other long texts, which may hold code of another program."""
+    source = source.replace("\r\n", "\n")
     for mark in _TEXTS:
         source = mark.join(source.split(mark)[::2])
     return "\n" + source
@@ -130,8 +138,8 @@ def _said(module: str, names: str) -> Iterator[str]:
 
 def _of_package(path: Path) -> set[str]:
     """All modules of the package whose ``__init__`` this is."""
-    before = f"{_dotted(path)}."
-    return {name for name in _tree()[0] if name.startswith(before)}
+    before = f"{path.parent}{os.sep}"
+    return {name for name, module in _tree()[0].items() if str(module).startswith(before)}
 
 
 @cache
@@ -143,15 +151,11 @@ def _tree() -> tuple[dict[str, Path], list[tuple[Path, Path]]]:
     for folder, inner, names in os.walk(PACKAGE):
         inner[:] = [name for name in inner if name not in _NOT_CODE]
         here = Path(folder)
+        dotted = ".".join((PACKAGE.name, *here.relative_to(PACKAGE).parts))
         owner = owners[folder] = here if "__init__.py" in names else owners.get(str(here.parent), here)
         for name in names:
             if name.endswith(".py"):
-                modules[_dotted(here / name)] = here / name
+                modules[f"{dotted}.{name[:-3]}".removesuffix(".__init__")] = here / name
             else:
                 beside.append((here / name, owner))
     return modules, beside
-
-
-def _dotted(path: Path) -> str:
-    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
