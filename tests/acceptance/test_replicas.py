@@ -21,9 +21,9 @@ from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.fuel_law import evidence_for
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.campaign.regression import regression_of
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import load_definition
 from hfanalysis.record.log import read_log
-from hfanalysis.segment.phases import Segments
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 

@@ -16,12 +16,11 @@ from hfanalysis.engine.observe import observe
 from hfanalysis.engine.unsteady import Burn, burn
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.reduction import observe_test
+from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.sections import Site
-from hfanalysis.segment.kind import Kind
-from hfanalysis.segment.phases import EVENTS, Segments
 from hfanalysis.units import Value
 
 Array = NDArray[np.float64]
@@ -89,7 +88,7 @@ def segments(**change: Quantity) -> Segments:
         "t_fuel_out": Quantity(done.burn_time, "s", 0.01),
         "t_feed": Quantity(0.15, "s", 0.01),
     }
-    return Segments(Quantity(OPENING, "s", 1e-4), absent | known | change, Kind("hot_fire", "it burns"))
+    return Segments.of(Quantity(OPENING, "s", 1e-4), absent | known | change, kind="hot_fire")
 
 
 def reduced(of: TestLog | None = None, definition: TestDefinition | None = None, **events: Quantity) -> Observed:

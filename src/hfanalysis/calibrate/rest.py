@@ -9,13 +9,11 @@ mass.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.engine.tank import mass_along_blowdown, split
-from hfanalysis.quantity import Quantity
 from hfanalysis.thermo.saturation import Property, Saturation
 
 Array = NDArray[np.float64]
@@ -25,24 +23,6 @@ STRATIFIED = 2.0
 
 MODEL_MASS_SPREAD = 0.05
 """Relative standard deviation of the blowdown's own mass from heat and stratification that an adiabatic tank lacks."""
-
-
-@dataclass(frozen=True)
-class Rest:
-    """What is known of the tank before and just after the opening; quantities in SI, ``remarks`` in words."""
-
-    pressure: Quantity
-    temperature: Quantity
-    bulk_temperature: Quantity
-    liquid_fraction: Quantity
-    blowdown_mass: Quantity
-    liquid_phase_heat: Quantity
-    load_cell_mass: Quantity
-    remarks: tuple[str, ...]
-
-    def to_json(self) -> dict[str, Any]:
-        """The ``rest`` block of calibration.json."""
-        return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
 
 @dataclass(frozen=True)

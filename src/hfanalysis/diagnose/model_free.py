@@ -12,13 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.products.segments import Segments
+from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 from hfanalysis.validate.performance import fire_of
-from hfanalysis.validate.sensor_faults import Finding, findings
+from hfanalysis.validate.sensor_faults import findings
 
 Array = NDArray[np.float64]
 

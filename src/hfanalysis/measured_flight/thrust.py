@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
 
 Array = NDArray[np.float64]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from markupsafe import Markup, escape
 
-from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
+from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.wording.numbers import MINUS, Shown, decimals_for, fixed, in_words, shown, tidy
 from hfanalysis.wording.scales import scale, superscript
 
@@ -66,10 +66,10 @@ def _converted(number: str, std: str, unit: str) -> Markup:
     return both(f"{number} ± {std} {unit}", f"{fixed(value, decimals)} ± {fixed(spread, decimals)} {team.unit}")
 
 
-def value(quantity: Mapping[str, Any], name: str = "", std_last: bool = False) -> Markup:
+def value(quantity: Quantity, name: str = "", std_last: bool = False) -> Markup:
     """A quantity with its standard deviation and unit; ``std_last`` puts the deviation behind the unit."""
     si, team = _shown(quantity, name)
-    number = both(si.value, team.value, "number", quantity.get("value"), str(quantity.get("unit") or ""))
+    number = both(si.value, team.value, "number", quantity.value, quantity.unit)
     std = Markup(" ") + both(f"± {si.std}", f"± {team.std}", "std") if si.std else Markup()
     unit = Markup(" ") + both(si.unit, team.unit, "unit") if si.unit or team.unit else Markup()
     if std and si.unit.startswith("×") and not std_last:
@@ -78,14 +78,19 @@ def value(quantity: Mapping[str, Any], name: str = "", std_last: bool = False) -
     return Markup('<span class="quantity">{}{}</span>').format(number, rest)
 
 
-def interval(quantity: Mapping[str, Any], name: str = "") -> Markup:
+def interval(quantity: Quantity, name: str = "") -> Markup:
     """Its 95 % interval."""
     si, team = _shown(quantity, name)
     return both(si.interval, team.interval)
 
 
-def _shown(quantity: Mapping[str, Any], name: str) -> tuple[Shown, Shown]:
+def _shown(quantity: Quantity, name: str) -> tuple[Shown, Shown]:
     return shown(quantity, "si", name), shown(quantity, "team", name)
+
+
+def remark(quantity: Quantity) -> Markup:
+    """Why it is as it is, or why it is not there."""
+    return switchable(quantity.why or quantity.reason or "")
 
 
 def symbol(name: str) -> Markup:

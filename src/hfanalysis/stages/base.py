@@ -25,7 +25,7 @@ import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from hfanalysis.errors import InputError
 from hfanalysis.products import disk as products
@@ -36,7 +36,9 @@ from hfanalysis.units import near
 
 if TYPE_CHECKING:
     from hfanalysis.inference.adopted.effects import Adopted
+    from hfanalysis.products.model import Product
 
+P = TypeVar("P", bound="Product")
 BASE = "base_"
 """How a product's name begins that is made without adopted effects, by a stage that also makes one with them."""
 
@@ -129,6 +131,14 @@ class Context:
         from hfanalysis.inference.adopted.effects import read_adopted
 
         return read_adopted(self.root, self.definition)
+
+    def read(self, product: type[P], name: str = "") -> P:
+        """A finished JSON product, of another name than its usual one where that is given."""
+        return product.from_json(self.read_json(name or product.file))
+
+    def write(self, product: Product, name: str = "") -> None:
+        """Write a JSON product of the running stage, with the test's name first and its provenance last."""
+        self.write_json(name or product.file, product.to_json())
 
     def write_json(self, name: str, data: Mapping[str, Any]) -> None:
         """Write a JSON product of the running stage, with the test's name first and its provenance last."""

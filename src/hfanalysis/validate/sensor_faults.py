@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi, sqrt
-from typing import Any
 
 import numpy as np
 
 from hfanalysis.engine.nozzle import choked_flow_factor, expand
+from hfanalysis.products.segments import Segments
+from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.thrust import thrust_of
 
 ZERO = "does not return to zero"
 """Of this ingest has warned already."""
+
+DISAGREE = "thrust and p_c A_t disagree"
 
 ZERO_SHARE = 0.02
 """Part of the largest thrust from which on a cell that does not come back to zero is called so."""
@@ -31,20 +32,6 @@ TOLERANCE = 0.08
 
 BALANCE = (1350.0, 1680.0)
 """Characteristic velocity [m/s] of nitrous oxide and paraffin at O/F 3 to 9, burnt to 90 to 100 %."""
-
-
-@dataclass(frozen=True)
-class Finding:
-    """A sensor that cannot be right: which ``channels``, a short ``verdict``, the sentence ``text``, and its size."""
-
-    channels: tuple[str, ...]
-    verdict: str
-    text: str
-    size: Quantity
-
-    def to_json(self) -> dict[str, Any]:
-        """As validation.json has it."""
-        return {"channels": list(self.channels), "verdict": self.verdict, "text": self.text, "size": self.size}
 
 
 def findings(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire | str) -> list[Finding]:
@@ -71,7 +58,7 @@ def _zero(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fi
         f"{100.0 * abs(error) / peak:.0f} % of the peak; where it is left in, up to {abs(error) * fire.end:.0f} N s of "
         "impulse are its drift"
     )
-    return Finding(("thrust",), ZERO, text, Quantity(error, "N", std))
+    return Finding(channels=("thrust",), verdict=ZERO, text=text, size=Quantity(error, "N", std))
 
 
 def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> Finding | None:
@@ -95,7 +82,9 @@ def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, f
         f"{high:.2f} at {pressure / 1e5:.1f} bar (throat of {area * 1e6:.0f} mm^2: {source}); thrust cell, chamber "
         "gauge or throat is off"
     )
-    return Finding(("thrust", "p_chamber"), "thrust and p_c A_t disagree", text, Quantity(value, "", value * relative))
+    return Finding(
+        channels=("thrust", "p_chamber"), verdict=DISAGREE, text=text, size=Quantity(value, "", value * relative)
+    )
 
 
 def _steady(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> tuple[float, float] | None:

@@ -80,7 +80,7 @@ def test_wind_on_the_stand_is_seen_behind_a_coarse_form() -> None:
     course = course_of(best.fit, "offset of thrust", bench.observed)
     assert (np.abs(course.mean - wind(course.time)) < 3.5 * course.std).mean() > 0.95
     row = of_unknown(course, 1.0, bench.observed.phases)
-    assert row["rms"].value == pytest.approx(60.0 / np.sqrt(2.0), rel=0.2)
+    assert row.rms.value == pytest.approx(60.0 / np.sqrt(2.0), rel=0.2)
     assert "goes up and down by 4" in place_sentence(row)
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import log
-from typing import Any
+
+from hfanalysis.products.diagnosis import Plausibility
 
 
 @dataclass(frozen=True)
@@ -66,11 +67,11 @@ def lost(name: str, values: Mapping[str, float]) -> float:
     return 0.0 if beyond <= 1.0 else min(STEEPNESS * log(beyond) ** 2 + 1.0, MOST_LOST)
 
 
-def judged(name: str, values: Mapping[str, float]) -> dict[str, Any]:
+def judged(name: str, values: Mapping[str, float]) -> Plausibility:
     """How large the effect is, whether that is possible, and why."""
     limit = LIMITS.get(name)
     if limit is None:
-        return {"size": None, "plausible": None, "why": "nothing is known of how large this effect can be"}
+        return Plausibility(size=None, plausible=None, why="nothing is known of how large this effect can be")
     chosen = limit.parameter
     if name == "pressure_transducer_offset":
         chosen = max(values, key=lambda k: abs(values[k]))
@@ -78,4 +79,4 @@ def judged(name: str, values: Mapping[str, float]) -> dict[str, Any]:
     most = f"{limit.most * limit.factor:.3g} {limit.unit}".strip()
     possible = excess(name, values) <= 1.0
     why = f"{chosen} of {text}" + (f" is below {most}" if possible else f" is beyond {most}: {limit.why}")
-    return {"size": text, "plausible": possible, "why": why}
+    return Plausibility(size=text, plausible=possible, why=why)
