@@ -140,9 +140,10 @@ blind-calibrate: $(STAMP) ## fit the stated probabilities on 600 tests of the ca
 	$(BLIND) run --split calibration --n 600 --jobs 2 $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) calibrate --split calibration
 
-readme: $(STAMP) ## write the sample output in README.md and the library in docs/effects.md anew
+readme: $(STAMP) ## write the sample output in README.md, the library in docs/effects.md and the products' fields anew
 	@$(BIN)/python pipeline/readme.py
 	@$(BIN)/python pipeline/effects_page.py
+	@$(BIN)/python pipeline/products_page.py
 
 COMPILE := $(BIN)/uv pip compile --universal --python-version 3.11 --only-binary :all: --upgrade --generate-hashes \
 	--no-emit-index-url --custom-compile-command 'make lock' --quiet

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from tests.products import filled
+from tests.products.filled import filled
 
 from hfanalysis.campaign.product import row_of, stand_row
 from hfanalysis.campaign.side_by_side import Ended

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from tests.campaign.rows import definition, made
-from tests.products import filled
+from tests.products.filled import filled
 
 from hfanalysis.campaign.page import page
 from hfanalysis.campaign.product import probability_of, row_of, stand_of, stand_row

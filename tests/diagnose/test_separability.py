@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.engine.stand import engine_on_stand
-from tests.products import loaded
+from tests.products.filled import loaded
 
 from hfanalysis.diagnose.added_sensors import FURTHER, USUAL, Sensor, missing_sensors
 from hfanalysis.diagnose.naming.catalogue import Catalogue

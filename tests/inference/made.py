@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from tests.engine.stand import engine_on_stand
-from tests.products import loaded
+from tests.products.filled import loaded
 
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine, burn

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tests.products import filled
+from tests.products.filled import filled
 from tests.report.diagnosed import DIAGNOSIS
 from tests.report.diagnosed import store as diagnosed_store
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.products import filled
+from tests.products.filled import filled
 from tests.report.diagnosed import DIAGNOSIS, NOTHING
 from tests.report.sample import material, saying, without
 from tests.report.test_page import HOSTILE, Reader

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.products import filled
+from tests.products.filled import filled
 from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.errors import AbsentError

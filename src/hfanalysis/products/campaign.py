@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import SerializerFunctionWrapHandler, model_serializer
+from pydantic import GetJsonSchemaHandler, SerializerFunctionWrapHandler, model_serializer
+from pydantic_core import CoreSchema
 
 from hfanalysis.products.calibration import FuelLaw
 from hfanalysis.products.diagnosis import NamedEffect, Sizes
@@ -61,6 +62,12 @@ class Together(Part):
         rest: dict[str, Any] = as_usual(self)
         mean: dict[str, Any] = rest.pop("mean")
         return mean | rest
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        found = handler.resolve_ref_schema(handler(schema))
+        mean = found["properties"].pop("mean")
+        return {**{name: found[name] for name in ("title", "description", "type", "properties")}, "allOf": [mean]}
 
 
 class ParameterRow(Part):

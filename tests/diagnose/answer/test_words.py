@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from tests.diagnose.answer.test_verdict import eroded, probable
 from tests.inference import made
-from tests.products import filled
+from tests.products.filled import filled
 
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.verdict import effects_product, places, verdict_of

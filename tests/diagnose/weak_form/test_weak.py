@@ -25,7 +25,7 @@ from tests.diagnose.recorded import (
 )
 from tests.effects.runs import own_state
 from tests.engine.stand import engine_on_stand
-from tests.products import loaded
+from tests.products.filled import loaded
 
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import UNITS, weak_residuals

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from tests.inference.adopted.firing import make_root
-from tests.products import filled
+from tests.products.filled import filled
 
 from hfanalysis.cli import main
 from hfanalysis.cli.adopt import adopt, proved_as_before

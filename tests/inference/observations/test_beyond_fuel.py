@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from tests.engine.stand import engine_on_stand
 from tests.inference import logged
-from tests.products import loaded
+from tests.products.filled import loaded
 from tests.segment.stand import signal
 
 from hfanalysis.effects import effect
