@@ -188,7 +188,7 @@ def test_segments_survive_their_product(segments: Segments) -> None:
 def test_a_misfire_survives_its_product() -> None:
     absent = {n: Quantity.absent("nothing") for n in EVENTS}
     segments = Segments.of(Quantity(1.0, "s", 0.1), absent, kind="cold_flow", kind_reason="no fire", misfire=True)
-    assert Segments.from_json(json.loads(to_json(segments))) == segments
+    assert Segments.from_json(json.loads(to_json(segments))).to_json() == segments.to_json()
 
 
 def test_a_tank_above_the_critical_pressure_is_supercharged(burn: Trial) -> None:

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from hfanalysis.cli.exit_status import nobody_reads
-from hfanalysis.products.calibration import Calibration, RegressionBasis
-from hfanalysis.products.campaign import CommonLaw
-from hfanalysis.products.diagnosis import Diagnosis
-from hfanalysis.products.flight import Flight
-from hfanalysis.products.ingest import Ingest
-from hfanalysis.products.segments import Segments
-from hfanalysis.products.validation import Validation
+from hfanalysis.products.model import AdoptedEffect
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context
 from hfanalysis.wording import numbers as wording
 from hfanalysis.wording.numbers import Shown, in_words, ordered, shown
+
+if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
+    from hfanalysis.products.calibration import RegressionBasis
+    from hfanalysis.products.campaign import CommonLaw
+    from hfanalysis.products.validation import Validation
 
 _NARROWEST = 140
 """Columns assumed where nobody says (a pipe), so that tables do not break."""
@@ -75,15 +74,16 @@ def show(name: str, context: Context) -> None:
 def _adopted(name: str, context: Context) -> str:
     """The effects with which a stage's product was made, in words."""
     product = _MADE_WITH_EFFECTS.get(name)
-    there = product is not None and context.product(product.file).is_file()
-    return wording.adopted_in_words(context.read(product).effects) if product and there else ""
+    if product is None or not context.product(product).is_file():
+        return ""
+    return wording.adopted_in_words([AdoptedEffect.from_json(e) for e in context.read_json(product)["effects"]])
 
 
-_MADE_WITH_EFFECTS: dict[str, type[Calibration | Validation | Flight]] = {
-    "calibrate": Calibration,
-    "validate": Validation,
-    "flight": Flight,
-    "run": Validation,
+_MADE_WITH_EFFECTS = {
+    "calibrate": "calibration.json",
+    "validate": "validation.json",
+    "flight": "flight.json",
+    "run": "validation.json",
 }
 
 
@@ -131,6 +131,8 @@ def _print(console: Console, found: Mapping[str, Quantity], title: str) -> None:
 
 
 def _ingest(context: Context, console: Console) -> None:
+    from hfanalysis.products.ingest import Ingest
+
     table = new_table("channel", "column", "unit", "samples", "rate", "least", "largest", "flags", title="channels")
     for name, row in context.read(Ingest).channels.items():
         factor, unit = wording.people_unit(row.unit)
@@ -142,6 +144,8 @@ def _ingest(context: Context, console: Console) -> None:
 
 
 def _segment(context: Context, console: Console) -> None:
+    from hfanalysis.products.segments import Segments
+
     product = context.read(Segments)
     kind = wording.KINDS.get(product.kind, product.kind)
     _print(console, product.quantities, f"phases (seconds after the valve opens): recognised as {kind}")
@@ -150,6 +154,9 @@ def _segment(context: Context, console: Console) -> None:
 
 
 def _calibrate(context: Context, console: Console) -> None:
+    from hfanalysis.products.calibration import Calibration
+    from hfanalysis.products.segments import Segments
+
     product, events = context.read(Calibration), context.read(Segments).events
     times = {name: events[name] for name in ("t_feed", "t_v", "t_purge")}
     _print(console, ordered(product.quantities) | times, "calibration")
@@ -182,8 +189,7 @@ def show_regression(product: CommonLaw) -> None:
         _print(console, ordered(found.quantities), f"{name} alone")
 
 
-def _performance(context: Context, console: Console) -> None:
-    product = context.read(Validation)
+def _performance(product: Validation, console: Console) -> None:
     performance = product.performance
     table = new_table("", "measured", "± std", "model", "± std ", "unit", title="performance")
     for column in table.columns[1:5]:
@@ -199,9 +205,12 @@ def _performance(context: Context, console: Console) -> None:
 
 
 def _validate(context: Context, console: Console) -> None:
-    _performance(context, console)
+    from hfanalysis.products.validation import Validation
+
+    product = context.read(Validation)
+    _performance(product, console)
     table = new_table("run", "channel", "phase", "rms", "bias", "noise", "unit", title="measured minus model")
-    for run, channels in context.read(Validation).gap.items():
+    for run, channels in product.gap.items():
         for channel, phases in channels.items():
             for phase, gap in phases.items():
                 factor, unit = wording.people_unit(gap.unit)
@@ -211,6 +220,8 @@ def _validate(context: Context, console: Console) -> None:
 
 
 def _flight(context: Context, console: Console) -> None:
+    from hfanalysis.products.flight import Flight
+
     product = context.read(Flight)
     _values(console, ordered(product.quantities), f"flight, thrust {product.thrust}")
     _values(console, ordered(product.stability.quantities), "stability")
@@ -221,6 +232,8 @@ def _flight(context: Context, console: Console) -> None:
 
 
 def _diagnose(context: Context, console: Console) -> None:
+    from hfanalysis.products.diagnosis import Diagnosis
+
     product = context.read(Diagnosis)
     for i, sentence in enumerate(product.sentences):
         console.print(Text(sentence, style="bold" if i == 0 else ""), soft_wrap=True)

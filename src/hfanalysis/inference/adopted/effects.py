@@ -11,18 +11,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.engine.effect import Active, Effect, Parameter
 from hfanalysis.errors import InputError
 from hfanalysis.inference.adopted import adopted_file
-from hfanalysis.products.diagnosis import NamedEffect
 from hfanalysis.products.disk import atomic
 from hfanalysis.products.model import AdoptedEffect
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.document import place, read_toml
 from hfanalysis.units import DIMENSIONS, Value, near, parse
+
+if TYPE_CHECKING:
+    from hfanalysis.products.diagnosis import NamedEffect
 
 ABSOLUTE_TEMPERATURE = 100.0
 """[K] A parameter that is never below this is a temperature; others in kelvin are differences."""
