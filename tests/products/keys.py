@@ -11,8 +11,9 @@ KEYS: dict[str, dict[str, Any]] = json.loads((Path(__file__).parent / "keys.json
 
 
 def keys_of(product: dict[str, Any]) -> dict[str, Any]:
-    """The nested keys of a product, in order."""
-    return {name: _nested(part) if name != "provenance" else None for name, part in product.items()}
+    """The nested keys of a product, in order, but for what its sentences quote, which is another in each."""
+    told = {name: part for name, part in product.items() if name != "quoted"}
+    return {name: _nested(part) if name != "provenance" else None for name, part in told.items()}
 
 
 def _nested(data: Any) -> Any:

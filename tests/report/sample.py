@@ -146,6 +146,7 @@ VALIDATION: dict[str, Any] = {
     ],
     "absent": {},
     "warnings": ["thrust and p_c A_t disagree: 2430 N against 3100 N"],
+    "quoted": {f"{force} N": {"value": float(force), "unit": "N", "std": None} for force in (2430, 3100)},
     "provenance": {"hfanalysis": "0.1.0", "parameters": {"modes": "all"}},
 }
 

@@ -19,6 +19,7 @@ from hfanalysis.report.diagnosis_tables import parameters, probabilities
 from hfanalysis.report.html import switchable
 from hfanalysis.report.page import page
 from hfanalysis.report.sections import Laid, lay_out
+from hfanalysis.sentences import said, text
 
 
 def laid_out(folder: Path, product: dict[str, Any]) -> Laid:
@@ -271,10 +272,20 @@ def test_no_texts_of_a_page_depend_on_a_diagnosis_that_is_not_there(tmp_path: Pa
 
 
 def test_a_number_and_what_it_is_unsure_of_change_units_together() -> None:
-    found = str(switchable("It differs by -3.91 ± 0.8 bar, at most 16.6 bar; 12 ± 3 N."))
+    off, most = said(-3.91e5, "bar", ".2f", 8e4, ".1f"), said(16.6e5, "bar", ".1f")
+    words = text(
+        "It differs by {off}, at most {most}; {force}.", off=off, most=most, force=said(12.0, "N", "", 3.0, "")
+    )
+    found = str(switchable(words))
     assert 'data-si="−3.91 ± 0.8 bar" data-team="−57 ± 12 psi"' in found
     assert 'data-si="16.6 bar" data-team="241 psi"' in found
-    assert 'data-si="12 ± 3 N" data-team="2.70 ± 0.67 lbf"' in found
+    assert 'data-si="12.0 ± 3.0 N" data-team="2.70 ± 0.67 lbf"' in found
+
+
+def test_only_what_a_sentence_knows_to_be_a_quantity_changes_units() -> None:
+    assert str(switchable("the gauge of 40 bar")) == "the gauge of 40 bar"
+    found = str(switchable(text("{size} in HF-40 bar, 140 bar", size=said(40e5, "bar", ".0f"))))
+    assert found == '<span data-si="40 bar" data-team="580 psi">40 bar</span> in HF-40 bar, 140 bar'
 
 
 def test_sentences_are_set_like_the_rest_of_the_page() -> None:

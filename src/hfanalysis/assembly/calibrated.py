@@ -21,6 +21,7 @@ from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import FuelLaw, TankConstants
 from hfanalysis.record.definition import TestDefinition
+from hfanalysis.sentences import said, text
 from hfanalysis.thermo.combustion import FORMATION_OFFSET, PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
@@ -188,8 +189,13 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
 
     if not low < high or not miss(low) <= 0.0 <= miss(high):
         raise AbsentError(
-            f"no saturated tank of {engine.oxidizer_mass:.2f} kg in {engine.feed.volume * 1e3:.1f} L comes down to "
-            f"{pressure / 1e5:.1f} bar at {instant:.2f} s"
+            text(
+                "no saturated tank of {mass:.2f} kg in {volume:.1f} L comes down to {pressure} at {instant:.2f} s",
+                mass=engine.oxidizer_mass,
+                volume=engine.feed.volume * 1e3,
+                pressure=said(pressure, "bar", ".1f"),
+                instant=instant,
+            )
         )
     return replace(engine, temperature=float(brentq(miss, low, high, xtol=1e-4)))
 

@@ -13,6 +13,7 @@ from hfanalysis.inference.subject import Subject
 from hfanalysis.products.diagnosis import NO_TIME, ClosedFraction, Compared, Diagnosis, Gap, NamedEffect, Place
 from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
+from hfanalysis.sentences import text
 from hfanalysis.validate.sensor_faults import ZERO
 
 DRIFT = "load_cell_drift"
@@ -55,7 +56,7 @@ def channels_alone(subject: Subject, why: str) -> Diagnosis:
         warnings=(),
         runtime_s=NO_TIME,
         seed=0,
-        sentences=(*seen.sentences, f"No more can be said without a model to compare with: {why}."),
+        sentences=(*seen.sentences, text("No more can be said without a model to compare with: {why}.", why=why)),
     )
 
 

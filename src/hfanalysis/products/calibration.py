@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
-from hfanalysis.products.model import Adopted, Is, Notes, Numbers, Part, Product, Warnings
+from hfanalysis.products.model import Adopted, Is, Notes, Numbers, Part, Product, Warnings, Words
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 
 UNIT_OF_A = "m/s (kg/m^2/s)^-n"
@@ -22,7 +22,7 @@ class Rest(Part):
     blowdown_mass: Annotated[Quantity, Is("load that pressures and volume alone ask for, adiabatic", "kg")]
     liquid_phase_heat: Annotated[Quantity, Is("heat flow that would reconcile mass and pressures", "W")]
     load_cell_mass: Annotated[Quantity, Is("load that the cell shows", "kg")]
-    remarks: Annotated[tuple[str, ...], Is("what does not fit")] = ()
+    remarks: Annotated[tuple[Words, ...], Is("what does not fit")] = ()
 
 
 class CoefficientHistory(Part):
@@ -47,7 +47,7 @@ class RegressionTest(Part):
     """What one test says of a and n, and what their fit leaves of it."""
 
     test: Annotated[str, Is("its name")]
-    fitted_with: Annotated[tuple[str, ...], Is("what was compared, and with what model")]
+    fitted_with: Annotated[tuple[Words, ...], Is("what was compared, and with what model")]
     window: Annotated[tuple[float, float], Is("in which the chamber pressure was compared", "s")]
     burn_time_measured: Annotated[float | None, Is("as stated or seen in the log", "s")] = None
     burn_time_std: Annotated[float | None, Is("its standard deviation", "s")] = None

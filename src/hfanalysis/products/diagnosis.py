@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from hfanalysis.products.model import Is, Notes, Numbers, Part, Product, Warnings
+from hfanalysis.products.model import Is, Notes, Numbers, Part, Product, Warnings, Words
 from hfanalysis.quantity import Quantity
 
 Sizes = dict[str, float]
@@ -17,9 +17,9 @@ AS_SAID = "as unit says"
 class Plausibility(Part):
     """How large an effect is, and whether that can be."""
 
-    size: Annotated[str | None, Is("in words; null where nothing is known of how large it can be")]
+    size: Annotated[Words | None, Is("in words; null where nothing is known of how large it can be")]
     plausible: Annotated[bool | None, Is("whether it can be so large")]
-    why: Annotated[str, Is("why it can, or cannot")]
+    why: Annotated[Words, Is("why it can, or cannot")]
 
 
 class NamedEffect(Part):
@@ -134,7 +134,7 @@ class Lacking(Part):
     """What a governing equation lacks by the channels alone; only ``unit`` and ``reason`` where some are missing."""
 
     unit: Annotated[str, Is("of the equation: W, L, kg/s, bar or N")]
-    reason: Annotated[str | None, Is("why the equation cannot be asked")] = None
+    reason: Annotated[Words | None, Is("why the equation cannot be asked")] = None
     time: Annotated[Numbers, Is("after the opening", "s")] = ()
     value: Annotated[Numbers, Is("what it lacks", AS_SAID)] = ()
     low90: Annotated[Numbers, Is("lower end of its 90 % band", AS_SAID)] = ()
@@ -193,7 +193,7 @@ class Diagnosis(Product):
     )]  # fmt: skip
     twins: Annotated[tuple[tuple[str, ...], ...], Is("groups that the library declares hard to tell apart")]
     not_it: Annotated[tuple[str, ...], Is("effects with a probability below 0.02, first or beside it")]
-    decisive_measurements: Annotated[tuple[str, ...], Is("what would decide between the names that are left")]
+    decisive_measurements: Annotated[tuple[Words, ...], Is("what would decide between the names that are left")]
     plausibility: Annotated[dict[str, Plausibility], Is("how plausible their sizes are")]
     constants: Annotated[Constants | None, Is("the base model's, without and with the effects")] = None
     weak_form: Annotated[Mapping[str, Lacking], Is(
@@ -205,7 +205,7 @@ class Diagnosis(Product):
     warnings: Warnings
     runtime_s: Annotated[Quantity, Is("has no value: times stand in run.log", "s")]
     seed: Annotated[int, Is("nothing is drawn: 0", "")]
-    sentences: Annotated[tuple[str, ...], Is("all of it in words")] = ()
+    sentences: Annotated[tuple[Words, ...], Is("all of it in words")] = ()
 
 
 NO_TIME = Quantity.absent("times stand in run.log, so that products are the same from run to run")

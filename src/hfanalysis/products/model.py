@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
-from pydantic_core import CoreSchema
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
 
+from hfanalysis import sentences
 from hfanalysis.quantity import Quantity
+from hfanalysis.sentences import Text
 
 
 @dataclass(frozen=True)
@@ -22,6 +24,21 @@ class Is:
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         said = {"description": self.words} | ({} if self.unit is None else {"unit": self.unit})
         return {**handler(schema), **said}
+
+
+class _AsItIs:
+    """A text that stays what it is: a model would make a plain one of a sentence that knows its quantities."""
+
+    def __get_pydantic_core_schema__(self, _source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_wrap_validator_function(_kept, handler(str))
+
+
+def _kept(given: Any, as_usual: core_schema.ValidatorFunctionWrapHandler) -> Any:
+    return given if isinstance(given, Text) else as_usual(given)
+
+
+Words = Annotated[str, _AsItIs()]
+"""A sentence, or some."""
 
 
 class Part(BaseModel):
@@ -57,6 +74,18 @@ class Part(BaseModel):
         return {name: value for name, value in fields if isinstance(value, Quantity)}
 
 
+LAST = ("quoted", "provenance")
+"""Fields of a product that its file has last."""
+
+
+class QuotedQuantity(Part):
+    """A quantity that a sentence of the product has."""
+
+    value: Annotated[float, Is("in SI", "as unit says")]
+    unit: Annotated[str, Is("SI")]
+    std: Annotated[float | None, Is("standard deviation, where the sentence has it", "as unit says")]
+
+
 class Product(Part):
     """A JSON product of a stage; who writes it adds the test and what it was made from.
 
@@ -68,6 +97,7 @@ class Product(Part):
 
     test: Annotated[str, Is("name of the test")] = ""
     source: Annotated[str, Is("measured, or generated: replica, synthetic")] = ""
+    quoted: Annotated[Mapping[str, QuotedQuantity], Is("quantities in its sentences, by their words")] = {}
     provenance: Annotated[Mapping[str, Any], Is(
         "what it was made from: SHA-256 of the raw files, of test.toml, of the source and of the products it rests on; "
         "versions; parameters"
@@ -80,13 +110,25 @@ class Product(Part):
         return found
 
     def to_json(self) -> dict[str, Any]:
-        """As JSON has it: the provenance last."""
+        """As JSON has it: what its sentences quote, and the provenance, last."""
         out = super().to_json()
-        return out | {"provenance": out.pop("provenance")} if "provenance" in out else out
+        quoted = sentences.to_json(sentences.quoted_in(out))
+        last = {"quoted": quoted} if quoted else {}
+        return (
+            {name: part for name, part in out.items() if name not in LAST}
+            | last
+            | {name: out[name] for name in LAST[1:] if name in out}
+        )
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """The inverse of :meth:`to_json`: its sentences know their quantities again."""
+        quoted = sentences.from_json(data.get("quoted", {}))
+        return super().from_json(sentences.revived(data, quoted) if quoted else data)
 
 
-Warnings = Annotated[tuple[str, ...], Is("what to be wary of")]
-Notes = Annotated[tuple[str, ...], Is("what was done, and with what")]
+Warnings = Annotated[tuple[Words, ...], Is("what to be wary of")]
+Notes = Annotated[tuple[Words, ...], Is("what was done, and with what")]
 Numbers = tuple[float, ...]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
-from hfanalysis.products.model import Is, Notes, Product, Warnings
+from hfanalysis.products.model import Is, Notes, Product, Warnings, Words
 from hfanalysis.quantity import Quantity
 
 EVENTS = ("t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
@@ -17,7 +17,7 @@ class Segments(Product):
     file: ClassVar[str] = "segments.json"
 
     kind: Annotated[str, Is("of test, as recognised: hot_fire, cold_flow")]
-    kind_reason: Annotated[str, Is("what it was recognised by")]
+    kind_reason: Annotated[Words, Is("what it was recognised by")]
     misfire: Annotated[bool, Is("stated as a hot fire, and nothing burns")]
     supercharged: Annotated[bool, Is("nitrogen presses on the tank from the start")]
     t_open: Annotated[Quantity, Is("the valve opens, in log time", "s")]

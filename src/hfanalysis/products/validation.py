@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
-from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings
+from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings, Words
 from hfanalysis.quantity import Quantity
 
 
@@ -58,7 +58,7 @@ class Finding(Part):
 
     channels: Annotated[tuple[str, ...], Is("which")]
     verdict: Annotated[str, Is("what is wrong, in short")]
-    text: Annotated[str, Is("what is wrong, in a sentence")]
+    text: Annotated[Words, Is("what is wrong, in a sentence")]
     size: Annotated[Quantity, Is("of the error")]
 
 
@@ -77,7 +77,7 @@ class Validation(Product):
     ]
     closure: Annotated[Closure, Is("of the masses")]
     sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors")]
-    absent: Annotated[dict[str, str], Is("what could not be done, and why")]
+    absent: Annotated[dict[str, Words], Is("what could not be done, and why")]
     notes: Notes
     warnings: Warnings
     effects: Adopted = ()

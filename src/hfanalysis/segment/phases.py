@@ -20,6 +20,7 @@ from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.segment.sanity import BESIDE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
+from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation
 
 FUEL_LEFT = 0.05
@@ -163,7 +164,8 @@ class _Search:
         if not len(found):
             return reason
         start, end = max(found, key=lambda hole: hole[1] - hole[0])
-        return f"{reason}; {SHOWN_BY[name]} has no good samples from {start:.2f} to {end:.2f} s, where it may be"
+        hole = "{reason}; {channel} has no good samples from {start:.2f} to {end:.2f} s, where it may be"
+        return text(hole, reason=reason, channel=SHOWN_BY[name], start=start, end=end)
 
     def _holes(self, name: str, start: float, end: float) -> Sequence[Sequence[float]]:
         channel = self.signals.get(SHOWN_BY[name])
@@ -265,8 +267,8 @@ class _Search:
         rest, t_purge = self.signals["p_tank"].mean(-3.0, -0.05), self._time("t_purge")
         if rest > critical:
             self.supercharged = True
-            above = f"above the critical pressure ({critical / 1e5:.1f} bar)"
-            self.warnings.append(f"the tank is supercharged: {rest / 1e5:.1f} bar before the opening, {above}")
+            above = "the tank is supercharged: {rest} before the opening, above the critical pressure ({critical})"
+            self.warnings.append(text(above, rest=said(rest, "bar", ".1f"), critical=said(critical, "bar", ".1f")))
         elif t_purge is not None and t_purge < FROM_THE_START:
             self.supercharged = True
             self.warnings.append("the tank is supercharged: nitrogen feeds it from the opening on")
@@ -280,9 +282,13 @@ class _Search:
             return
         if rest > float(source.pressure(warmth + SATURATION_MARGIN)):
             self.warnings.append(
-                f"the tank stands at {rest / 1e5:.1f} bar before the opening, but saturation at the "
-                f"{warmth - 273.15:.0f} degC of its thermometer is {float(source.pressure(warmth)) / 1e5:.1f} bar: "
-                "it is supercharged, or the thermometer does not see the oxidizer"
+                text(
+                    "the tank stands at {rest} before the opening, but saturation at the {warmth:.0f} degC of its "
+                    "thermometer is {saturated}: it is supercharged, or the thermometer does not see the oxidizer",
+                    rest=said(rest, "bar", ".1f"),
+                    warmth=warmth - 273.15,
+                    saturated=said(float(source.pressure(warmth)), "bar", ".1f"),
+                )
             )
 
     def _tank_temperature(self) -> float | None:

@@ -18,6 +18,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
+from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
 from hfanalysis.validate.thrust import Thrust, thrust_of
 
@@ -53,7 +54,7 @@ def fire_of(segments: Segments, definition: TestDefinition) -> Fire | str:
         found = segments.time(name)
         if found is not None:
             return Fire(found, max(segments.std(name), 1e-3), f"{name}: {words}")
-    return f"the end of the burn is not known: {segments.events['t_end'].reason}"
+    return text("the end of the burn is not known: {reason}", reason=segments.t_end.reason)
 
 
 def measured(
@@ -110,10 +111,13 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     last = abs(signal.mean(fire.end - 0.2, fire.end + 0.2))
     bridged = [_across(whole, max(start, 0.0), min(end, fire.end)) for start, end in unseen]
     errors = (_bias(channel) * fire.end, SPAN * thrust.error * 0.5 * fire.end, last * fire.std, *bridged)
-    drift = f"; {thrust.error:.0f} N of the cell's drift taken off" if thrust.error else ""
+    drift = (
+        text("; {error} of the cell's drift taken off", error=said(thrust.error, "N", ".0f")) if thrust.error else ""
+    )
     lacking = sum(min(end, fire.end) - max(start, 0.0) for start, end in unseen)
-    said = f"; {lacking:.2f} s without samples bridged by straight lines" if lacking else ""
-    return Quantity(value, "N s", float(np.linalg.norm(errors)), why=f"over the burn{drift}{said}")
+    holes = f"; {lacking:.2f} s without samples bridged by straight lines" if lacking else ""
+    why = text("over the burn{drift}{holes}", drift=drift, holes=holes)
+    return Quantity(value, "N s", float(np.linalg.norm(errors)), why=why)
 
 
 def _across(signal: Signal, start: float, end: float) -> float:

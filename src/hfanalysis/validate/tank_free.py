@@ -22,6 +22,7 @@ from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, line_at
+from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 from hfanalysis.validate.residuals import Residual, compared
@@ -194,7 +195,14 @@ def _start(
     if min(parts.liquid, parts.vapor) < 0.0:
         side = "do not fit" if parts.vapor < 0.0 else "are less than the vapour of"
         raise AbsentError(
-            f"the tank cannot be saturated at {start:.2f} s: {mass:.2f} kg {side} {feed.volume * 1e3:.1f} L at "
-            f"{pressure / 1e5:.1f} bar; there is no tank model to run"
+            text(
+                "the tank cannot be saturated at {start:.2f} s: {mass:.2f} kg {side} {volume:.1f} L at {pressure}; "
+                "there is no tank model to run",
+                start=start,
+                mass=mass,
+                side=side,
+                volume=feed.volume * 1e3,
+                pressure=said(pressure, "bar", ".1f"),
+            )
         )
     return mass, temperature

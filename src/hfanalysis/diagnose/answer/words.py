@@ -8,6 +8,7 @@ from hfanalysis.diagnose.answer.posterior import SET, far
 from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.products.diagnosis import Compared, Diagnosis, Gap, NamedEffect, Place
 from hfanalysis.quantity import Quantity
+from hfanalysis.sentences import said, text
 
 EQUATIONS = {
     "tank_energy": "the tank's energy",
@@ -52,8 +53,7 @@ GRADUAL = 2.5
 BRIEF = 0.5
 """Seconds of a stretch below which its beginning and end are said to hundredths."""
 
-_UNITS = {"Pa": ("bar", 1e-5), "W": ("kW", 1e-3), "kg/s": ("g/s", 1e3), "1": ("%", 100.0)}
-_CHANNELS = {"Pa": ("bar", 1e-5), "N": ("N", 1.0), "kg": ("kg", 1.0)}
+_UNITS = {"Pa": "bar", "W": "kW", "kg/s": "g/s", "1": "%"}
 _UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
 
 
@@ -145,8 +145,7 @@ def left_over(product: Diagnosis) -> list[str]:
 
 def place_sentence(row: Place) -> str:
     """Where, from when to when and how much."""
-    unit, factor = _UNITS.get(row.source.unit, (row.source.unit, 1.0))
-    value, std = factor * (row.source.value or 0.0), factor * (row.source.std or 0.0)
+    unit, value, std = _UNITS.get(row.source.unit, row.source.unit), row.source.value or 0.0, row.source.std or 0.0
     where = _BY_UNIT.get((row.equation, row.source.unit), EQUATIONS[row.equation])
     where += f" ({row.channel})" if row.channel else ""
     left = " Beside what is named, this is still open." if row.beside else ""
@@ -157,15 +156,22 @@ def place_sentence(row: Place) -> str:
             f"the model's opens at once.{left}"
         )
     if row.fails_within is not None:
-        return (
-            f"In the last {_ms(row.fails_within, 2)} ms of the liquid the injector's flow "
-            f"fails, by {-value:.2g} ± {std:.1g} {unit} on average: chamber pressure and thrust fall before the tank's "
-            f"shows the end of the liquid, as where gas comes in with it.{left}"
+        return text(
+            "In the last {within} ms of the liquid the injector's flow fails, by {lost} on average: chamber pressure "
+            "and thrust fall before the tank's shows the end of the liquid, as where gas comes in with it.{left}",
+            within=_ms(row.fails_within, 2),
+            lost=said(-value, unit, ".2g", std, ".1g"),
+            left=left,
         )
     if row.frequency is not None:
-        return (
-            f"From {start:.1f} to {end:.1f} s the flow swings by {value:.2g} ± {std:.1g} {unit} at "
-            f"{row.frequency.value:.2g} Hz: run line and chamber show it in opposite directions.{left}"
+        return text(
+            "From {start:.1f} to {end:.1f} s the flow swings by {swing} at {frequency:.2g} Hz: run line and chamber "
+            "show it in opposite directions.{left}",
+            start=start,
+            end=end,
+            swing=said(value, unit, ".2g", std, ".1g"),
+            frequency=row.frequency.value,
+            left=left,
         )
     if row.delay is not None:
         return f"{where[0].upper()}{where[1:]} is read {_ms(row.delay, 3)} ms late.{left}"
@@ -173,10 +179,11 @@ def place_sentence(row: Place) -> str:
     low, _ = row.t_start.interval or (start, start)
     latest = " s (at the latest)" if start - low > GRADUAL * (row.t_start.std or 0.0) else ""
     span = f"From {start:.{digits}f}{latest} to {end:.{digits}f} s {where}"
-    swing = factor * (row.rms.value or 0.0) if row.rms is not None else 0.0
-    if abs(value) < UNEVEN * swing:
-        return f"{span} goes up and down by {swing:.3g} {unit} (rms; mostly in the {row.phase} phase).{left}"
-    return f"{span} differs by {value:.3g} ± {std:.2g} {unit} on average (mostly in the {row.phase} phase).{left}"
+    swing = row.rms.value or 0.0 if row.rms is not None else 0.0
+    uneven = abs(value) < UNEVEN * swing
+    size = said(swing, unit) if uneven else said(value, unit, ".3g", std)
+    does = "goes up and down by {size} (rms; " if uneven else "differs by {size} on average ("
+    return text(span + " " + does + "mostly in the {phase} phase).{left}", size=size, phase=row.phase, left=left)
 
 
 def _ms(quantity: Quantity, digits: int) -> str:
@@ -188,7 +195,7 @@ def effect_sentence(row: NamedEffect) -> str:
     """What a named effect is, and whether it can be so large."""
     size = row.plausibility
     judged = "" if size.plausible is not False else " That is hard to believe: take the name with care."
-    return f"{row.name}: {row.meaning}; {size.why}.{judged}"
+    return text("{name}: {meaning}; {why}.{judged}", name=row.name, meaning=row.meaning, why=size.why, judged=judged)
 
 
 def fade_sentence(compared: Compared) -> list[str]:
@@ -206,9 +213,14 @@ def fade_sentence(compared: Compared) -> list[str]:
 
 def gap_line(channel: str, gap: Gap) -> str:
     """Residual of a channel without and with the effects, and its noise."""
-    unit, factor = _CHANNELS[_UNIT_OF_CHANNEL.get(channel, "Pa")]
-    before, after, noise = (factor * sizes[channel] for sizes in (gap.before, gap.after, gap.noise))
-    return f"{channel}: rms {before:.3g} {unit} without, {after:.3g} {unit} with it; noise {noise:.2g} {unit}."
+    unit = _UNIT_OF_CHANNEL.get(channel, "bar")
+    return text(
+        "{channel}: rms {before} without, {after} with it; noise {noise}.",
+        channel=channel,
+        before=said(gap.before[channel], unit),
+        after=said(gap.after[channel], unit),
+        noise=said(gap.noise[channel], unit, ".2g"),
+    )
 
 
 def proof_sentences(product: Diagnosis) -> list[str]:

@@ -13,6 +13,7 @@ from hfanalysis.report import diagnosis_tables as tables
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.sentences import capitalised, joined
 
 _SHARED = ("segments", "calibration")
 """Products without which there is no diagnosis: their absence is told once."""
@@ -125,7 +126,7 @@ def _remarks(product: Diagnosis) -> Iterator[Markup]:
 
 
 def _sentence(text: str) -> str:
-    return f"{text[:1].upper()}{text[1:]}."
+    return joined("", [capitalised(text), "."])
 
 
 SECTION = Section("Diagnosis", 58, (), render)

@@ -25,7 +25,7 @@ def render(material: Material) -> Iterator[Block]:
     rows = (_row(name, quantity, model.get(name)) for name, quantity in ordered(measured).items())
     yield html.table("Performance", _CAPTION, columns, rows)
     for reason in dict.fromkeys(quantity.reason for quantity in ordered(model).values() if quantity.reason):
-        yield html.paragraph(Markup("No model: {}.").format(html.switchable(reason.rstrip("."))))
+        yield html.paragraph(Markup("No model: {}.").format(html.switchable(reason)))
     yield _closure(ordered(validation.closure.quantities))
 
 

@@ -12,6 +12,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.sentences import joined
 from hfanalysis.wording.numbers import in_words
 
 
@@ -22,7 +23,7 @@ def render(material: Material) -> Iterator[Block]:
         raise AbsentError("the calibration says nothing of the tank at rest")
     rows = [(in_words(name), _finding(name, found)) for name, found in rest.quantities.items()]
     if rest.remarks:
-        rows.append(("remarks", html.switchable("; ".join(rest.remarks))))
+        rows.append(("remarks", html.switchable(joined("; ", rest.remarks))))
     caption = "Whether pressure, loaded mass and volume fit a saturated tank."
     yield html.table("Tank at rest", caption, ("what", "finding"), rows)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from markupsafe import Markup
@@ -13,6 +13,8 @@ from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.ingest import Ingest
 from hfanalysis.products.validation import Finding, Validation
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.flag_notes import of_one, with_flag
+from hfanalysis.record.zero import not_back
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
@@ -155,37 +157,36 @@ def _named(name: str, quantity: Quantity) -> Markup:
 
 
 _OF_SENSORS = re.compile(r"^channel |\b(cell|gauge|thermometer|clock|sensor|disagree)\b", re.IGNORECASE)
-_FLAGGED = re.compile(r"^channel (.+): (\d+ of \d+) samples flagged (\w+)$")
-_RETURNS = re.compile(r"^channel (\w+): does not return to zero")
 
 
 def warnings(material: Material) -> tuple[list[str], list[str]]:
     """What every product warns of, each once: of the sensors and the log, and of the rest."""
-    ingest, found = material.get(Ingest), _faults(material)
+    found = _faults(material)
     faults = [fault.text for fault in found]
-    covered = {channel for fault in found for channel in fault.channels}
-    logged = ingest.warnings if ingest is not None else ()
-    sensors = [text for text in logged if not _repeats(text, covered)]
+    # what validation says at length, ingest has said in short
+    said = tuple(not_back(channel) for fault in found for channel in fault.channels)
     others: list[str] = []
     for product in reversed(list(material.products.values())):
         for text in () if isinstance(product, Ingest) else product.warned:
             (faults if _OF_SENSORS.search(text) else others).append(text)
-    faults += [text for text in sensors if not _FLAGGED.match(text)] + _flagged(sensors)
+    faults += [text for text in _logged(material.get(Ingest)) if not text.startswith(said)]
     return list(dict.fromkeys(faults)), list(dict.fromkeys([*others, *material.definition.warnings]))
 
 
-def _repeats(text: str, covered: Collection[str]) -> bool:
-    """Whether the ingest says in short what the validation says at length."""
-    found = _RETURNS.match(text)
-    return bool(found and found[1] in covered)
-
-
-def _flagged(texts: list[str]) -> list[str]:
-    """Flagged samples of many channels, one line for each flag."""
+def _logged(ingest: Ingest | None) -> list[str]:
+    """What the ingest warns of; flagged samples of single channels in one line for each flag, after all else."""
+    if ingest is None:
+        return []
+    flagged = {
+        with_flag(of_one(name, f"{share} samples"), flag): (flag, f"{name} ({share})")
+        for name, channel in ingest.channels.items()
+        for flag, share in ((flag, f"{count} of {channel.samples}") for flag, count in channel.flags.items())
+    }
     by_flag: dict[str, list[str]] = {}
-    for found in filter(None, map(_FLAGGED.match, texts)):
-        by_flag.setdefault(found[3], []).append(f"{found[1]} ({found[2]})")
-    return [f"samples flagged {flag}: {listed(channels)}" for flag, channels in by_flag.items()]
+    for flag, samples in (flagged[words] for words in ingest.warnings if words in flagged):
+        by_flag.setdefault(flag, []).append(samples)
+    together = [f"samples flagged {flag}: {listed(samples)}" for flag, samples in by_flag.items()]
+    return [words for words in ingest.warnings if words not in flagged] + together
 
 
 SECTION = Section("Verdict", 10, (), render)
