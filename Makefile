@@ -9,12 +9,13 @@ VENV  := .venv
 BIN   := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 ROCKETPY := .venv-rocketpy
-STAGES := ingest segment calibrate validate diagnose flight report run
 
 # The names go to hfa as they were typed, whatever is in them.
 override TEST := $(value TEST)
 override OTHER := $(value OTHER)
 export TEST OTHER
+
+include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
@@ -23,10 +24,8 @@ export TEST OTHER
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
 	@echo
-	@sed -n 's/^\([a-z][a-z -]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | while IFS="$$(printf '\t')" read -r name text; do \
+	@sed -n 's/^\([a-z][a-z -]*\):[^#]*## /\1\t/p' $(lastword $(MAKEFILE_LIST)) $(firstword $(MAKEFILE_LIST)) | while IFS="$$(printf '\t')" read -r name text; do \
 		printf '  %-16s %s\n' "$$name" "$$text"; done
-
-include pipeline/dag.mk
 
 setup: $(STAMP) ## make .venv/ with the locked packages and the command hfa
 
@@ -36,14 +35,6 @@ $(STAMP): requirements.lock pyproject.toml
 	@touch $@
 
 # The stages print what they found, so they always ask hfa, which redoes only what changed.
-ingest: ## TEST=… raw log to canonical channels in SI with quality flags
-segment: ## TEST=… find the phases of the test
-calibrate: ## TEST=… injector coefficient, polytropic exponent, feed losses
-validate: ## TEST=… the tank model against the measurement
-diagnose: ## TEST=… which effect the model lacks, with probabilities and proof; FLAGS=--apply adopts what is named
-flight: ## TEST=… the rocket on the measured thrust: apogee, rail departure, stability, engine files
-report: ## TEST=… processed/TEST/report.html
-run: ## TEST=… every stage
 $(STAGES): $(STAMP)
 	@if [ -z "$$TEST" ]; then \
 		echo "make $@: which test? For example: make $@ TEST=$(or $(firstword $(TESTS)),HF5)" >&2; \
@@ -140,10 +131,12 @@ blind-calibrate: $(STAMP) ## fit the stated probabilities on 600 tests of the ca
 	$(BLIND) run --split calibration --n 600 --jobs 2 $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) calibrate --split calibration
 
-readme: $(STAMP) ## write the sample output in README.md, the library in docs/effects.md and the products' fields anew
+readme: $(STAMP) ## write anew what comes of the code: samples in README.md, docs/effects.md, docs/constants.md, docs/products.md, docs/schemas, make's rules
 	@$(BIN)/python pipeline/readme.py
 	@$(BIN)/python pipeline/effects_page.py
 	@$(BIN)/python pipeline/products_page.py
+	@$(BIN)/python pipeline/dag.py
+	@$(BIN)/python pipeline/constants_page.py
 
 COMPILE := $(BIN)/uv pip compile --universal --python-version 3.11 --only-binary :all: --upgrade --generate-hashes \
 	--no-emit-index-url --custom-compile-command 'make lock' --quiet

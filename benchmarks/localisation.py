@@ -19,12 +19,13 @@ from typing import TypeVar
 
 from hfanalysis.diagnose.diagnosis import diagnose
 from hfanalysis.diagnose.naming.base_model import base_model
-from hfanalysis.diagnose.naming.localise import Source, linear_sources
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
 from hfanalysis.effects import library
 from hfanalysis.inference.candidate import Bench
 from hfanalysis.inference.subject import Subject
+from hfanalysis.inference.unknown import LinearUnknown
+from hfanalysis.inference.unknowns import in_slopes
 from hfanalysis.stages.base import load_stage
 from hfanalysis.stages.diagnose import subject_of
 from hfanalysis.stages.open_test import open_test
@@ -34,7 +35,7 @@ Made = TypeVar("Made")
 ROOT = Path(__file__).resolve().parent.parent
 
 
-def localise(subject: Subject, times: dict[str, float]) -> list[Source]:
+def localise(subject: Subject, times: dict[str, float]) -> list[LinearUnknown]:
     """Unknown sources of a test, the best first; ``times`` [s] by step."""
 
     def timed(step: str, made: Callable[[], Made]) -> Made:
@@ -46,7 +47,7 @@ def localise(subject: Subject, times: dict[str, float]) -> list[Source]:
     hypothesis, observed = timed("what is compared", subject.compared)
     bench = Bench(observed)
     base, _ = timed("base model", lambda: base_model(hypothesis, bench))
-    found = timed("a source at every site", lambda: linear_sources(base.fit, bench.at(base.form)))
+    found = timed("a source at every site", lambda: in_slopes(base.fit, bench.at(base.form)))
     engine = base.fit.burnt.steps.engine
     timed("balances of the channels", lambda: weak_residuals(observed, engine, Spread.of_fit(base.fit)))
     return found
@@ -75,7 +76,7 @@ def main() -> None:
     total = statistics.median(sum(run.values()) for run in runs[1:])
     whole = statistics.median(wholes[1:])
     print(f"  {'in all':<28} {total:7.2f} s, {total / whole:.2f} of a whole diagnosis ({whole:.1f} s)")
-    print("  most probable places: " + ", ".join(dict.fromkeys(source.site.name for source in found[:5])))
+    print("  most probable places: " + ", ".join(dict.fromkeys(source.place.name for source in found[:5])))
 
 
 if __name__ == "__main__":

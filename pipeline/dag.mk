@@ -1,8 +1,4 @@
-# The way through, as rules on real files: what each stage reads and what it writes.
-#
-#   raw_tests/TEST ──► ingest.h5 ──► segments.json ──► calibration.json ──► residuals.h5 ──► report.html
-#                                                                       ├───► diagnosis.json ──┤
-#                                                                       └────► flight.json ────┘
+# The way through, as rules on real files: what each stage reads and what it writes. Written by `make readme`.
 #
 # `hfa` judges by content whether a product is up to date; make's time stamps only tell when to ask it.
 
@@ -13,6 +9,17 @@ EFFECTS := $(wildcard engines/*.effects.toml)
 
 .SECONDARY:
 .SECONDEXPANSION:
+
+STAGES := ingest segment calibrate validate diagnose flight report run
+
+ingest: ## TEST=… Read the raw log onto canonical channels in SI, with quality flags per sample
+segment: ## TEST=… Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end
+calibrate: ## TEST=… Injector coefficient, feed losses, polytropic exponent and regression, with intervals
+validate: ## TEST=… Measure the performance and run the model against the measurement
+diagnose: ## TEST=… Which effect the model lacks, with probabilities and proof
+flight: ## TEST=… Fly the rocket on the measured thrust: apogee, rail departure, stability; engine files
+report: ## TEST=… Write report.html, one page to read offline; on request as PDF, and its plots as PNG and CSV
+run: ## TEST=… every stage
 
 processed/%/ingest.h5: $$(wildcard raw_tests/$$*/*) $(SOURCE) $(STAMP)
 	@$(HFA) ingest --quiet -- $*
@@ -38,7 +45,6 @@ processed/%/flight.json: processed/%/calibration.json
 	@$(HFA) flight --quiet -- $*
 	@touch -c $@
 
-# A log without a firing gets its page too, which says so: the page rests on the raw files, not on every stage's success.
 processed/%/report.html: $$(wildcard raw_tests/$$*/*) $(SOURCE) $(EFFECTS) $(STAMP)
 	@$(HFA) report --quiet -- $*
 	@touch -c $@

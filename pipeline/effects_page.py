@@ -24,8 +24,8 @@ def anew(page: str) -> str:
 
 def _library() -> str:
     found = sorted(library().values(), key=lambda e: (EQUATIONS.index(e.equation), e.name))
-    lines = ["| effect | equation | what it says |", "|---|---|---|"]
-    lines += [f"| [`{e.name}`](#{e.name}) | {e.equation} | {e.meaning} |" for e in found]
+    lines = ["| effect | in plain words | equation | what it says |", "|---|---|---|---|"]
+    lines += [f"| [`{e.name}`](#{e.name}) | {e.plain_name} | {e.equation} | {e.meaning} |" for e in found]
     return "\n".join(lines) + "\n\n" + "\n".join(_effect(e) for e in found)
 
 
@@ -41,10 +41,18 @@ def _effect(e: Effect) -> str:
         f"Acts on {_words(e.sites)}, in {_words(e.phases)}."
         + (f" States of its own: {_words(tuple(f'{s.name} [{s.unit}]' for s in e.states))}." if e.states else "")
         + (f" Twins: {_words(e.twins)}." if e.twins else "")
-        + f" Decided by: {e.decisive}.",
+        + f" Decided by: {e.decisive}."
+        + _believable(e),
         f"\nSource: {e.reference}.\n",
     ]
     return "\n".join(lines)
+
+
+def _believable(e: Effect) -> str:
+    limit = e.believable
+    if limit is None:
+        return ""
+    return f" Believable: `{limit.parameter}` up to {limit.text(limit.most)} ({limit.why})."
 
 
 def _parameter(p: Parameter, strength: bool) -> str:

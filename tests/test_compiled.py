@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import ast
+import os
+import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 import hfanalysis.compiled
+
+PACKAGE = Path(hfanalysis.compiled.__file__).parent
+COMPILERS = {"njit", "jit", "cfunc", "vectorize", "guvectorize", "stencil", "generated_jit"}
 
 CALLER = """
 from thrust.compiled import compiled
@@ -40,7 +49,8 @@ def test_a_number_changed_two_files_away_is_seen(tmp_path: Path) -> None:
     package = tmp_path / "thrust"
     package.mkdir()
     (package / "__init__.py").touch()
-    (package / "compiled.py").write_text(Path(hfanalysis.compiled.__file__).read_text())
+    for name in ("compiled.py", "sources.py"):
+        (package / name).write_text((PACKAGE / name).read_text("utf-8").replace("hfanalysis.", "thrust."))
     (package / "nozzle.py").write_text(CALLER)
     (package / "gas.py").write_text(CALLED)
     (package / "numbers.py").write_text("FACTOR = 1.5\n")
@@ -50,3 +60,65 @@ def test_a_number_changed_two_files_away_is_seen(tmp_path: Path) -> None:
     assert shown(tmp_path) == (3.0, 1)
     (package / "numbers.py").write_text("FACTOR = 1.25\n")
     assert shown(tmp_path) == (2.5, 0)
+
+
+def own_compilers(source: str) -> Iterator[str]:
+    """What a source uses of numba that keeps compiled code beside ours, or none."""
+    tree = ast.parse(source)
+    modules = {a.asname or a.name.split(".")[0] for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "numba":
+            yield from (alias.name for alias in node.names if alias.name in {*COMPILERS, "*"})
+        if isinstance(node, ast.Attribute) and node.attr in COMPILERS:
+            base = ast.unparse(node.value).split(".")[0]
+            yield from [node.attr] * (base in modules)
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "from numba import njit",
+        "def f():\n    from numba import cfunc as c",
+        "import numba\n@numba.njit(cache=True)\ndef f(): ...",
+        "import numba as nb\nf = nb.jit(g)",
+        "import numba.core.decorators as d\nf = d.jit(g)",
+    ],
+)
+def test_a_compiler_of_numbas_own_is_found(source: str) -> None:
+    assert list(own_compilers(source))
+
+
+def test_nothing_is_compiled_but_with_the_packages_own_decorators() -> None:
+    sources = [path for path in sorted(PACKAGE.rglob("*.py")) if path.name != "compiled.py"]
+    found = {path.name: names for path in sources if (names := list(own_compilers(path.read_text("utf-8"))))}
+    assert sources
+    assert found == {}
+
+
+DRAG = """
+import numpy as np
+from hfanalysis.rocket.vehicle import drag
+print(drag(1402.0, 100.0, 0.01, np.array([[0.0], [0.5]])), sum(drag.stats.cache_hits.values()))
+"""
+
+
+def dragged(folder: Path) -> tuple[float, int]:
+    """The drag that a copy of the package computes in a new process, and how often it was found compiled."""
+    places = {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder / "kept")}
+    done = subprocess.run(
+        [sys.executable, "-c", DRAG], env={**os.environ, **places}, capture_output=True, text=True, check=True
+    )
+    value, hits = done.stdout.split()
+    return float(value), int(hits)
+
+
+def test_a_flight_through_other_air_is_computed_anew(tmp_path: Path) -> None:
+    copy = tmp_path / "hfanalysis"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    before, hits = dragged(tmp_path)
+    assert hits == 0
+    assert dragged(tmp_path) == (before, 1)
+    air = copy / "thermo" / "air.py"
+    assert "101_290.0" in air.read_text("utf-8")
+    air.write_text(air.read_text("utf-8").replace("101_290.0", "202_580.0"), "utf-8")
+    assert dragged(tmp_path) == (pytest.approx(2.0 * before, rel=1e-12), 0)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, described, detailed_kinds, faint, telling
+from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, above_chance, detailed_kinds, share_kept, unclaimable
 
 Array = NDArray[np.float64]
 
@@ -137,15 +137,15 @@ def _table(samples: Sequence[Sample]) -> _Table:
     unseen = np.array([[of.get(label, "").startswith("unseen") for label in labels] for of in detailed])
     best = np.max(np.where(kind == 1, evidence, 0.0), axis=1, initial=0.0)
     imitated = np.where(kinds == 2, np.sqrt(best)[:, None], 0.0)
-    capped = (kind == 2) & ~np.array([telling(s.evidences) for s in samples])[:, None]
+    capped = (kind == 2) & ~np.array([above_chance(s.evidences) for s in samples])[:, None]
     apart = np.array([-inf if s.elsewhere is None else s.elsewhere for s in samples])
     none = labels.index("none") if "none" in labels else 0
     evidence[unseen] = 0.0
     excess = np.maximum([s.leftover - 1.0 for s in samples], 0.0)
-    kept = np.array([described(s.leftover) if "unknown" in s.evidences else 1.0 for s in samples])
+    kept = np.array([share_kept(s.leftover) if "unknown" in s.evidences else 1.0 for s in samples])
     strange = np.array([s.truth == "unknown" for s in samples])
     truth = np.array([labels.index(s.truth) for s in samples])
-    weak = np.array([faint(s.evidences) for s in samples])
+    weak = np.array([unclaimable(s.evidences) for s in samples])
     weight = np.array([s.weight for s in samples])
     of_labels = (evidence, imitated, apart, capped, none, kinds, truth)
     return _Table(*of_labels, excess, kept, strange, weak, before / before.sum(), weight)
@@ -182,7 +182,9 @@ def fit(samples: Sequence[Sample], with_leftover: bool, held: Constants | None =
     if not samples:
         raise ValueError("no case has evidences for its right label: nothing can be fitted")
     t = _table(samples)
-    shares = [(1.0 / (len(of) + 2.0), MOST_MISLED) for of in (samples, [s for s in samples if faint(s.evidences)])]
+    shares = [
+        (1.0 / (len(of) + 2.0), MOST_MISLED) for of in (samples, [s for s in samples if unclaimable(s.evidences)])
+    ]
     bounds = [*BOUNDS, *shares]
     if not with_leftover:
         bounds[NAMES.index("per_leftover")] = (0.0, 0.0)

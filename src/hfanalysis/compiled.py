@@ -8,10 +8,8 @@ module of the package that it imports, directly or not*, read as they did; how o
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
-from functools import cached_property, lru_cache
-from hashlib import sha256
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
@@ -21,10 +19,9 @@ from numba.core.ccallback import CFunc
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+from hfanalysis.sources import closure, digest
 
-_PACKAGE = Path(__file__).resolve().parent
-_IMPORT = re.compile(rf"^(?:from|import) {_PACKAGE.name}((?:\.\w+)*)(?: import (\([^)]*\)|.*))?", re.MULTILINE)
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 @overload
@@ -181,44 +178,4 @@ def _stamp(made: Any, function: Callable[..., Any]) -> None:
     index = made._cache._cache_file
     if not hasattr(index, "_source_stamp"):
         raise RuntimeError("this version of numba keeps its cache in another way; hfanalysis.compiled does not know it")
-    index._source_stamp = digest(Path(function.__code__.co_filename))
-
-
-@lru_cache
-def digest(source: Path) -> str:
-    """SHA-256 over a source file and all that it imports of the package."""
-    total = sha256()
-    for path in sorted(_closure(source)):
-        total.update(path.read_bytes())
-    return total.hexdigest()
-
-
-def _closure(source: Path) -> set[Path]:
-    found: set[Path] = set()
-    waiting = {source}
-    while waiting:
-        path = waiting.pop()
-        if path not in found:
-            found.add(path)
-            waiting |= _imports(path)
-    return found
-
-
-@lru_cache
-def _imports(path: Path) -> set[Path]:
-    """Sources of the package that a file imports at its top level."""
-    found: set[Path] = set()
-    for module, names in _IMPORT.findall(path.read_text(encoding="utf-8")):
-        found |= _sources(_PACKAGE.name + module)
-        for name in re.findall(r"\w+", names):
-            found |= _sources(f"{_PACKAGE.name}{module}.{name}")
-    return found
-
-
-def _sources(module: str) -> set[Path]:
-    """The file of a module, of a package its __init__; none for what is no module of ours."""
-    first, *rest = module.split(".")
-    if first != _PACKAGE.name:
-        return set()
-    base = _PACKAGE.joinpath(*rest)
-    return {p for p in (base.with_suffix(".py"), base / "__init__.py") if rest and p.is_file()}
+    index._source_stamp = digest(closure(Path(function.__code__.co_filename), inside=False))

@@ -55,13 +55,23 @@ class Text(str):
         return str.__str__(self), self.quoted
 
 
-def said(value: float, unit: str, form: str = ".3g", std: float | None = None, std_form: str = ".2g") -> Text:
+def said(
+    value: float,
+    unit: str,
+    form: str = ".3g",
+    std: float | None = None,
+    std_form: str = ".2g",
+    size: float | None = None,
+) -> Text:
     """A quantity in words: ``value`` in SI, shown in ``unit`` by a format; with ± ``std`` where that is given.
+
+    ``size``: of a unit that UNITS does not have, in SI.
 
     >>> said(1.25e6, "bar", ".1f", 5e4, ".1f")
     '12.5 ± 0.5 bar'
     """
     si, factor = UNITS.get(unit, (unit, 1.0))
+    factor = factor if size is None else size
     spread = "" if std is None else f" ± {std / factor:{std_form}}"
     words = f"{value / factor:{form}}{spread} {unit}".strip()
     return Text(words, {words: Quoted(float(value), si, None if std is None else float(std))})

@@ -1,5 +1,3 @@
-"""The version of the package."""
-
-from __future__ import annotations
+"""Which version of the package this is."""
 
 __version__ = "0.1.0"

@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-import ast
 import re
-import sys
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from hfanalysis.sources import PACKAGE, libraries
+from hfanalysis.stages.freshness import DISTRIBUTIONS
+
 REPOSITORY = Path(__file__).parents[2]
-COMES_WITH = {"pydantic_core": "pydantic", "sksundae": "scikit-sundae"}
+COMES_WITH = {"pydantic_core": "pydantic", **DISTRIBUTIONS}
 """Imported modules that come in a distribution of another name."""
-
-
-def imported() -> Iterator[str]:
-    """Top-level names of the modules that the package imports anywhere."""
-    for path in (REPOSITORY / "src").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.Import):
-                yield from (alias.name.split(".")[0] for alias in node.names)
-            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-                yield node.module.split(".")[0]
 
 
 def required() -> set[str]:
@@ -41,8 +31,7 @@ def pinned(lock: str) -> dict[str, set[str]]:
 
 
 def test_what_is_imported_is_required_and_the_other_way_round() -> None:
-    third_party = set(imported()) - set(sys.stdlib_module_names) - {"hfanalysis"}
-    assert {COMES_WITH.get(name, name).lower() for name in third_party} == required()
+    assert {COMES_WITH.get(name, name).lower() for name in libraries(PACKAGE.rglob("*.py"))} == required()
 
 
 def test_what_is_required_is_locked() -> None:

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from pipeline import dag
 
 REPOSITORY = Path(__file__).parents[2]
 VENV = Path(sys.prefix)
@@ -106,3 +107,7 @@ def test_make_calibrate_prints_the_result_every_time(checkout: Path) -> None:
         ended = make(checkout, "calibrate", "TEST=HF5")
         assert ended.returncode == 0
         assert "C_i" in ended.stdout
+
+
+def test_the_rules_are_those_of_the_stages() -> None:
+    assert (REPOSITORY / "pipeline" / "dag.mk").read_text(encoding="utf-8") == dag.rules(), "`make readme` writes them"

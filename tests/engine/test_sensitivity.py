@@ -15,7 +15,7 @@ from hfanalysis.engine import sensitivity
 from hfanalysis.engine.phases import FUEL_OUT, LIQUID_OUT, SHOCK
 from hfanalysis.engine.sensitivity import ENGINE_PARAMETERS, Tangents, run_with_tangents
 from hfanalysis.engine.unsteady import Burn, Engine, burn
-from hfanalysis.inference.unknowns.smooth_source import Splines, probe
+from hfanalysis.inference.splines import Splines, probe
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +16,17 @@ from hfanalysis.engine.observe import observe
 from hfanalysis.engine.unsteady import Burn, burn
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.reduction import observe_test
+from hfanalysis.inference.unknown import Samples, Unknown
 from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.sections import Site
+from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
 
 Array = NDArray[np.float64]
+Seen = TypeVar("Seen", bound=Unknown)
 
 OPENING, RATE, QUIET, AFTER = 50.0, 200.0, 4.0, 4.0
 """The opening in log time [s], samples per second, and seconds logged before it and after the burn."""
@@ -89,6 +92,13 @@ def segments(**change: Quantity) -> Segments:
         "t_feed": Quantity(0.15, "s", 0.01),
     }
     return Segments.of(Quantity(OPENING, "s", 1e-4), absent | known | change, kind="hot_fire")
+
+
+def seen(
+    kind: type[Seen], signals: Mapping[str, Signal], steady: float = 5.0, phases: Segments | None = None
+) -> Seen | None:
+    """What the samples show of a kind of unknown; the true phases where no others are given."""
+    return kind.in_samples(Samples(signals, phases or segments(), steady))
 
 
 def reduced(of: TestLog | None = None, definition: TestDefinition | None = None, **events: Quantity) -> Observed:

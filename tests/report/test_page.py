@@ -24,7 +24,7 @@ from hfanalysis.record.summary import summary
 from hfanalysis.report.index import write_index
 from hfanalysis.report.material import Material, phase_list
 from hfanalysis.report.page import page, render
-from hfanalysis.report.sections import lay_out, sections
+from hfanalysis.report.sections import lay_out, provenance, sections
 from hfanalysis.report.sections.verdict import sentence, warnings
 
 HOSTILE = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>&{{ 7*7 }}"
@@ -434,3 +434,12 @@ def test_adopted_effects_show_in_the_verdict_and_in_what_the_page_is_made_from(t
     said = "With tank_heat 0.9 kW (lag 0.1 s) adopted (engines/T.effects.toml)."
     assert page(saying(made, calibration={**CALIBRATION, "effects": [effect]})).count(said) == 2
     assert "adopted" not in page(made)
+
+
+def test_the_code_of_every_stage_is_stated_and_what_they_share_once(tmp_path: Path) -> None:
+    made = material(tmp_path)
+    stated = {"hfanalysis": "1", "libraries": {"numpy": "2"}}
+    origins = {name: {**made.products[name], "provenance": {**stated, "code": f"{name}!"}} for name in made.products}
+    (table,) = provenance.render(replace(made, products=origins))
+    assert [str(table).count(f"<code>{name}!</code>") for name in origins] == [1] * len(origins)
+    assert str(table).count("libraries / numpy") == 1

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hfanalysis.thermo import coolprop_nitrous
+from hfanalysis.thermo import cache, coolprop_nitrous
 from hfanalysis.thermo.cache import cache_directory
 from hfanalysis.thermo.saturation import Array, Property
 
@@ -69,6 +69,14 @@ def test_a_spoilt_table_is_made_anew(source: Source, tmp_path: Path, spoil: obje
     assert source.asked == 2
     assert path.read_bytes() == good
     assert kept(tmp_path) == path  # nothing half made is left beside it
+
+
+def test_a_table_of_other_code_is_made_anew(source: Source, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    coolprop_nitrous.build()
+    monkeypatch.setattr(cache, "digest", lambda files: "of other code")
+    coolprop_nitrous.build()
+    assert source.asked == 2
+    assert len(list((tmp_path / "cache").iterdir())) == 2
 
 
 def test_a_table_of_another_layout_is_made_anew(source: Source, tmp_path: Path) -> None:

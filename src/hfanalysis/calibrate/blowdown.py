@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from hfanalysis.calibrate.measured_pressures import Histories
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT
 from hfanalysis.thermo.saturation import Saturation
 
@@ -152,7 +152,7 @@ def reduce(
     return Reduction(C_i, m, z, factor, loss_mean, loss_vapor, vapor, end_mass, t_v)
 
 
-@njit(cache=True)
+@compiled
 def _liquid_sums(
     time: Array, density: Array, drop: Array, loss: Array, t_feed: float, t_steady: float, t_v: float
 ) -> tuple[float, float, float, float]:
@@ -182,12 +182,12 @@ def _liquid_sums(
     return integral, products, squares, losses / max(count, 1)
 
 
-@njit(cache=True)
+@compiled
 def _specific_flow(density: float, drop: float) -> float:
     return np.sqrt(2.0 * density * drop) if drop > 0.0 else 0.0
 
 
-@njit(cache=True)
+@compiled
 def _vapor_end(
     time: Array,
     loss: Array,
@@ -216,12 +216,12 @@ def _vapor_end(
     return left
 
 
-@njit(cache=True)
+@compiled
 def _vapor_flow(drop: float, density: float, area: float) -> float:
     return area * np.sqrt(2.0 * density * drop) if drop > 0.0 else 0.0
 
 
-@njit(cache=True)
+@compiled
 def _shoot(
     time: Array,
     loss: Array,
@@ -255,13 +255,13 @@ def _shoot(
     return m, _vapor_end(*args, m), mean_loss
 
 
-@njit(cache=True)
+@compiled
 def _excess(args: Phase, p_end: float, m: float) -> float:
     """Pressure at t_end over the measured [Pa]."""
     return float(args[5] * (_vapor_end(*args, m) / args[6]) ** m - p_end)
 
 
-@njit(cache=True)
+@compiled
 def _bracket(args: Phase, p_end: float, exponents: Array, first: int, last: int, stride: int) -> tuple[int, int]:
     """The first interval of so many points of the grid across which the excess turns negative; -1: none."""
     k, before = first, _excess(args, p_end, exponents[first])
@@ -274,7 +274,7 @@ def _bracket(args: Phase, p_end: float, exponents: Array, first: int, last: int,
     return -1, -1
 
 
-@njit(cache=True)
+@compiled
 def _root(args: Phase, p_end: float, low: float, high: float) -> float:
     """Root of the excess in a bracket: false position, the end that stays halved in weight (Illinois)."""
     at_low, at_high = _excess(args, p_end, low), _excess(args, p_end, high)

@@ -10,6 +10,7 @@ from hfanalysis.calibrate.regression import fit, fit_together, result
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
+from hfanalysis.inference.adopted.effects import read_adopted
 from hfanalysis.products.campaign import Agreement, CommonLaw
 from hfanalysis.products.segments import Segments
 from hfanalysis.progress import Progress, silent
@@ -23,7 +24,7 @@ def regression_of(tests: Sequence[str], root: Path, out: Path | None, progress: 
     evidence = []
     for name in dict.fromkeys(tests):
         context = run_to("segment", open_test(root, name, out, progress=progress))
-        segments, effects = context.read(Segments), context.adopted().acting
+        segments, effects = context.read(Segments), read_adopted(root, context.definition).acting
         log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)
         try:
             tank = calibrate(log, segments, context.definition, 400, effects)

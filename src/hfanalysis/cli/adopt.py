@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from hfanalysis.cli.exit_status import tell
-from hfanalysis.cli.perform import Request, stage
+from hfanalysis.cli.perform import stage
+from hfanalysis.cli.request import Request
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted import file_for

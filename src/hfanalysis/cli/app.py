@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from hfanalysis.cli.exit_status import ending
+from hfanalysis.cli.request import Request
 from hfanalysis.errors import InputError
+from hfanalysis.stages import RUN, STAGES
 from hfanalysis.version import __version__
 
 app = typer.Typer(
@@ -47,66 +51,52 @@ def _hfa(
     """Hot-fire test data analysis for nitrous oxide / paraffin hybrid engines."""
 
 
-def _do(
-    stage: str,
-    test: str,
-    root: Path,
-    out: Path | None,
-    as_json: bool,
-    force: bool,
-    quiet: bool,
-    settings: list[str] | None,
-) -> None:
-    with ending():
+def _common(
+    test: Test,
+    root: Root = Path(),
+    out: Out = None,
+    as_json: Json = False,
+    force: Force = False,
+    quiet: Quiet = False,
+    settings: Set = None,
+) -> Request:
+    """What every stage is asked with."""
+    return Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+
+
+def _stage(name: str, text: str, does: Callable[..., None]) -> None:
+    """A command with the common options, and those that ``does`` takes beside the request."""
+    common, own = inspect.signature(_common, eval_str=True), inspect.signature(does, eval_str=True)
+    options = [*common.parameters.values(), *list(own.parameters.values())[1:]]
+
+    def command(**given: Any) -> None:
+        with ending():
+            request = _common(**{key: given.pop(key) for key in common.parameters})
+            does(request, **given)
+
+    command.__signature__ = inspect.Signature(options)  # type: ignore[attr-defined]
+    command.__annotations__ = {option.name: option.annotation for option in options}
+    app.command(name, help=text)(command)
+
+
+def _plain(name: str) -> Callable[[Request], None]:
+    """A stage without options of its own."""
+
+    def does(request: Request) -> None:
         from hfanalysis.cli import perform
 
-        perform.stage(stage, perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ())))
+        perform.stage(name, request)
 
-
-_STAGES = {
-    "ingest": "Read the raw log onto canonical channels in SI, with quality flags per sample.",
-    "segment": "Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end.",
-    "calibrate": "Injector coefficient, feed losses, polytropic exponent and regression, with intervals.",
-    "validate": "Measure the performance and run the model against the measurement.",
-    "diagnose": "Which effect the model lacks, with probabilities and proof.",
-    "flight": "Fly the rocket on the measured thrust: apogee, rail departure, stability; engine files.",
-    "run": "Every stage; the diagnosis takes longest.",
-}
-
-
-def _add(stage: str, text: str) -> None:
-    @app.command(stage, help=text)
-    def command(
-        test: Test,
-        root: Root = Path(),
-        out: Out = None,
-        as_json: Json = False,
-        force: Force = False,
-        quiet: Quiet = False,
-        settings: Set = None,
-    ) -> None:
-        _do(stage, test, root, out, as_json, force, quiet, settings)
+    return does
 
 
 Raw = Annotated[bool, typer.Option("--raw-thrust", help="Fly the thrust as measured on the stand, as the report does.")]
 
 
-def _add_flight(text: str) -> None:
-    """The stage with a word of its own for how its thrust is taken."""
+def _flight(request: Request, raw_thrust: Raw = False) -> None:
+    from hfanalysis.cli import perform
 
-    @app.command("flight", help=text)
-    def command(
-        test: Test,
-        root: Root = Path(),
-        out: Out = None,
-        as_json: Json = False,
-        force: Force = False,
-        quiet: Quiet = False,
-        settings: Set = None,
-        raw_thrust: Raw = False,
-    ) -> None:
-        asked = ["flight.raw_thrust=true"] if raw_thrust else []
-        _do("flight", test, root, out, as_json, force, quiet, [*(settings or []), *asked])
+    perform.stage("flight", request.setting("flight.raw_thrust=true") if raw_thrust else request)
 
 
 Apply = Annotated[bool, typer.Option("--apply", help="Adopt what is named: engines/TEST.effects.toml.")]
@@ -118,68 +108,35 @@ ProofTest = Annotated[
 ]
 
 
-def _add_diagnose(text: str) -> None:
-    """The stage with words of its own for adopting what it finds."""
+def _diagnose(
+    request: Request, apply: Apply = False, retract: Retract = False, stand: Stand = False, proof_test: ProofTest = None
+) -> None:
+    from hfanalysis.cli import adopt, perform
 
-    @app.command("diagnose", help=text)
-    def command(
-        test: Test,
-        root: Root = Path(),
-        out: Out = None,
-        as_json: Json = False,
-        force: Force = False,
-        quiet: Quiet = False,
-        settings: Set = None,
-        apply: Apply = False,
-        retract: Retract = False,
-        stand: Stand = False,
-        proof_test: ProofTest = None,
-    ) -> None:
-        with ending():
-            from hfanalysis.cli import adopt, perform
-
-            asked = [] if proof_test is None else [perform.proof_test(root, test, proof_test)]
-            request = perform.Request(test, root, out, as_json, force, quiet, (*(settings or ()), *asked))
-            if not (apply or retract or stand):
-                perform.stage("diagnose", request)
-                return
-            if apply == retract:
-                raise InputError("found --apply and --retract together, or --stand alone; expected one of the two")
-            (adopt.apply if apply else adopt.retract)(request, stand)
-
-
-_OF_THEIR_OWN = {"diagnose": _add_diagnose, "flight": _add_flight}
-
-for _name, _text in _STAGES.items():
-    if _name in _OF_THEIR_OWN:
-        _OF_THEIR_OWN[_name](_text)
+    if proof_test is not None:
+        request = request.setting(perform.proof_test(request.root, request.test, proof_test))
+    if not (apply or retract or stand):
+        perform.stage("diagnose", request)
+    elif apply == retract:
+        raise InputError("found --apply and --retract together, or --stand alone; expected one of the two")
     else:
-        _add(_name, _text)
+        (adopt.apply if apply else adopt.retract)(request, stand)
 
 
 Pdf = Annotated[bool, typer.Option("--pdf", help="Also print the page to PDF; needs Chromium or Chrome.")]
 Plots = Annotated[bool, typer.Option("--plots", help="Also write every chart as PNG and CSV to TEST/plots/.")]
 
 
-@app.command("report")
-def _report(
-    test: Test,
-    root: Root = Path(),
-    out: Out = None,
-    as_json: Json = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    settings: Set = None,
-    pdf: Pdf = False,
-    plots: Plots = False,
-) -> None:
-    """Write report.html, one page to read offline; on request as PDF, and its plots as PNG and CSV."""
-    with ending():
-        from hfanalysis.cli import exports as papers
-        from hfanalysis.cli import perform
+def _report(request: Request, pdf: Pdf = False, plots: Plots = False) -> None:
+    from hfanalysis.cli import exports
 
-        request = perform.Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
-        papers.report(request, pdf, plots)
+    exports.report(request, pdf, plots)
+
+
+_WITH_OPTIONS: dict[str, Callable[..., None]] = {"diagnose": _diagnose, "flight": _flight, "report": _report}
+
+for _name, _text in {**STAGES, RUN: "Every stage; the diagnosis takes longest."}.items():
+    _stage(_name, _text, _WITH_OPTIONS.get(_name) or _plain(_name))
 
 
 @app.command("compare")
@@ -194,10 +151,9 @@ def _compare(
 ) -> None:
     """Lay two tests over each other: TEST/compare_OTHER.html, curves from the valve's opening, numbers side by side."""
     with ending():
-        from hfanalysis.cli import exports as papers
-        from hfanalysis.cli import perform
+        from hfanalysis.cli import exports
 
-        papers.compare(perform.Request(test, root, out, as_json, False, quiet), other, pdf)
+        exports.compare(Request(test, root, out, as_json, False, quiet), other, pdf)
 
 
 EngineToml = Annotated[Path, typer.Argument(metavar="ENGINE.toml", help="An engine file, see engines/.")]
@@ -285,9 +241,9 @@ def _effects(test: AnyTest = None, root: Root = Path(), out: Out = None, as_json
 
             effects.effects(root, as_json)
         else:
-            from hfanalysis.cli import separability as apart
+            from hfanalysis.cli import separability
 
-            apart.apart(test, root, out, as_json)
+            separability.apart(test, root, out, as_json)
 
 
 @app.command("new")

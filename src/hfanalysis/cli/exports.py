@@ -7,6 +7,7 @@ from pathlib import Path
 
 from hfanalysis.cli import perform
 from hfanalysis.cli.exit_status import put, tell
+from hfanalysis.cli.request import Request
 from hfanalysis.errors import InputError
 from hfanalysis.products.disk import atomic, to_json
 from hfanalysis.report import pdf
@@ -15,7 +16,7 @@ from hfanalysis.stages.material import load
 from hfanalysis.stages.open_test import open_test
 
 
-def report(request: perform.Request, as_pdf: bool, plots: bool) -> None:
+def report(request: Request, as_pdf: bool, plots: bool) -> None:
     """The page of a test, and what else is asked for."""
     if as_pdf:
         pdf.find_browser()  # said before anything is computed
@@ -26,7 +27,7 @@ def report(request: perform.Request, as_pdf: bool, plots: bool) -> None:
         _plots(context, request)
 
 
-def _plots(context: Context, request: perform.Request) -> None:
+def _plots(context: Context, request: Request) -> None:
     from hfanalysis.report.plots import write_plots
     from hfanalysis.report.sections import charts
     from hfanalysis.wording.numbers import SOURCES
@@ -39,7 +40,7 @@ def _plots(context: Context, request: perform.Request) -> None:
     _told(folder, request)
 
 
-def compare(request: perform.Request, other: str, as_pdf: bool) -> None:
+def compare(request: Request, other: str, as_pdf: bool) -> None:
     """The page that lays two tests over each other."""
     from hfanalysis.report.compare import compare as page
 
@@ -60,6 +61,6 @@ def compare(request: perform.Request, other: str, as_pdf: bool) -> None:
         _told(one, request)
 
 
-def _told(path: Path, request: perform.Request) -> None:
+def _told(path: Path, request: Request) -> None:
     if not (request.quiet or request.as_json):
         tell(f"written: {path}")

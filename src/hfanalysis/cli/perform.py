@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from hfanalysis.cli.exit_status import put, tell
+from hfanalysis.cli.request import Request
 from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages import ASIDE, ORDER, way_to
@@ -19,19 +19,6 @@ from hfanalysis.units import near
 
 _SPINE = ("segment", "calibrate")
 """The stages without which a run of all of them found nothing; what else is absent is warned of."""
-
-
-@dataclass(frozen=True)
-class Request:
-    """What the command line asks for."""
-
-    test: str
-    root: Path
-    out: Path | None
-    as_json: bool
-    force: bool
-    quiet: bool
-    settings: tuple[str, ...] = ()
 
 
 def bring(name: str, request: Request) -> Context:

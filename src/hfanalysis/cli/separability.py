@@ -11,7 +11,8 @@ from rich.text import Text
 from hfanalysis.cli import effects as listing
 from hfanalysis.cli import tables
 from hfanalysis.cli.exit_status import put
-from hfanalysis.cli.perform import Request, bring
+from hfanalysis.cli.perform import bring
+from hfanalysis.cli.request import Request
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.separability import NOMINAL, SEEN, TWINS, Outlook, look_ahead
 from hfanalysis.effects import FOLDER, library

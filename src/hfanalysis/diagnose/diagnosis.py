@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from hfanalysis.diagnose.answer.plausible import judged
-from hfanalysis.diagnose.answer.posterior import far, scale
+from hfanalysis.diagnose.answer.posterior import poor_fit, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import (
     Verdict,
+    acting_in,
     effects_product,
     likeliest_place,
     places,
-    sizes,
     upper_limits,
     verdict_of,
 )
@@ -79,7 +79,7 @@ def diagnose(
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
     product = _product(found, verdict, proof, catalogue)
     sentences = story(product)
-    if far(found.named.leftover):
+    if poor_fit(found.named.leftover):
         sentences += shown(subject.log, subject.segments, subject.definition).sentences
     notes = (*subject.notes, *product.notes)
     return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
@@ -112,7 +112,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         gap=_gap(found.base, chosen, proof, observed),
         upper_limits=upper_limits(verdict, found, catalogue),
         twins=_twins(verdict, catalogue),
-        not_it=() if far(found.named.leftover) else _not_it(verdict),
+        not_it=() if poor_fit(found.named.leftover) else _not_it(verdict),
         decisive_measurements=_decisive(verdict, catalogue),
         plausibility={name: row for name, row in _plausibility(found, chosen).items() if name in left},
         constants=_constants(found, verdict),
@@ -192,8 +192,8 @@ def _plausibility(found: Naming, chosen: Candidate) -> dict[str, Plausibility]:
     out: dict[str, Plausibility] = {}
     for candidate in found.singles:
         name = candidate.names[0]
-        out.setdefault(name, judged(name, sizes(candidate.fit)[name]))
-    return out | {name: judged(name, values) for name, values in sizes(chosen.fit).items()}
+        out.setdefault(name, judged(acting_in(candidate.fit)[name]))
+    return out | {name: judged(active) for name, active in acting_in(chosen.fit).items()}
 
 
 LIKELY = 0.02

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from hfanalysis.diagnose.diagnosis import Diagnosed
 from hfanalysis.inference.gap import residuals_of
+from hfanalysis.record.channels import unit_of
 
 Array = NDArray[np.float64]
-
-UNITS = {"thrust": "N", "m_tank": "kg"}
 
 
 def write_histories(path: Path, found: Diagnosed, provenance: Mapping[str, Any]) -> None:
@@ -45,7 +44,7 @@ def write_histories(path: Path, found: Diagnosed, provenance: Mapping[str, Any])
                 "after": after[channel.name][burning],
                 "noise_std": channel.noise_std[burning],
             }
-            _write(file.create_group(f"residuals/{channel.name}"), UNITS.get(channel.name, "Pa"), **columns)
+            _write(file.create_group(f"residuals/{channel.name}"), unit_of(channel.name), **columns)
 
 
 def numbered(names: Sequence[str]) -> list[str]:

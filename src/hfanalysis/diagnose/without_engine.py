@@ -98,7 +98,7 @@ def _drift(found: Finding) -> NamedEffect:
         equation="sensor",
         meaning=effect(DRIFT).meaning,
         parameters={"drift": found.size},
-        plausibility=judged(DRIFT, {"drift": found.size.value or 0.0}),
+        plausibility=judged(effect(DRIFT).at(drift=found.size.value or 0.0)),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import erfc, exp, pi, sqrt
 
 from hfanalysis.compiled import compiled
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Believable, Effect, Parameter
 from hfanalysis.engine.model import THROAT_AREA
 from hfanalysis.engine.nozzle import choked_flow_factor
 from hfanalysis.engine.sites import (
@@ -53,6 +53,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="chamber_heat_loss",
+    plain_name="heat lost to the chamber's walls",
     equation="chamber_energy",
     meaning="the burnt gas gives heat to the walls of the chamber, which the report takes as adiabatic",
     reference="report, section 5.1 (sources of error: adiabatic combustion chamber); turbulent convection goes with "
@@ -77,4 +78,5 @@ EFFECT = Effect(
     term=_term,
     twins=("combustion_efficiency",),
     decisive="thermocouples in the chamber's wall, at two depths",
+    believable=Believable("loss", 4e5, "walls of some kilogrammes take no more for seconds", unit="kW", factor=1e-3),
 )

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from hfanalysis.compiled import compiled
-from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
+from hfanalysis.engine.effect import Array, Believable, Channels, Effect, Parameter
 
 REFERENCE = 10e5
 """Pressure [Pa] at which the lag is stated."""
@@ -44,6 +44,7 @@ def _distort(times: Array, channels: Channels, values: Mapping[str, float]) -> d
 
 EFFECT = Effect(
     name="chamber_tap_lag",
+    plain_name="chamber pressure that is read late",
     equation="sensor",
     meaning="the chamber's pressure transducer lags behind, at the end of a tap and tube",
     reference="Doebelin, Measurement Systems, chapters 3 and 6: first-order lag of transducer and tubing; Bergh and "
@@ -61,4 +62,7 @@ EFFECT = Effect(
     distort=_distort,
     twins=("nozzle_throat_erosion",),
     decisive="a second transducer flush with the chamber's wall, or the throat's diameter after the test",
+    believable=Believable(
+        "lag", 0.5, "a tap and a tube of a metre lag some hundredths of a second", unit="ms", factor=1e3
+    ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Believable, Effect, Parameter
 from hfanalysis.engine.sites import AT_CHAMBER, HOT_SHARE, TEMPERATURE_FACTOR, term
 
 
@@ -14,6 +14,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="combustion_efficiency",
+    plain_name="incomplete combustion",
     equation="chamber_energy",
     meaning="the burnt gas has a lower characteristic velocity than in equilibrium",
     reference="Sutton and Biblarz, Rocket Propulsion Elements, chapters 3 and 16: c* = eta c*_ideal, 0.90 to 0.98 in "
@@ -27,4 +28,5 @@ EFFECT = Effect(
     term=_term,
     twins=("chamber_heat_loss",),
     decisive="the fuel's mass after a firing that is cut short, which fixes the fuel flow behind c*",
+    believable=Believable("deficit", 0.25, "an engine that burns at all gives three quarters", unit="%", factor=100.0),
 )

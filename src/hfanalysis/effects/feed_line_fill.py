@@ -13,7 +13,7 @@ from __future__ import annotations
 from math import sqrt
 
 from hfanalysis.compiled import compiled
-from hfanalysis.engine.effect import Effect, OwnState, Parameter
+from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
 from hfanalysis.engine.model import AREA, LIQUID_LOSS, LOSS_FACTOR, VAPOR_LOSS
 from hfanalysis.engine.sites import (
     AT_FLOW,
@@ -130,6 +130,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="feed_line_fill",
+    plain_name="feed line that fills first",
     equation="feed",
     meaning="the feed line is filled when the valve opens, and gives away what it holds as the pressure falls",
     reference="report, section 4.1 and phase 1 of its hot fires: the run line's pressure rises until the line is full. "
@@ -180,4 +181,5 @@ EFFECT = Effect(
     ),
     twins=(),
     decisive="the line's length and bore; and the run line's pressure at 1 kHz, where it is read more slowly",
+    believable=Believable("volume", 1e-3, "a litre is ten metres of a line of 11 mm", unit="L", factor=1e3),
 )

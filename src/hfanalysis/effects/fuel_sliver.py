@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Believable, Effect, Parameter
 from hfanalysis.engine.model import OUTER_RADIUS
 from hfanalysis.engine.sites import PORT_RADIUS, RATES, REGRESSION_FACTOR, term
 
@@ -61,6 +61,7 @@ def _fading_web(values: Mapping[str, float]) -> float:
 
 EFFECT = Effect(
     name="fuel_sliver",
+    plain_name="fuel that ends unevenly",
     equation="grain",
     meaning="the fuel is gone in some places before it is in others; what is left burns from a smaller surface",
     reference="Sutton and Biblarz, Rocket Propulsion Elements, chapters 12 and 16: slivers at burn-out. The port's "
@@ -88,4 +89,5 @@ EFFECT = Effect(
     fading_web=_fading_web,
     twins=(),
     decisive="pictures of the plume, and the slivers themselves after the test",
+    believable=Believable("depth", 0.95, "beyond that the end would not be seen at all", unit="%", factor=100.0),
 )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Believable, Effect, Parameter
 from hfanalysis.engine.sites import P_CHAMBER, RATES, REGRESSION_FACTOR, term
 
 EXPONENT, BEND, REFERENCE = range(3)
@@ -28,6 +28,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="grain_pressure_regression",
+    plain_name="regression that depends on the pressure",
     equation="grain",
     meaning="the fuel regresses faster at higher chamber pressure",
     reference="Zilliac and Karabeyoglu, Hybrid Rocket Fuel Regression Rate Data and Modeling, AIAA 2006-4504; "
@@ -45,4 +46,5 @@ EFFECT = Effect(
     far_starts=(0.6, 0.9),
     twins=(),
     decisive="the port's radius over time (ultrasound), or firings at two chamber pressures of one oxidizer flow",
+    believable=Believable("exponent", 0.6, "paraffin's regression hardly knows the pressure"),
 )

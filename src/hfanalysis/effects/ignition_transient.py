@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi, sin
 
-from hfanalysis.engine.effect import Effect, OwnState, Parameter
+from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
 from hfanalysis.engine.sites import FUEL_SOURCE, OXIDIZER_SOURCE, RATES, term
 
 MASS, DURATION, RATIO, SKEW = range(4)
@@ -28,6 +28,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="ignition_transient",
+    plain_name="igniter's charge",
     equation="chamber_mass",
     meaning="the igniter, and fuel that it melted or broke off, add gas to the chamber for a while",
     reference="report, section 4.4: HF4's peak in chamber pressure with its abrupt fall, which the model lacks; "
@@ -49,4 +50,5 @@ EFFECT = Effect(
     states=(OwnState("igniter_mass", "kg", 1e-4, lambda engine, values: values["mass"]),),
     twins=(),
     decisive="the igniter's charge, weighed, and its pressure in a test without oxidizer",
+    believable=Believable("mass", 0.15, "igniter charges weigh some ten grammes", unit="g", factor=1e3),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 
 from hfanalysis.compiled import compiled
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Believable, Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, P_CHAMBER, P_TANK, term
 
 WEIGHT, GAMMA = range(2)
@@ -37,6 +37,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="injector_choked_vapor",
+    plain_name="vapor that chokes in the injector",
     equation="injector",
     meaning="the vapour flows through the injector as a gas that expands and chokes, not as an incompressible fluid",
     reference="isentropic orifice flow: Sutton and Biblarz, Rocket Propulsion Elements, chapter 3; Hill and Peterson, "
@@ -53,4 +54,5 @@ EFFECT = Effect(
     term=_term,
     twins=(),
     decisive="cold flow of the vapour through the injector at two back pressures",
+    believable=Believable("weight", 1.0, "1 is compressible flow, choked where it must be"),
 )

@@ -10,7 +10,7 @@ from math import log, sqrt
 
 from hfanalysis.compiled import compiled
 from hfanalysis.effects.injector_choked_vapor import expanding_flow
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Believable, Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, INJECTOR_FACTOR, IS_LIQUID, P_CHAMBER, P_TANK, T_TANK, term
 
 WEIGHT, OMEGA, LINE, VAPOR = range(4)
@@ -72,6 +72,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="injector_two_phase",
+    plain_name="two-phase flow in the injector",
     equation="injector",
     meaning="the liquid flashes in line and injector: less flow, which responds less to the chamber's pressure",
     reference="single-phase and homogeneous equilibrium flow blended as by Dyer et al., AIAA 2007-5702: weight "
@@ -100,4 +101,5 @@ EFFECT = Effect(
     term=_term,
     twins=(),
     decisive="cold flow of liquid through the injector at two back pressures",
+    believable=Believable("weight", 1.0, "1 is equilibrium all the way"),
 )

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
+from hfanalysis.engine.effect import Array, Believable, Channels, Effect, Parameter
 
 REFERENCE = 10e5
 """Pressure [Pa] of a chamber at which the warming time is stated."""
@@ -36,6 +36,7 @@ def _distort(times: Array, channels: Channels, values: Mapping[str, float]) -> d
 
 EFFECT = Effect(
     name="load_cell_drift",
+    plain_name="thrust cell that drifts",
     equation="sensor",
     meaning="the thrust cell's zero drifts from ignition on, as heat reaches it",
     reference="Doebelin, Measurement Systems, chapters 3 and 5: zero drift of strain-gauge cells with temperature; a "
@@ -56,4 +57,5 @@ EFFECT = Effect(
     distort=_distort,
     twins=(),
     decisive="the thrust cell's zero for a minute after the burn, or a thermocouple on the cell",
+    believable=Believable("drift", 500.0, "cells drift by some per cent of their range", unit="N"),
 )

@@ -8,7 +8,7 @@ from math import sqrt
 
 import numpy as np
 
-from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
+from hfanalysis.engine.effect import Array, Believable, Channels, Effect, Parameter
 from hfanalysis.engine.model import NITROGEN_CV, SPECIFIC_NITROGEN
 from hfanalysis.engine.sites import NITROGEN_INFLOW, P_TANK, RATES, T_TANK, TANK_HEAT, switch, term
 
@@ -64,6 +64,7 @@ def _line(times: Array, channels: Channels, values: Mapping[str, float]) -> dict
 
 EFFECT = Effect(
     name="n2_purge",
+    plain_name="nitrogen into the tank",
     equation="tank_volume",
     meaning="nitrogen enters the tank through the purge line's check valve",
     reference="report, section 4.2.2: the valve opens when the tank is below the purge line by its cracking pressure; "
@@ -102,4 +103,7 @@ EFFECT = Effect(
     distort=_line,
     twins=(),
     decisive="a flow meter, or the pressure of the nitrogen bottle over time",
+    believable=Believable(
+        "area", 3e-5, "30 mm^2 are a bore of 6 mm, more than purge lines have", unit="mm^2", factor=1e6
+    ),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi, sqrt
 
-from hfanalysis.engine.effect import Effect, OwnState, Parameter
+from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
 from hfanalysis.engine.model import THROAT_AREA
 from hfanalysis.engine.sites import HOT_SHARE, IS_BURNING, P_CHAMBER, RATES, THROAT_FACTOR, term
 
@@ -26,6 +26,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="nozzle_throat_erosion",
+    plain_name="throat that erodes",
     equation="nozzle",
     meaning="the throat's radius grows by chemical erosion of its graphite",
     reference="diffusion of the oxidizing species to the wall limits it, so that it goes with p_c^0.8: Bianchi and "
@@ -44,4 +45,5 @@ EFFECT = Effect(
     states=(OwnState("throat_growth", "m", 1e-6, lambda engine, values: 0.0),),
     twins=("chamber_tap_lag",),
     decisive="the throat's diameter after the test",
+    believable=Believable("rate", 4e-4, "graphite loses some tenths of a millimetre a second", unit="mm/s", factor=1e3),
 )

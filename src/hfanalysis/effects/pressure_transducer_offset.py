@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hfanalysis.engine.effect import Array, Channels, Effect, Parameter
+from hfanalysis.engine.effect import Array, Believable, Channels, Effect, Parameter
 
 CHANNELS = ("p_tank", "p_run", "p_chamber")
 
@@ -18,6 +18,7 @@ def _distort(times: Array, channels: Channels, values: Mapping[str, float]) -> d
 
 EFFECT = Effect(
     name="pressure_transducer_offset",
+    plain_name="pressure transducer off its zero",
     equation="sensor",
     meaning="one or several pressure transducers read a constant amount too much",
     reference="Doebelin, Measurement Systems, chapters 3 and 6: zero shift of diaphragm transducers",
@@ -32,4 +33,5 @@ EFFECT = Effect(
     distort=_distort,
     twins=(),
     decisive="all transducers at one known pressure, before or after the test",
+    believable=Believable("p_tank", 3e5, "that much would show before the test", unit="bar", factor=1e-5),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import exp
 
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Believable, Effect, Parameter
 from hfanalysis.engine.sites import RATES, TANK_HEAT, term
 
 POWER, LAG, FADE, BEGUN = range(4)
@@ -20,6 +20,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="tank_heat",
+    plain_name="heat into the tank",
     equation="tank_energy",
     meaning="the oxidizer in the tank receives heat from outside, the less the longer",
     reference="dU/dt = -mdot h + Qdot: the report's eq. 3.9 with a source; section 4.1: two blankets of 500 W, turned "
@@ -40,4 +41,7 @@ EFFECT = Effect(
     term=_term,
     twins=("tank_wall_heat_capacity",),
     decisive="a thermocouple on the tank's wall, and the blankets' current",
+    believable=Believable(
+        "power", 3000.0, "a stand's heating blankets draw some hundred watts each", unit="kW", factor=1e-3
+    ),
 )

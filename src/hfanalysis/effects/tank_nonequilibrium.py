@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import exp
 
-from hfanalysis.engine.effect import Effect, OwnState, Parameter
+from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
 from hfanalysis.engine.sites import AT_TANK, P_TANK, TANK_PRESSURE, term
 
 DEPTH, DELAY, SUSTAINED = range(3)
@@ -25,6 +25,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="tank_nonequilibrium",
+    plain_name="boiling that comes late",
     equation="tank_volume",
     meaning="vapour is made late: the tank's pressure dips below that of saturation after opening, and rebounds",
     reference="Zimmerman, Waxman, Cantwell and Zilliac, Review and Evaluation of Models for Self-Pressurizing "
@@ -46,4 +47,5 @@ EFFECT = Effect(
     ),
     twins=("tank_stratification",),
     decisive="a thermocouple in the tank's liquid, which stays warmer than saturation while the boiling lags",
+    believable=Believable("depth", 8e5, "cold-flow tests see dips of a few bar", unit="bar", factor=1e-5),
 )

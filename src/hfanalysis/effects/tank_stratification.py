@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from hfanalysis.engine.effect import Effect, OwnState, Parameter
+from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
 from hfanalysis.engine.model import VOLUME
 from hfanalysis.engine.sites import AT_TANK, OXIDIZER_FLOW, RATES, RHO_FEED, TANK_PRESSURE, term
 
@@ -31,6 +31,7 @@ def _at_rest(engine: Engine, values: Mapping[str, float]) -> float:
 
 EFFECT = Effect(
     name="tank_stratification",
+    plain_name="warm layers in the tank",
     equation="tank_energy",
     meaning="a hot ullage over a colder bulk: the pressure at rest is above the bulk's saturation and falls to it",
     reference="Clausius-Clapeyron slope of nitrous oxide (report, appendix); temperatures above and below differ in a "
@@ -59,4 +60,5 @@ EFFECT = Effect(
     ),
     twins=("tank_nonequilibrium",),
     decisive="thermocouples at the top and the bottom of the tank, before the valve opens",
+    believable=Believable("excess", 10.0, "a tank in the shade is layered by some kelvins", unit="K"),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hfanalysis.engine.effect import Effect, OwnState, Parameter
+from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
 from hfanalysis.engine.model import VOLUME
 from hfanalysis.engine.sites import IS_LIQUID, M_LIQUID, RATES, RHO_FEED, T_TANK, TANK_HEAT, term
 
@@ -21,6 +21,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 
 EFFECT = Effect(
     name="tank_wall_heat_capacity",
+    plain_name="heat from the tank's wall",
     equation="tank_energy",
     meaning="the tank's wall is a store of heat for the oxidizer",
     reference="report, section 5.1 (sources of error: adiabatic oxidizer tank) and 4.1 (blankets left hot); a lumped "
@@ -48,4 +49,5 @@ EFFECT = Effect(
     states=(OwnState("wall_temperature", "K", 0.1, lambda engine, values: engine.temperature + values["excess"]),),
     twins=("tank_heat",),
     decisive="a thermocouple on the tank's wall",
+    believable=Believable("capacity", 2e4, "20 kJ/K are 22 kg of aluminium", unit="kJ/K", factor=1e-3),
 )

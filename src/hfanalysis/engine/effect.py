@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.sentences import Text, said
+
 if TYPE_CHECKING:
     from hfanalysis.engine.unsteady import Engine
 
@@ -59,6 +61,25 @@ class OwnState:
 
 
 @dataclass(frozen=True)
+class Believable:
+    """The largest size of a strength that a careful engineer believes of a small stand, and why no larger.
+
+    ``parameter``: the strength it is of (of all of them where an effect has several of one kind); ``most`` [SI]; shown
+    in ``unit``, of which there are ``factor`` to one of SI.
+    """
+
+    parameter: str
+    most: float
+    why: str
+    unit: str = ""
+    factor: float = 1.0
+
+    def text(self, value: float) -> Text:
+        """A size [SI] as people read it."""
+        return said(value, self.unit, size=1.0 / self.factor)
+
+
+@dataclass(frozen=True)
 class Effect:
     """A physical or sensor effect that the report's model lacks; the first parameter is its strength.
 
@@ -67,7 +88,8 @@ class Effect:
     all of them are 0. ``fading_web``: from its values, the web [m] over which the burning surface goes as the fuel
     ends; how fast the fire goes out is compared beside the channels. ``reads``: sites that others set and its term
     asks for; it comes after them. ``far_starts``: strengths [SI] from which a fit starts besides, where calibrated
-    constants take the effect's place so well that a small one leads elsewhere. An effect of the engine may have a
+    constants take the effect's place so well that a small one leads elsewhere. ``plain_name``: what people call it who
+    do not know the code; ``believable``: the largest size that can be on a stand. An effect of the engine may have a
     distortion besides, where a channel that no equation has shows it.
     """
 
@@ -89,6 +111,8 @@ class Effect:
     fading_web: FadingWeb | None = None
     reads: tuple[str, ...] = ()
     far_starts: tuple[float, ...] = ()
+    plain_name: str = ""
+    believable: Believable | None = None
 
     def __post_init__(self) -> None:
         if self.equation not in EQUATIONS:
@@ -127,9 +151,14 @@ class Active:
         return {p.name: v for p, v in zip(self.effect.parameters, self.values, strict=True)}
 
     @property
+    def strengths(self) -> dict[str, float]:
+        """Values of its strengths by their names."""
+        return dict(list(self.named.items())[: self.effect.strengths])
+
+    @property
     def idle(self) -> bool:
         """Whether every strength is 0."""
-        return not any(self.values[: self.effect.strengths])
+        return not any(self.strengths.values())
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from hfanalysis.compiled import compiled
 from hfanalysis.flight.curve import Curve
 from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle, drag_coefficient
 from hfanalysis.thermo.air import air
@@ -89,7 +89,7 @@ def arguments(curve: Curve, vehicle: Vehicle, rail_length: float | None) -> Argu
     return curve.thrust, curve.mass, curve.gain, vehicle.drag_table, fixed
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def fly_all(
     thrust: Array, mass: Array, gain: Array, table: Array, fixed: Array, rows: Array, results: Array, every: float,
     paths: Array,
@@ -100,7 +100,7 @@ def fly_all(
         fly(thrust, mass, gain, table, fixed, rows[i], results[i], none, every, paths[i])
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def fly(
     thrust: Array, mass: Array, gain: Array, table: Array, fixed: Array, row: Array, results: Array, trace: Array,
     every: float, path: Array,
@@ -154,7 +154,7 @@ def fly(
     return steps
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(nogil=True, inline="always")
 def _felt(
     thrust: Array, mass: Array, gain: Array, table: Array, fixed: Array, row: Array, now: int, share: float, z: float,
     v: float, climb: float,
@@ -174,7 +174,7 @@ def _felt(
     return net, mach, pressure, resistance, force, m
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(nogil=True, inline="always")
 def _push(
     thrust: Array, mass: Array, gain: Array, fixed: Array, row: Array, now: int, share: float, ambient: float
 ) -> tuple[float, float]:
@@ -196,14 +196,14 @@ def _push(
     return force, fixed[1] + row[MASS] + row[PROPELLANT] * (m - fixed[1])
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(nogil=True, inline="always")
 def _turned(angle: float, speed: float, wind: float, crosswind: float) -> float:
     """Cosine from the vertical of the direction in which the rocket meets the air when it leaves its rail."""
     along, up = speed * np.sin(angle) - wind, speed * np.cos(angle)
     return float(up / np.sqrt(along * along + crosswind * crosswind + up * up))
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(nogil=True, inline="always")
 def _peaks(results: Array, height: float, v: float, mach: float, a: float, pressure: float) -> None:
     results[SPEED] = max(results[SPEED], v)
     results[MACH] = max(results[MACH], mach)
@@ -211,7 +211,7 @@ def _peaks(results: Array, height: float, v: float, mach: float, a: float, press
     results[PRESSURE] = max(results[PRESSURE], pressure)
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(nogil=True, inline="always")
 def _note(
     trace: Array, steps: int, t: float, z: float, v: float, a: float, force: float, resistance: float, m: float,
     mach: float,

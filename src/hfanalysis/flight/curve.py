@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.nozzle import SUBSONIC, expand
 
 Array = NDArray[np.float64]
@@ -88,7 +88,7 @@ def altitude_gain(
     return _gain(gamma, pressure, stand, ambients, throat_area, exit_area), (0.0, step)
 
 
-@njit(cache=True)
+@compiled
 def _gain(gamma: Array, pressure: Array, stand: float, ambients: Array, throat: float, exit_area: float) -> Array:
     gained = np.zeros((pressure.size, ambients.size))
     for i in range(pressure.size):

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from hfanalysis.compiled import compiled
 from hfanalysis.flight.ascent import Arguments
 from hfanalysis.rocket.aerodynamics import BODY_LIFT, Shape, center_of_pressure, components, planform
 from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, drag_coefficient
@@ -98,7 +98,7 @@ def fly_in_wind(
     return Flights(wind, paths, departure)
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _fly(
     thrust: Array, mass: Array, gain: Array, drag: Array, fixed: Array, center: Array, inertia: Array, table: Array,
     body: Array, wind: float, gusts: float, noise: Array, path: Array,
@@ -130,7 +130,7 @@ def _fly(
     return departure
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _rates(
     y: Array, t: float, rail: bool, wind: float, thrust: Array, mass: Array, gain: Array, drag: Array, fixed: Array,
     center: Array, inertia: Array, table: Array, body: Array, dy: Array, seen: Array,
@@ -167,7 +167,7 @@ def _rates(
     seen[0], seen[1], seen[2], seen[3] = speed, (cp - cg) / body[1], attack, cp
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(nogil=True, inline="always")
 def _at(
     t: float, pressure: float, thrust: Array, mass: Array, gain: Array, fixed: Array, center: Array, inertia: Array
 ) -> tuple[float, float, float, float]:
@@ -192,7 +192,7 @@ def _at(
     )
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(nogil=True, inline="always")
 def _tabulated(table: Array, mach: float) -> tuple[float, float, float, float]:
     x = min(mach / MACH_STEP, MACHS - 1.001)
     i = int(x)

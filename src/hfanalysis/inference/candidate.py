@@ -18,6 +18,7 @@ from hfanalysis.inference.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.unknown import History, Unknown
 
 Array = NDArray[np.float64]
 
@@ -45,13 +46,26 @@ SHORT, LONG = 12, 25
 
 @dataclass(frozen=True)
 class Candidate:
-    """A set of ``names``, the fit, and its log evidence; the ``form`` that it asks for."""
+    """A set of ``names``, the fit, and its log evidence; the ``form`` that it asks for.
+
+    ``source``: the unknown that it has, if any, whose place is the last of the names.
+    """
 
     names: tuple[str, ...]
     fit: Fit
     log_evidence: float
     form: Form = FINEST
-    unknown: bool = False
+    source: Unknown | None = None
+
+    @property
+    def unknown(self) -> bool:
+        """Whether there is something in it that has no name."""
+        return self.source is not None
+
+    def history(self, observed: Observed) -> History:
+        """Its source over time."""
+        assert self.source is not None
+        return self.source.history(self.fit, observed)
 
     @property
     def chi2(self) -> float:
@@ -123,7 +137,7 @@ class Bench:
 
     def _coarser(self, found: Candidate) -> list[Form]:
         """The form one step coarser where a candidate leaves much open; none where it does not."""
-        form = found.form.coarser(*(left > CALM for left in self.at(found.form).left_open(found.fit.residual)))
+        form = found.form.coarser(*(left > WELL_FITTED for left in self.at(found.form).left_open(found.fit.residual)))
         return [] if form == found.form else [form]
 
     def _refitted(self, found: Candidate, forms: Sequence[Form]) -> list[Candidate | None]:
@@ -147,14 +161,14 @@ class Bench:
     def refitted(self, found: Candidate, form: Form) -> Candidate | None:
         """The candidate at another form, None where it cannot be run."""
         again = self._gone_on(found, form, SHORT)
-        return None if again is None else candidate(found.names, again, form, found.unknown)
+        return None if again is None else candidate(found.names, again, form, found.source)
 
     def converged(self, found: Candidate) -> Candidate:
         """The candidate, its fit brought to its end."""
         if found.fit.converged:
             return found
         again = self._gone_on(found, found.form, LONG)
-        better = None if again is None else candidate(found.names, again, found.form, found.unknown)
+        better = None if again is None else candidate(found.names, again, found.form, found.source)
         return better if better is not None and more_probable(better, found) else found
 
     def _gone_on(self, found: Candidate, form: Form, most: int) -> Fit | None:
@@ -170,10 +184,10 @@ def price(form: Form) -> float:
     return sum(FIRST_STEP * min(steps, 1) + STEP * max(steps - 1, 0) for steps in form)
 
 
-def candidate(names: tuple[str, ...], found: Fit, form: Form, unknown: bool = False) -> Candidate:
+def candidate(names: tuple[str, ...], found: Fit, form: Form, source: Unknown | None = None) -> Candidate:
     """A fit at a form as a candidate, at the price of the form and of effects beyond the first."""
-    further = max(len(names) - unknown - 1, 0)
-    return Candidate(names, found, found.log_evidence - price(form) - FURTHER * further, form, unknown)
+    further = max(len(names) - (source is not None) - 1, 0)
+    return Candidate(names, found, found.log_evidence - price(form) - FURTHER * further, form, source)
 
 
 def more_probable(one: Candidate, other: Candidate) -> bool:
@@ -181,7 +195,7 @@ def more_probable(one: Candidate, other: Candidate) -> bool:
     return one.log_evidence > other.log_evidence
 
 
-CALM = 1.15
+WELL_FITTED = 1.15
 """Chi-square per observation, on a side, below which no larger model-form error is asked for there."""
 
 

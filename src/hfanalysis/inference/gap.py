@@ -20,6 +20,7 @@ from hfanalysis.inference.fitting.predict import added, readings
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.channel import Channel
 from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.unknown import has_name
 
 Array = NDArray[np.float64]
 
@@ -138,5 +139,5 @@ def _burning(observed: Observed, name: str) -> NDArray[np.bool_]:
 
 def frozen(hypothesis: Hypothesis, found: Fit) -> Hypothesis:
     """A hypothesis of another test with the effects of a fit, their constants as found there."""
-    effects = tuple(a for a in found.hypothesis.at(found.x).effects if not a.effect.name.startswith("probe_"))
+    effects = tuple(a for a in found.hypothesis.at(found.x).effects if has_name(a.effect))
     return replace(hypothesis, engine=replace(hypothesis.engine, effects=effects))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from hfanalysis.products.model import Is, Notes, Numbers, Part, Product, Warnings, Words
 from hfanalysis.quantity import Quantity
@@ -44,7 +44,11 @@ class SourceHistory(Part):
 
 
 class Place(Part):
-    """Where, when and how much the model lacks."""
+    """Where, when and how much the model lacks; an unknown has further quantities that it is known by, such as
+    ``opens_in``, ``fails_within`` or ``delay`` [s] and ``frequency`` [Hz]."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Quantity] = Field(init=False)
 
     equation: Annotated[str, Is("in which it is")]
     site: Annotated[str, Is("the effect, or the place in the equation")]
@@ -56,11 +60,11 @@ class Place(Part):
     channel: Annotated[str | None, Is("the sensor that it is of")]
     significance: Annotated[float, Is("gain of log evidence by it", "")]
     history: Annotated[SourceHistory | None, Is("over time")] = None
-    opens_in: Annotated[Quantity | None, Is("time that a valve takes to open", "s")] = None
-    fails_within: Annotated[Quantity | None, Is("time in which the injector's flow fails", "s")] = None
-    frequency: Annotated[Quantity | None, Is("of a flow that swings", "Hz")] = None
-    delay: Annotated[Quantity | None, Is("by which a sensor is read late", "s")] = None
     beside: Annotated[bool, Is("whether it is open beside what is named")] = False
+
+    def known_by(self, name: str) -> Quantity | None:
+        """A further quantity; None where it has none of that name."""
+        return self.__pydantic_extra__.get(name)
 
 
 class FormError(Part):

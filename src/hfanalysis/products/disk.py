@@ -107,15 +107,6 @@ def sha256_json(data: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def sha256_tree(folder: Path) -> str:
-    """SHA-256 over names and contents of all files below ``folder``; byte code does not count."""
-    digest = hashlib.sha256()
-    for path in sorted(folder.rglob("*")):
-        if path.is_file() and "__pycache__" not in path.parts:
-            digest.update(f"{path.relative_to(folder).as_posix()}\0{sha256_file(path)}\n".encode())
-    return digest.hexdigest()
-
-
 class HashCache:
     """SHA-256 of files, not read again while size, times and inode stay the same.
 

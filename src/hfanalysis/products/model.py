@@ -65,7 +65,8 @@ class Part(BaseModel):
     @property
     def given(self) -> dict[str, Any]:
         """Its fields that were given, by name."""
-        return {name: getattr(self, name) for name in type(self).model_fields if name in self.model_fields_set}
+        own = {name: getattr(self, name) for name in type(self).model_fields if name in self.model_fields_set}
+        return own | (self.__pydantic_extra__ or {})
 
     @property
     def quantities(self) -> dict[str, Quantity]:

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hfanalysis.units import DIMENSIONS
+
 CANONICAL: dict[str, str] = {
     "p_tank": "pressure",
     "p_run": "pressure",
@@ -37,6 +39,15 @@ LONG_NAMES: dict[str, str] = {
     "T_chamber": "chamber temperature",
     "valve": "main valve position",
 }
+
+
+def unit_of(channel: str) -> str:
+    """The SI unit of a canonical channel.
+
+    >>> unit_of("thrust")
+    'N'
+    """
+    return DIMENSIONS[CANONICAL[channel]].si
 
 
 @dataclass(frozen=True)

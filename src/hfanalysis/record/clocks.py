@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from hfanalysis.compiled import compiled
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import TimeSpec
 from hfanalysis.record.spool import Spool
@@ -79,7 +79,7 @@ def _increases(time: Floats) -> bool:
     return bool(np.all(time[1:] > time[:-1]))
 
 
-@njit(cache=True)
+@compiled
 def _outside_longest_rise(time: Floats) -> Mask:
     """Complement of a longest strictly increasing subsequence; among equal stamps the first is kept."""
     n = len(time)

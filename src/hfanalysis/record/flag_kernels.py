@@ -6,8 +6,9 @@ They are written out number by number: what NumPy offers within compiled code ta
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from hfanalysis.compiled import compiled
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.uint8]
@@ -33,7 +34,7 @@ COMMON = 0.02
 """Share of samples above which spikes are how this channel reads, not events."""
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def nearest(readings: Floats, level: float, flags: Flags) -> float:
     """The distance from ``level`` to the nearest other value without a flag."""
     least = np.inf
@@ -43,13 +44,13 @@ def nearest(readings: Floats, level: float, flags: Flags) -> float:
     return least
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _mark(flags: Flags, start: int, end: int, flag: np.uint8) -> None:
     for i in range(start, end):
         flags[i] |= flag
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _insert(value: float, ordered: Floats, count: int) -> None:
     """Puts a value into its place among the first ``count``, which are in order."""
     k = count
@@ -59,12 +60,12 @@ def _insert(value: float, ordered: Floats, count: int) -> None:
     ordered[k] = value
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _median(ordered: Floats, count: int) -> float:
     return float(0.5 * (ordered[(count - 1) // 2] + ordered[count // 2]))
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def detached(readings: Floats, level: float, gap: float, edges: bool, flags: Flags) -> int:
     """Flags runs of exactly ``level`` entered and left by jumps of more than ``gap``; returns how many samples.
 
@@ -90,7 +91,7 @@ def detached(readings: Floats, level: float, gap: float, edges: bool, flags: Fla
     return count
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _runs(values: Floats) -> NDArray[np.int64]:
     """Where runs of exactly equal values start, and the end of the last."""
     n = len(values)
@@ -108,7 +109,7 @@ def _runs(values: Floats) -> NDArray[np.int64]:
     return starts
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _repeats_at_length(values: Floats, low: float, high: float) -> bool:
     """Whether any run is long enough to be looked at."""
     length = 1
@@ -122,7 +123,7 @@ def _repeats_at_length(values: Floats, low: float, high: float) -> bool:
     return False
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _usual_run(starts: NDArray[np.int64], first: int, last: int, ordered: Floats) -> float:
     """The length that nine in ten of the runs first..last-1 do not exceed; ``ordered`` is overwritten."""
     for k in range(first, last):
@@ -130,13 +131,13 @@ def _usual_run(starts: NDArray[np.int64], first: int, last: int, ordered: Floats
     return float(ordered[int(0.9 * (last - first - 1))])
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _step(values: Floats, starts: NDArray[np.int64], k: int) -> float:
     """From the level of run ``k`` to the next one's."""
     return float(abs(values[starts[k + 1]] - values[starts[k]]))
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _usual_step(values: Floats, starts: NDArray[np.int64], first: int, last: int, ordered: Floats) -> float:
     """The median of the steps after the runs first..last-1; ``ordered`` is overwritten."""
     for k in range(first, last):
@@ -144,7 +145,7 @@ def _usual_step(values: Floats, starts: NDArray[np.int64], first: int, last: int
     return _median(ordered, last - first)
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def repeats(values: Floats, low: float, high: float, flags: Flags) -> None:
     """Flags stuck runs, and clipped ones at the channel's exact extremes, against the runs around them.
 
@@ -195,7 +196,7 @@ def local_noise(values: Floats) -> Floats:
     return 1.0484 * noise
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _middle(values: Floats, start: int, end: int, ordered: Floats) -> tuple[float, float]:
     """Median, and standard deviation from the median absolute deviation; ``ordered`` is overwritten."""
     for i in range(start, end):
@@ -206,7 +207,7 @@ def _middle(values: Floats, start: int, end: int, ordered: Floats) -> tuple[floa
     return middle, 1.4826 * _median(ordered, end - start)
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _spike_length(values: Floats, i: int, noise: float, ordered: Floats) -> int:
     """How many samples from ``i`` on stand out alone; 0 where they do not, or the level changes with them."""
     n = len(values)
@@ -227,7 +228,7 @@ def _spike_length(values: Floats, i: int, noise: float, ordered: Floats) -> int:
     return 0
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def spikes(values: Floats, noise: Floats, quantum: float, flags: Flags) -> None:
     """Flags groups of up to three samples that stand out of the level they return to, unless they are many."""
     n = len(values)
@@ -254,7 +255,7 @@ def spikes(values: Floats, noise: Floats, quantum: float, flags: Flags) -> None:
     _flag_lonely(places, lengths, count, flags)
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _doubled(numbers: NDArray[np.int64]) -> NDArray[np.int64]:
     """The same numbers with room for as many again."""
     made = np.empty(2 * len(numbers), np.int64)
@@ -263,7 +264,7 @@ def _doubled(numbers: NDArray[np.int64]) -> NDArray[np.int64]:
     return made
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _flag_lonely(places: NDArray[np.int64], lengths: NDArray[np.int64], count: int, flags: Flags) -> None:
     total = 0
     for k in range(count):

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, SkipValidation
 
 from hfanalysis.record.channels import CANONICAL
+from hfanalysis.record.formats import FORMATS
 from hfanalysis.record.schema import (
     DERIVED,
     NOT_NEGATIVE,
@@ -24,6 +25,7 @@ from hfanalysis.record.schema import (
     Section,
     Text,
     YesOrNo,
+    one_of,
     quantity,
     read_quantity,
     refusing,
@@ -96,7 +98,7 @@ class Reading(Section):
 
     _: KW_ONLY
     time: Time | None = None
-    format: Literal["csv", "mat", "lvm", "tdms"] | None = None
+    format: Annotated[str, one_of(FORMATS)] | None = None
     delimiter: Annotated[str, AfterValidator(_delimiter)] | None = None
     decimal: Literal[".", ","] | None = None
     header_rows: Annotated[int, Field(strict=True, ge=0)] | None = None

@@ -13,6 +13,7 @@ from typing import Annotated, Any, Self, TypeVar, cast, dataclass_transform
 
 from pydantic import BeforeValidator, ConfigDict, Field, PlainValidator, model_validator
 from pydantic.dataclasses import dataclass as validated
+from pydantic_core import PydanticKnownError
 
 from hfanalysis.errors import InputError
 from hfanalysis.units import Value, near, parse
@@ -46,6 +47,18 @@ def refusing(*keys: str | int) -> Iterator[None]:
 def section(cls: type[T]) -> type[T]:
     """A table of a TOML file: frozen, validated, no key beside its fields; built when it is first needed."""
     return cast(type[T], validated(frozen=True, config=ConfigDict(extra="forbid", defer_build=True))(cls))
+
+
+def one_of(words: Iterable[str]) -> PlainValidator:
+    """One of these words, as ``Literal`` has it, for words that a registry has."""
+    *first, last = map(repr, words)
+
+    def check(found: object) -> str:
+        if not isinstance(found, str) or repr(found) not in (*first, last):
+            raise PydanticKnownError("literal_error", {"expected": f"{', '.join(first)} or {last}"})
+        return found
+
+    return PlainValidator(check)
 
 
 DERIVED = {"derived": True}

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from hfanalysis.products.diagnosis import Diagnosis, Plausibility
 from hfanalysis.quantity import Quantity
-from hfanalysis.record.channels import LONG_NAMES
+from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.report import html
 from hfanalysis.report.diagnosis_charts import READ, with_what
 from hfanalysis.wording.numbers import MINUS, fixed, in_words
@@ -23,7 +23,6 @@ _MEANINGS = {
     "none": "nothing is missing that these channels can show",
     "unknown": "something that is not in the library",
 }
-_UNITS = {"thrust": "N", "m_tank": "kg"}
 _CONSTANTS = {
     "area": "effective area of the injector",
     "loss_factor": "feed loss coefficient",
@@ -159,7 +158,7 @@ def gaps_by_phase(product: Diagnosis) -> Markup | None:
 
 
 def _in_unit(channel: str, value: float | None) -> Markup:
-    return html.amount(value, _UNITS.get(channel, "Pa"), 3, True)
+    return html.amount(value, unit_of(channel), 3, True)
 
 
 def proof(product: Diagnosis) -> Markup:

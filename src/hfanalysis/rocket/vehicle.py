@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from hfanalysis.compiled import compiled
 from hfanalysis.thermo.air import air
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ class Vehicle:
         return np.array([self.drag_mach, self.drag_values])
 
 
-@njit(cache=True)
+@compiled
 def drag_coefficient(mach: float, table: Array) -> float:
     """C_d at a Mach number: linear between the table's columns (Mach numbers, coefficients), its ends held.
 
@@ -57,7 +57,7 @@ def drag_coefficient(mach: float, table: Array) -> float:
     return float(table[1, i] + share * (table[1, i + 1] - table[1, i]))
 
 
-@njit(cache=True)
+@compiled
 def drag(altitude: float, speed: float, area: float, table: Array) -> float:
     """D = 1/2 C_d A rho v |v| [N] on the frontal area [m^2], against the speed [m/s]."""
     _, rho, sound = air(altitude)

@@ -16,7 +16,9 @@ absence, AbsentError, does not stop this one: ask ``context.absent``), ``paramet
 read with ``context.parameter("name")``; they are part of what decides whether a product is up to date), ``least`` (the
 smallest value of those that have one) and ``adopts``
 (False for a stage that adopted effects do not change: neither their file nor products made with them are its input),
-``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input).
+``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input), ``runs``
+(stages that this one runs itself, on other tests: what their code and that of the stages before them says is part of
+what it rests on, as everything is that the module imports).
 """
 
 from __future__ import annotations
@@ -35,7 +37,6 @@ from hfanalysis.stages import ORDER
 from hfanalysis.units import near
 
 if TYPE_CHECKING:
-    from hfanalysis.inference.adopted.effects import Adopted
     from hfanalysis.products.model import Product
 
 P = TypeVar("P", bound="Product")
@@ -56,6 +57,7 @@ class Stage:
     least: Mapping[str, float] = field(default_factory=dict)
     adopts: bool = True
     tries_effects: bool = False
+    runs: tuple[str, ...] = ()
 
     def reads(self, other: Stage) -> tuple[str, ...]:
         """The products of an upstream stage that this one's products follow from."""
@@ -125,12 +127,6 @@ class Context:
         if self.stage is None or name not in self.stage.products:
             raise ValueError(f"{name} is not declared as a product of this stage")
         return products.temporary_path(self.product(name))
-
-    def adopted(self) -> Adopted:
-        """The effects that have been adopted for this test. Raises InputError for a file that is at fault."""
-        from hfanalysis.inference.adopted.effects import read_adopted
-
-        return read_adopted(self.root, self.definition)
 
     def read(self, product: type[P], name: str = "") -> P:
         """A finished JSON product, of another name than its usual one where that is given."""

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
 def run(context: Context) -> None:
     """Calibrate the test's tank, then the regression with that tank's flow; with adopted effects all together."""
-    adopted = context.adopted()
+    from hfanalysis.inference.adopted.effects import read_adopted
+
+    adopted = read_adopted(context.root, context.definition)
     base = _calibration(context, ())
     found = _with_effects(context, base, adopted.acting) if adopted.acting else base
     context.write(base.but(effects=()), BASE + found.file)

@@ -127,5 +127,6 @@ STAGE = Stage(
     run=run,
     adopts=False,
     tries_effects=True,
+    runs=("calibrate",),
     parameters={"proof_test": "", "variant": ""},
 )

@@ -13,6 +13,7 @@ from hfanalysis.stages.base import Context, Stage
 def run(context: Context) -> None:
     """Fly the test's rocket."""
     from hfanalysis.inference.adopted.corrected_log import corrected
+    from hfanalysis.inference.adopted.effects import read_adopted
     from hfanalysis.measured_flight.engine_files import export, rocketpy
     from hfanalysis.measured_flight.firing import firing
     from hfanalysis.measured_flight.product import launch, product, write_histories
@@ -24,7 +25,7 @@ def run(context: Context) -> None:
     definition = context.definition
     if definition.rocket is None:
         raise AbsentError(f"test {context.id}: test.toml has no [rocket] to fly")
-    adopted, segments = context.adopted(), context.read(Segments)
+    adopted, segments = read_adopted(context.root, definition), context.read(Segments)
     # physics that was adopted is in the measured thrust; what sensors add to it is taken off
     log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, adopted.acting)
     calibration = None if "calibrate" in context.absent else context.read(Calibration)

@@ -4,36 +4,66 @@ from __future__ import annotations
 
 import functools
 import importlib.metadata
+import inspect
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import hfanalysis
 from hfanalysis.errors import InputError
 from hfanalysis.inference.adopted import adopted_file
 from hfanalysis.products import disk as products
 from hfanalysis.products.disk import HashCache
 from hfanalysis.record.definition import TestDefinition
-from hfanalysis.stages import base
+from hfanalysis.sources import closure, data, digest, libraries
+from hfanalysis.stages import base, way_to
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.version import __version__
 
-LIBRARIES = ("numpy", "scipy", "CoolProp", "pandas", "h5py")
-"""Libraries whose version can change a number."""
+DISTRIBUTIONS = {"sksundae": "scikit-sundae"}
+"""Libraries that are installed under another name than they are imported by: asking for all names takes long."""
 
 STATE = ".state"
 
 
-@functools.cache
-def code_hash() -> str:
-    """SHA-256 of the package's own source."""
-    return products.sha256_tree(Path(hfanalysis.__file__).parent)
+def modules(context: Context, stage: Stage) -> frozenset[Path]:
+    """The sources that make a stage's products: what its module imports, directly or not.
+
+    Those of the stages that it runs itself, too, a team's own effects with what they import, and what the stages before
+    it say of themselves: what they do is in their products.
+    """
+    own = [path for path in effect_files(context, stage) if path.suffix == ".py"]
+    run = dict.fromkeys(name for last in stage.runs for name in way_to(last))
+    whole = map(_module, [stage, *map(base.load_stage, run)])
+    return closure(*whole, *own) | closure(*map(_module, map(base.load_stage, stage.upstream)), inside=False)
+
+
+def _module(stage: Stage) -> Path:
+    return Path(inspect.getfile(stage.run))
+
+
+def code_hash(files: frozenset[Path]) -> str:
+    """SHA-256 over sources and the data that lie beside them in the package."""
+    return digest(files | data(files))
 
 
 @functools.cache
-def library_versions() -> dict[str, str]:
-    """The versions of the libraries that the numbers come from."""
-    return {name: importlib.metadata.version(name) for name in LIBRARIES}
+def library_versions(files: frozenset[Path]) -> dict[str, str]:
+    """The versions of the libraries that sources import."""
+    return {DISTRIBUTIONS.get(name, name): _version(name) for name in libraries(files)}
+
+
+@functools.cache
+def _version(name: str) -> str:
+    """That of the library imported by this name, be it of a distribution of another name."""
+    try:
+        return importlib.metadata.version(DISTRIBUTIONS.get(name, name))
+    except importlib.metadata.PackageNotFoundError:
+        return ", ".join(importlib.metadata.version(found) for found in _distributions().get(name, [])) or "none"
+
+
+@functools.cache
+def _distributions() -> Mapping[str, list[str]]:
+    return importlib.metadata.packages_distributions()
 
 
 def raw_files(definition: TestDefinition) -> list[Path]:
@@ -56,15 +86,16 @@ def input_files(context: Context, stage: Stage) -> list[Path]:
 
 def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, Any]:
     """What ``stage``'s products would be made from if it ran now: the ``provenance`` block of a product."""
+    made_by = modules(context, stage)
     return {
         "hfanalysis": __version__,
-        "code": code_hash(),
+        "code": code_hash(made_by),
         "test_toml": hashes(context.definition.path),
         "raw": {
             path.relative_to(context.raw).as_posix(): _raw_hash(path, hashes) for path in raw_files(context.definition)
         },
         "effects": {path.name: hashes(path) for path in effect_files(context, stage)},
-        "libraries": library_versions(),
+        "libraries": library_versions(made_by),
         "parameters": context.at(stage).parameters(),
         "inputs": _upstream(context, stage, hashes),
     }

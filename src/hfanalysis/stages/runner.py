@@ -1,8 +1,8 @@
 """Runs what a stage needs first, redoes only what changed, and leaves whole products or none.
 
 Whether a product is up to date is judged by content: SHA-256 of the raw files, ``test.toml``, adopted effects, the
-package's source, the libraries' versions, the stage's parameters and the upstream products. The time stamps that make
-goes by are kept in agreement.
+sources that the stage rests on, the versions of their libraries, the stage's parameters and the upstream products. The
+time stamps that make goes by are kept in agreement.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import hfanalysis
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
 from hfanalysis.products import disk as products
 from hfanalysis.products.disk import HashCache
+from hfanalysis.sources import PACKAGE
 from hfanalysis.stages import ASIDE, ORDER, base, freshness
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.stages.lock import locked
@@ -81,6 +81,7 @@ class _Run:
         self.force = force
         self.whole = whole
         self.done: set[str] = set()
+        self.sources = source_files()
         state = context.out / freshness.STATE
         state.mkdir(exist_ok=True)
         self.hashes = HashCache(state / "hashes.json")
@@ -206,7 +207,7 @@ class _Run:
             file.write(json.dumps(line, ensure_ascii=False) + "\n")
 
     def _agree_with_make(self, stage: Stage) -> None:
-        inputs = [*freshness.input_files(self.context, stage), *source_files(), *self._upstream_products(stage)]
+        inputs = [*freshness.input_files(self.context, stage), *self.sources, *self._upstream_products(stage)]
         for name in stage.products:
             products.touch_after(self.context.product(name), inputs)
 
@@ -217,5 +218,5 @@ class _Run:
 
 def source_files() -> list[Path]:
     """The package's source files, which make takes into account by their times."""
-    paths = Path(hfanalysis.__file__).parent.rglob("*")
+    paths = PACKAGE.rglob("*")
     return [path for path in paths if path.is_file() and "__pycache__" not in path.parts]

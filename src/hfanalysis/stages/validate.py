@@ -11,6 +11,7 @@ from hfanalysis.stages.base import Context, Stage
 
 def run(context: Context) -> None:
     """Compare what can be compared; what cannot says why."""
+    from hfanalysis.inference.adopted.effects import read_adopted
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.products.segments import Segments
     from hfanalysis.record.log import read_log
@@ -22,7 +23,7 @@ def run(context: Context) -> None:
     segments = context.read(Segments)
     absent = context.absent.get("calibrate")
     calibration = None if absent else context.read(Calibration)
-    adopted = context.adopted()
+    adopted = read_adopted(context.root, context.definition)
     found = validate(log, segments, context.definition, calibration, absent, adopted.acting)
     write_residuals(context.scratch("residuals.h5"), found.residuals, context.provenance())
     write_histories(context.scratch("performance.h5"), found.histories, context.provenance())

@@ -1,7 +1,8 @@
-"""Tables that cost seconds to make, kept in the user's cache folder; a spoilt one is made anew."""
+"""Tables that cost seconds to make, kept in the user's cache folder; what is spoilt or of other code is made anew."""
 
 from __future__ import annotations
 
+import inspect
 import os
 from collections.abc import Callable
 from contextlib import suppress
@@ -9,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
+from hfanalysis.sources import closure, digest
 
 Array = NDArray[np.float64]
 
@@ -24,9 +27,9 @@ def cache_directory() -> Path:
 def cached(name: str, shape: tuple[int, ...], make: Callable[[], Array]) -> Array:
     """The array of that name and shape, from the cache where it is there and finite, else made and kept.
 
-    ``name`` has to say all that determines the array: versions, nodes, layout.
+    ``name`` has to say what determines the array and is not in the sources of ``make``: versions of libraries, nodes.
     """
-    path = cache_directory() / f"{name}.npy"
+    path = cache_directory() / f"{name}-{digest(closure(Path(inspect.getfile(make))))[:12]}.npy"
     try:
         stored = np.load(path, allow_pickle=False)
         if stored.shape == shape and np.isfinite(stored).all():

@@ -19,7 +19,6 @@ hardly any oxidizer) have no equilibrium in CEA's range of temperatures.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import sys
 from collections.abc import Iterator
@@ -63,9 +62,6 @@ STOICHIOMETRIC = 61.0 * OXIDIZER_MOLAR_MASS / FUEL_MOLAR_MASS
 
 NUDGES = (0.0, 1e-7, -1e-7, 1e-5, -1e-5)
 """Steps in x tried where CEA does not converge."""
-
-LAYOUT = 2
-"""Raised when the content of the cached table changes."""
 
 ROWS = 3
 LN_RT, GAMMA, LN_T = 0, 1, 2
@@ -111,9 +107,7 @@ def build(nodes: Nodes = Nodes()) -> CombustionTable:
 
 
 def _name(nodes: Nodes) -> str:
-    decisive = (nodes, PRESSURES, MIXTURES, ENTHALPIES, SHARE, STRETCH, FUEL_MOLAR_MASS, combustion.FUEL_ENTHALPY)
-    digest = hashlib.sha256(repr(decisive).encode()).hexdigest()[:12]
-    return f"combustion-cea-{version('cea')}-{digest}-{LAYOUT}"
+    return f"combustion-cea-{version('cea')}-{nodes.pressures}-{nodes.mixtures}-{nodes.shares}"
 
 
 def sample(nodes: Nodes) -> Array:

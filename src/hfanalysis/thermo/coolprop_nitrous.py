@@ -16,14 +16,12 @@ from hfanalysis.thermo.saturation import NODES, Array, Property, Saturation
 CRITICAL_TEMPERATURE = 309.5207
 T_MIN = 182.34
 T_MAX = 309.50
-LAYOUT = 2
-"""Raised when the content of the cached table changes."""
 
 
 def build() -> Saturation:
     """The table, from the cache where it is there, else from CoolProp (about 3 s, once)."""
     theta = np.linspace(_theta(T_MAX), _theta(T_MIN), NODES)
-    name = f"nitrous-coolprop-{version('CoolProp')}-{NODES}-{LAYOUT}"
+    name = f"nitrous-coolprop-{version('CoolProp')}-{NODES}"
     samples = cached(name, (len(Property), theta.size), lambda: sample(theta))
     return Saturation.from_samples("coolprop", theta, dict(zip(Property, samples, strict=True)), CRITICAL_TEMPERATURE)
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from hfanalysis.assembly.calibrated import Regression, effective_area
+from hfanalysis.compiled import compiled
 from hfanalysis.engine.nozzle import expand
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.products.calibration import TankConstants
@@ -122,7 +122,7 @@ def nozzle_along(
     return Nozzle(*found)
 
 
-@njit(cache=True)
+@compiled
 def _nozzle_along(
     gas: Grid, pressure: Array, ratio: Array, ambient: float, throat: Array, exit_area: float, enthalpy: float
 ) -> Array:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from hfanalysis.products.model import AdoptedEffect
 from hfanalysis.quantity import Quantity
+from hfanalysis.sentences import Text, said
 from hfanalysis.wording.scales import reading_unit, scale, superscript
 
 NAMES: dict[str, str] = {
@@ -210,7 +211,12 @@ def in_words(name: str) -> str:
     return NAMES.get(name, name.replace("_", " "))
 
 
-def listed(names: list[str]) -> str:
+def said_of(quantity: Quantity, unit: str, form: str = ".3g", std_form: str = ".2g", sign: float = 1.0) -> Text:
+    """A quantity with its deviation in a sentence, shown in ``unit``; ``sign`` -1 turns it."""
+    return said(sign * (quantity.value or 0.0), unit, form, quantity.std or 0.0, std_form)
+
+
+def listed(names: Sequence[str]) -> str:
     """Names in a sentence.
 
     >>> listed(["a", "b", "c"])

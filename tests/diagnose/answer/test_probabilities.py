@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from benchmarks.blind.fit import PRIOR_STD, Constants, Sample, _loss, _table, _vector
 
-from hfanalysis.diagnose.answer.posterior import telling
+from hfanalysis.diagnose.answer.posterior import above_chance
 
 
 @pytest.mark.parametrize("unknown", [12.0, 7.0, -6.0])
@@ -19,4 +19,4 @@ def test_the_fit_counts_the_probabilities_that_are_stated(name: float, unknown: 
     penalty = 0.5 * float(np.sum((_vector(at) / PRIOR_STD) ** 2))
     for label, p in stated.items():
         assert _loss(_vector(at), _table([Sample(evidences, 1.8, label, "g")])) - penalty == pytest.approx(-np.log(p))
-    assert telling(evidences) or stated["unknown"] <= stated["none"]
+    assert above_chance(evidences) or stated["unknown"] <= stated["none"]

@@ -18,21 +18,21 @@ from tests.inference import made
 from hfanalysis.diagnose.answer import posterior
 from hfanalysis.diagnose.answer import verdict as verdict_module
 from hfanalysis.diagnose.answer.effect_source import Acting, acting
-from hfanalysis.diagnose.answer.plausible import LIMITS, MOST_LOST, excess, judged, lost
+from hfanalysis.diagnose.answer.plausible import MOST_LOST, excess, judged, lost
 from hfanalysis.diagnose.answer.posterior import (
+    ABOVE_CHANCE,
     BEFORE,
-    FAR,
     LEAST_EVIDENCE,
+    POOR_FIT,
     SET,
-    TELLING,
     UNSEEN,
     Scale,
+    above_chance,
     evidences_of,
-    far,
     kind,
+    poor_fit,
     scale,
     smallest_set,
-    telling,
 )
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.verdict import (
@@ -51,10 +51,14 @@ from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.variants import VARIANTS, settings_of
 from hfanalysis.effects import effect, library
+from hfanalysis.engine.effect import Active, Believable
 from hfanalysis.errors import InputError
 from hfanalysis.inference import gap
 from hfanalysis.inference.candidate import Bench, Candidate
-from hfanalysis.inference.fitting.fit import fit
+from hfanalysis.inference.fitting.fit import Fit, fit
+from hfanalysis.inference.places import PLACES
+from hfanalysis.inference.splines import Splines
+from hfanalysis.inference.unknowns.smooth_source import SmoothSource, sensor_place
 
 labels = some.dictionaries(
     some.sampled_from(("none", "unknown", "tank_heat", "load_cell_drift", "n2_purge")),
@@ -70,12 +74,12 @@ def eroded() -> Naming:
     return name_effects(made.hypothesis(), made.observed(EROSION), tried)
 
 
-@given(labels, some.floats(0.5, 20.0), some.floats(0.0, 5.0), some.floats(0.0, FAR))
+@given(labels, some.floats(0.5, 20.0), some.floats(0.0, 5.0), some.floats(0.0, POOR_FIT))
 def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: float, leftover: float) -> None:
     found = Scale(t, more).probabilities(evidences, leftover)
     assert set(found) == set(evidences)
     assert sum(found.values()) == pytest.approx(1.0)
-    little = "none" in evidences and not telling(evidences)
+    little = "none" in evidences and not above_chance(evidences)
     order = sorted((k for k in evidences if k != "unknown" or not little), key=lambda k: evidences[k])
     assert all(found[a] <= found[b] for a, b in pairwise(order))
     assert not little or found.get("unknown", 0.0) <= found["none"]
@@ -100,23 +104,21 @@ def test_a_temperature_takes_evidences_less_seriously() -> None:
     assert left.probabilities(evidences, 2.0) == warm
 
 
-@given(some.floats(-20.0, 5000.0), some.floats(-20.0, 5000.0), some.floats(FAR, 100.0))
-def test_of_a_test_that_no_model_comes_near_names_keep_what_is_described(
-    name: float, strange: float, leftover: float
-) -> None:
+@given(some.floats(-20.0, 5000.0), some.floats(-20.0, 5000.0), some.floats(POOR_FIT, 100.0))
+def test_of_a_test_that_no_model_comes_near_names_keep_a_share(name: float, strange: float, leftover: float) -> None:
     evidences = {"none": 0.0, "tank_heat": name, "unknown": strange}
     near, far = (Scale().probabilities(evidences, left) for left in (1.0, leftover))
     assert sum(far.values()) == pytest.approx(1.0)
     for label in ("none", "tank_heat"):
-        assert far[label] == pytest.approx(near[label] * FAR / leftover)
-    assert far["unknown"] >= 1.0 - FAR / leftover
+        assert far[label] == pytest.approx(near[label] * POOR_FIT / leftover)
+    assert far["unknown"] >= 1.0 - POOR_FIT / leftover
 
 
 def test_far_from_all_models_a_name_is_claimed_only_where_no_source_is_found() -> None:
     stated = Scale().probabilities({"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, 19.0)
-    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, far(19.0)) == "unknown"
-    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}, far(19.0)) == "tank_heat"
-    assert _claimed(stated, {"none": 0.0, "tank_heat": 8.0, "unknown": -5.0}, far(19.0)) == "none"
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, poor_fit(19.0)) == "unknown"
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}, poor_fit(19.0)) == "tank_heat"
+    assert _claimed(stated, {"none": 0.0, "tank_heat": 8.0, "unknown": -5.0}, poor_fit(19.0)) == "none"
     assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}) == "none"
 
 
@@ -198,10 +200,10 @@ def test_where_nothing_is_seen_unknown_is_not_more_probable_than_none() -> None:
         found = Scale(offsets=offsets).probabilities({"none": 0.0, "tank_heat": name, "unknown": unknown}, 1.0)
         return float(np.log(found["unknown"] / found["none"]))
 
-    least = TELLING["unknown"]
+    least = ABOVE_CHANCE["unknown"]
     assert odds(least - 0.1) == pytest.approx(0.0)
     assert odds(least) == pytest.approx(least)
-    assert odds(6.0, name=TELLING["named"]) == pytest.approx(6.0)  # something is there
+    assert odds(6.0, name=ABOVE_CHANCE["named"]) == pytest.approx(6.0)  # something is there
     assert odds(6.0, offset=-8.0) == pytest.approx(-2.0)  # what is less probable anyhow stays as it is
 
 
@@ -236,25 +238,38 @@ def test_none_is_the_zero_of_evidence_and_a_set_counts_for_its_first_name() -> N
     assert "tank_heat" not in with_set
 
 
+def of_size(name: str, size: float) -> Active:
+    """An effect of the library, its believable strength that many times the largest believable one."""
+    known = effect(name)
+    assert known.believable is not None
+    return known.at(**{known.believable.parameter: size * known.believable.most})
+
+
 def test_a_size_beyond_belief_costs_evidence() -> None:
-    for name, limit in LIMITS.items():
-        # only the parameter that a limit is of, or all transducers
-        typical, huge = ({limit.parameter: share * limit.most} for share in (0.9, 5.0))
-        assert lost(name, typical) == 0.0, name
-        assert 1.0 < lost(name, huge) <= MOST_LOST, name
-        assert lost(name, {limit.parameter: -5.0 * limit.most}) == lost(name, huge), name
-        assert judged(name, huge).plausible is False, name
-        assert judged(name, typical).plausible is True, name
-    assert lost("tank_heat", {"power": 1e9}) == MOST_LOST
-    assert excess("an_effect_of_a_team", {"x": 1e9}) == 0.0
-    assert judged("an_effect_of_a_team", {"x": 1e9}).plausible is None
+    for name in library():
+        typical, huge = of_size(name, 0.9), of_size(name, 5.0)
+        assert lost(typical) == 0.0, name
+        assert 1.0 < lost(huge) <= MOST_LOST, name
+        assert lost(of_size(name, -5.0)) == lost(huge), name
+        assert judged(huge).plausible is False, name
+        assert judged(typical).plausible is True, name
+    assert lost(effect("tank_heat").at(power=1e9)) == MOST_LOST
 
 
-def test_every_limit_is_of_a_strength_that_the_library_has() -> None:
-    assert set(LIMITS) == set(library())
-    for name, limit in LIMITS.items():
-        known = library()[name]
-        assert limit.parameter in [p.name for p in known.parameters[: known.strengths]], name
+def test_an_effect_of_a_team_is_judged_by_what_it_says_itself() -> None:
+    silent = replace(effect("tank_heat"), name="of_a_team", believable=None).at(power=1e9)
+    assert excess(silent) == 0.0
+    assert judged(silent)["plausible"] is None
+    spoken = replace(effect("tank_heat"), name="of_a_team", believable=Believable("power", 500.0, "no pump", "W"))
+    assert judged(spoken.at(power=600.0))["why"] == "power of 600 W is beyond 500 W: no pump"
+
+
+def test_what_is_believable_is_of_a_strength_and_every_effect_has_a_plain_name() -> None:
+    for name, known in library().items():
+        assert known.believable is not None, name
+        assert known.believable.parameter in [p.name for p in known.parameters[: known.strengths]], name
+        assert known.plain_name, name
+        assert "_" not in known.plain_name, name
 
 
 def test_an_impossible_size_makes_a_name_less_probable() -> None:
@@ -266,7 +281,16 @@ def test_an_impossible_size_makes_a_name_less_probable() -> None:
     burnt = replace(single.fit.burnt, steps=replace(single.fit.burnt.steps, engine=worn))
     large = replace(single, fit=replace(single.fit, burnt=burnt))
     odds = [verdict_of(replace(found, singles=(c,))).evidences["nozzle_throat_erosion"] for c in (single, large)]
-    assert odds[0] - odds[1] == pytest.approx(lost("nozzle_throat_erosion", {"rate": 1.2e-3}))
+    assert odds[0] - odds[1] == pytest.approx(lost(effect("nozzle_throat_erosion").at(rate=1.2e-3)))
+
+
+def unnamed(place: str, fitted: Fit, evidence: float) -> Candidate:
+    """An unknown source somewhere, which explains so much."""
+    sensors = [sensor_place(made.observed(), name) for name in made.NOISE]
+    at = next(p for p in (*PLACES, *sensors) if p.name == place)
+    nothing = np.zeros(4)
+    source = SmoothSource(at, 0.0, np.zeros(fitted.x.size), at.typical, 1.5, nothing, Splines.over(0.0, 1.0, 1.0))
+    return Candidate((place,), fitted, evidence, source=source)
 
 
 def probable(*gains: tuple[str, float]) -> Naming:
@@ -274,7 +298,7 @@ def probable(*gains: tuple[str, float]) -> Naming:
     found, single = eroded(), eroded().singles[0]
     base = found.base.log_evidence
     singles = tuple(replace(single, names=(n,), log_evidence=base + g) for n, g in gains if n != "unknown")
-    strange = tuple(Candidate(("tank_leak",), single.fit, base + g, unknown=True) for n, g in gains if n == "unknown")
+    strange = tuple(unnamed("tank_leak", single.fit, base + g) for n, g in gains if n == "unknown")
     equations = found.equations | {n: effect(n).equation for n, _ in gains if n != "unknown"}
     return replace(found, singles=singles, sets=(), unknown=strange, equations=equations)
 
@@ -349,7 +373,7 @@ def strange(*sources: tuple[str, float]) -> Naming:
     """Throat erosion that explains 20 units, and unknown sources alone at these sites that explain so much."""
     found = probable(("nozzle_throat_erosion", 20.0))
     fit, base = found.singles[0].fit, found.base.log_evidence
-    return replace(found, unknown=tuple(Candidate((site,), fit, base + gain, unknown=True) for site, gain in sources))
+    return replace(found, unknown=tuple(unnamed(place, fit, base + gain) for place, gain in sources))
 
 
 @pytest.mark.parametrize(

@@ -15,13 +15,14 @@ from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import (
     effect_sentence,
     equation_sentence,
-    far_sentence,
     gap_line,
     headline,
     place_sentence,
+    poor_fit_sentence,
     proof_sentences,
     story,
 )
+from hfanalysis.effects import effect
 from hfanalysis.products.diagnosis import ClosedFraction, Diagnosis
 from hfanalysis.quantity import Quantity
 
@@ -125,7 +126,7 @@ def test_a_fire_that_dies_slowly_is_said_beside_what_an_empty_chamber_takes(seco
 def test_an_impossible_size_is_said() -> None:
     row = effects_product(verdict_of(eroded()))[0]
     assert "hard to believe" not in effect_sentence(row)
-    unlikely = row.but(plausibility=judged("nozzle_throat_erosion", {"rate": 2e-3}))
+    unlikely = row.but(plausibility=judged(effect("nozzle_throat_erosion").at(rate=2e-3)))
     assert "hard to believe" in effect_sentence(unlikely)
     assert "2 mm/s is beyond 0.4 mm/s" in effect_sentence(unlikely)
 
@@ -172,8 +173,8 @@ def test_where_names_leave_a_choice_the_equation_may_be_sure(
 def test_it_is_said_that_no_model_comes_near_a_test_and_which_comes_nearest() -> None:
     rows = [(["n2_purge"], False, 80.0), (["n2_purge", "tank_heat"], False, 90.0), (["offset of p_tank"], True, 95.0)]
     tried = [{"names": names, "unknown": strange, "log_evidence": gain} for names, strange, gain in rows]
-    assert far_sentence(filled(Diagnosis, {"leftover": 2.0, "tried": tried})) == []
-    (said,) = far_sentence(filled(Diagnosis, {"leftover": 18.76, "tried": tried}))
+    assert poor_fit_sentence(filled(Diagnosis, {"leftover": 2.0, "tried": tried})) == []
+    (said,) = poor_fit_sentence(filled(Diagnosis, {"leftover": 18.76, "tried": tried}))
     assert "(n2_purge and tank_heat) leaves a chi-square of 18.8" in said
-    (bare,) = far_sentence(filled(Diagnosis, {"leftover": 18.76, "tried": tried[2:]}))
+    (bare,) = poor_fit_sentence(filled(Diagnosis, {"leftover": 18.76, "tried": tried[2:]}))
     assert "the best with names leaves" in bare

@@ -13,14 +13,14 @@ from tests.inference import made
 from hfanalysis.diagnose.answer.verdict import of_unknown
 from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.naming.freeform import unknown_sources
-from hfanalysis.diagnose.naming.localise import CORRELATIONS, Smooth, linear_sources
-from hfanalysis.diagnose.naming.source_history import course_of
 from hfanalysis.engine.effect import Active, Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, FEED_LOSS, IS_LIQUID, term
 from hfanalysis.inference.candidate import Bench, Candidate, candidate
 from hfanalysis.inference.fitting.fit import fit
 from hfanalysis.inference.fitting.form import FINEST, Form
-from hfanalysis.inference.unknowns.smooth_source import Splines
+from hfanalysis.inference.splines import Splines
+from hfanalysis.inference.unknowns import in_slopes
+from hfanalysis.inference.unknowns.smooth_source import CORRELATIONS, SmoothSource
 
 
 def misread(channel: str, course: Callable[[np.ndarray], np.ndarray]) -> Active:
@@ -66,8 +66,8 @@ def test_a_sensor_that_drifts_stays_there_when_the_flow_is_over() -> None:
     assert rest.size > 0
     read = best.fit.hypothesis.offset("p_chamber", best.fit.x, rest)
     assert read == pytest.approx(drift(rest), abs=4.0 * made.NOISE["p_chamber"])
-    course = course_of(best.fit, "offset of p_chamber", bench.observed)
-    assert (np.abs(course.mean - drift(course.time)) < 3.5 * course.std).all()
+    history = best.history(bench.observed)
+    assert (np.abs(history.mean - drift(history.time)) < 3.5 * history.std).all()
 
 
 def test_wind_on_the_stand_is_seen_behind_a_coarse_form() -> None:
@@ -77,9 +77,9 @@ def test_wind_on_the_stand_is_seen_behind_a_coarse_form() -> None:
     assert best.names == ("offset of thrust",)
     assert best.form.chamber < base.form.chamber
     assert best.log_evidence > base.log_evidence + 20.0
-    course = course_of(best.fit, "offset of thrust", bench.observed)
-    assert (np.abs(course.mean - wind(course.time)) < 3.5 * course.std).mean() > 0.95
-    row = of_unknown(course, 1.0, bench.observed.phases)
+    history = best.history(bench.observed)
+    assert (np.abs(history.mean - wind(history.time)) < 3.5 * history.std).mean() > 0.95
+    row = of_unknown(history, 1.0, bench.observed.phases)
     assert row.rms.value == pytest.approx(60.0 / np.sqrt(2.0), rel=0.2)
     assert "goes up and down by 4" in place_sentence(row)
 
@@ -113,14 +113,14 @@ def test_a_source_may_end_with_the_liquid() -> None:
     block = best.fit.hypothesis.blocks[0]
     t_v = test.events["t_v"][0]
     assert block.splines.liquid_out == t_v
-    course = course_of(best.fit, "feed_loss", test)
-    wet = course.time < t_v
-    assert not course.mean[~wet].any()
-    assert course.mean[wet][-1] > 0.5 * course.mean.max()
+    history = best.history(test)
+    wet = history.time < t_v
+    assert not history.mean[~wet].any()
+    assert history.mean[wet][-1] > 0.5 * history.mean.max()
     # what loss the line had anyway is calibrated with it: the growth is what is seen
-    grown = course.mean[wet] - 2e4 * course.time[wet]
-    assert (np.abs(grown - grown.mean()) < 3.0 * course.std[wet] + 2e3).all()
-    through = [s for s in linear_sources(base.fit, test) if s.site.name == "feed_loss" and isinstance(s, Smooth)]
+    grown = history.mean[wet] - 2e4 * history.time[wet]
+    assert (np.abs(grown - grown.mean()) < 3.0 * history.std[wet] + 2e3).all()
+    through = [s for s in in_slopes(base.fit, test) if s.place.name == "feed_loss" and isinstance(s, SmoothSource)]
     until, beyond = sorted(through, key=lambda s: s.splines.liquid_out)
     assert until.log_evidence > beyond.log_evidence + 5.0
 
@@ -128,8 +128,8 @@ def test_a_source_may_end_with_the_liquid() -> None:
 def test_a_slow_source_is_coherent_over_many_splines() -> None:
     _, best, bench = found("p_chamber", drift, FINEST)
     base = candidate((), fit(made.hypothesis(), bench.at(FINEST)), FINEST)
-    slow = next(s for s in linear_sources(base.fit, bench.at(FINEST)) if s.site.name == best.names[0])
-    assert isinstance(slow, Smooth)
+    slow = next(s for s in in_slopes(base.fit, bench.at(FINEST)) if s.place.name == best.names[0])
+    assert isinstance(slow, SmoothSource)
     assert slow.correlation == max(CORRELATIONS)
 
 

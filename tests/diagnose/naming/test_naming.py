@@ -21,15 +21,13 @@ from hfanalysis.diagnose.naming import singles
 from hfanalysis.diagnose.naming.base_model import base_model
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.dropping import dropped
-from hfanalysis.diagnose.naming.freeform import ANYWHERE, LEAST, unknown_sources
-from hfanalysis.diagnose.naming.localise import Smooth, Sudden, linear_sources
+from hfanalysis.diagnose.naming.freeform import LEAST, unknown_sources
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
 from hfanalysis.diagnose.naming.singles import Array, _first_children, _promising, singles_of
 from hfanalysis.diagnose.naming.slack import slack_gain
-from hfanalysis.diagnose.naming.source_history import course_of
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Engine
@@ -37,11 +35,13 @@ from hfanalysis.inference.candidate import Bench, Candidate, attempted, candidat
 from hfanalysis.inference.fitting.fit import Fit, fit, promised
 from hfanalysis.inference.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.inference.fitting.hypothesis import Hypothesis, mid_flux
-from hfanalysis.inference.observations.clocks import Delay
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.unknowns.late_channel import late
-from hfanalysis.inference.unknowns.pulse import OWN, pulse_effect
-from hfanalysis.inference.unknowns.smooth_source import Splines, probe
+from hfanalysis.inference.splines import Splines, probe
+from hfanalysis.inference.unknowns import in_slopes
+from hfanalysis.inference.unknowns.late_channel import EFFECT as LATE
+from hfanalysis.inference.unknowns.late_channel import LateChannel
+from hfanalysis.inference.unknowns.pulse import OWN, Pulse, pulse_effect
+from hfanalysis.inference.unknowns.smooth_source import SmoothSource
 
 TRIED = ("injector_choked_vapor", "load_cell_drift", "nozzle_throat_erosion", "tank_heat")
 
@@ -176,7 +176,7 @@ def test_an_effect_whose_place_the_constants_take_starts_far_from_nothing(monkey
     base = candidate((), fitted, FINEST)
     promising = singles._promising
     monkeypatch.setattr(singles, "_promising", lambda *of: (promising(*of)[0], []))
-    monkeypatch.setattr(singles, "CALM", np.inf)  # nor is a moderate size tried
+    monkeypatch.setattr(singles, "WELL_FITTED", np.inf)  # nor is a moderate size tried
     for one, seen in ((grain, True), (replace(grain, far_starts=()), False)):
         found = _first_children(base, [], Search(bench, Catalogue({grain.name: one}, {})), [grain.name])
         assert [c.names for c in found] == [(grain.name,)] * seen
@@ -245,7 +245,7 @@ def test_the_leak_is_seen_when_it_is_there() -> None:
     found = leaking()
     candidate = next(c for c in found.unknown if c.names == ("tank_leak",))
     observed = found.bench.observed
-    row = of_unknown(course_of(candidate.fit, "tank_leak", observed), 1.0, observed.phases)
+    row = of_unknown(candidate.history(observed), 1.0, observed.phases)
     time, mean = (np.array(getattr(row.history, n)) for n in ("time", "mean"))
     inside = (time > 2.5) & (time < 3.5)
     outside = (time < 1.0) | (time > 5.0)
@@ -274,15 +274,15 @@ def test_what_comes_and_goes_at_once_is_unknown_with_its_instants() -> None:
         # it is there from where its edge has risen to a twentieth
         assert getattr(row, end).value == pytest.approx(instant, abs=0.12)
     assert row.source.value == pytest.approx(FALLEN["size"], abs=0.006)
-    inside = course_of(verdict.chosen.fit, "injector_factor", found.bench.observed)
+    inside = verdict.chosen.history(found.bench.observed)
     middle = np.abs(inside.time - (FALLEN["start"] + 0.5 * FALLEN["duration"])) < 0.2
     assert (np.abs(inside.mean[middle] - FALLEN["size"]) < 3.0 * inside.std[middle]).all()
 
 
 @cache
 def late_thrust() -> Naming:
-    test = made.observed(late("thrust").at(delay=0.1))
-    return name_effects(made.hypothesis(), replace(test, plain=(Delay(0.102, 40.0),)), catalogue())
+    test = made.observed(LATE.at(delay=0.1))
+    return name_effects(made.hypothesis(), replace(test, unknowns=(LateChannel(0.102, 40.0),)), catalogue())
 
 
 def test_a_thrust_of_another_clock_is_unknown_with_its_delay() -> None:
@@ -305,12 +305,12 @@ def test_a_name_that_a_source_can_do_without_is_left_out() -> None:
     start = np.concatenate([best.fit.x, np.full(idle.size - best.fit.x.size, 0.05)])
     again = attempted(idle, found.bench.at(best.form), start)
     assert again is not None
-    both = candidate(("nozzle_throat_erosion", "injector_factor"), again, best.form, unknown=True)
-    assert both.log_evidence < best.log_evidence + ANYWHERE
+    both = candidate(("nozzle_throat_erosion", "injector_factor"), again, best.form, best.source)
+    assert both.log_evidence < best.log_evidence + Pulse.price
     less = dropped(both, found.bench)
     assert less.names == ("injector_factor",)
     assert less.unknown
-    assert less.log_evidence == pytest.approx(best.log_evidence + ANYWHERE, abs=0.5)
+    assert less.log_evidence == pytest.approx(best.log_evidence + Pulse.price, abs=0.5)
     assert less.fit.x[at:] == pytest.approx(best.fit.x[at:], abs=0.1)
     assert less.log_evidence > base.log_evidence
 
@@ -321,21 +321,21 @@ def test_a_delay_is_not_thought_of_where_the_start_shows_none() -> None:
 
 def test_the_linear_search_sees_a_pulse_where_it_is() -> None:
     test = made.observed(pulse_effect("injector_factor").at(**FALLEN))
-    found = linear_sources(fit(made.hypothesis(), test), test)
-    sudden = next(s for s in found if s.site.name == "injector_factor" and isinstance(s, Sudden))
-    smooth = next(s for s in found if s.site.name == "injector_factor" and isinstance(s, Smooth))
+    found = in_slopes(fit(made.hypothesis(), test), test)
+    pulse = next(s for s in found if s.place.name == "injector_factor" and isinstance(s, Pulse))
+    smooth = next(s for s in found if s.place.name == "injector_factor" and isinstance(s, SmoothSource))
     # the search blurs its edges, which splines then fit a little better; the full fit does not
-    assert sudden.log_evidence > 0.9 * smooth.log_evidence
-    assert sudden.pulse.start == pytest.approx(FALLEN["start"], abs=0.3)
-    assert sudden.pulse.duration == pytest.approx(FALLEN["duration"], abs=0.3)
-    assert sudden.pulse.size < 0.0
+    assert pulse.log_evidence > 0.9 * smooth.log_evidence
+    assert pulse.start == pytest.approx(FALLEN["start"], abs=0.3)
+    assert pulse.duration == pytest.approx(FALLEN["duration"], abs=0.3)
+    assert pulse.size < 0.0
 
 
 def test_without_a_source_no_site_is_blamed() -> None:
     """Not even to be tried."""
     for seed in range(8):
         test = made.observed(seed=seed)
-        assert linear_sources(fit(made.hypothesis(), test), test)[0].log_evidence < LEAST
+        assert in_slopes(fit(made.hypothesis(), test), test)[0].log_evidence < LEAST
 
 
 def test_a_score_is_the_gain_of_a_linear_fit() -> None:
@@ -506,7 +506,7 @@ def test_a_source_that_a_coarse_form_hides_is_found_at_the_next_finer_one() -> N
     base, _ = base_model(made.hypothesis(), bench)
     coarse = bench.refitted(base, Form(2, 2))
     assert coarse is not None
-    assert max(s.log_evidence for s in linear_sources(coarse.fit, bench.at(coarse.form))) < LEAST
+    assert max(s.log_evidence for s in in_slopes(coarse.fit, bench.at(coarse.form))) < LEAST
     found = unknown_sources(coarse, [], coarse, bench)
     assert found[0].names[0] in ("tank_heat", "nitrogen_inflow", "tank_leak", "tank_pressure")
     assert found[0].form == FINEST

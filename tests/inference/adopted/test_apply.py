@@ -14,8 +14,9 @@ from tests.products.filled import filled
 
 from hfanalysis.cli import main
 from hfanalysis.cli.adopt import adopt, proved_as_before
-from hfanalysis.cli.perform import Request
+from hfanalysis.cli.request import Request
 from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.inference.adopted.effects import read_adopted
 from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.disk import write_json
 from hfanalysis.stages.base import Context
@@ -56,7 +57,8 @@ def test_what_a_diagnosis_names_is_adopted(root: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert "tank_heat with probability 0.83" in text.splitlines()[1]
     assert "hfa diagnose T1 --retract" in text
-    assert opened(root).adopted().effects[0].values == (912.3456789, 0.2345678, 31.23456, 0.4123456)
+    (effect,) = read_adopted(root, opened(root).definition).effects
+    assert effect.values == (912.3456789, 0.2345678, 31.23456, 0.4123456)
     adopt(opened(root), filled(Diagnosis, NAMED))  # a diagnosis may write over a diagnosis
     path.write_text('[tank_heat]\npower = "1 kW"\n', encoding="utf-8")
     with pytest.raises(InputError, match="found a file that no diagnosis wrote"):
@@ -67,7 +69,7 @@ def test_what_a_diagnosis_names_is_adopted(root: Path) -> None:
 def test_for_a_stand_it_is_adopted_for_all_its_tests(root: Path) -> None:
     path = adopt(opened(root), filled(Diagnosis, NAMED), stand=True)
     assert path.name == "paper.effects.toml"
-    assert opened(root).adopted().file == "paper.effects.toml"
+    assert read_adopted(root, opened(root).definition).file == "paper.effects.toml"
     path.unlink()
 
 

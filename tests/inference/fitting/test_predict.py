@@ -11,7 +11,6 @@ from hypothesis import strategies as some
 from tests.engine.stand import engine_on_stand
 from tests.inference import made
 
-from hfanalysis.diagnose.naming.localise import Smooth, linear_sources
 from hfanalysis.effects import effect, library
 from hfanalysis.effects.load_cell_drift import heat_clock
 from hfanalysis.engine.unsteady import burn
@@ -19,8 +18,11 @@ from hfanalysis.inference.fitting.fit import fit
 from hfanalysis.inference.fitting.hypothesis import FARTHEST, M_RANGE, Free, Hypothesis, free_parameters
 from hfanalysis.inference.fitting.predict import predict, readings, signatures
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.unknowns.pulse import Pulse, with_pulse
-from hfanalysis.inference.unknowns.smooth_source import Splines, probe
+from hfanalysis.inference.places import PLACES
+from hfanalysis.inference.splines import Splines, probe
+from hfanalysis.inference.unknowns import in_slopes
+from hfanalysis.inference.unknowns.pulse import Pulse
+from hfanalysis.inference.unknowns.smooth_source import SmoothSource
 
 
 def plain() -> Hypothesis:
@@ -36,21 +38,24 @@ def with_bad_sensors() -> Hypothesis:
 
 
 def with_unknown_heat() -> Hypothesis:
-    return _source("tank_heat").added_to(plain())[0]
+    return _smooth("tank_heat")
 
 
 def with_unknown_offset() -> Hypothesis:
-    return _source("offset of thrust").added_to(plain())[0]
+    return _smooth("offset of thrust")
 
 
 def with_unknown_pulse() -> Hypothesis:
-    return with_pulse(plain(), "regression_factor", Pulse(0.05, 2.03, 1.4, 0.1), 8.0)[0]
+    place = next(place for place in PLACES if place.name == "regression_factor")
+    pulse = Pulse(place, 0.0, np.zeros(plain().size), size=0.05, start=2.03, duration=1.4, scale=0.1, end=8.0)
+    return pulse.added_to(fit(plain(), made.observed(), made.truth(), 0))[0]
 
 
-def _source(site: str) -> Smooth:
+def _smooth(place: str) -> Hypothesis:
     test = made.observed()
-    found = linear_sources(fit(plain(), test, made.truth()), test)
-    return next(s for s in found if s.site.name == site and isinstance(s, Smooth))
+    fitted = fit(plain(), test, made.truth())
+    found = in_slopes(fitted, test)
+    return next(s for s in found if s.place.name == place and isinstance(s, SmoothSource)).added_to(fitted)[0]
 
 
 def blocks(test: Observed) -> int:

@@ -16,7 +16,7 @@ from hfanalysis.inference.fitting.predict import predict, readings
 from hfanalysis.inference.observations.channel import FORM_ERROR, SHARE
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.purge_line import SETTLED, purge_line
-from hfanalysis.inference.unknowns.smooth_source import Splines
+from hfanalysis.inference.splines import Splines
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
 

@@ -19,6 +19,7 @@ from hfanalysis.engine.unsteady import burn, constants
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.predict import aligned, last_regression, misread, with_spare_fuel
 from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.record.channels import unit_of
 
 Array = NDArray[np.float64]
 
@@ -72,7 +73,7 @@ def acting(found: Fit, name: str, observed: Observed) -> Acting:
     Its band holds what is uncertain of all constants of the fit, at the states of its run, and of the effect's shape.
     """
     active = next(a for a in found.burnt.steps.engine.effects if a.effect.name == name)
-    time = np.linspace(0.0, float(observed.grid[~observed.resting][-1]), POINTS)
+    time = np.linspace(0.0, observed.last, POINTS)
     if active.effect.of_sensor:
         return _sensor(found, active, observed)
     if active.effect.fading_web is not None and "t_fuel_out" in observed.events:
@@ -110,9 +111,8 @@ def _sensor(found: Fit, active: Active, observed: Observed) -> Acting:
     channel = max(extra, key=lambda n: float(np.abs(extra[n]).max()) / noise[n])
     burning = ~observed.resting
     mean = extra[channel][burning]
-    unit = "N" if channel == "thrust" else "kg" if channel == "m_tank" else "Pa"
     std = _relative(found, active.effect) * np.abs(mean)
-    return Acting("sensor", unit, observed.grid[burning], mean, _with_shape(mean, std), channel)
+    return Acting("sensor", unit_of(channel), observed.grid[burning], mean, _with_shape(mean, std), channel)
 
 
 def _fading(found: Fit, active: Active, observed: Observed, time: Array) -> Acting:

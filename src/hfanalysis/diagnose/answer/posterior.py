@@ -24,7 +24,7 @@ SET = 0.9
 """Probability that the stated set of names holds."""
 
 
-TELLING = {"named": 5.0, "unknown": 10.0}
+ABOVE_CHANCE = {"named": 5.0, "unknown": 10.0}
 """Log evidence of which, where no label has it, unknown is taken to be no more probable than none. Of 214 simulated
 tests that hide nothing (docs/blind.md names the runs) `benchmarks.blind calibrate` prints 7.8, 7.6, 4.8 and 4.1 as the
 largest of names, and 6.8, 6.4, 6.3 and 6.1 as those of unknown sources. Those need more, for a source that explains
@@ -35,24 +35,24 @@ LEAST_EVIDENCE = 9.0
 """Log evidence that a label needs itself to be claimed: more than any has of those 214 tests."""
 
 
-FAR = 2.0
+POOR_FIT = 2.0
 """Chi-square per observation that the best name leaves, at the model-form error that it asks for, beyond which model
 and test are further apart than in any of the tests by which probabilities were fitted. Of the 1,498 scored tests one
 leaves more, S001267, and what it is stated as is wrong."""
 
 
-def far(leftover: float) -> bool:
+def poor_fit(leftover: float) -> bool:
     """Whether no model comes near a test of which the best name leaves so much."""
-    return leftover > FAR
+    return leftover > POOR_FIT
 
 
-def described(leftover: float) -> float:
+def share_kept(leftover: float) -> float:
     """The part of its probability that a label keeps whose model leaves so much; the rest is that of unknown.
 
-    >>> described(1.3), described(8.0)
+    >>> share_kept(1.3), share_kept(8.0)
     (1.0, 0.25)
     """
-    return FAR / leftover if far(leftover) else 1.0
+    return POOR_FIT / leftover if poor_fit(leftover) else 1.0
 
 
 @dataclass(frozen=True)
@@ -62,10 +62,10 @@ class Scale:
     A label of which a score test saw nothing (UNSEEN) is as good as none, but for an offset of its own: that an effect
     is too small to be seen is no evidence against it. What a closure gets wrong of an effect grows with what it
     explains, but less than in proportion: unknown has ``unexplained`` times the root of the best name's evidence less
-    than it found, unless its source acts in another equation; and where nothing is ``telling`` it is at most as
+    than it found, unless its source acts in another equation; and where nothing is ``above_chance`` it is at most as
     probable as none. In a share ``misled`` of the tests the evidence misleads altogether; there the labels have the
-    probabilities that they have before a test. Where all evidence is ``faint`` that share is another,
-    ``misled_faint``. Of a test that no model comes near unknown has what is not ``described``.
+    probabilities that they have before a test. Where all evidence is ``unclaimable`` that share is another,
+    ``misled_faint``. Of a test that no model comes near unknown has what these do not keep.
     """
 
     temperature: float = 1.0
@@ -85,17 +85,17 @@ class Scale:
         heat, labels = self.heat(leftover), list(evidences)
         kinds, counted = detailed_kinds(evidences), beyond_closures(evidences, self.unexplained, elsewhere)
         logs = np.array([self._log(kinds[label], counted[label], heat) for label in labels])
-        if "unknown" in labels and "none" in labels and not telling(evidences):
+        if "unknown" in labels and "none" in labels and not above_chance(evidences):
             unknown = labels.index("unknown")
             logs[unknown] = min(logs[unknown], logs[labels.index("none")])
         weights = np.exp(logs - logs.max())
         before = np.array([BEFORE[kind(label)] for label in labels])
         before[[kind(label) == "named" for label in labels]] /= max(sum(kind(k) == "named" for k in labels), 1)
-        misled = self.misled_faint if faint(evidences) else self.misled
+        misled = self.misled_faint if unclaimable(evidences) else self.misled
         mixed = (1.0 - misled) * weights / weights.sum() + misled * before / before.sum()
         if "unknown" in labels:
-            mixed = described(leftover) * mixed
-            mixed[labels.index("unknown")] += 1.0 - described(leftover)
+            mixed = share_kept(leftover) * mixed
+            mixed[labels.index("unknown")] += 1.0 - share_kept(leftover)
         return dict(zip(labels, mixed.tolist(), strict=True))
 
     def heat(self, leftover: float) -> float:
@@ -109,18 +109,18 @@ class Scale:
         return self.offsets.get(of, self.offsets[plain]) + evidence / heat
 
 
-def telling(evidences: Mapping[str, float]) -> bool:
-    """Whether any label has as much evidence as hardly a test shows that hides nothing (TELLING), that of none being 0.
+def above_chance(evidences: Mapping[str, float]) -> bool:
+    """Whether any label has as much evidence as hardly a test shows that hides nothing, that of none being 0.
 
-    >>> telling({"none": 0.0, "tank_heat": 5.2, "unknown": 9.8})
+    >>> above_chance({"none": 0.0, "tank_heat": 5.2, "unknown": 9.8})
     True
-    >>> telling({"none": 0.0, "tank_heat": 4.8, "unknown": 9.8})
+    >>> above_chance({"none": 0.0, "tank_heat": 4.8, "unknown": 9.8})
     False
     """
-    return any(e >= TELLING[kind(label)] for label, e in evidences.items() if label != "none")
+    return any(e >= ABOVE_CHANCE[kind(label)] for label, e in evidences.items() if label != "none")
 
 
-def faint(evidences: Mapping[str, float]) -> bool:
+def unclaimable(evidences: Mapping[str, float]) -> bool:
     """Whether no label has the evidence that a claim needs (LEAST_EVIDENCE), that of none being 0."""
     return all(e < LEAST_EVIDENCE for label, e in evidences.items() if label != "none")
 

@@ -15,8 +15,8 @@ from hfanalysis.diagnose.answer.posterior import (
     LEAST_EVIDENCE,
     SET,
     evidences_of,
-    far,
     partners_of,
+    poor_fit,
     scale,
     smallest_set,
     weights_of,
@@ -24,10 +24,10 @@ from hfanalysis.diagnose.answer.posterior import (
 from hfanalysis.diagnose.answer.where import elsewhere, likeliest_of, likeliest_source
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming
-from hfanalysis.diagnose.naming.source_history import Course, course_of
-from hfanalysis.engine.effect import Parameter
+from hfanalysis.engine.effect import Active, Parameter
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.unknown import History, has_name
 from hfanalysis.products.diagnosis import NamedEffect, Place, SourceHistory
 from hfanalysis.quantity import NORMAL_95, Quantity
 
@@ -90,7 +90,7 @@ def verdict_of(found: Naming) -> Verdict:
 def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, float]) -> Verdict:
     """What probabilities amount to."""
     set90 = smallest_set(posterior)
-    top = _claimed(posterior, evidences, far(found.named.leftover))
+    top = _claimed(posterior, evidences, poor_fit(found.named.leftover))
     chosen = _chosen(found, top)
     if top in ("none", "unknown"):
         return Verdict(top, posterior, evidences, set90, chosen)
@@ -101,13 +101,13 @@ def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, fl
     return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
 
 
-def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], far_off: bool = False) -> str:
+def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], poor: bool = False) -> str:
     """The most probable label but none, where it may be claimed, or else none.
 
-    Where all models are ``far_off`` and no unknown source was found, a name is what there is to go by.
+    Where all models are ``poor`` and no unknown source was found, a name is what there is to go by.
     """
     labels = [k for k in posterior if k != "none"]
-    if far_off and evidences.get("unknown", 0.0) < LEAST_EVIDENCE:
+    if poor and evidences.get("unknown", 0.0) < LEAST_EVIDENCE:
         labels = [k for k in labels if k != "unknown"]
     top = max(labels, key=lambda k: (posterior[k], k))
     return top if posterior["none"] < CLAIM and evidences[top] >= LEAST_EVIDENCE else "none"
@@ -115,17 +115,14 @@ def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], far
 
 def _believed(candidate: Candidate) -> Candidate:
     """The candidate with what impossible sizes cost it."""
-    cost = sum(lost(name, values) for name, values in sizes(candidate.fit).items() if name in candidate.names)
+    cost = sum(lost(active) for name, active in acting_in(candidate.fit).items() if name in candidate.names)
     return replace(candidate, log_evidence=candidate.log_evidence - cost)
 
 
-def sizes(found: Fit) -> dict[str, dict[str, float]]:
-    """Strengths of the effects of a fit, by effect and parameter [SI]."""
-    return {
-        a.effect.name: {p.name: a.named[p.name] for p in a.effect.parameters[: a.effect.strengths]}
-        for a in found.burnt.steps.engine.effects
-        if not a.effect.name.startswith("probe_")
-    }
+def acting_in(found: Fit) -> dict[str, Active]:
+    """The effects of a fit by their names, without unknown sources."""
+    acting = found.burnt.steps.engine.effects
+    return {active.effect.name: active for active in acting if has_name(active.effect)}
 
 
 def _chosen(found: Naming, top: str) -> Candidate:
@@ -152,7 +149,7 @@ def effects_product(verdict: Verdict) -> tuple[NamedEffect, ...]:
     values, stds = found.values, found.stds
     out = []
     for name in verdict.chosen.names:
-        active = next(a for a in found.burnt.steps.engine.effects if a.effect.name == name)
+        active = acting_in(found)[name]
         parameters = {
             p.name: _within(p, values[full], stds[full])
             for p in active.effect.parameters
@@ -165,7 +162,7 @@ def effects_product(verdict: Verdict) -> tuple[NamedEffect, ...]:
                 equation=active.effect.equation,
                 meaning=active.effect.meaning,
                 parameters=parameters,
-                plausibility=judged(name, sizes(found)[name]),
+                plausibility=judged(active),
             )
         )
     return tuple(out)
@@ -186,13 +183,13 @@ def places(verdict: Verdict, found: Naming) -> tuple[Place, ...]:
     gain = chosen.log_evidence - found.base.log_evidence
     out: list[Place] = []
     if chosen.unknown:
-        out.append(of_unknown(course_of(chosen.fit, chosen.names[-1], observed), gain, observed.phases))
+        out.append(of_unknown(chosen.history(observed), gain, observed.phases))
     for name in verdict.added:
         source = acting(chosen.fit, name, observed)
         out.append(of_acting(name, source, gain / (len(out) + 1), observed.phases))
     beside = next((c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]), None)
     if beside is not None and (rest := beside.log_evidence - chosen.log_evidence) > 0.0:
-        row = of_unknown(course_of(beside.fit, beside.names[-1], observed), rest, observed.phases)
+        row = of_unknown(beside.history(observed), rest, observed.phases)
         out.append(row.but(beside=True, significance=min(rest, 0.5 * out[-1].significance)))
     return tuple(out)
 
@@ -214,16 +211,16 @@ def _of_candidate(candidate: Candidate, found: Naming) -> Place:
     """The row of a single effect or a source that is not claimed."""
     observed, gain = found.bench.observed, candidate.log_evidence - found.base.log_evidence
     if candidate.unknown:
-        return of_unknown(course_of(candidate.fit, candidate.names[-1], observed), gain, observed.phases)
+        return of_unknown(candidate.history(observed), gain, observed.phases)
     return of_acting(candidate.names[0], acting(candidate.fit, candidate.names[0], observed), gain, observed.phases)
 
 
-def of_unknown(course: Course, gain: float, phases: Mapping[str, float]) -> Place:
+def of_unknown(history: History, gain: float, phases: Mapping[str, float]) -> Place:
     """A row for an unknown source."""
-    site = course.site
-    made = Acting(course.equation, site.unit, course.time, course.mean, course.std, site.sensor)
-    row = of_acting(site.name, made, gain, phases, course.blur, course.stretch)
-    return row.but(phase=_phase(course.time, course.of_equation, phases), **course.sizes)
+    place = history.place
+    made = Acting(place.equation, place.unit, history.time, history.mean, history.std, place.sensor)
+    row = of_acting(place.name, made, gain, phases, history.blur, history.stretch)
+    return row.but(phase=_phase(history.time, history.of_equation, phases), **history.sizes)
 
 
 SEEN = 0.05

@@ -6,8 +6,6 @@ from collections.abc import Iterable, Mapping
 
 from hfanalysis.diagnose.answer.posterior import counts_as_unknown, kind
 from hfanalysis.diagnose.naming.naming import Naming
-from hfanalysis.diagnose.naming.places import OFFSET, site_of
-from hfanalysis.diagnose.naming.source_history import course_of
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.observations.observed import Observed
 
@@ -17,23 +15,14 @@ ALIKE = ("tank_energy", "tank_volume"), ("grain", "chamber_mass", "chamber_energ
 ORIFICES = "injector", "feed"
 """The same where the pressure between them was not recorded."""
 
-MISREAD_THRUST = f"{OFFSET}thrust"
-"""A sensor's site whose source may be the nozzle's."""
-
 
 def elsewhere(found: Naming) -> float | None:
     """Log evidence, that of none being 0, of the best unknown source alone that acts in no equation of the best name's
     effects, nor in one like it: it is no part of these that their closures get wrong. None without one."""
     taken = {e for name in found.named.names for e in _with_alike(found.equations[name], found.bench.observed)}
-    apart = [c for c in found.unknown if len(c.names) == 1 and not acts_in(c, found.bench.observed) & taken]
+    apart = [c for c in found.unknown if len(c.names) == 1 and c.source is not None and not c.source.equations & taken]
     best = max((c.log_evidence for c in apart), default=None)
     return None if best is None else best - found.base.log_evidence
-
-
-def acts_in(source: Candidate, observed: Observed) -> set[str]:
-    """The equations in which an unknown source may be."""
-    site = site_of(source.names[-1], observed)
-    return {site.equation, "nozzle"} if site.name == MISREAD_THRUST else {site.equation}
 
 
 def _with_alike(equation: str, observed: Observed) -> set[str]:
@@ -59,7 +48,7 @@ def by_equation(posterior: Mapping[str, float], found: Naming) -> dict[str, floa
 def equation_of(candidate: Candidate, found: Naming) -> str:
     """The equation of an unknown source, or of the first effect of a candidate."""
     if candidate.unknown:
-        return course_of(candidate.fit, candidate.names[-1], found.bench.observed).equation
+        return candidate.history(found.bench.observed).place.equation
     return found.equations[candidate.names[0]]
 
 

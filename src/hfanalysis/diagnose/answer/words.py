@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from hfanalysis.diagnose.answer.posterior import SET, far
+from hfanalysis.diagnose.answer.posterior import SET, poor_fit
 from hfanalysis.diagnose.answer.verdict import LIKELIER
+from hfanalysis.inference.unknowns import kind_of
 from hfanalysis.products.diagnosis import Compared, Diagnosis, Gap, NamedEffect, Place
-from hfanalysis.quantity import Quantity
-from hfanalysis.sentences import said, text
+from hfanalysis.record.channels import unit_of
+from hfanalysis.sentences import joined, said, text
+from hfanalysis.wording.numbers import listed
 
 EQUATIONS = {
     "tank_energy": "the tank's energy",
@@ -54,12 +54,11 @@ BRIEF = 0.5
 """Seconds of a stretch below which its beginning and end are said to hundredths."""
 
 _UNITS = {"Pa": "bar", "W": "kW", "kg/s": "g/s", "1": "%"}
-_UNIT_OF_CHANNEL = {"thrust": "N", "m_tank": "kg"}
 
 
 def story(product: Diagnosis) -> list[str]:
     """The whole verdict, sentence by sentence."""
-    out = [headline(product), *far_sentence(product), *equation_sentence(product)]
+    out = [headline(product), *poor_fit_sentence(product), *equation_sentence(product)]
     out += [place_sentence(row) for row in product.localisation]
     out += [effect_sentence(row) for row in product.effects]
     out += fade_sentence(product.compared)
@@ -98,10 +97,10 @@ def headline(product: Diagnosis) -> str:
     return f"The model lacks {names}{doubt}{either}."
 
 
-def far_sentence(product: Diagnosis) -> list[str]:
+def poor_fit_sentence(product: Diagnosis) -> list[str]:
     """That even the best model is far from the test, and what explains most of it all the same."""
     left = product.leftover
-    if left is None or not far(left):
+    if left is None or not poor_fit(left):
         return []
     named = [row for row in product.tried if not row.unknown]
     best = max(named, key=lambda row: row.log_evidence, default=None)
@@ -122,15 +121,6 @@ def equation_sentence(product: Diagnosis) -> list[str]:
     return [f"Whatever its name, it is in {EQUATIONS[equation]} ({probability:.2f})."] if probability >= SET else []
 
 
-def listed(names: Sequence[str]) -> str:
-    """Names as a sentence lists them.
-
-    >>> listed(["heat", "a wall", "a lag"])
-    'heat, a wall and a lag'
-    """
-    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else "".join(names)
-
-
 def left_over(product: Diagnosis) -> list[str]:
     """That more is left than the noise, where nothing was found that could be it."""
     chi_square, gap = product.compared.chi_square, product.gap
@@ -149,32 +139,11 @@ def place_sentence(row: Place) -> str:
     where = _BY_UNIT.get((row.equation, row.source.unit), EQUATIONS[row.equation])
     where += f" ({row.channel})" if row.channel else ""
     left = " Beside what is named, this is still open." if row.beside else ""
+    if (kind := kind_of(row)) is not None:
+        known = row.known_by(kind.known_by)
+        assert known is not None
+        return joined("", [kind.words(row, known, where, unit), left])
     start, end = row.t_start.value or 0.0, row.t_end.value or 0.0
-    if row.opens_in is not None:
-        return (
-            f"The valve takes {_ms(row.opens_in, 3)} ms to open, by the run line's pressure; "
-            f"the model's opens at once.{left}"
-        )
-    if row.fails_within is not None:
-        return text(
-            "In the last {within} ms of the liquid the injector's flow fails, by {lost} on average: chamber pressure "
-            "and thrust fall before the tank's shows the end of the liquid, as where gas comes in with it.{left}",
-            within=_ms(row.fails_within, 2),
-            lost=said(-value, unit, ".2g", std, ".1g"),
-            left=left,
-        )
-    if row.frequency is not None:
-        return text(
-            "From {start:.1f} to {end:.1f} s the flow swings by {swing} at {frequency:.2g} Hz: run line and chamber "
-            "show it in opposite directions.{left}",
-            start=start,
-            end=end,
-            swing=said(value, unit, ".2g", std, ".1g"),
-            frequency=row.frequency.value,
-            left=left,
-        )
-    if row.delay is not None:
-        return f"{where[0].upper()}{where[1:]} is read {_ms(row.delay, 3)} ms late.{left}"
     digits = 1 if end - start > BRIEF else 2
     low, _ = row.t_start.interval or (start, start)
     latest = " s (at the latest)" if start - low > GRADUAL * (row.t_start.std or 0.0) else ""
@@ -184,11 +153,6 @@ def place_sentence(row: Place) -> str:
     size = said(swing, unit) if uneven else said(value, unit, ".3g", std)
     does = "goes up and down by {size} (rms; " if uneven else "differs by {size} on average ("
     return text(span + " " + does + "mostly in the {phase} phase).{left}", size=size, phase=row.phase, left=left)
-
-
-def _ms(quantity: Quantity, digits: int) -> str:
-    """A time in milliseconds, its deviation to a digit less."""
-    return f"{1e3 * (quantity.value or 0.0):.{digits}g} ± {1e3 * (quantity.std or 0.0):.{digits - 1}g}"
 
 
 def effect_sentence(row: NamedEffect) -> str:
@@ -213,7 +177,7 @@ def fade_sentence(compared: Compared) -> list[str]:
 
 def gap_line(channel: str, gap: Gap) -> str:
     """Residual of a channel without and with the effects, and its noise."""
-    unit = _UNIT_OF_CHANNEL.get(channel, "bar")
+    unit = _UNITS.get(unit_of(channel), unit_of(channel))
     return text(
         "{channel}: rms {before} without, {after} with it; noise {noise}.",
         channel=channel,

@@ -9,8 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.naming.dropping import dropped
-from hfanalysis.diagnose.naming.localise import SCALES, Source, linear_sources
-from hfanalysis.diagnose.naming.places import SITES
 from hfanalysis.diagnose.naming.plain import plain_sources
 from hfanalysis.inference.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
 from hfanalysis.inference.fitting.fit import Fit
@@ -19,7 +17,8 @@ from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import predict
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.unknowns.pulse import has_pulse
+from hfanalysis.inference.unknown import LinearUnknown
+from hfanalysis.inference.unknowns import in_slopes
 
 Array = NDArray[np.float64]
 
@@ -35,10 +34,6 @@ LEAST = 4.0
 
 BESIDE = 6.0
 """Log of the odds against an unknown source beside a named effect: what a closure gets wrong looks like one."""
-
-ANYWHERE = float(np.log(len(SITES) * SCALES.size))
-"""Log of the odds against a pulse: it is the best of all sites and scales, and fits whatever else comes and goes, an
-ignition for one. (Smooth sources are as much chosen; their odds are fitted to simulated tests.)"""
 
 BEYOND = 100.0
 """Log evidence behind the names, at one form, from which on the best source is not fitted at any other."""
@@ -88,14 +83,14 @@ def _beside(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
     return found
 
 
-def _priced(source: Candidate) -> Candidate:
-    """A source at the price of its kind."""
-    beside = BESIDE if len(source.names) > 1 else 0.0
-    sudden = ANYWHERE if has_pulse(source.fit.hypothesis, source.names[-1]) else 0.0
-    return replace(source, log_evidence=source.log_evidence - beside - sudden)
+def _priced(found: Candidate) -> Candidate:
+    """A candidate at the price of its source's kind."""
+    beside = BESIDE if len(found.names) > 1 else 0.0
+    own = found.source.price if found.source is not None else 0.0
+    return replace(found, log_evidence=found.log_evidence - beside - own)
 
 
-def _worth_it(parent: Candidate, bench: Bench) -> tuple[Candidate, list[Source]]:
+def _worth_it(parent: Candidate, bench: Bench) -> tuple[Candidate, list[LinearUnknown]]:
     """The few sources that are seen at the parent's form, or else at the next finer one, to which it does not fit, and
     the parent there: what is too weak for a coarse form may be plain at a finer one."""
     sources = _seen(parent, bench)
@@ -115,15 +110,17 @@ def _at_finest(base: Candidate, named: Candidate, bench: Bench) -> list[Candidat
     return _fitted(finest, _seen(finest, bench)[:1], bench, named)
 
 
-def _few(sources: list[Source]) -> list[Source]:
+def _few(sources: list[LinearUnknown]) -> list[LinearUnknown]:
     """Of the best few sites, the best kind of source and what is nearly as good, the best first."""
-    sites = list(dict.fromkeys(s.site.name for s in sources))[:REFITTED]
-    best = {name: max(s.log_evidence for s in sources if s.site.name == name) for name in sites}
+    sites = list(dict.fromkeys(s.place.name for s in sources))[:REFITTED]
+    best = {name: max(s.log_evidence for s in sources if s.place.name == name) for name in sites}
     least = {name: evidence - max(ALIKE[0], ALIKE[1] * evidence) for name, evidence in best.items()}
-    return [s for s in sources if s.site.name in best and s.log_evidence > least[s.site.name]]
+    return [s for s in sources if s.place.name in best and s.log_evidence > least[s.place.name]]
 
 
-def _fitted(start: Candidate, sources: list[Source], bench: Bench, named: Candidate | None = None) -> list[Candidate]:
+def _fitted(
+    start: Candidate, sources: list[LinearUnknown], bench: Bench, named: Candidate | None = None
+) -> list[Candidate]:
     """The parent with each of these sources, at the form that it asks for.
 
     Those far behind the best of them, or behind what is ``named`` at the same form, stay at the form of the parent;
@@ -143,30 +140,28 @@ def _fitted(start: Candidate, sources: list[Source], bench: Bench, named: Candid
     return [*each(bench.judged, racing), *found[len(racing) :]]
 
 
-def _seen(parent: Candidate, bench: Bench) -> list[Source]:
+def _seen(parent: Candidate, bench: Bench) -> list[LinearUnknown]:
     """Sources that the linear search sees, the best first; none where the engine cannot be run with all sites open."""
     try:
-        sources = linear_sources(parent.fit, bench.at(parent.form))
+        sources = in_slopes(parent.fit, bench.at(parent.form))
     except (ValueError, ArithmeticError):
         return []
     return [source for source in sources if source.log_evidence >= LEAST]
 
 
-def with_fitted(parent: Candidate, source: Source, bench: Bench) -> Candidate | None:
+def with_fitted(parent: Candidate, source: LinearUnknown, bench: Bench) -> Candidate | None:
     """The parent with a source more, fitted with the full model at the parent's form."""
-    made, _ = source.added_to(parent.fit.hypothesis)
+    made, _ = source.added_to(parent.fit)
     start = _nearest(made, bench.at(parent.form), [_towards(parent.fit, source, share) for share in STRIDES])
     if start is None:
         return None
     found = attempted(made, bench.at(parent.form), start, SHORT)
-    return None if found is None else candidate((*parent.names, source.site.name), found, parent.form, unknown=True)
+    return None if found is None else candidate((*parent.names, source.place.name), found, parent.form, source)
 
 
-def _towards(fitted: Fit, source: Source, share: float) -> Array:
+def _towards(fitted: Fit, source: LinearUnknown, share: float) -> Array:
     """A share of the way from a fit to where the linear search sees its constants and a source beside them."""
-    return np.concatenate(
-        [fitted.x + share * (source.nuisances - fitted.x), source.added_to(fitted.hypothesis, share)[1]]
-    )
+    return np.concatenate([fitted.x + share * (source.nuisances - fitted.x), source.added_to(fitted, share)[1]])
 
 
 def _nearest(hypothesis: Hypothesis, observed: Observed, starts: list[Array]) -> Array | None:

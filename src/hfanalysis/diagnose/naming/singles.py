@@ -21,9 +21,9 @@ from hfanalysis.diagnose.naming.score import Test, score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.engine.effect import Effect
 from hfanalysis.inference.candidate import (
-    CALM,
     HOPELESS,
     SHORT,
+    WELL_FITTED,
     Bench,
     Candidate,
     attempted,
@@ -102,7 +102,7 @@ def _first_children(base: Candidate, valleys: list[Candidate], search: Search, n
     """
     observed, done = search.bench.at(base.form), count()
     fits_of_base = [c.fit for c in (base, *valleys)]
-    far = base.form != FINEST or any(left > CALM for left in observed.left_open(base.fit.residual))
+    far = base.form != FINEST or any(left > WELL_FITTED for left in observed.left_open(base.fit.residual))
 
     def child(name: str) -> Candidate | None:
         search.progress(f"fitting {name}", 0.6 * next(done) / len(names))

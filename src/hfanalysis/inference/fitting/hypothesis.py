@@ -19,7 +19,7 @@ from hfanalysis.assembly.calibrated import ASSUMED_EXPONENT
 from hfanalysis.engine.effect import Active, Effect
 from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
-from hfanalysis.inference.unknowns.smooth_source import Splines
+from hfanalysis.inference.splines import Splines
 from hfanalysis.products.calibration import Calibration
 
 Array = NDArray[np.float64]

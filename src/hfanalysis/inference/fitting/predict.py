@@ -21,7 +21,7 @@ from hfanalysis.inference.observations.alignment import model_times, share
 from hfanalysis.inference.observations.channel import Channel
 from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.observations.recorded import ALIKE
-from hfanalysis.inference.unknowns.smooth_source import Splines
+from hfanalysis.inference.splines import Splines
 
 Array = NDArray[np.float64]
 

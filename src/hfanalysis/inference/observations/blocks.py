@@ -65,8 +65,8 @@ def blocks_of(signal: Signal, frame: Frame, zeroed: bool, start: float = 0.0) ->
     for name, (instant, deviation) in frame.changes.items():
         berth = 2.0 * deviation if name == "t_v" else min(2.0 * deviation, AROUND_CHANGE)
         good &= np.abs(centers - instant) > AROUND_CHANGE + berth
-        if name == "t_v" and frame.failing > 0.0:
-            good &= (centers < instant - frame.failing - AROUND_CHANGE) | (centers > instant)
+        if name == "t_v" and frame.hidden > 0.0:
+            good &= (centers < instant - frame.hidden - AROUND_CHANGE) | (centers > instant)
     if good.sum() < 10:
         return None
     first, count = _merged(good, centers, frame)

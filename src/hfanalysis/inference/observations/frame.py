@@ -58,7 +58,7 @@ class Frame:
     The grid has ``before`` wide blocks of the rest before the opening, the opening itself, points while something
     flows, and wide blocks of the rest after it; ``width`` [s] of the wide ones, 0 of points. ``filled``: the feed line
     is; ``ends`` of "chamber" (and thrust) and "tank"; ``fuel_out``: the end of the fuel where the tank is compared
-    beyond it; ``failing``: seconds before the end of the liquid in which the flow fails; ``opening``: the deviation of
+    beyond it; ``hidden``: seconds before the end of the liquid without blocks; ``opening``: the deviation of
     the opening's instant.
     """
 
@@ -71,12 +71,17 @@ class Frame:
     filled: float
     ends: Mapping[str, float]
     fuel_out: float | None = None
-    failing: float = 0.0
+    hidden: float = 0.0
     opening: float = 0.0
 
     def end(self, channel: str) -> float:
         """Where the comparison of a channel ends [s]."""
         return self.ends["tank" if channel in TANK_SIDE else "chamber"]
+
+    @property
+    def steady(self) -> float:
+        """How long from the opening on no phase changes [s]."""
+        return min([self.ends["chamber"], *(instant for instant, _ in self.changes.values())]) - AROUND_CHANGE
 
     @property
     def flowing(self) -> slice:
@@ -89,10 +94,8 @@ class Frame:
         return slice(self.flowing.stop, self.grid.size)
 
 
-def frame_of(
-    log: TestLog, segments: Segments, definition: TestDefinition, origin: float, failing: float = 0.0
-) -> Frame:
-    """The frame of a test that opens at ``origin`` [s of the log], whose flow fails so many seconds before its end."""
+def frame_of(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> Frame:
+    """The frame of a test that opens at ``origin`` [s of the log]."""
     last = log_end(log, origin)
     end = min(_end(segments), last)
     ends = {"chamber": end, "tank": min(_tank_end(segments, definition, end), last)}
@@ -116,7 +119,7 @@ def frame_of(
     resting = np.ones(grid.size, dtype=bool)
     resting[before.shape[1] + 1 : grid.size - after.shape[1]] = False
     filled, opened = segments.time("t_feed") or 0.0, segments.t_open.std or 0.0
-    return Frame(grid, resting, width, before.shape[1], changes, FIRST, filled, ends, fuel_out, failing, opened)
+    return Frame(grid, resting, width, before.shape[1], changes, FIRST, filled, ends, fuel_out, opening=opened)
 
 
 def _blocks(first: float, last: float, count: int) -> Array:

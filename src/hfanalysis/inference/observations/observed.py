@@ -18,22 +18,15 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
 from hfanalysis.inference.observations.channel import CHAMBER_FORM, FORM_ERROR, Channel
-from hfanalysis.inference.observations.clocks import Delay
-from hfanalysis.inference.observations.failing import FailingFlow
 from hfanalysis.inference.observations.flow_end import WITHOUT_FIRE
 from hfanalysis.inference.observations.noise import Group, SlowNoise, groups_of, slow_noise
 from hfanalysis.inference.observations.recorded import ALIKE, TOGETHER
-from hfanalysis.inference.observations.swinging import Swing
-from hfanalysis.inference.observations.valve_opening import SlowOpening
+from hfanalysis.inference.unknown import Unknown
 
 Array = NDArray[np.float64]
 
 FADE = "fuel_fade"
 """Among what was stated: the seconds in which the fire went out, with the deviation of their log."""
-
-
-Plain = Delay | FailingFlow | SlowOpening | Swing
-"""What is plain in the samples without any model."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +39,10 @@ class Observed:
     standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there;
     ``alike``: the same of ALIKE, which come one after the other; ``line_zero`` [s]: when the zero of the second was
     taken of the first.
-    ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``plain``:
-    what is plain in the samples without a model, and is in no model. ``abrupt``: the seconds that FADE would be if the
-    fire were out at once, where a model was asked. ``later`` [s]: by how much a model's liquid ends later for every
-    departure of the table of nitrous oxide, where it was asked (as the channels' ``tables``).
+    ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``unknowns``:
+    those that the samples show without a model. ``abrupt``: the seconds that FADE would be if the fire were out at
+    once, where a model was asked. ``later`` [s]: by how much a model's liquid ends later for every departure of the
+    table of nitrous oxide, where it was asked (as the channels' ``tables``).
     """
 
     channels: tuple[Channel, ...]
@@ -66,7 +59,7 @@ class Observed:
     line_zero: float | None = None
     errors: tuple[float, float] = (FORM_ERROR, CHAMBER_FORM * FORM_ERROR)
     fuel_out: float | None = None
-    plain: tuple[Plain, ...] = ()
+    unknowns: tuple[Unknown, ...] = ()
     abrupt: float | None = None
     later: Array | None = None
 
@@ -155,8 +148,12 @@ class Observed:
     def longest(self) -> float:
         """The last instant that anything is known of [s]."""
         weighed = self.flow_end if "fuel_mass_after" in self.stated else self.end
-        burning = self.grid[~self.resting]
-        return max([weighed, float(burning[-1]), *(at for at, _ in self.events.values())])
+        return max([weighed, self.last, *(at for at, _ in self.events.values())])
+
+    @property
+    def last(self) -> float:
+        """The last point of the grid while something flows [s]."""
+        return float(self.grid[~self.resting][-1])
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -11,7 +11,6 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.inference.observations.blocks import Blocks, blocks_of
 from hfanalysis.inference.observations.burn_out import fade_of
 from hfanalysis.inference.observations.channel import Channel, range_of
-from hfanalysis.inference.observations.clocks import thrust_delay
 from hfanalysis.inference.observations.covariance import (
     channel_of,
     common_of,
@@ -19,14 +18,13 @@ from hfanalysis.inference.observations.covariance import (
     oscillations,
     zero_and_span,
 )
-from hfanalysis.inference.observations.failing import FailingFlow, failing_flow
 from hfanalysis.inference.observations.flow_end import noted_flow_end
-from hfanalysis.inference.observations.frame import AROUND_CHANGE, Frame, events_of, frame_of, phases_of
-from hfanalysis.inference.observations.observed import FADE, Observed, Plain
+from hfanalysis.inference.observations.frame import Frame, events_of, frame_of, phases_of
+from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.observations.purge_line import PurgeLine, purge_line
 from hfanalysis.inference.observations.recorded import ALIKE, recorded
-from hfanalysis.inference.observations.swinging import swing_of
-from hfanalysis.inference.observations.valve_opening import slow_opening
+from hfanalysis.inference.unknown import Samples
+from hfanalysis.inference.unknowns import in_samples
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
@@ -41,8 +39,9 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     if origin is None:
         raise AbsentError("no opening was found: there is nothing to compare")
     signals = recorded(log, definition, origin)
-    failing = failing_flow(signals, segments)
-    frame = frame_of(log, segments, definition, origin, failing.seconds if failing is not None else 0.0)
+    frame = frame_of(log, segments, definition, origin)
+    unknowns = in_samples(Samples(signals, segments, frame.steady))
+    frame = replace(frame, hidden=max((unknown.hides for unknown in unknowns), default=0.0))
     zeros = {name: log[name].zero_std for name in signals}
     reduced = {name: blocks_of(signal, frame, zeros[name] is not None) for name, signal in signals.items()}
     blocks = {name: found for name, found in reduced.items() if found is not None}
@@ -72,7 +71,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
         alike,
         line.taken if line is not None and alike is not None else None,
         fuel_out=frame.fuel_out,
-        plain=_plain(signals, frame, failing),
+        unknowns=unknowns,
     )
 
 
@@ -93,18 +92,6 @@ def _with_second_look(
     own = replace(own, span=range_of(tank.time, tank.value))
     alike = line.with_tank(tank.value, own.value) + of_the_model(of_tank, frame) @ of_the_model(means, frame).T
     return {ALIKE[0]: tank, ALIKE[1]: own, **channels}, alike
-
-
-def _plain(signals: dict[str, Signal], frame: Frame, failing: FailingFlow | None) -> tuple[Plain, ...]:
-    """What is plain without a model; a flow that swings is looked for until the first change of phase."""
-    steady = min([frame.ends["chamber"], *(instant for instant, _ in frame.changes.values())])
-    found = (
-        thrust_delay(signals),
-        slow_opening(signals),
-        swing_of(signals, steady - AROUND_CHANGE),
-        failing,
-    )
-    return tuple(plain for plain in found if plain is not None)
 
 
 def _fade(signals: dict[str, Signal], segments: Segments) -> dict[str, tuple[float, float]]:

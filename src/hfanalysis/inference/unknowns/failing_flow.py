@@ -1,21 +1,57 @@
-"""An unknown of the flow: one that fails before the liquid is gone, as gas comes in with the last of it."""
+"""A flow that fails before the liquid is gone, as gas comes in with the last of it.
+
+A vortex, or a bulk that sloshes off the outlet, brings gas into the feed while there is liquid left: chamber pressure
+and thrust fall some hundredths of a second before the tank's pressure shows the end of the liquid. While they do, no
+blocks are compared: no name could be judged by them.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Parameter
 from hfanalysis.engine.model import O_OXIDIZER_FLOW
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, M_LIQUID, switch, term
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
-from hfanalysis.inference.observations.failing import FailingFlow
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.observations.recorded import TOGETHER
+from hfanalysis.inference.places import Place
+from hfanalysis.inference.unknown import POINTS, SHAPE, History, Samples, Unknown, nameless_effect
+from hfanalysis.products import diagnosis
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.signals import Signal
+from hfanalysis.sentences import text
+from hfanalysis.wording.numbers import said_of
 
 Array = NDArray[np.float64]
+
+COURSE, LOOKED_AT = 1.5, 0.3
+"""Seconds before the end of the liquid over which the course is a straight line, up to where it may begin to fail."""
+
+BIN, CLEAR = 0.01, 0.004
+"""Seconds that are averaged, and kept clear of the end of the liquid, beside its own deviation."""
+
+DATED = 2e-3
+"""Standard deviation [s] of the end of the liquid up to which something can be said to come before it."""
+
+DURATIONS = np.geomspace(0.02, 0.25, 12)
+"""Seconds before the end of the liquid at which the flow may begin to fail."""
+
+LEAST_FALL = 0.04
+"""Part of pressure and thrust that is lost at least: a line misses a curved course by less."""
+
+UNEVEN = 0.02
+"""Part of itself by which a channel departs from a straight course and a straight fall at any instant."""
+
+LEAST_GAIN = 8.0
+"""Log evidence from which on a fall is plain."""
+
+HIDDEN = 0.05
+"""Seconds before the end of the liquid in which every sample has to be good."""
 
 SHARE, LIQUID = range(2)
 
@@ -41,37 +77,90 @@ def _begins(t, env, c, p, x):  # type: ignore[no-untyped-def]
     return env[M_LIQUID] - p[LIQUID]
 
 
-@lru_cache(maxsize=1)
-def failing_effect() -> Effect:
-    """An injector that passes less and less as the last ``liquid`` leaves, by ``share`` at its end."""
-    return Effect(
-        name="probe_failing",
-        equation="injector",
-        meaning="a flow that fails before the liquid is gone",
-        reference="free form",
-        parameters=(
-            Parameter("share", "-", "of the flow that has failed when the liquid is gone", 0.1),
-            Parameter("liquid", "kg", "left when it begins to fail", 0.1, center=0.1),
-        ),
-        phases=("liquid",),
-        sites=("injector_factor",),
-        term=_failing,
-        switch=_begins,
-    )
+EFFECT = nameless_effect(
+    "failing",
+    "injector",
+    "a flow that fails before the liquid is gone",
+    (
+        Parameter("share", "-", "of the flow that has failed when the liquid is gone", 0.1),
+        Parameter("liquid", "kg", "left when it begins to fail", 0.1, center=0.1),
+    ),
+    term=_failing,
+    switch=_begins,
+)
+"""An injector that passes less and less as the last ``liquid`` leaves, by ``share`` at its end."""
 
-
-SHARE_OF_FLOW, LIQUID_LEFT = "probe_failing.share", "probe_failing.liquid"
+SHARE_OF_FLOW, LIQUID_LEFT = (f"{EFFECT.name}.{p.name}" for p in EFFECT.parameters)
 """Names of its parameters in a hypothesis."""
 
 
-def with_failing(parent: Fit, found: FailingFlow) -> tuple[Hypothesis, Array]:
-    """A fit's hypothesis with a flow that fails as chamber and thrust showed it, and its x."""
-    flow = flow_before(parent, found.t_v, found.seconds)
-    # what is left behind a ramp of the flow is less than what a whole flow would take along
-    liquid = flow * found.seconds * (1.0 - 0.5 * found.share)
-    share = Free(SHARE_OF_FLOW, found.share, SURE, "positive")
-    free = (replace(share, most=share.place(MOST)), Free(LIQUID_LEFT, liquid, SURE, "positive"))
-    return parent.hypothesis.with_active(failing_effect().at(share=found.share, liquid=liquid), free), np.zeros(2)
+@dataclass(frozen=True)
+class FailingFlow(Unknown):
+    """The flow begins to fail ``seconds`` before the end of the liquid at ``t_v`` [s], when chamber pressure and thrust
+    have lost a ``share`` of themselves."""
+
+    t_v: float
+    seconds: float
+    share: float
+    log_evidence: float
+    place = Place("failing flow", "injector", "kg/s", 0.1)
+    known_by = "fails_within"
+
+    @classmethod
+    def in_samples(cls, samples: Samples) -> FailingFlow | None:
+        """How long before the end of the liquid chamber pressure and thrust fall."""
+        signals, segments = samples.signals, samples.segments
+        t_v, gone = segments.time("t_v"), segments.time("t_fuel_out")
+        if t_v is None or segments.std("t_v") > DATED or "p_tank" not in signals or not set(TOGETHER) <= set(signals):
+            return None
+        if t_v < COURSE + LOOKED_AT or (gone is not None and gone < t_v + LOOKED_AT):
+            return None
+        time = np.arange(-COURSE, -CLEAR - segments.std("t_v") - BIN, BIN) + 0.5 * BIN
+        time -= time[-1] + 0.5 * BIN + CLEAR + segments.std("t_v")
+        lost = [_lost(signals[name], t_v, time) for name in TOGETHER]
+        if any(part is None for part in lost):
+            return None
+        together = np.mean([part for part in lost if part is not None], axis=0)
+        steady = time < -LOOKED_AT
+        noise = float(np.hypot(np.std(together[steady]), UNEVEN))
+        gains, shares = np.array([_gain(together, time, seconds, noise) for seconds in DURATIONS]).T
+        best = int(np.argmax(gains))
+        if gains[best] < LEAST_GAIN or shares[best] < LEAST_FALL or best == DURATIONS.size - 1:
+            return None  # a fall that takes longer than all that are tried is a course that blocks show
+        return FailingFlow(t_v, float(DURATIONS[best]), float(shares[best]), float(gains[best]))
+
+    @property
+    def hides(self) -> float:
+        return self.seconds
+
+    def added_to(self, fitted: Fit) -> tuple[Hypothesis, Array]:
+        # what is left behind a ramp of the flow is less than what a whole flow would take along
+        liquid = flow_before(fitted, self.t_v, self.seconds) * self.seconds * (1.0 - 0.5 * self.share)
+        lost = Free(SHARE_OF_FLOW, self.share, SURE, "positive")
+        free = (replace(lost, most=lost.place(MOST)), Free(LIQUID_LEFT, liquid, SURE, "positive"))
+        return fitted.hypothesis.with_active(EFFECT.at(share=self.share, liquid=liquid), free), np.zeros(2)
+
+    def history(self, fitted: Fit, observed: Observed) -> History:
+        """What the flow lacks as the last liquid leaves, with points enough for it."""
+        share, liquid = (fitted.values[name] for name in (SHARE_OF_FLOW, LIQUID_LEFT))
+        flow = flow_before(fitted, self.t_v, self.seconds)
+        seconds = liquid / (flow * (1.0 - 0.5 * share))
+        near = np.linspace(self.t_v - 1.2 * seconds, self.t_v, POINTS // 2)
+        time = np.unique(np.r_[near, np.linspace(0.0, observed.last, POINTS // 2)])
+        mean = -flow * np.where(time < self.t_v, share * fallen(time - self.t_v, seconds), 0.0)
+        relative = np.hypot(fitted.stds[SHARE_OF_FLOW] / share, SHAPE)
+        std = seconds * fitted.stds[LIQUID_LEFT] / liquid
+        sizes = {"fails_within": Quantity(seconds, "s", std)}
+        return History(self.place, time, mean, relative * np.abs(mean), std, sizes)
+
+    @staticmethod
+    def words(row: diagnosis.Place, known: Quantity, where: str, unit: str) -> str:
+        return text(
+            "In the last {within} of the liquid the injector's flow fails, by {lost} on average: chamber pressure and "
+            "thrust fall before the tank's shows the end of the liquid, as where gas comes in with it.",
+            within=said_of(known, "ms", ".2g", ".1g"),
+            lost=said_of(row.source, unit, ".2g", ".1g", -1.0),
+        )
 
 
 def flow_before(fitted: Fit, t_v: float, seconds: float) -> float:
@@ -81,6 +170,33 @@ def flow_before(fitted: Fit, t_v: float, seconds: float) -> float:
     return max(float(outputs[0, O_OXIDIZER_FLOW]), 1e-6)
 
 
-def lost_at(times: Array, t_v: float, seconds: float, share: float) -> Array:
-    """Part of the flow that has failed at ``times`` [s]."""
-    return np.asarray(np.where(times < t_v, share * np.clip(1.0 + (times - t_v) / seconds, 0.0, 1.0), 0.0))
+def _lost(signal: Signal, t_v: float, time: Array) -> Array | None:
+    """Part of itself that a channel has lost at ``time`` (n,) [s after the end of the liquid], by a straight course."""
+    still = signal.between(-np.inf, -0.1).value
+    if not signal.step < 0.6 * BIN or still.size < 2:
+        return None
+    read = np.array([signal.mean(t_v + t - 0.5 * BIN, t_v + t + 0.5 * BIN) for t in time])
+    good = np.isfinite(read)
+    steady = good & (time < -LOOKED_AT)
+    if steady.sum() < 0.5 * time.size or not good[time > -HIDDEN].all():
+        return None
+    course = np.polyval(np.polyfit(time[steady], read[steady], 1), time)
+    level = course - float(np.median(still))
+    if not level.min() > 0.1 * level.max() > 0.0:
+        return None
+    return np.where(good, (course - read) / level, 0.0)
+
+
+def fallen(time: Array, seconds: float) -> Array:
+    """What of a fall has come about at ``time`` (n,) [s after the end of the liquid]."""
+    return np.asarray(np.clip(1.0 + time / seconds, 0.0, 1.0))
+
+
+def _gain(lost: Array, time: Array, seconds: float, noise: float) -> tuple[float, float]:
+    """Log evidence of a fall within so many seconds before the end, one among all that are tried; and its size."""
+    fall = fallen(time, seconds)
+    share = max(float(fall @ lost / (fall @ fall)), 0.0)
+    return 0.5 * share**2 * float(fall @ fall) / noise**2 - float(np.log(DURATIONS.size)), share
+
+
+UNKNOWN = FailingFlow

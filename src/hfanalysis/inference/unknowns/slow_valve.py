@@ -1,18 +1,58 @@
-"""An unknown of the valve: one that takes its time to open, where the model's opens at once."""
+"""A valve that takes its time to open, where the model's opens at once. The run line's pressure tells, without a model.
+
+Behind a valve that opens at once it leaps to what the flow leaves of the tank's, or nearly so, and creeps up with the
+chamber's pressure, or as the line fills. Behind one that takes its time it comes up gradually from the beginning.
+"""
 
 from __future__ import annotations
 
-from functools import lru_cache
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
-from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.effect import Parameter
+from hfanalysis.engine.model import O_TANK_PRESSURE, OUTPUTS
 from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, switch, term
+from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
-from hfanalysis.inference.observations.valve_opening import SlowOpening
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.places import Place
+from hfanalysis.inference.unknown import POINTS, SHAPE, History, Samples, Unknown, nameless_effect
+from hfanalysis.products import diagnosis
+from hfanalysis.quantity import Quantity
+from hfanalysis.sentences import text
+from hfanalysis.wording.numbers import said_of
 
 Array = NDArray[np.float64]
+
+BEFORE, AFTER = 0.15, 0.6
+"""Seconds before and after the opening between which the run line's pressure is looked at."""
+
+FINEST = 1e-3
+"""Seconds between samples that are looked at."""
+
+GRADUAL = 3
+"""Samples that the first part of the rise (EARLY) takes at least where it is gradual: a leap takes one or two."""
+
+EARLY = 0.05, 0.2
+"""Parts of the rise between which it tells a gradual opening: a line that fills begins with its steepest rise."""
+
+NEARLY = 0.95
+"""Part of the rise at which the valve counts as open."""
+
+NOISE = 0.01
+"""Of the rise: noise of a sample above which nothing can be told."""
+
+SLOW_LOG = 5e-3
+"""Seconds between samples above which nothing can be told."""
+
+AROUND = 0.02
+"""Seconds before and after the rise that are compared with a leap and with a gradual one."""
+
+BLOCK = 2e-3
+"""Seconds of samples that count as one observation."""
 
 SECONDS = 0
 
@@ -36,24 +76,76 @@ def _open(t, env, c, p, x):  # type: ignore[no-untyped-def]
     return t - p[SECONDS]
 
 
-@lru_cache(maxsize=1)
-def slow_valve() -> Effect:
-    """A valve that is open after ``seconds``."""
-    return Effect(
-        name="probe_valve",
-        equation="feed",
-        meaning="a valve that opens slowly",
-        reference="free form",
-        parameters=(Parameter("seconds", "s", "until it is open", 0.1, center=0.1),),
-        phases=(),
-        sites=("feed_factor",),
-        term=_opening,
-        switch=_open,
-    )
+EFFECT = nameless_effect(
+    "valve",
+    "feed",
+    "a valve that opens slowly",
+    (Parameter("seconds", "s", "until it is open", 0.1, center=0.1),),
+    term=_opening,
+    switch=_open,
+)
+"""A valve that is open after ``seconds``."""
+
+PARAMETER = f"{EFFECT.name}.seconds"
+"""Their name in a hypothesis."""
 
 
-SECONDS_OF_VALVE = "probe_valve.seconds"
-"""The parameter's name in a hypothesis."""
+@dataclass(frozen=True)
+class SlowValve(Unknown):
+    """``seconds`` from the first rise of the run line's pressure until the valve is open."""
+
+    seconds: float
+    log_evidence: float
+    place = Place("valve", "feed", "Pa", 1e5)
+    known_by = "opens_in"
+    also_by = "feed_line_fill"
+
+    @classmethod
+    def in_samples(cls, samples: Samples) -> SlowValve | None:
+        """How long the valve takes; None where it opens at once, or where that does not show."""
+        signals = samples.signals
+        if "p_run" not in signals or not signals["p_run"].step <= SLOW_LOG:
+            return None
+        line = signals["p_run"]
+        step = max(line.step, FINEST)
+        time = np.arange(-BEFORE, AFTER, step)
+        still, open_ = line.between(-5.0 * BEFORE, -BEFORE).value, line.between(0.7 * AFTER, AFTER).value
+        if min(still.size, open_.size) < GRADUAL:
+            return None
+        closed, level = float(np.median(still)), float(np.median(open_))
+        if not line.noise < NOISE * (level - closed):
+            return None
+        risen = np.maximum.accumulate(median_filter((line.at(time) - closed) / (level - closed), 3, mode="nearest"))
+        first, second, last = (float(time[int(np.argmax(risen >= part))]) for part in (*EARLY, NEARLY))
+        if second - first < (GRADUAL - 0.5) * step or line.between(first, second).time.size < GRADUAL - 1:
+            return None  # a leap, or one in a hole of the log
+        begins = first - EARLY[0] / (EARLY[1] - EARLY[0]) * (second - first)
+        near = (time > begins - AROUND) & (time < last + AROUND)
+        at_once = min(_misfit(risen[near], time[near] >= instant) for instant in time[near])
+        gradually = _misfit(risen[near], np.clip((time[near] - begins) / max(last - begins, step), 0.0, 1.0))
+        closer = np.log(at_once / max(gradually, 1e-12 * at_once))
+        return SlowValve(last - begins, 0.5 * float(closer) * (last - begins + 2.0 * AROUND) / BLOCK)
+
+    def added_to(self, fitted: Fit) -> tuple[Hypothesis, Array]:
+        free = Free(PARAMETER, self.seconds, SURE, "positive")
+        return fitted.hypothesis.with_active(EFFECT.at(seconds=self.seconds), (free,)), np.zeros(1)
+
+    def history(self, fitted: Fit, observed: Observed) -> History:
+        """What the valve takes of the pressure while it opens."""
+        seconds, std = fitted.values[PARAMETER], fitted.stds[PARAMETER]
+        ends = (1.5 * seconds, observed.last)
+        time = np.unique(np.concatenate([np.linspace(0.0, end, POINTS // 2) for end in ends]))
+        outputs = fitted.burnt.steps.at(time)[1]
+        loss = outputs[:, O_TANK_PRESSURE] - outputs[:, OUTPUTS.index("run_pressure")]
+        mean = loss * loss_share(time, seconds)
+        moved = 0.5 * loss * (loss_share(time, seconds + std) - loss_share(time, max(seconds - std, 0.1 * seconds)))
+        sizes = {"opens_in": Quantity(seconds, "s", std)}
+        return History(self.place, time, mean, np.abs(moved) + SHAPE * np.abs(mean), std, sizes)
+
+    @staticmethod
+    def words(row: diagnosis.Place, known: Quantity, where: str, unit: str) -> str:
+        opens = "The valve takes {opens} to open, by the run line's pressure; the model's opens at once."
+        return text(opens, opens=said_of(known, "ms"))
 
 
 def loss_share(times: Array, seconds: float) -> Array:
@@ -61,7 +153,8 @@ def loss_share(times: Array, seconds: float) -> Array:
     return np.asarray(1.0 - np.clip(times / seconds, JAR, 1.0) ** 2)
 
 
-def with_valve(hypothesis: Hypothesis, found: SlowOpening) -> tuple[Hypothesis, Array]:
-    """The hypothesis with a valve that opens as the run line's pressure came up, and its x."""
-    free = Free(SECONDS_OF_VALVE, found.seconds, SURE, "positive")
-    return hypothesis.with_active(slow_valve().at(seconds=found.seconds), (free,)), np.zeros(1)
+def _misfit(one: Array, other: Array) -> float:
+    return float(np.sum((one - other) ** 2))
+
+
+UNKNOWN = SlowValve

@@ -1,109 +1,146 @@
-"""An unknown source at a site of the model: cubic B-splines over time, with coefficients to be found."""
+"""A smooth source at a site of the model, or an offset of a sensor over time: splines with a Gaussian prior."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
-from math import inf
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.effect import Effect, Parameter
-from hfanalysis.engine.sites import HOOK_OF_SITE, IS_LIQUID, RATES, SITES, term
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.hypothesis import Block, Hypothesis
+from hfanalysis.inference.linear import SCALES, SPACING, Linearized, Projected
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.places import PLACES, Place
+from hfanalysis.inference.splines import Splines, probe
+from hfanalysis.inference.unknown import POINTS, PREFIX, History, LinearUnknown, spread_of
+from hfanalysis.record.channels import unit_of
 
 Array = NDArray[np.float64]
 
-GIVEN = ("site", "hook", "first", "spacing", "count", "wet")
-SITE, HOOK, FIRST, SPACING, COUNT, WET = range(6)
-COEFFICIENTS = len(GIVEN) + 1
+OFFSET = "offset of "
+"""How the names of places begin that are sensors."""
 
+BEYOND_ACCURACY = 5.0
+"""Error of a pressure transducer that is typical of one that errs, in units of its stated accuracy."""
 
-@term
-def _source(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
-    """p: the strength (which is 1: all coefficients together are the source), GIVEN, the coefficients."""
-    if hook != int(p[1 + HOOK]) or (p[1 + WET] > 0.0 and env[IS_LIQUID] == 0.0):
-        return
-    u = (t - p[1 + FIRST]) / p[1 + SPACING]
-    k = int(np.floor(u))
-    f = u - k
-    g = 1.0 - f
-    total = 0.0
-    for j in range(4):
-        i = k - 1 + j
-        if 0 <= i < int(p[1 + COUNT]):
-            if j == 0:
-                weight = g * g * g / 6.0
-            elif j == 1:
-                weight = (3.0 * f * f * f - 6.0 * f * f + 4.0) / 6.0
-            elif j == 2:
-                weight = (3.0 * g * g * g - 6.0 * g * g + 4.0) / 6.0
-            else:
-                weight = f * f * f / 6.0
-            total += weight * p[COEFFICIENTS + i]
-    site[int(p[1 + SITE])] += p[0] * total
+LOAD_CELL_DRIFT = 200.0
+"""Typical drift of a thrust cell in the heat of a firing [N]."""
+
+WINDY, WIND_SPACING = ("thrust",), 0.25
+"""Channels in which wind on the stand may be read, and the spacing of its splines [s]: it is faster than what an engine
+does. What is slow in a sensor does not go with the flow: one that has drifted reads as much too much at rest."""
+
+WETTED = tuple(place for place in PLACES if place.name in ("tank_pressure", "injector_factor", "feed_loss"))
+"""Places at which a source may end with the liquid: what it does in tank, line and injector ends at once."""
+
+CORRELATIONS = 1.5, 5.0
+"""Splines over which a source may be coherent: what changes slowly needs few numbers, and is found when it is weak."""
+
+GONE, ONE_SIDED = 0.2, 0.4
+"""Part of its largest size below which a source is gone, and goes to one side."""
 
 
 @dataclass(frozen=True)
-class Splines:
-    """Cubic B-splines with ``count`` coefficients; the i-th peaks at ``first`` + i ``spacing`` [s].
+class SmoothSource(LinearUnknown):
+    """``coefficients`` (n,) of splines and their ``scale``; ``correlation``: splines over which it is coherent."""
 
-    Beyond their ends they fade, or stay as they are at these if they are ``held``. Those of a source that ends with the
-    liquid, at ``liquid_out`` [s], break off there.
-    """
-
-    first: float
-    spacing: float
-    count: int
-    held: bool = False
-    liquid_out: float = inf
+    place: Place
+    log_evidence: float
+    nuisances: Array
+    scale: float
+    correlation: float
+    coefficients: Array
+    splines: Splines
 
     @classmethod
-    def over(cls, start: float, end: float, spacing: float, wet: bool = False) -> Splines:
-        """Splines that reach over an interval, or over that in which liquid flows."""
-        pieces = max(int(np.ceil((end - start) / spacing)), 1)
-        width = (end - start) / pieces
-        return cls(start - width, width, pieces + 3, liquid_out=end if wet else inf)
+    def in_slopes(cls, about: Linearized) -> list[SmoothSource]:
+        """The best at every place of the model, also of those that end with the liquid, and in every sensor."""
+        splines, observed = about.splines, about.observed
+        found = [_best(place, projected, splines) for place, projected in about.everywhere]
+        if "t_v" in observed.events:
+            wet = Splines.over(0.0, observed.events["t_v"][0], SPACING, wet=True)
+            found += [_best(place, projected, wet) for place, projected in about.at(WETTED, wet)]
+        slow, fast = replace(splines, held=True), Splines.over(0.0, observed.last, WIND_SPACING)
+        taken = {block.sensor for block in about.fitted.hypothesis.blocks}
+        for name, own in [*((name, slow) for name in observed.names), *((name, fast) for name in WINDY)]:
+            if name in observed.names and name not in taken:
+                found.append(_best(sensor_place(observed, name), about.read_by(name, own), own))
+        return found
 
-    def reach(self, peak: float) -> tuple[float, float]:
-        """From when to when [s] the spline that peaks there is not 0."""
-        return peak - 2.0 * self.spacing, peak + 2.0 * self.spacing
+    @property
+    def equations(self) -> set[str]:
+        """What thrust is misread by may be the nozzle's."""
+        return {self.place.equation, "nozzle"} if self.place.sensor == "thrust" else {self.place.equation}
 
-    def at(self, times: Array) -> Array:
-        """Values (times, count) of the splines."""
-        if self.held:
-            last = self.first + (self.count - 2) * self.spacing
-            times = np.clip(times, self.first + self.spacing, last)
-        u = np.abs((times[:, None] - self.first) / self.spacing - np.arange(self.count)[None, :])
-        near, far = (4.0 - 6.0 * u**2 + 3.0 * u**3) / 6.0, (2.0 - u) ** 3 / 6.0
-        return np.where(times[:, None] >= self.liquid_out, 0.0, np.where(u < 1.0, near, np.where(u < 2.0, far, 0.0)))
+    def added_to(self, fitted: Fit, share: float = 1.0) -> tuple[Hypothesis, Array]:
+        matrix = np.asarray(self.scale * np.linalg.cholesky(smooth_prior(self.splines.count, self.correlation)))
+        block = Block(self._names, matrix, self.splines, self.place.sensor)
+        in_engine = self.place.sensor is None
+        active = probe(self.place.name, self.splines, self.place.typical).at(on=1.0) if in_engine else None
+        start = np.asarray(share * np.linalg.solve(matrix, self.coefficients))
+        return fitted.hypothesis.with_block(block, active), start
+
+    def history(self, fitted: Fit, observed: Observed) -> History:
+        time = np.linspace(0.0, observed.last, POINTS)
+        block, own = next(it for it in fitted.hypothesis.places() if it[0].names == self._names)
+        basis = block.splines.at(time) @ block.matrix
+        mean, std = basis @ fitted.x[own], spread_of(basis, fitted.covariance[own, own])
+        place, whole = seen_at(self.place, mean, std), self.place.whole(fitted, time, observed)
+        return History(place, time, mean, std, 0.5 * block.splines.spacing, whole=whole)
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        """Of its coefficients: parameters of the effect that it is, or of none where it is in a sensor."""
+        owner = f"offset_{self.place.sensor}" if self.place.sensor is not None else PREFIX + self.place.name
+        return tuple(f"{owner}.c{i}" for i in range(self.splines.count))
 
 
-@lru_cache(maxsize=64)
-def probe(site: str, splines: Splines, typical: float) -> Effect:
-    """An effect that adds splines to a site; its coefficients c0, c1, ... are of ``typical`` size [the site's unit]."""
-    given = (
-        SITES.index(site),
-        HOOK_OF_SITE.get(site, RATES),
-        splines.first,
-        splines.spacing,
-        splines.count,
-        np.isfinite(splines.liquid_out),
-    )
-    fixed = [
-        Parameter(name, "", "of the probe", 1.0, center=float(v), given=True)
-        for name, v in zip(GIVEN, given, strict=True)
-    ]
-    coefficients = [
-        Parameter(f"c{i}", "", f"source about {at:.2f} s", typical, acting=splines.reach(at))
-        for i, at in enumerate(splines.first + splines.spacing * np.arange(splines.count))
-    ]
-    return Effect(
-        name=f"probe_{site}",
-        equation="tank_energy",
-        meaning=f"an unknown source at {site}",
-        reference="free form",
-        parameters=(Parameter("on", "", "1: the source acts", 1.0), *fixed, *coefficients),
-        phases=(),
-        term=_source,
-    )
+def sensor_place(observed: Observed, name: str) -> Place:
+    """A sensor as a place: an offset over time."""
+    accuracy = next(c.accuracy for c in observed.channels if c.name == name)
+    typical = LOAD_CELL_DRIFT if name == "thrust" else BEYOND_ACCURACY * accuracy
+    return Place(OFFSET + name, "sensor", unit_of(name), typical, sensor=name)
+
+
+def seen_at(place: Place, mean: Array, std: Array) -> Place:
+    """The place of a source by its history (n,).
+
+    What the thrust departs by to one side and is gone, or not seen any more, as the flow ends is the nozzle's: a cell
+    that has drifted does not come back at that instant, and gusts blow to and fro.
+    """
+    low, high, last = float(mean.min()), float(mean.max()), abs(float(mean[-1]))
+    largest, other = max(high, -low), min(max(high, 0.0), max(-low, 0.0))
+    gone = last < max(GONE * largest, float(std[-1]))
+    in_nozzle = place.sensor == "thrust" and gone and other < ONE_SIDED * largest
+    return replace(place, equation="nozzle") if in_nozzle else place
+
+
+def smooth_prior(count: int, correlation: float) -> Array:
+    """Covariance of the coefficients of a source of size one that is coherent over so many splines."""
+    lag = np.arange(count)[:, None] - np.arange(count)[None, :]
+    return np.asarray(np.exp(-0.5 * (lag / correlation) ** 2) + 1e-6 * np.eye(count))
+
+
+def _best(place: Place, projected: Projected, splines: Splines) -> SmoothSource:
+    """The most probable scale and correlation of a source at a place."""
+    tried = [source for c in CORRELATIONS for source in _of_scales(place, projected, splines, c)]
+    return max(tried, key=lambda source: source.log_evidence)
+
+
+def _of_scales(place: Place, projected: Projected, splines: Splines, correlation: float) -> list[SmoothSource]:
+    """A source at every scale."""
+    found = []
+    root = np.linalg.cholesky(smooth_prior(splines.count, correlation))
+    information, pull = root.T @ projected.information @ root, root.T @ projected.pull
+    for scale in SCALES * place.typical:
+        inner = np.eye(splines.count) + scale**2 * information
+        solved = np.linalg.solve(inner, scale**2 * pull)
+        gain = 0.5 * float(pull @ solved) - 0.5 * float(np.linalg.slogdet(inner)[1])
+        mean = np.asarray(root @ solved)
+        nuisances = projected.start + projected.follow @ mean
+        found.append(SmoothSource(place, gain, nuisances, float(scale), correlation, mean, splines))
+    return found
+
+
+UNKNOWN = SmoothSource

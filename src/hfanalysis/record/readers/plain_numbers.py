@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from hfanalysis.compiled import compiled
 
 Bytes = NDArray[np.uint8]
 Floats = NDArray[np.float64]
@@ -42,7 +43,7 @@ def parse(
     return None if rows < 0 else out[:, :rows]
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _count(data: Bytes, byte: int) -> int:
     count = 0
     for value in data:
@@ -50,7 +51,7 @@ def _count(data: Bytes, byte: int) -> int:
     return count
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _parse(data: Bytes, delimiter: int, decimal: int, slots: NDArray[np.int64], out: Floats) -> Any:
     """Number of rows filled from lines that all end; DECLINED for a cell that is no plain number.
 
@@ -84,7 +85,7 @@ def _parse(data: Bytes, delimiter: int, decimal: int, slots: NDArray[np.int64], 
     return SIGNED(row)
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _leave_empty(slots: NDArray[np.int64], row: Unsigned, out: Floats) -> None:
     """NaN in the columns that a short line does not have."""
     for slot in slots:
@@ -92,7 +93,7 @@ def _leave_empty(slots: NDArray[np.int64], row: Unsigned, out: Floats) -> None:
             out[slot, row] = np.nan
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _plain(data: Bytes, i: Unsigned, delimiter: int, decimal: int) -> tuple[Unsigned, float]:
     """The end of a cell of sign, digits, decimal mark and digits, and its number; end 0 where it is another."""
     negative = data[i] == MINUS
@@ -111,13 +112,13 @@ def _plain(data: Bytes, i: Unsigned, delimiter: int, decimal: int) -> tuple[Unsi
     return i, -value if negative else value
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _other(data: Bytes, i: int, delimiter: int, decimal: int, wanted: bool) -> tuple[int, float]:
     """The end of any cell, -1 where pandas has to see it, and its number where that is wanted."""
     return _number(data, i, delimiter, decimal) if wanted else (_skip(data, i, delimiter), 0.0)
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _digits(data: Bytes, at: Unsigned, mantissa: Unsigned) -> tuple[Unsigned, Unsigned]:
     """The end of a row of digits from ``at`` on, appended to ``mantissa``."""
     digit = np.uint64(data[at]) - FIGURE_ZERO
@@ -128,14 +129,14 @@ def _digits(data: Bytes, at: Unsigned, mantissa: Unsigned) -> tuple[Unsigned, Un
     return at, mantissa
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _is_blank(data: Bytes, start: int, end: int) -> bool:
     while start < end and (data[start] == SPACE or data[start] == TAB):
         start += 1
     return start == end
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _skip(data: Bytes, i: int, delimiter: int) -> int:
     """The end of a cell that is not wanted; -1 where it is quoted."""
     while data[i] != delimiter and data[i] != NEWLINE and data[i] != RETURN:
@@ -145,7 +146,7 @@ def _skip(data: Bytes, i: int, delimiter: int) -> int:
     return i
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _number(data: Bytes, i: int, delimiter: int, decimal: int) -> tuple[int, float]:
     """The end of a cell and its number, NaN for an empty one; end -1 where it is not a plain number."""
     while data[i] == SPACE:
@@ -179,7 +180,7 @@ def _number(data: Bytes, i: int, delimiter: int, decimal: int) -> tuple[int, flo
     return i, -value if negative else value
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _exponent(data: Bytes, i: int) -> tuple[int, int]:
     """The end of an exponent and its value; end -1 where there is none."""
     negative = data[i] == MINUS

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.inference.logged import seen
 
 from hfanalysis.effects.chamber_tap_lag import lagged
-from hfanalysis.inference.observations.clocks import CLEAR, LEAST, thrust_delay
+from hfanalysis.inference.unknowns.late_channel import CLEAR, LEAST, LateChannel
 from hfanalysis.record.signals import Signal
 
 STEP = 1e-3
@@ -35,7 +36,7 @@ def _signal(name: str, time: np.ndarray, values: np.ndarray) -> Signal:
 
 @given(st.floats(0.03, 0.15))
 def test_a_late_thrust_is_seen_to_a_few_milliseconds(delay: float) -> None:
-    found = thrust_delay(start(delay))
+    found = seen(LateChannel, start(delay))
     assert found is not None
     assert found.seconds == pytest.approx(delay, abs=2e-3)
     assert found.log_evidence > 0.5 * 25.0 * np.log(CLEAR)
@@ -43,23 +44,23 @@ def test_a_late_thrust_is_seen_to_a_few_milliseconds(delay: float) -> None:
 
 @pytest.mark.parametrize("lag", [0.0, 0.015, 0.05])
 def test_one_clock_is_one_clock_however_slow_the_tap(lag: float) -> None:
-    assert thrust_delay(start(lag=lag)) is None
+    assert seen(LateChannel, start(lag=lag)) is None
 
 
 def test_an_early_thrust_is_not_called_late() -> None:
-    assert thrust_delay(start(delay=-0.04)) is None
+    assert seen(LateChannel, start(delay=-0.04)) is None
 
 
 def test_a_slow_log_does_not_tell() -> None:
-    assert thrust_delay(start(delay=0.1, step=0.05)) is None
+    assert seen(LateChannel, start(delay=0.1, step=0.05)) is None
 
 
 def test_it_takes_both_channels() -> None:
     signals = start(0.05)
-    assert thrust_delay({"thrust": signals["thrust"]}) is None
-    assert thrust_delay({}) is None
+    assert seen(LateChannel, {"thrust": signals["thrust"]}) is None
+    assert seen(LateChannel, {}) is None
 
 
 def test_noise_alone_is_no_delay() -> None:
-    assert thrust_delay(start(noise=30.0)) is None
+    assert seen(LateChannel, start(noise=30.0)) is None
     assert LEAST > 4.0 * STEP

@@ -8,11 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 from tests.inference import logged
 
-from hfanalysis.inference.observations.failing import UNEVEN, failing_flow
 from hfanalysis.inference.observations.frame import AROUND_CHANGE, BLOCK
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
 from hfanalysis.inference.observations.reduction import observe_test
+from hfanalysis.inference.unknowns.failing_flow import UNEVEN, FailingFlow
+from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
 
@@ -31,6 +32,10 @@ def read(share: float, seconds: float, step: float = STEP, noise: float = 0.01) 
         value = np.where(time < 0.0, rest, burning) + noise * level * rng.standard_normal(time.size)
         out[name] = Signal(name, time, value, noise * level, step)
     return out
+
+
+def failing_flow(signals: dict[str, Signal], segments: Segments) -> FailingFlow | None:
+    return logged.seen(FailingFlow, signals, phases=segments)
 
 
 @settings(max_examples=15)
@@ -81,8 +86,8 @@ def reduced(share: float) -> Observed:
 
 def test_no_blocks_are_compared_while_the_flow_fails() -> None:
     steady, failing = reduced(0.0), reduced(0.4)
-    assert not steady.plain
-    assert [type(plain).__name__ for plain in failing.plain] == ["FailingFlow"]
+    assert not steady.unknowns
+    assert [type(unknown).__name__ for unknown in failing.unknowns] == ["FailingFlow"]
     for before, after in zip(steady.channels, failing.channels, strict=True):
         gone = np.setdiff1d(before.time, after.time)
         assert gone.size > 0

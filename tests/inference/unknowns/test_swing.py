@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.inference.logged import seen
 
-from hfanalysis.inference.observations.swinging import SLOWEST, Swing, swing_of
+from hfanalysis.inference.unknowns.swing import SLOWEST, Swing
 from hfanalysis.record.signals import Signal
 
 STEP, END = 1e-3, 5.0
@@ -43,7 +44,7 @@ def test_a_swing_is_seen_with_its_frequency_size_phase_and_time(
     frequency: float, start: float, phase: float, share: float
 ) -> None:
     hidden = Swing(share, frequency, phase, start, start + 2.0, 0.0)
-    found = swing_of(logged(hidden), END)
+    found = seen(Swing, logged(hidden), END)
     assert found is not None
     assert found.frequency == pytest.approx(frequency, abs=0.2)
     assert found.share == pytest.approx(share, rel=0.25)
@@ -56,16 +57,16 @@ def test_a_swing_is_seen_with_its_frequency_size_phase_and_time(
 
 @pytest.mark.parametrize("seed", range(20))
 def test_noise_does_not_swing(seed: int) -> None:
-    found = swing_of(logged(seed=seed), END)
+    found = seen(Swing, logged(seed=seed), END)
     assert found is None or found.log_evidence < 6.0
 
 
 def test_a_combustion_that_swings_is_not_the_feed() -> None:
     """Its pressure holds the flow back, and the run line's follows it: both go up together, or the line shows none."""
     hidden = Swing(0.03, 8.0, 1.0, 1.0, 4.0, 0.0)
-    assert swing_of(logged(hidden, line=0.0), END) is None
-    assert swing_of(logged(hidden, line=-0.2), END) is None
-    assert swing_of(logged(hidden, chamber=0.0), END) is None
+    assert seen(Swing, logged(hidden, line=0.0), END) is None
+    assert seen(Swing, logged(hidden, line=-0.2), END) is None
+    assert seen(Swing, logged(hidden, chamber=0.0), END) is None
 
 
 def test_what_the_run_line_does_for_a_moment_at_the_combustions_frequency_is_no_swing_of_the_flow() -> None:
@@ -76,19 +77,19 @@ def test_what_the_run_line_does_for_a_moment_at_the_combustions_frequency_is_no_
     chance = np.where((time > 2.0) & (time < 3.0), -0.6 * NOISE * turning, 0.0)
     swung = {"p_chamber": 0.01 * LEVEL["p_chamber"] * turning, "p_run": chance}
     both = {n: Signal(n, s.time, s.value + swung.get(n, 0.0), s.noise, s.step) for n, s in read.items()}
-    assert swing_of(both, END) is None
+    assert seen(Swing, both, END) is None
     once = {**both, "p_chamber": replace(both["p_chamber"], value=read["p_chamber"].value - 100.0 * chance)}
-    assert swing_of(once, END) is not None  # a chamber that swings with it is another matter
+    assert seen(Swing, once, END) is not None  # a chamber that swings with it is another matter
 
 
 def test_what_is_slower_than_that_is_left_to_the_means() -> None:
-    found = swing_of(logged(Swing(0.03, 0.3 * SLOWEST, 1.0, 0.5, 4.5, 0.0)), END)
+    found = seen(Swing, logged(Swing(0.03, 0.3 * SLOWEST, 1.0, 0.5, 4.5, 0.0)), END)
     assert found is None
 
 
 def test_a_short_or_slow_log_does_not_tell() -> None:
     hidden = Swing(0.03, 8.0, 1.0, 0.5, 4.0, 0.0)
-    assert swing_of(logged(hidden), 1.0) is None
+    assert seen(Swing, logged(hidden), 1.0) is None
     slow = {n: Signal(n, s.time[::20], s.value[::20], s.noise, 20 * STEP) for n, s in logged(hidden).items()}
-    assert swing_of(slow, END) is None
-    assert swing_of({}, END) is None
+    assert seen(Swing, slow, END) is None
+    assert seen(Swing, {}, END) is None

@@ -1,0 +1,60 @@
+"""Writes make's rules for the stages, pipeline/dag.mk, from the stages themselves: `make readme`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hfanalysis.stages import ASIDE, ORDER, RUN, STAGES
+from hfanalysis.stages.base import Stage, load_stage
+
+PAGE = Path(__file__).resolve().parent / "dag.mk"
+
+HEAD = """\
+# The way through, as rules on real files: what each stage reads and what it writes. Written by `make readme`.
+#
+# `hfa` judges by content whether a product is up to date; make's time stamps only tell when to ask it.
+
+HFA     := $(BIN)/hfa
+TESTS   := $(notdir $(patsubst %/test.toml,%,$(wildcard raw_tests/*/test.toml)))
+SOURCE  := $(shell find src/hfanalysis -type f ! -path '*/__pycache__/*')
+EFFECTS := $(wildcard engines/*.effects.toml)
+
+.SECONDARY:
+.SECONDEXPANSION:
+"""
+
+RAW = "$$(wildcard raw_tests/$$*/*) $(SOURCE)"
+
+
+def main() -> None:
+    PAGE.write_text(rules(), encoding="utf-8")
+
+
+def rules() -> str:
+    """The rules as the stages are now."""
+    stages = [load_stage(name) for name in ORDER]
+    targets = [f"{name}: ## TEST=… {text.removesuffix('.')}" for name, text in STAGES.items()]
+    targets.append(f"{RUN}: ## TEST=… every stage")
+    listed = f"STAGES := {' '.join((*ORDER, RUN))}\n\n" + "\n".join(targets) + "\n"
+    return "\n".join([HEAD, listed, *(_rule(stage) for stage in stages)])
+
+
+def _rule(stage: Stage) -> str:
+    return (
+        f"processed/%/{stage.products[0]}: {_made_from(stage)}\n\t@$(HFA) {stage.name} --quiet -- $*\n\t@touch -c $@\n"
+    )
+
+
+def _made_from(stage: Stage) -> str:
+    """The product of the stage before. A page rests on the raw files: a log without a firing gets one that says so."""
+    if not stage.needs:
+        return f"{RAW} $(STAMP)"
+    if set(stage.wants) >= set(ASIDE):
+        return f"{RAW} $(EFFECTS) $(STAMP)"
+    before = load_stage(stage.upstream[-1])
+    effects = " $(EFFECTS)" if stage.adopts and not before.adopts else ""
+    return f"processed/%/{before.products[0]}{effects}"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,51 @@
+"""Where in the model something unknown can be, and what it is a factor of there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.engine.model import OUTPUTS
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.predict import aligned
+from hfanalysis.inference.observations.observed import Observed
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Place:
+    """A site of the model or a ``sensor`` (its channel): its governing equation, and unit and typical size of what can
+    be there. ``factor_of``: the output that a factor multiplies; for the chamber's temperature, the flow in whose
+    enthalpy it is."""
+
+    name: str
+    equation: str
+    unit: str
+    typical: float
+    sensor: str | None = None
+    factor_of: str | None = None
+
+    def whole(self, fitted: Fit, time: Array, observed: Observed) -> Array | None:
+        """What a factor multiplies at ``time`` (n,) [s] in the run of a fit [SI]; None where there is no factor."""
+        if self.factor_of is None:
+            return None
+        outputs = fitted.burnt.steps.at(aligned(observed, fitted.burnt, time))[1]
+        return np.asarray(outputs[:, OUTPUTS.index(self.factor_of)])
+
+
+PLACES = (
+    Place("tank_heat", "tank_energy", "W", 2000.0),
+    Place("nitrogen_inflow", "tank_volume", "kg/s", 0.02),
+    Place("tank_leak", "tank_volume", "kg/s", 0.05),
+    Place("tank_pressure", "tank_energy", "Pa", 1e5),
+    Place("injector_factor", "injector", "1", 0.1, factor_of="oxidizer_flow"),
+    Place("feed_loss", "feed", "Pa", 1e5),
+    Place("regression_factor", "grain", "1", 0.2, factor_of="fuel_flow"),
+    Place("temperature_factor", "chamber_energy", "1", 0.1, factor_of="nozzle_flow"),
+    Place("throat_factor", "nozzle", "1", 0.05, factor_of="thrust"),
+    Place("thrust_factor", "nozzle", "1", 0.05, factor_of="thrust"),
+)
+"""Sites of the model at which an unknown of any shape is looked for."""
