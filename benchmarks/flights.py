@@ -24,8 +24,9 @@ import numpy as np
 from hfanalysis.flight.ascent import NOMINAL, RESULTS, arguments, ascend, fly_all
 from hfanalysis.measured_flight.firing import Firing, firing
 from hfanalysis.measured_flight.uncertainty import disperse, rows
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.log import read_log
-from hfanalysis.segment.phases import Segments
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
@@ -53,9 +54,9 @@ print(json.dumps([flight.apogee - s["ELEVATION"], flight.out_of_rail_velocity, f
 
 def prepared(context: Context) -> Firing:
     """The test's firing, all stages before it done."""
-    segments = Segments.from_json(context.read_json("segments.json"))
+    segments = context.read(Segments)
     log = read_log(context.product("ingest.h5"))
-    return firing(log, segments, context.read_json("calibration.json"), context.definition)
+    return firing(log, segments, context.read(Calibration), context.definition)
 
 
 def ours(found: Firing, repeats: int = 400) -> tuple[np.ndarray, float]:

@@ -45,7 +45,7 @@ def recover(folder: Path) -> dict[str, Any]:
     log, definition = read_folder(folder)
     segments = find_phases(log, definition)
     calibration = calibrate(log, segments, definition, 400)
-    found = {**calibration.quantities, **segments.events, "t_open": segments.t_open}
+    found = {**calibration.constants.quantities, **segments.events, "t_open": segments.t_open}
     return {n: found[n].to_json() for n in QUANTITIES}
 
 
@@ -100,8 +100,8 @@ def recover_regression(folder: Path) -> dict[str, Any]:
     tank = calibrate(log, segments, definition, 400)
     found = regress(log, segments, definition, tank)
     out = {n: found.quantities[n].to_json() for n in ("a", "n", "regression_rate_reference")}
-    flux = found.about.get("reference_flux", {}).get("value")
-    return {**out, "C_i": tank.quantities["C_i"].to_json(), "reference_flux": flux}
+    flux = found.regression.reference_flux and found.regression.reference_flux.value
+    return {**out, "C_i": tank.constants.C_i.to_json(), "reference_flux": flux}
 
 
 def blind_case(folder: Path) -> dict[str, Any]:

@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hfanalysis.diagnose.model_free import BAR, opening_of, purge_line_of
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.log import read_log
-from hfanalysis.segment.phases import Segments
 
 SHOWN = {"tank_stratification", "tank_nonequilibrium", "n2_purge", "dissolved_nitrogen"}
 """What the signs are of, or of what they might be."""

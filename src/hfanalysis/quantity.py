@@ -66,6 +66,20 @@ class Quantity:
         return out
 
     @classmethod
+    def __get_pydantic_core_schema__(cls, _source: Any, _handler: Any) -> Any:
+        """In a model: taken as it is or from its JSON form, and written as that."""
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(
+            lambda given: given if isinstance(given, cls) else cls.from_json(given),
+            serialization=core_schema.plain_serializer_function_ser_schema(cls.to_json),
+        )
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, _schema: Any, _handler: Any) -> dict[str, Any]:
+        return {"title": cls.__name__, "type": "object"}
+
+    @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Quantity:
         """The inverse of :meth:`to_json`."""
         if data["value"] is None:

@@ -15,15 +15,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from tests.products.keys import KEYS, keys_of
 
 from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.fuel_law import evidence_for
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.campaign.regression import regression_of
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import load_definition
 from hfanalysis.record.log import read_log
-from hfanalysis.segment.phases import Segments
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
@@ -68,6 +69,13 @@ def products(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, An
         folder = _run(root, name, "validate")
         out[name] = {p.stem: json.loads(p.read_text()) for p in folder.glob("*.json")} | {"folder": folder}
     return out
+
+
+@pytest.mark.parametrize("product", ["ingest", "segments", "calibration", "validation"])
+@pytest.mark.parametrize("name", ["HF4", "HF5"])
+def test_the_products_have_the_keys_that_they_had(products: dict[str, Any], name: str, product: str) -> None:
+    found, stored = keys_of(products[name][product]), KEYS[f"{name}/{product}.json"]
+    assert json.dumps(found) == json.dumps(stored)
 
 
 @pytest.mark.parametrize(("name", "event"), [(n, e) for n in PHASES for e in PHASES[n]])
@@ -196,11 +204,11 @@ def test_efficiencies_are_those_of_an_engine(products: dict[str, Any], name: str
 def test_both_together_have_one_rate_but_not_one_law(products: dict[str, Any]) -> None:
     """docs/calibration.md: the same rate where each is known best, within 10 %; common constants fit worse."""
     together = regression_of(["HF4", "HF5"], products["HF4"]["folder"].parent.parent, None)
-    assert together["tests"] == ["HF4", "HF5"]
-    assert together["agreement"]["verdict"].startswith("disagree")
-    rates = [together["alone"][name]["regression_rate_reference"]["value"] for name in ("HF4", "HF5")]
+    assert together.tests == ("HF4", "HF5")
+    assert together.agreement.verdict.startswith("disagree")
+    rates = [together.alone[name].regression_rate_reference.value for name in ("HF4", "HF5")]
     assert rates[0] == pytest.approx(rates[1], rel=0.1)
-    assert together["n"]["value"] == pytest.approx(0.14, abs=0.05)
+    assert together.n.value == pytest.approx(0.14, abs=0.05)
 
 
 EFFECTS = """

@@ -19,9 +19,10 @@ import pytest
 
 from hfanalysis.flight.ascent import RAIL, SPEED, Ascent, ascend
 from hfanalysis.measured_flight.firing import firing
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.log import read_log
 from hfanalysis.rocket.aerodynamics import Fins, Nose, Shape, Tail, center_of_pressure, components
-from hfanalysis.segment.phases import Segments
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
@@ -69,8 +70,8 @@ def exported(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     text = (folder / "test.toml").read_text().replace(volume, f'{volume}inner_diameter = "128 mm"\n')
     (folder / "test.toml").write_text(text + request.param)
     context = run_to("flight", open_test(root, "HF5", settings={"flight.flights": 100, "flight.gust_seeds": 2}))
-    segments = Segments.from_json(context.read_json("segments.json"))
-    log, calibration = read_log(context.product("ingest.h5")), context.read_json("calibration.json")
+    segments = context.read(Segments)
+    log, calibration = read_log(context.product("ingest.h5")), context.read(Calibration)
     found = firing(log, segments, calibration, context.definition)
     upright = replace(found.vehicle, launch_angle=0.0)
     return context.out / "HF5_rocketpy.py", ascend(found.curve, upright, found.rail_length)

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 from tests.segment.stand import AMBIENT, Stand, Trial, definition, fire, log_of, segments_of
 
-from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import TankConstants
 from hfanalysis.quantity import NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
-from hfanalysis.segment.kind import Kind
 from hfanalysis.units import Value
 
 SAMPLES = 40
@@ -24,14 +23,14 @@ def burn() -> Trial:
     return fire(rate=200.0)
 
 
-def calibrated(test: Trial, **change: Any) -> Calibration:
+def calibrated(test: Trial, **change: Any) -> TankConstants:
     events = {n: change.pop(n) for n in ("t_v", "t_purge", "t_feed") if n in change}
     without = change.pop("without", ())
     log = log_of(test, white=change.pop("white", 1e3), without=without)
-    return calibrate(log, segments_of(test, **events), definition(test.stand, **change), SAMPLES)
+    return calibrate(log, segments_of(test, **events), definition(test.stand, **change), SAMPLES).constants
 
 
-def refused(found: Calibration, name: str) -> str:
+def refused(found: TankConstants, name: str) -> str:
     quantity = found.quantities[name]
     assert quantity.value is None, f"{name} = {quantity.value}"
     assert quantity.verdict == NOT_IDENTIFIABLE
@@ -81,8 +80,8 @@ def test_a_burn_needs_its_three_pressures(burn: Trial, channel: str) -> None:
 
 def test_a_cold_flow_may_lack_the_chamber_pressure(burn: Trial) -> None:
     cold = fire(Stand(chamber=0.0), rate=200.0)
-    segments = replace(segments_of(cold), kind=Kind("cold_flow", "as stated"))
-    found = calibrate(log_of(cold, without=("p_chamber",)), segments, definition(cold.stand), SAMPLES)
+    segments = segments_of(cold).but(kind="cold_flow")
+    found = calibrate(log_of(cold, without=("p_chamber",)), segments, definition(cold.stand), SAMPLES).constants
     assert found.quantities["C_i"].value == pytest.approx(cold.stand.C_i, rel=0.01)
     assert any("ambient pressure taken" in note for note in found.notes)
 

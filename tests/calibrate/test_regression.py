@@ -57,13 +57,13 @@ def test_what_is_not_told_apart_is_said_and_the_combination_given(blurred: Fitte
     assert "combination" in (quantities["n"].why or "")
     found = quantities["regression_rate_reference"]
     assert found.verdict == "identified"
-    flux = result(blurred).about["reference_flux"]["value"]
+    flux = result(blurred).regression.reference_flux.value
     assert found.interval[0] < rate(TRUTH, flux) < found.interval[1]
 
 
 def test_a_and_n_multiply_to_the_reference_rate(clear: Fitted) -> None:
     found = result(clear)
-    q, flux = found.quantities, found.about["reference_flux"]["value"]
+    q, flux = found.quantities, found.regression.reference_flux.value
     assert q["a"].value * flux ** q["n"].value == pytest.approx(q["regression_rate_reference"].value)
 
 

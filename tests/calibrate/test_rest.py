@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
 
-from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.rest import blowdown_mass, fit_bulk, liquid_phase_heat, state_remarks
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.engine.blowdown import FeedSystem, blow_down
 from hfanalysis.engine.tank import split
 from hfanalysis.errors import InputError
+from hfanalysis.products.calibration import TankConstants
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
 
@@ -26,12 +26,12 @@ def burn() -> Trial:
     return fire(rate=200.0)
 
 
-def calibrated(test: Trial, scale: Any = None, **change: Any) -> Calibration:
+def calibrated(test: Trial, scale: Any = None, **change: Any) -> TankConstants:
     log = log_of(test, white=1e3, more={"m_tank": scale} if scale else None, accuracy=change.pop("accuracy", 1e4))
-    return calibrate(log, segments_of(test), definition(test.stand, **change), 20)
+    return calibrate(log, segments_of(test), definition(test.stand, **change), 20).constants
 
 
-def worked_with(found: Calibration) -> float:
+def worked_with(found: TankConstants) -> float:
     """The loaded mass that a calibration took [kg]."""
     parts = [found.quantities[n].value for n in ("oxidizer_mass_liquid_phase", "vapor_mass_at_t_v")]
     return float(np.sum(np.array(parts, dtype=float)))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from tests.segment.stand import Trial, definition, fire, log_of, segments_of
 
-from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.products.calibration import TankConstants
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.sections import Injector
 from hfanalysis.units import Value
@@ -23,10 +23,10 @@ def burn() -> Trial:
     return fire(rate=200.0)
 
 
-def calibrated(burn: Trial, accuracy: float = 1e3, std: float = 1e-4, **change: Any) -> Calibration:
+def calibrated(burn: Trial, accuracy: float = 1e3, std: float = 1e-4, **change: Any) -> TankConstants:
     log = log_of(burn, white=1e3, accuracy=accuracy)
     stated = definition(burn.stand, **({"mass": Value(burn.stand.mass, 0.0)} | change))
-    return calibrate(log, segments_of(burn, std=std), stated, SAMPLES)
+    return calibrate(log, segments_of(burn, std=std), stated, SAMPLES).constants
 
 
 def test_the_same_test_gives_the_same_numbers(burn: Trial) -> None:
@@ -91,7 +91,8 @@ def test_stated_deviations_are_honest() -> None:
             for n, t in (("t_v", burn.t_v), ("t_purge", burn.t_purge))
         }
         mass = burn.stand.mass + 0.05 * generator.standard_normal()
-        found = calibrate(log, segments_of(test, **times), definition(burn.stand, mass=Value(mass, 0.05)), SAMPLES)
+        stated = definition(burn.stand, mass=Value(mass, 0.05))
+        found = calibrate(log, segments_of(test, **times), stated, SAMPLES).constants
         for name, scores in z.items():
             quantity, truth = found.quantities[name], getattr(burn.stand, name)
             assert quantity.value is not None

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
+from tests.products.filled import filled
+
 from hfanalysis.campaign.product import row_of, stand_row
 from hfanalysis.campaign.side_by_side import Ended
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.campaign import Campaign
+from hfanalysis.products.diagnosis import Diagnosis
+from hfanalysis.products.disk import write_json
+from hfanalysis.products.flight import Flight
+from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition, load_definition
 from hfanalysis.stages.base import silent
@@ -47,17 +54,17 @@ def products(folder: Path, c_i: float, m: dict[str, Any], heat: float | None) ->
         "partners": {},
         "gap": {},
     }
-    for name, product in {
-        "calibration": calibration,
-        "validation": {"performance": {"measured": performance}},
-        "flight": {"apogee": quantity(2900.0, 60.0, "m", None)},
-        "diagnosis": diagnosis,
-    }.items():
-        (folder / f"{name}.json").write_text(json.dumps(product), encoding="utf-8")
+    for kind, product in (
+        (Calibration, calibration),
+        (Validation, {"performance": {"measured": performance}}),
+        (Flight, {"apogee": quantity(2900.0, 60.0, "m", None)}),
+        (Diagnosis, diagnosis),
+    ):
+        write_json(folder / kind.file, filled(kind, product))
     (folder / "report.html").write_text("", encoding="utf-8")
 
 
-def made(root: Path) -> dict[str, Any]:
+def made(root: Path) -> Campaign:
     """A campaign of three tests of a stand and one whose definition is at fault."""
     processed = root / "processed"
     free = quantity(0.75, 0.01, verdict="unphysical")
@@ -67,4 +74,4 @@ def made(root: Path) -> dict[str, Any]:
     rows = {test: row_of(definition(root, test), processed / test, Ended(0, "")) for test in "ABC"}
     stand = stand_row(rows, root, None, silent)
     broken = row_of(None, processed / "D", Ended(2, "raw_tests/D/test.toml: <b>found nothing</b>"))
-    return {"tests": {**rows, "D": broken}, "stands": {"cell 3": stand}}
+    return Campaign(tests={**rows, "D": broken}, stands={"cell 3": stand})

@@ -3,66 +3,68 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import pytest
 from tests.campaign.rows import definition, made
+from tests.products.filled import filled
 
 from hfanalysis.campaign.page import page
-from hfanalysis.campaign.product import _probability, row_of, stand_of, stand_row
+from hfanalysis.campaign.product import probability_of, row_of, stand_of, stand_row
 from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.campaign.words import agreement, diagnosed
+from hfanalysis.products.campaign import Campaign, Diagnosed
+from hfanalysis.products.diagnosis import NamedEffect
 from hfanalysis.record.definition import load_definition
 from hfanalysis.stages.base import silent
 
 
 @pytest.fixture(scope="module")
-def product(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+def product(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
     return made(tmp_path_factory.mktemp("campaign"))
 
 
-def test_only_what_is_identified_is_in_the_mean(product: dict[str, Any]) -> None:
-    m = product["stands"]["cell 3"]["constants"]["m"]
-    assert m["tests"] == ["A", "B"]
-    assert m["value"] == pytest.approx(1.04)
-    assert m["agreement"]["verdict"] == "agree"
+def test_only_what_is_identified_is_in_the_mean(product: Campaign) -> None:
+    m = product.stands["cell 3"].constants["m"]
+    assert m.tests == ("A", "B")
+    assert m.mean.value == pytest.approx(1.04)
+    assert m.agreement.verdict == "agree"
 
 
-def test_tests_that_differ_are_said_to(product: dict[str, Any]) -> None:
-    c_i = product["stands"]["cell 3"]["constants"]["C_i"]
-    assert c_i["agreement"]["verdict"].startswith("disagree")
-    assert c_i["between"] > 0.02
+def test_tests_that_differ_are_said_to(product: Campaign) -> None:
+    c_i = product.stands["cell 3"].constants["C_i"]
+    assert c_i.agreement.verdict.startswith("disagree")
+    assert c_i.between > 0.02
     assert "disagree" in agreement(c_i)
     assert "(< 0.001 by chance)" in agreement(c_i)
 
 
-def test_an_effect_has_its_probability_in_every_test_and_its_size_where_it_is_named(product: dict[str, Any]) -> None:
-    heat = product["stands"]["cell 3"]["effects"]["tank_heat"]
-    assert heat["named_in"] == ["A", "B"]
-    assert heat["probability"] == {"A": 0.93, "B": 0.93, "C": 0.004}
-    together = heat["parameters"]["power"]["together"]
-    assert together["value"] == pytest.approx(1000.0)
-    assert together["tests"] == ["A", "B"]
+def test_an_effect_has_its_probability_in_every_test_and_its_size_where_it_is_named(product: Campaign) -> None:
+    heat = product.stands["cell 3"].effects["tank_heat"]
+    assert heat.named_in == ("A", "B")
+    assert heat.probability == {"A": 0.93, "B": 0.93, "C": 0.004}
+    together = heat.parameters["power"].together
+    assert together.mean.value == pytest.approx(1000.0)
+    assert together.tests == ("A", "B")
 
 
 def test_what_may_be_beside_the_first_effect_of_another_test_counts_as_that() -> None:
-    diagnosis = {"posterior": {"tank_heat": 0.004}, "partners": {"tank_heat": 0.3}}
-    assert _probability(diagnosis, None, "tank_heat") == 0.3
-    assert _probability(diagnosis, {"probability": 0.9}, "tank_heat") == 0.9
-    assert _probability({"posterior": {}}, None, "tank_heat") is None
+    diagnosis = filled(Diagnosed, {"posterior": {"tank_heat": 0.004}, "partners": {"tank_heat": 0.3}})
+    assert probability_of(diagnosis, None, "tank_heat") == 0.3
+    assert probability_of(diagnosis, filled(NamedEffect, {"probability": 0.9}), "tank_heat") == 0.9
+    assert probability_of(filled(Diagnosed, {}), None, "tank_heat") is None
 
 
-def test_without_a_law_of_two_tests_there_is_the_reason(product: dict[str, Any]) -> None:
-    reason = product["stands"]["cell 3"]["regression"]["reason"]
+def test_without_a_law_of_two_tests_there_is_the_reason(product: Campaign) -> None:
+    reason = product.stands["cell 3"].regression.reason
     assert reason == "two tests are needed, and a and n are known of none"
     assert reason in page(product)
 
 
-def test_a_test_at_fault_is_listed_with_its_reason_and_nothing_else(product: dict[str, Any], tmp_path: Path) -> None:
-    row = product["tests"]["D"]
-    assert row["status"] == "input at fault"
-    assert row["calibration"] == {}
-    assert row["page"] is None
+def test_a_test_at_fault_is_listed_with_its_reason_and_nothing_else(product: Campaign, tmp_path: Path) -> None:
+    row = product.tests["D"]
+    assert row.status == "input at fault"
+    assert row.calibration == {}
+    assert row.page is None
     text = page(product)
     assert "input at fault: raw_tests/D/test.toml: &lt;b&gt;found nothing" in text
     assert "<b>found" not in text
@@ -73,16 +75,16 @@ def test_what_an_earlier_run_left_is_not_of_one_that_failed(tmp_path: Path, stat
     folder = tmp_path / "processed" / "A"
     made(tmp_path)
     row = row_of(definition(tmp_path / "again", "A"), folder, Ended(status, "no such column"))
-    assert (row["status"], row["calibration"], row["diagnosis"], row["page"]) == (said, {}, None, None)
+    assert (row.status, row.calibration, row.diagnosis, row.page) == (said, {}, None, None)
 
 
 def test_a_test_that_left_nothing_has_nothing(tmp_path: Path) -> None:
     row = row_of(definition(tmp_path, "E", None), tmp_path / "processed" / "E", Ended(3, "no firing"))
-    assert (row["status"], row["reason"]) == ("not in the log", "no firing")
-    assert row["stand"] is None
-    assert row["diagnosis"] is None
-    assert diagnosed(row["diagnosis"]) == "not diagnosed"
-    text = page({"tests": {"E": row}, "stands": {}})
+    assert (row.status, row.reason) == ("not in the log", "no firing")
+    assert row.stand is None
+    assert row.diagnosis is None
+    assert diagnosed(row.diagnosis) == "not diagnosed"
+    text = page(Campaign(tests={"E": row}, stands={}))
     assert "not diagnosed" in text
     assert "E/report.html" not in text
 
@@ -97,23 +99,22 @@ def test_a_stand_that_is_not_stated_is_known_by_its_tank(tmp_path: Path) -> None
 
 def test_what_belongs_to_an_injector_is_not_pooled_over_two_of_them(tmp_path: Path) -> None:
     rows = {
-        test: {**row, "injector_area": {"A": 6e-5, "B": 7e-5}[test]}
-        for test, row in made(tmp_path)["tests"].items()
+        test: row.but(injector_area={"A": 6e-5, "B": 7e-5}[test])
+        for test, row in made(tmp_path).tests.items()
         if test in "AB"
     }
-    constants = stand_row(rows, tmp_path, None, silent)["constants"]
-    assert constants["C_i"] == {"value": None, "reason": "the tests have different injectors"}
-    assert constants["m"]["value"] == pytest.approx(1.04)
+    constants = stand_row(rows, tmp_path, None, silent).constants
+    assert constants["C_i"].to_json() == {"value": None, "reason": "the tests have different injectors"}
+    assert constants["m"].mean.value == pytest.approx(1.04)
 
 
-def test_a_test_alone_on_its_stand_is_compared_with_nothing(product: dict[str, Any]) -> None:
-    stand = {**product["stands"]["cell 3"], "tests": ["A"]}
-    text = page({"tests": product["tests"], "stands": {"cell 3": stand}})
+def test_a_test_alone_on_its_stand_is_compared_with_nothing(product: Campaign) -> None:
+    text = page(product.but(stands={"cell 3": product.stands["cell 3"].but(tests=("A",))}))
     assert "A is the only test of this stand here" in text
     assert "Constants of the stand" not in text
 
 
-def test_the_page_has_a_picture_of_each_constant_and_links_to_the_tests(product: dict[str, Any]) -> None:
+def test_the_page_has_a_picture_of_each_constant_and_links_to_the_tests(product: Campaign) -> None:
     text = page(product)
     assert text.count('<svg class="chart"') == 3
     assert 'href="A/report.html"' in text

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -75,7 +73,7 @@ def test_what_falls_too_low_is_vapour_made_late(depth: float, size: float) -> No
 
 def test_a_supercharged_tank_and_one_whose_liquid_does_not_end_are_not_judged() -> None:
     log = tank(layer(8.0 * BAR))
-    assert signs(log, replace(logged.segments(), supercharged=True)) == []
+    assert signs(log, logged.segments().but(supercharged=True)) == []
     unseen = logged.segments(t_v=Quantity.absent("the log ends before"))
     assert fall_at_opening(log, unseen) is None
     assert fall_at_opening(log, logged.segments(t_purge=Quantity(0.2, "s", 0.05))) is None

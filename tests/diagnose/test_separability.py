@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.engine.stand import engine_on_stand
+from tests.products.filled import loaded
 
 from hfanalysis.diagnose.added_sensors import FURTHER, USUAL, Sensor, missing_sensors
 from hfanalysis.diagnose.naming.catalogue import Catalogue
@@ -31,7 +32,7 @@ FEW = ("p_tank", "p_chamber", "thrust")
 
 @cache
 def base() -> Hypothesis:
-    return base_hypothesis(engine_on_stand(), {"oxidizer_mass": {"value": 8.35, "std": 0.02}})
+    return base_hypothesis(engine_on_stand(), loaded(8.35, 0.02))
 
 
 @cache

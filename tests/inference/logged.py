@@ -17,13 +17,12 @@ from hfanalysis.engine.unsteady import Burn, burn
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.reduction import observe_test
 from hfanalysis.inference.unknown import Samples, Unknown
+from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.sections import Site
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.kind import Kind
-from hfanalysis.segment.phases import EVENTS, Segments
 from hfanalysis.units import Value
 
 Array = NDArray[np.float64]
@@ -92,7 +91,7 @@ def segments(**change: Quantity) -> Segments:
         "t_fuel_out": Quantity(done.burn_time, "s", 0.01),
         "t_feed": Quantity(0.15, "s", 0.01),
     }
-    return Segments(Quantity(OPENING, "s", 1e-4), absent | known | change, Kind("hot_fire", "it burns"))
+    return Segments.of(Quantity(OPENING, "s", 1e-4), absent | known | change, kind="hot_fire")
 
 
 def seen(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from tests.engine.stand import engine_on_stand
+from tests.products.filled import loaded
 
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine, burn
@@ -114,7 +115,7 @@ def hypothesis() -> Hypothesis:
     """The base model, calibrated a little wrongly."""
     engine = engine_on_stand(temperature=293.4, a=1.1e-4)
     wrong = replace(engine, feed=replace(engine.feed, area=engine.feed.area * 1.03, loss_factor=6.0e8))
-    return base_hypothesis(wrong, {"oxidizer_mass": {"value": 8.35, "std": 0.02}})
+    return base_hypothesis(wrong, loaded(8.35, 0.02))
 
 
 @cache

@@ -10,9 +10,9 @@ from tests.segment.heated_cell import EMPTY, heated, quenched
 from tests.segment.stand import Trial, definition, segments_of
 
 from hfanalysis.measured_flight.thrust import SHAPE_OF_DRIFT, UNSEEN_DRIFT, MeasuredThrust, measured_thrust
+from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
-from hfanalysis.segment.phases import Segments
 from hfanalysis.validate.performance import measured
 
 

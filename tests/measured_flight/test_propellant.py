@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,9 +15,11 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.flight.summary import Spread
 from hfanalysis.measured_flight.firing import Firing, firing
 from hfanalysis.measured_flight.uncertainty import disperse, inputs, rows
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.disk import read_json
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition, load_definition
 from hfanalysis.record.log import TestLog, read_log
-from hfanalysis.segment.phases import Segments
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
@@ -27,13 +27,13 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @cache
-def analysed() -> tuple[TestLog, Segments, dict[str, Any]]:
+def analysed() -> tuple[TestLog, Segments, Calibration]:
     """The replica of Hot Fire 5: its log, phases and calibration."""
     root = Path(mkdtemp())
     shutil.copytree(ROOT / "raw_tests" / "HF5", root / "raw_tests" / "HF5")
     out = run_to("calibrate", open_test(root, "HF5", settings={"calibrate.samples": 20})).out
-    segments = Segments.from_json(json.loads((out / "segments.json").read_text()))
-    found = read_log(out / "ingest.h5"), segments, json.loads((out / "calibration.json").read_text())
+    segments = Segments.from_json(read_json(out / "segments.json"))
+    found = read_log(out / "ingest.h5"), segments, Calibration.from_json(read_json(out / "calibration.json"))
     shutil.rmtree(root)
     return found
 

@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from tests.products.filled import filled
 from tests.report.diagnosed import DIAGNOSIS
 from tests.report.diagnosed import store as diagnosed_store
 
+from hfanalysis.products.kinds import KINDS
 from hfanalysis.record.definition import load_definition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.summary import summary
@@ -98,7 +100,7 @@ CALIBRATION: dict[str, Any] = {
     "regression_rate_reference": quantity(1.05e-3, "m/s", 2e-5, verdict="identified"),
     "K_loss": quantity(6.371e8, "1/m^4", 2.1e7, verdict="identified"),
     "p_loss_liquid": quantity(11.43e5, "Pa", 0.12e5, verdict="identified"),
-    "rest": {"temperature": quantity(293.4, "K", 0.3), "finding": "pressure and mass fit a saturated tank"},
+    "rest": {"temperature": quantity(293.4, "K", 0.3), "remarks": ["pressure and mass fit a saturated tank"]},
     "tank_history": {
         "time": list(_TIME),
         "liquid": list(150.0 - 25.0 * _TIME),
@@ -144,6 +146,7 @@ VALIDATION: dict[str, Any] = {
     ],
     "absent": {},
     "warnings": ["thrust and p_c A_t disagree: 2430 N against 3100 N"],
+    "quoted": {f"{force} N": {"value": float(force), "unit": "N", "std": None} for force in (2430, 3100)},
     "provenance": {"hfanalysis": "0.1.0", "parameters": {"modes": "all"}},
 }
 
@@ -234,10 +237,15 @@ def stores() -> dict[str, Store]:
 def material(folder: Path, label: str | None = None, **text: str) -> Material:
     """All of it."""
     made = log(label)
-    about = {**summary(made), "provenance": {}}
-    products = {"ingest": about, "segments": SEGMENTS, "calibration": CALIBRATION, "validation": VALIDATION}
-    products |= {"flight": FLIGHT, "diagnosis": DIAGNOSIS}
-    return Material(definition(folder, **text), made, products, stores())
+    products = {"segments": SEGMENTS, "calibration": CALIBRATION, "validation": VALIDATION}
+    bare = Material(definition(folder, **text), made, {"ingest": summary(made)}, stores())
+    return saying(bare, **products, flight=FLIGHT, diagnosis=DIAGNOSIS)
+
+
+def saying(made: Material, **products: Any) -> Material:
+    """The material with other products, by name, as their JSON has them."""
+    models = {name: filled(KINDS[f"{name}.json"], data) for name, data in products.items()}
+    return replace(made, products={**made.products, **models})
 
 
 def without(made: Material, *names: str, **reasons: str) -> Material:

@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from html import unescape
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.products.filled import filled
 from tests.report.diagnosed import DIAGNOSIS, NOTHING
-from tests.report.sample import material, without
+from tests.report.sample import material, saying, without
 from tests.report.test_page import HOSTILE, Reader
 
 from hfanalysis.charts.chart import Chart
+from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.report.diagnosis_tables import parameters, probabilities
 from hfanalysis.report.html import switchable
 from hfanalysis.report.page import page
 from hfanalysis.report.sections import Laid, lay_out
+from hfanalysis.sentences import said, text
 
 
 def laid_out(folder: Path, product: dict[str, Any]) -> Laid:
     made = material(folder)
-    return section(lay_out(replace(made, products={**made.products, "diagnosis": product})))
+    return section(lay_out(saying(made, diagnosis=product)))
 
 
 def section(found: list[Laid]) -> Laid:
@@ -199,7 +201,7 @@ ALONE: dict[str, Any] = {
 
 def test_without_an_engine_the_section_tells_the_sensors_and_claims_no_numbers(tmp_path: Path) -> None:
     made = without(material(tmp_path), "diagnosis")
-    laid = section(lay_out(replace(made, products={**made.products, "diagnosis": ALONE})))
+    laid = section(lay_out(saying(made, diagnosis=ALONE)))
     found = told(laid)
     assert not laid.charts
     assert "<table>" not in found
@@ -213,7 +215,7 @@ def test_without_an_engine_the_section_tells_the_sensors_and_claims_no_numbers(t
 def test_without_an_engine_what_is_beside_the_first_has_a_table(effects: list[Any], tmp_path: Path) -> None:
     beside = {**ALONE, "effects": effects, "partners": {"n2_purge": 0.98}}
     made = without(material(tmp_path), "diagnosis")
-    found = told(section(lay_out(replace(made, products={**made.products, "diagnosis": beside}))))
+    found = told(section(lay_out(saying(made, diagnosis=beside))))
     first = effects[0]["name"] if effects else "load_cell_drift"
     assert f"Effects beside {first}." in found
     assert "n2_purge" in found
@@ -252,7 +254,7 @@ def test_hostile_texts_of_a_diagnosis_are_shown_not_obeyed(tmp_path: Path) -> No
         attacked[name] = {**attacked[name], HOSTILE: attacked[name][first]}
     attacked["set90"] = [HOSTILE]
     made = material(tmp_path)
-    text = page(replace(made, products={**made.products, "diagnosis": attacked}))
+    text = page(saying(made, diagnosis=attacked))
     reader = Reader(text)
     assert reader.open == []
     assert "img" not in {tag for tag, _ in reader.tags}
@@ -270,10 +272,20 @@ def test_no_texts_of_a_page_depend_on_a_diagnosis_that_is_not_there(tmp_path: Pa
 
 
 def test_a_number_and_what_it_is_unsure_of_change_units_together() -> None:
-    found = str(switchable("It differs by -3.91 ± 0.8 bar, at most 16.6 bar; 12 ± 3 N."))
+    off, most = said(-3.91e5, "bar", ".2f", 8e4, ".1f"), said(16.6e5, "bar", ".1f")
+    words = text(
+        "It differs by {off}, at most {most}; {force}.", off=off, most=most, force=said(12.0, "N", "", 3.0, "")
+    )
+    found = str(switchable(words))
     assert 'data-si="−3.91 ± 0.8 bar" data-team="−57 ± 12 psi"' in found
     assert 'data-si="16.6 bar" data-team="241 psi"' in found
-    assert 'data-si="12 ± 3 N" data-team="2.70 ± 0.67 lbf"' in found
+    assert 'data-si="12.0 ± 3.0 N" data-team="2.70 ± 0.67 lbf"' in found
+
+
+def test_only_what_a_sentence_knows_to_be_a_quantity_changes_units() -> None:
+    assert str(switchable("the gauge of 40 bar")) == "the gauge of 40 bar"
+    found = str(switchable(text("{size} in HF-40 bar, 140 bar", size=said(40e5, "bar", ".0f"))))
+    assert found == '<span data-si="40 bar" data-team="580 psi">40 bar</span> in HF-40 bar, 140 bar'
 
 
 def test_sentences_are_set_like_the_rest_of_the_page() -> None:
@@ -283,14 +295,15 @@ def test_sentences_are_set_like_the_rest_of_the_page() -> None:
 
 def test_effects_beside_the_first_do_not_count_among_the_improbable(tmp_path: Path) -> None:
     odds = {**DIAGNOSIS["posterior"], "load_cell_drift": 1e-4, "chamber_tap_lag": 1e-4}
-    alone = str(probabilities({**DIAGNOSIS, "posterior": odds, "partners": {}}))
-    beside = str(probabilities({**DIAGNOSIS, "posterior": odds, "partners": {"load_cell_drift": 0.98}}))
+    alone = str(probabilities(filled(Diagnosis, {**DIAGNOSIS, "posterior": odds, "partners": {}})))
+    odd = {**DIAGNOSIS, "posterior": odds, "partners": {"load_cell_drift": 0.98}}
+    beside = str(probabilities(filled(Diagnosis, odd)))
     count = [int(re.search(r"(\d+) other names are below", text)[1]) for text in (alone, beside)]  # type: ignore[index]
     assert count[0] == count[1] + 1
 
 
 def test_the_effects_own_constants_are_on_the_page() -> None:
-    found = str(parameters(DIAGNOSIS))
+    found = str(parameters(filled(Diagnosis, DIAGNOSIS)))
     for name in DIAGNOSIS["effects"][0]["parameters"]:
         assert f"<td>{name.replace('_', ' ')}</td>" in found
     assert "±" in found

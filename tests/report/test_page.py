@@ -13,11 +13,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.report.sample import CALIBRATION, SEGMENTS, channel, material, quantity, without
+from tests.report.sample import CALIBRATION, FLIGHT, SEGMENTS, VALIDATION, channel, material, quantity, saying, without
 
 from hfanalysis.charts.colours import COLOURS, STYLES
 from hfanalysis.charts.style import sheet
 from hfanalysis.charts.svg import Event, events, new_plot, value_range
+from hfanalysis.products.ingest import Ingest
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.summary import summary
 from hfanalysis.report.index import write_index
@@ -98,15 +99,14 @@ def hostile(folder: Path) -> Material:
     made = material(folder, label=HOSTILE, description=f"'''{HOSTILE}'''")
     named = channel(HOSTILE, "V", lambda t: 1.0 + 0.0 * t, HOSTILE)
     log = TestLog({**made.log.channels, HOSTILE: named})
-    odd = {HOSTILE: quantity(1.0, HOSTILE, 0.1, why=HOSTILE, verdict=HOSTILE), "rest": {HOSTILE: HOSTILE}}
+    odd = {"m": quantity(1.0, HOSTILE, 0.1, why=HOSTILE, verdict=HOSTILE), "rest": {"remarks": [HOSTILE]}}
     provenance = {"raw": {HOSTILE: HOSTILE}}
     products = {
-        **made.products,
-        "ingest": {**summary(log), "warnings": [HOSTILE], "provenance": provenance},
+        "ingest": {**summary(log).to_json(), "warnings": [HOSTILE], "provenance": provenance},
         "segments": {**SEGMENTS, "warnings": [HOSTILE], "notes": [HOSTILE], "provenance": provenance},
         "calibration": {**CALIBRATION, **odd, "warnings": [HOSTILE], "notes": [HOSTILE], "provenance": provenance},
     }
-    return replace(made, log=log, products=products, absent={"validation": HOSTILE})
+    return replace(saying(made, **products), log=log, absent={"validation": HOSTILE})
 
 
 def test_hostile_texts_are_shown_not_obeyed(tmp_path: Path, text: str) -> None:
@@ -163,7 +163,7 @@ def test_the_verdict_names_what_is_known_and_what_is_not(tmp_path: Path) -> None
         "regression rate at the reference flux."
     )
     assert "Outside its physical range: polytropic exponent." in said
-    assert "Not identifiable from this test: vapour compressibility, regression coefficient and" in said
+    assert "Not identifiable from this test: vapour compressibility, vapour-phase feed loss, regression" in said
 
 
 def test_the_verdict_names_the_sensors_that_look_wrong(tmp_path: Path) -> None:
@@ -174,22 +174,21 @@ def test_the_verdict_names_the_sensors_that_look_wrong(tmp_path: Path) -> None:
 
 def test_quantities_that_lack_the_same_thing_share_the_reason(tmp_path: Path) -> None:
     lacking = {"value": None, "reason": "no injector area", "verdict": "not identifiable"}
-    products = {"calibration": {"C_i": lacking, "m": lacking, "Z": lacking}}
-    (verdict, *_) = lay_out(replace(material(tmp_path), products={**material(tmp_path).products, **products}))
+    calibration = {**CALIBRATION, "C_i": lacking, "m": lacking, "Z": lacking}
+    (verdict, *_) = lay_out(saying(material(tmp_path), calibration=calibration))
     assert "".join(map(str, verdict.blocks)).count("no injector area") == 1
 
 
 def test_what_the_ingest_says_in_short_is_not_repeated(tmp_path: Path) -> None:
     made = material(tmp_path)
-    told = {**made.products["ingest"], "warnings": ["channel thrust: does not return to zero after the firing: 76 N"]}
-    sensors, _ = warnings(replace(made, products={**made.products, "ingest": told}))
+    told = made.need(Ingest).but(warnings=("channel thrust: does not return to zero after the firing: 76 N",))
+    sensors, _ = warnings(saying(made, ingest=told))
     assert sum("return to zero" in text for text in sensors) == 1
 
 
 def test_modes_that_could_not_run_say_why(tmp_path: Path) -> None:
     made = material(tmp_path)
-    validation = {**made.products["validation"], "absent": {"full": "test.toml does not state the throat"}}
-    text = page(replace(made, products={**made.products, "validation": validation}))
+    text = page(saying(made, validation={**VALIDATION, "absent": {"full": "test.toml does not state the throat"}}))
     assert "Full: test.toml does not state the throat" in text
 
 
@@ -282,13 +281,9 @@ def test_a_log_without_a_firing_gets_a_page_that_says_so(tmp_path: Path) -> None
     assert "log time [s]" in text
 
 
-def _with(made: Material, **products: object) -> Material:
-    return replace(made, products={**made.products, **products})
-
-
 def test_nitrogen_may_come_before_the_liquid_is_gone(tmp_path: Path) -> None:
     early = {**SEGMENTS, "t_purge": quantity(3.0, "s", 0.01)}
-    found = [(phase.name, phase.start, phase.end) for phase in phase_list(_with(material(tmp_path), segments=early))]
+    found = [(phase.name, phase.start, phase.end) for phase in phase_list(saying(material(tmp_path), segments=early))]
     assert found == [
         ("line filling", 0.0, 0.87),
         ("liquid", 0.87, 3.0),
@@ -365,8 +360,7 @@ def test_the_flight_tells_its_checks_and_its_margin(text: str) -> None:
 def test_without_a_geometry_the_page_says_what_to_add(tmp_path: Path) -> None:
     made = material(tmp_path)
     bare = {"margin_at_rail_departure": {"value": None, "reason": "no [rocket.geometry] is given"}}
-    products = {**made.products, "flight": {**made.products["flight"], "stability": bare}}
-    text = page(replace(made, products=products))
+    text = page(saying(made, flight={**FLIGHT, "stability": bare}))
     assert 'id="chart-flight-margin"' not in text
     (sentence,) = re.findall(r"No static margin is drawn: [^<]*", text)
     for name in ("[rocket.geometry]", "test.toml", "nose", "fins", "structure", "tank_position", "chamber_position"):
@@ -381,8 +375,8 @@ def test_the_flight_s_charts_mark_the_rail_s_end_and_the_end_of_the_burn(text: s
 def test_c_star_says_where_it_ends_and_why(tmp_path: Path, text: str) -> None:
     assert "c* ends at t_purge" in text
     made = material(tmp_path)
-    segments = {name: value for name, value in made.products["segments"].items() if name != "t_purge"}
-    assert "c* ends" not in page(replace(made, products={**made.products, "segments": segments}))
+    segments = {name: value for name, value in SEGMENTS.items() if name != "t_purge"}
+    assert "c* ends" not in page(saying(made, segments=segments))
 
 
 def test_the_index_lists_every_test() -> None:
@@ -437,9 +431,8 @@ def test_adopted_effects_show_in_the_verdict_and_in_what_the_page_is_made_from(t
     made = material(tmp_path)
     parameters = {"power": quantity(900.0, "W", 0.0), "lag": quantity(0.1, "s", 0.0)}
     effect = {"name": "tank_heat", "file": "T.effects.toml", "parameters": parameters}
-    products = {**made.products, "calibration": {**made.product("calibration"), "effects": [effect]}}
     said = "With tank_heat 0.9 kW (lag 0.1 s) adopted (engines/T.effects.toml)."
-    assert page(replace(made, products=products)).count(said) == 2
+    assert page(saying(made, calibration={**CALIBRATION, "effects": [effect]})).count(said) == 2
     assert "adopted" not in page(made)
 
 

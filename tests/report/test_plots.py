@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from tests.report.sample import CALIBRATION, material, quantity
+from tests.report.sample import CALIBRATION, material, quantity, saying
 
 from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import InputError
@@ -85,7 +85,7 @@ def test_two_tests_are_laid_over_each_other_line_by_line(tmp_path: Path) -> None
 def test_differences_have_their_standard_deviation(tmp_path: Path) -> None:
     one = material(tmp_path)
     changed = {**CALIBRATION, "p_loss_liquid": quantity(13.43e5, "Pa", 0.16e5, verdict="identified")}
-    other = replace(one, products={**one.products, "calibration": changed})
+    other = saying(one, calibration=changed)
     row = re.search(r"liquid-phase feed loss.*?</tr>", compare(one, other))
     assert row is not None
     assert "+2.00 ± 0.20 bar" in row[0]

@@ -14,13 +14,12 @@ import numpy as np
 from simulated.stand import noise
 
 from hfanalysis.engine.blowdown import FeedSystem, blow_down
+from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import FileSpec, LogSpec, Test, TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.sections import Injector, Model, Nozzle, Purge, Site, Tank
 from hfanalysis.record.signals import Array, Signal, sample_noise
-from hfanalysis.segment.kind import Kind
-from hfanalysis.segment.phases import EVENTS, Segments
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
 
@@ -162,4 +161,4 @@ def segments_of(test: Trial, t_open: float = 100.0, std: float = 1e-4, **change:
     """The true phases of a test; single events may be given otherwise."""
     absent = {name: Quantity.absent("this test does not have it") for name in EVENTS}
     known = {"t_v": Quantity(test.t_v, "s", std), "t_purge": Quantity(test.t_purge, "s", std)}
-    return Segments(Quantity(t_open, "s", 1e-6), absent | known | change, Kind("hot_fire", "it burns"))
+    return Segments.of(Quantity(t_open, "s", 1e-6), absent | known | change, kind="hot_fire")

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from tests.segment.stand import AMBIENT, Stand, Trial, definition, fire, log_of
 
+from hfanalysis.products.disk import to_json
+from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import Flag, TestLog
-from hfanalysis.segment.kind import Kind
-from hfanalysis.segment.phases import EVENTS, Segments, find_phases
+from hfanalysis.segment.phases import find_phases
 from hfanalysis.units import Value
 
 T_OPEN = 100.0
@@ -49,12 +50,12 @@ def test_the_events_of_a_burn_are_where_they_happened(burn: Trial, segments: Seg
         assert segments.time(name) == pytest.approx(truth, abs=max(4.0 * segments.std(name), 0.003))
         assert 0.0 < segments.std(name) < 0.03
     assert 0.3 < (segments.time("t_feed") or 0.0) < 0.8
-    assert segments.kind.name == "hot_fire"
+    assert segments.kind == "hot_fire"
     assert segments.warnings == ()
 
 
 def test_events_are_listed_in_their_order(segments: Segments) -> None:
-    assert segments.to_json()["order"] == ["t_feed", "t_v", "t_purge", "t_end"]
+    assert segments.order == ("t_feed", "t_v", "t_purge", "t_end")
 
 
 def test_a_phase_that_a_test_does_not_have_is_absent_with_the_reason(segments: Segments) -> None:
@@ -66,7 +67,7 @@ def test_a_phase_that_a_test_does_not_have_is_absent_with_the_reason(segments: S
 def test_fuel_that_goes_before_the_liquid_is_seen() -> None:
     segments = found_in(fire(Stand(t_fuel_out=3.4), rate=500.0))
     assert segments.time("t_fuel_out") == pytest.approx(3.4, abs=0.03)
-    assert segments.to_json()["order"][0] == "t_fuel_out"
+    assert segments.order[0] == "t_fuel_out"
 
 
 @pytest.mark.parametrize(("t_fuel_out", "order"), [(5.523, ["t_fuel_out", "t_v"]), (5.798, ["t_v", "t_fuel_out"])])
@@ -77,7 +78,7 @@ def test_fuel_that_goes_within_tenths_of_a_second_of_the_liquid_is_not_mixed_up_
     segments = found_in(test)
     assert segments.time("t_fuel_out") == pytest.approx(t_fuel_out, abs=0.01)
     assert segments.time("t_v") == pytest.approx(test.t_v, abs=0.01)
-    assert [name for name in segments.to_json()["order"] if name in order] == order
+    assert [name for name in segments.order if name in order] == order
 
 
 @pytest.mark.parametrize(
@@ -105,7 +106,7 @@ def test_the_engineers_instant_wins_and_what_was_found_is_shown(burn: Trial) -> 
     assert segments.std("t_v") == 0.02
     assert segments.events["t_v"].why == "set by the engineer"
     assert segments.engineer == ("t_v",)
-    assert segments.found["t_v"] == pytest.approx(burn.t_v, abs=0.02)
+    assert segments.found_where_engineer_set["t_v"] == pytest.approx(burn.t_v, abs=0.02)
     (note,) = (n for n in segments.notes if n.startswith("t_v is"))
     assert note.startswith("t_v is set by the engineer at 5.000 s; the search finds 5.7")
 
@@ -121,7 +122,7 @@ def test_an_instant_that_only_the_engineer_sees_is_taken_with_the_reason_why_the
     segments = found_in(burn, segments={"t_fuel_out": Value(3.3)})
     assert segments.time("t_fuel_out") == 3.3
     assert any("t_fuel_out is set by the engineer at 3.300 s; the search found none" in n for n in segments.notes)
-    assert "t_fuel_out" not in segments.found
+    assert "t_fuel_out" not in segments.found_where_engineer_set
 
 
 def test_an_opening_uncertain_by_50_ms_makes_every_event_so(burn: Trial) -> None:
@@ -138,7 +139,7 @@ def without_fire(test: Trial) -> Trial:
 
 def test_a_cold_flow_is_recognised_and_has_no_end_of_a_burn(burn: Trial) -> None:
     segments = found_in(without_fire(burn), kind="cold_flow")
-    assert segments.kind.name == "cold_flow"
+    assert segments.kind == "cold_flow"
     assert segments.warnings == ()
     for name in ("t_end", "t_fuel_out"):
         assert "nothing burns" in str(segments.events[name].reason)
@@ -147,8 +148,8 @@ def test_a_cold_flow_is_recognised_and_has_no_end_of_a_burn(burn: Trial) -> None
 
 def test_a_firing_that_does_not_light_is_a_cold_flow_with_a_warning(burn: Trial) -> None:
     segments = found_in(without_fire(burn), kind="hot_fire")
-    assert segments.kind.name == "cold_flow"
-    assert segments.kind.misfire
+    assert segments.kind == "cold_flow"
+    assert segments.misfire
     assert any("nothing burns" in w for w in segments.warnings)
 
 
@@ -177,28 +178,17 @@ def test_flagged_samples_are_not_looked_at(burn: Trial) -> None:
 
 
 def test_segments_survive_their_product(segments: Segments) -> None:
-    def plain(x: Any) -> Any:
-        return x.to_json() if isinstance(x, Quantity) else x
-
-    product = json.loads(json.dumps(segments.to_json(), default=plain))
-    again = Segments.from_json(product)
+    again = Segments.from_json(json.loads(to_json(segments)))
     for name in EVENTS:
         one, other = segments.events[name], again.events[name]
         assert (one.value, one.std, one.reason, one.interval) == (other.value, other.std, other.reason, other.interval)
-    assert again.kind == segments.kind
-    assert (again.notes, again.warnings, again.engineer, again.found) == (
-        segments.notes,
-        segments.warnings,
-        segments.engineer,
-        segments.found,
-    )
+    assert again.to_json() == segments.to_json()
 
 
 def test_a_misfire_survives_its_product() -> None:
     absent = {n: Quantity.absent("nothing") for n in EVENTS}
-    segments = Segments(Quantity(1.0, "s", 0.1), absent, Kind("cold_flow", "no fire", misfire=True))
-    product = {n: v.to_json() if isinstance(v, Quantity) else v for n, v in segments.to_json().items()}
-    assert Segments.from_json(product).kind == segments.kind
+    segments = Segments.of(Quantity(1.0, "s", 0.1), absent, kind="cold_flow", kind_reason="no fire", misfire=True)
+    assert Segments.from_json(json.loads(to_json(segments))).to_json() == segments.to_json()
 
 
 def test_a_tank_above_the_critical_pressure_is_supercharged(burn: Trial) -> None:
@@ -207,7 +197,7 @@ def test_a_tank_above_the_critical_pressure_is_supercharged(burn: Trial) -> None
     segments = found_in(pressed)
     assert segments.supercharged
     assert "above the critical pressure" in " ".join(segments.warnings)
-    assert Segments.from_json(json.loads(json.dumps(segments.to_json(), default=Quantity.to_json))).supercharged
+    assert Segments.from_json(json.loads(to_json(segments))).supercharged
 
 
 def test_a_tank_at_its_saturation_pressure_is_not_supercharged(segments: Segments) -> None:

@@ -37,22 +37,22 @@ def test_a_gap_by_hand() -> None:
     """Liquid: 0, +1, -1 bar. Vapour: +3, -4 bar."""
     found = gaps([RESIDUAL])["p_tank"]
     assert set(found) == {"liquid", "vapor"}
-    assert found["liquid"]["bias"] == pytest.approx(0.0, abs=1e-6)
-    assert found["liquid"]["rms"] == pytest.approx(1e5 * np.sqrt(2.0 / 3.0))
-    assert found["vapor"]["bias"] == pytest.approx(-0.5e5)
-    assert found["vapor"]["rms"] == pytest.approx(1e5 * np.sqrt(12.5))
+    assert found["liquid"].bias == pytest.approx(0.0, abs=1e-6)
+    assert found["liquid"].rms == pytest.approx(1e5 * np.sqrt(2.0 / 3.0))
+    assert found["vapor"].bias == pytest.approx(-0.5e5)
+    assert found["vapor"].rms == pytest.approx(1e5 * np.sqrt(12.5))
     for phase, samples in (("liquid", 3), ("vapor", 2)):
-        assert found[phase]["noise"] == pytest.approx(2e3)
-        assert found[phase]["samples"] == samples
-        assert found[phase]["unit"] == "Pa"
+        assert found[phase].noise == pytest.approx(2e3)
+        assert found[phase].samples == samples
+        assert found[phase].unit == "Pa"
 
 
 def test_samples_without_a_number_do_not_count() -> None:
     holed = np.array([50e5, np.nan, 48e5, np.nan, np.nan])
     found = gaps([Residual("p_tank", "Pa", TIME, holed, MODEL, NOISE, PHASE)])["p_tank"]
     assert set(found) == {"liquid"}
-    assert found["liquid"]["samples"] == 2
-    assert found["liquid"]["bias"] == pytest.approx(-0.5e5)
+    assert found["liquid"].samples == 2
+    assert found["liquid"].bias == pytest.approx(-0.5e5)
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.products.filled import filled
 from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import Quantity
 from hfanalysis.validate.residuals import PHASES, Residual, gaps
 from hfanalysis.validate.tank_free import run_tank_free
@@ -27,7 +29,7 @@ def mass_at(test: Trial, time: float) -> float:
     return float(np.interp(time, test.time[after], test.mass[: after.sum()]))
 
 
-def true_calibration(test: Trial, **change: Any) -> dict[str, Any]:
+def true_calibration(test: Trial, **change: Any) -> Calibration:
     """What calibration.json holds where the calibration has found the truth."""
     s = test.stand
     loss = test.values["p_tank"] - test.values["p_run"]
@@ -36,10 +38,10 @@ def true_calibration(test: Trial, **change: Any) -> dict[str, Any]:
     )
     values = {"C_i": s.C_i, "m": s.m, "K_loss": s.K_loss, "p_loss_liquid": liquid, "p_loss_vapor": vapor}
     values["mass_at_t_feed"] = mass_at(test, 0.4)
-    return {n: {"value": v, "reason": None, "why": None} for n, v in values.items()} | change
+    return filled(Calibration, {name: Quantity(value) for name, value in values.items()} | change)
 
 
-def run(test: Trial, calibration: dict[str, Any] | None = None, white: float = 0.0, **change: Any) -> Residual:
+def run(test: Trial, calibration: Calibration | None = None, white: float = 0.0, **change: Any) -> Residual:
     without = change.pop("without", ())
     log = log_of(test, white=white, without=without)
     segments = segments_of(test, t_feed=T_FEED)
@@ -79,13 +81,13 @@ def test_a_residual_has_the_sign_of_the_measurement(burn: Trial) -> None:
 def test_noise_is_that_of_a_sample_and_shows_as_the_floor_of_the_gap(burn: Trial) -> None:
     found = run(burn, white=2e4)
     gap = gaps([found])["p_tank"]["liquid"]
-    assert gap["noise"] == pytest.approx(2e4, rel=0.1)
-    assert gap["rms"] == pytest.approx(2e4, rel=0.3)
+    assert gap.noise == pytest.approx(2e4, rel=0.1)
+    assert gap.rms == pytest.approx(2e4, rel=0.3)
     assert found.unit == "Pa"
 
 
 def test_a_C_i_that_is_too_small_empties_the_tank_too_late(burn: Trial) -> None:
-    found = run(burn, true_calibration(burn, C_i={"value": 0.9 * burn.stand.C_i}))
+    found = run(burn, true_calibration(burn, C_i=Quantity(0.9 * burn.stand.C_i)))
     assert part(found, "vapor").mean() < -2e5
 
 
@@ -98,7 +100,7 @@ def test_the_reports_conventions_take_constant_losses(burn: Trial) -> None:
 
 
 def test_without_an_m_the_run_ends_with_the_liquid(burn: Trial) -> None:
-    missing = true_calibration(burn, m={"value": None, "reason": "nitrogen"})
+    missing = true_calibration(burn, m=Quantity.absent("nitrogen"))
     found = run(burn, missing)
     assert found.time[-1] == pytest.approx(burn.t_v, abs=0.05)
     assert found.notes == ("m is not identified: the tank-alone run ends with the liquid",)
@@ -106,19 +108,19 @@ def test_without_an_m_the_run_ends_with_the_liquid(burn: Trial) -> None:
 
 
 def test_without_a_C_i_there_is_no_model_to_run(burn: Trial) -> None:
-    missing = true_calibration(burn, C_i={"value": None, "reason": "p_run is not above p_chamber"})
+    missing = true_calibration(burn, C_i=Quantity.absent("p_run is not above p_chamber"))
     with pytest.raises(AbsentError, match=r"test T: no tank model to run: C_i is missing \(p_run is not above"):
         run(burn, missing)
 
 
 def test_a_negative_C_i_runs_nothing(burn: Trial) -> None:
-    negative = true_calibration(burn, C_i={"value": -0.1, "why": "less than the vapour left"})
+    negative = true_calibration(burn, C_i=Quantity(-0.1, why="less than the vapour left"))
     with pytest.raises(AbsentError, match="C_i is not positive"):
         run(burn, negative)
 
 
 def test_a_mass_that_does_not_fit_at_that_pressure_runs_nothing(burn: Trial) -> None:
-    overfull = true_calibration(burn, mass_at_t_feed={"value": 14.0})
+    overfull = true_calibration(burn, mass_at_t_feed=Quantity(14.0))
     with pytest.raises(AbsentError, match=r"the tank cannot be saturated at 0\.40 s: 14\.00 kg do not fit 16\.5 L"):
         run(burn, overfull)
 

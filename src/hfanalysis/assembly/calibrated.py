@@ -6,10 +6,9 @@ report's constant losses by phase stop the flow before the fuel is gone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
-from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -20,7 +19,9 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.engine.tank_alone import TankAlone
 from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import FuelLaw, TankConstants
 from hfanalysis.record.definition import TestDefinition
+from hfanalysis.sentences import said, text
 from hfanalysis.thermo.combustion import FORMATION_OFFSET, PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
@@ -41,24 +42,24 @@ class Regression:
     n: float
 
     @classmethod
-    def of(cls, calibration: Mapping[str, Any]) -> Regression:
+    def of(cls, calibration: FuelLaw) -> Regression:
         """As calibration.json has it. Raises AbsentError where it has none."""
-        a, n = (calibration.get(name) or {"value": None, "reason": "not calibrated"} for name in ("a", "n"))
-        if a["value"] is None or n["value"] is None:
-            raise AbsentError(f"a and n are missing ({a.get('reason') or n.get('reason')})")
-        return cls(float(a["value"]), float(n["value"]))
+        a, n = calibration.a, calibration.n
+        if a.value is None or n.value is None:
+            raise AbsentError(f"a and n are missing ({a.reason or n.reason})")
+        return cls(a.value, n.value)
 
 
 def engine_of_test(
     definition: TestDefinition,
-    calibration: Mapping[str, Any],
+    calibration: TankConstants,
     temperature: float,
     law: Regression,
     effects: Sequence[Active] = (),
 ) -> Engine:
     """The engine with its tank at ``temperature`` [K] and the adopted ``effects``.
 
-    ``calibration`` is the content of calibration.json. Raises AbsentError naming all that test.toml does not state, or
+    Raises AbsentError naming all that test.toml does not state, or
     what the calibration lacks.
     """
     stated = _stated(definition)
@@ -136,56 +137,35 @@ def _stated(definition: TestDefinition) -> dict[str, float]:
     return {k: float(value.value) for k, value in found.items() if value is not None}
 
 
-def effective_area(definition: TestDefinition, calibration: Mapping[str, Any]) -> float:
+def effective_area(definition: TestDefinition, calibration: TankConstants) -> float:
     """C_i N_i A_i [m^2]. Raises AbsentError where C_i cannot be had or is not positive."""
-    discharge = calibration["C_i"]
-    if discharge["value"] is None:
-        raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is missing ({discharge['reason']})")
-    if discharge["value"] <= 0.0:
-        raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is not positive ({discharge['why']})")
+    discharge = calibration.C_i
+    if discharge.value is None:
+        raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is missing ({discharge.reason})")
+    if discharge.value <= 0.0:
+        raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is not positive ({discharge.why})")
     assert definition.injector is not None
     assert definition.injector.area is not None
-    return float(discharge["value"]) * definition.injector.area.value
+    return discharge.value * definition.injector.area.value
 
 
-def loss_factor(calibration: Mapping[str, Any]) -> float:
+def loss_factor(calibration: TankConstants) -> float:
     """K_loss [1/m^4]; none where it is not known or negative."""
-    return max(float(calibration["K_loss"]["value"] or 0.0), 0.0)
+    return max(calibration.K_loss.value or 0.0, 0.0)
 
 
-FITTED_MASS, FITTED_TEMPERATURE = "oxidizer_mass_fitted", "tank_temperature"
-"""In calibration.json with adopted effects: the load, and its temperature at the opening, fitted with all else."""
-
-ONE_BY_ONE = "one_by_one"
-"""There too: the constants that are fitted together as they are one after the other, the load as it was weighed."""
-
-
-def loaded_mass(definition: TestDefinition, calibration: Mapping[str, Any]) -> float:
+def loaded_mass(definition: TestDefinition, calibration: TankConstants) -> float:
     """The oxidizer that the calibration worked with [kg]."""
-    found = mass_of(calibration)
-    if found["value"] is None:
-        raise AbsentError(f"test {definition.test.id}: the loaded oxidizer is not known ({found['reason']})")
-    return float(found["value"])
+    found = calibration.load
+    if found.value is None:
+        raise AbsentError(f"test {definition.test.id}: the loaded oxidizer is not known ({found.reason})")
+    return found.value
 
 
-def mass_of(calibration: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The load of calibration.json, as a quantity: fitted with adopted effects, else as stated."""
-    found = calibration.get(FITTED_MASS) or calibration.get("oxidizer_mass")
-    return found or {"value": None, "reason": "not calibrated"}
-
-
-def one_by_one(calibration: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The constants as they are one after the other, which close the balance of the load as it was weighed."""
-    found: Mapping[str, Any] = calibration.get(ONE_BY_ONE) or calibration
-    return found
-
-
-def exponent(calibration: Mapping[str, Any]) -> tuple[float, float]:
+def exponent(calibration: TankConstants) -> tuple[float, float]:
     """The vapour's polytropic exponent with its standard deviation: as calibrated, else ASSUMED_EXPONENT."""
-    found = calibration["m"]
-    if found["value"] is None:
-        return ASSUMED_EXPONENT
-    return float(found["value"]), float(found.get("std") or 0.0)
+    found = calibration.m
+    return ASSUMED_EXPONENT if found.value is None else (found.value, found.std or 0.0)
 
 
 def oxidizer_enthalpy(definition: TestDefinition, source: Saturation, temperature: float) -> float:
@@ -209,8 +189,13 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
 
     if not low < high or not miss(low) <= 0.0 <= miss(high):
         raise AbsentError(
-            f"no saturated tank of {engine.oxidizer_mass:.2f} kg in {engine.feed.volume * 1e3:.1f} L comes down to "
-            f"{pressure / 1e5:.1f} bar at {instant:.2f} s"
+            text(
+                "no saturated tank of {mass:.2f} kg in {volume:.1f} L comes down to {pressure} at {instant:.2f} s",
+                mass=engine.oxidizer_mass,
+                volume=engine.feed.volume * 1e3,
+                pressure=said(pressure, "bar", ".1f"),
+                instant=instant,
+            )
         )
     return replace(engine, temperature=float(brentq(miss, low, high, xtol=1e-4)))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,51 +13,21 @@ from hfanalysis.calibrate.measured_pressures import Histories
 from hfanalysis.calibrate.rest import (
     MODEL_MASS_SPREAD,
     STRATIFIED,
-    Rest,
     blowdown_mass,
     fit_bulk,
     liquid_phase_heat,
     state_remarks,
 )
 from hfanalysis.engine.tank import energy_derivatives
+from hfanalysis.products.calibration import CoefficientHistory, Rest, TankHistory
+from hfanalysis.products.model import Numbers
+from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
-from hfanalysis.segment.phases import Segments
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.saturation import Saturation
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class CoefficientHistory:
-    """C_i over time [s] from the tank's energy balance, with standard deviations; a diagnostic, not a fit."""
-
-    time: Array
-    value: Array
-    std: Array
-
-    def to_json(self) -> dict[str, Any]:
-        """Lists, as calibration.json has them."""
-        return {name: [round(float(x), 6) for x in getattr(self, name)] for name in ("time", "value", "std")}
-
-
-@dataclass(frozen=True)
-class TankHistory:
-    """What is in the tank over the liquid phase, from the pressures and the calibrated injector.
-
-    ``time`` [s], ``temperature`` of saturation [K], ``liquid`` and ``vapor`` [mol], ``flow`` of the injector [kg/s].
-    """
-
-    time: Array
-    temperature: Array
-    liquid: Array
-    vapor: Array
-    flow: Array
-
-    def to_json(self) -> dict[str, Any]:
-        """Lists, as calibration.json has them."""
-        return {name: [round(float(x), 6) for x in getattr(self, name)] for name in self.__dataclass_fields__}
 
 
 HISTORY_POINTS = 200
@@ -84,7 +53,12 @@ def tank_history(saturation: Saturation, histories: Histories, inputs: Inputs, l
     start = np.flatnonzero(np.r_[True, np.diff(block) > 0])
     count = np.diff(np.r_[start, time.size])
     columns = (time, t, liquid * per_mole, (mass - liquid) * per_mole, flow)
-    return TankHistory(*(np.add.reduceat(c, start) / count for c in columns))
+    means = (_rounded(np.add.reduceat(c, start) / count) for c in columns)
+    return TankHistory(**dict(zip(TankHistory.model_fields, means, strict=True)))
+
+
+def _rounded(values: Array) -> Numbers:
+    return tuple(round(x, 6) for x in values.tolist())
 
 
 def coefficient_history(
@@ -119,8 +93,8 @@ def coefficient_history(
         rows.append((middle, scale * slope, abs(scale) * error))
     if not rows:
         return None
-    table = np.array(rows)
-    return CoefficientHistory(table[:, 0], table[:, 1], table[:, 2])
+    time, value, std = map(_rounded, np.array(rows).T)
+    return CoefficientHistory(time=time, value=value, std=std)
 
 
 def _slope_weights(time: Array) -> Array:
@@ -156,17 +130,19 @@ def rest_of(
     slope = float(saturation.pressure_slope(t_rest)) if np.isfinite(t_rest) else np.nan
     liquid = (histories.time > max(inputs.t_feed, 0.1)) & (histories.time < inputs.t_v - 0.01)
     bulk = fit_bulk(left[liquid], histories.tank_temperature(saturation)[liquid])
+    hot = Quantity.absent("above the critical pressure")
+    own, heat = _masses_and_heat(saturation, inputs, r, bulk.temperature if bulk else None)
     rest = Rest(
-        Quantity(pressure, "Pa", bias),
-        Quantity(t_rest, "K", bias / slope) if np.isfinite(t_rest) else Quantity.absent("above the critical pressure"),
-        _bulk_quantity(bulk, bias / slope if np.isfinite(slope) else 0.2),
-        Quantity(share, "") if share is not None else Quantity.absent("not a saturated tank"),
-        *_masses_and_heat(saturation, inputs, r, bulk.temperature if bulk else None),
-        _cell(log, segments),
-        (),
+        pressure=Quantity(pressure, "Pa", bias),
+        temperature=Quantity(t_rest, "K", bias / slope) if np.isfinite(t_rest) else hot,
+        bulk_temperature=_bulk_quantity(bulk, bias / slope if np.isfinite(slope) else 0.2),
+        liquid_fraction=Quantity(share, "") if share is not None else Quantity.absent("not a saturated tank"),
+        blowdown_mass=own,
+        liquid_phase_heat=heat,
+        load_cell_mass=_cell(log, segments),
     )
     remarks += _stratified(rest) + _mass_remarks(rest, mass)
-    return Rest(**{**{n: getattr(rest, n) for n in Rest.__dataclass_fields__}, "remarks": tuple(remarks)}), remarks
+    return rest.but(remarks=tuple(remarks)), remarks
 
 
 def _bulk_quantity(bulk: Any, error: float) -> Quantity:

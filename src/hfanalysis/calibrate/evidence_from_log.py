@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from math import pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +16,11 @@ from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import TankConstants
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, line_at
-from hfanalysis.segment.phases import Segments
 from hfanalysis.units import Value
 
 Array = NDArray[np.float64]
@@ -45,7 +45,7 @@ WEIGHED = 0.01
 
 
 def evidence_of(
-    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Mapping[str, Any], draws: Draws,
+    log: TestLog, segments: Segments, definition: TestDefinition, calibration: TankConstants, draws: Draws,
     effects: Sequence[Active] = (),
 ) -> Evidence:  # fmt: skip
     """What a test says about a and n, ``effects`` acting.
@@ -133,7 +133,7 @@ def _std(stated: Value, default: float) -> float:
 
 
 def _window_end(
-    segments: Segments, calibration: Mapping[str, Any], t_v: float, end: float, nitrogen: bool
+    segments: Segments, calibration: TankConstants, t_v: float, end: float, nitrogen: bool
 ) -> tuple[float, str]:
     """Until when the chamber pressure is one that the model can have, and why."""
     t_purge, t_fuel_out = segments.time("t_purge"), segments.time("t_fuel_out")
@@ -143,7 +143,7 @@ def _window_end(
         ends.append((t_purge, "then nitrogen enters" + ("" if nitrogen else ", which the model does not have")))
     if t_fuel_out is not None:
         ends.append((t_fuel_out - SETTLE, "then the fuel is gone"))
-    if calibration["m"]["value"] is None:
+    if calibration.m.value is None:
         ends.append((t_v, "the vapour's expansion is not calibrated"))
     return min(ends)
 
@@ -152,9 +152,9 @@ def _has_nitrogen(effects: Sequence[Active]) -> bool:
     return any("nitrogen_inflow" in active.effect.sites for active in effects)
 
 
-def _remarks(definition: TestDefinition, calibration: Mapping[str, Any], effects: Sequence[Active]) -> list[str]:
+def _remarks(definition: TestDefinition, calibration: TankConstants, effects: Sequence[Active]) -> list[str]:
     m, std = exponent(calibration)
-    known = "as calibrated" if calibration["m"]["value"] is not None else f"assumed, +/- {std:.2f}"
+    known = "as calibrated" if calibration.m.value is not None else f"assumed, +/- {std:.2f}"
     beyond = (
         f"no effect beyond the model's: adiabatic equilibrium combustion ({definition.model.conventions} conventions), "
     )
@@ -169,11 +169,11 @@ def _remarks(definition: TestDefinition, calibration: Mapping[str, Any], effects
     ]
 
 
-def _covariance(draws: Draws, definition: TestDefinition, calibration: Mapping[str, Any]) -> Array:
+def _covariance(draws: Draws, definition: TestDefinition, calibration: TankConstants) -> Array:
     """Of NUISANCES, from the repeated calibrations."""
     v, i = draws.values, draws.inputs
     m, m_std = exponent(calibration)
-    drawn_m = v["m"] if calibration["m"]["value"] is not None else m + m_std * _standard(v["m"].size)
+    drawn_m = v["m"] if calibration.m.value is not None else m + m_std * _standard(v["m"].size)
     columns = (i["mass"], v["C_i"] * i["area"], v["K_loss"], drawn_m, i["volume"], i["p_tank"], i["p_chamber"])
     table = np.column_stack(columns)
     good = np.isfinite(table).all(axis=1)

@@ -4,46 +4,46 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hfanalysis.calibrate.calibration import Calibration
+from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.evidence_from_log import evidence_of
-from hfanalysis.calibrate.regression import Joint, RegressionResult, fit, fit_together, result
+from hfanalysis.calibrate.regression import Joint, fit, fit_together, result
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import FuelLaw
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
-from hfanalysis.segment.phases import Segments
 
 
 def evidence_for(
     log: TestLog,
     segments: Segments,
     definition: TestDefinition,
-    calibration: Calibration,
+    calibration: TankCalibration,
     effects: Sequence[Active] = (),
 ) -> Evidence:
     """What a test says about a and n. Raises AbsentError where it says nothing, with the reason."""
-    if segments.kind.name != "hot_fire" or segments.kind.misfire:
+    if segments.kind != "hot_fire" or segments.misfire:
         raise AbsentError("nothing burns in this test")
     if calibration.draws is None:
-        reason = calibration.quantities["C_i"].reason
+        reason = calibration.constants.C_i.reason
         raise AbsentError(f"no oxidizer flow to regress with: C_i is missing ({reason})")
-    quantities = {name: quantity.to_json() for name, quantity in calibration.quantities.items()}
-    return evidence_of(log, segments, definition, quantities, calibration.draws, effects)
+    return evidence_of(log, segments, definition, calibration.constants, calibration.draws, effects)
 
 
 def regress(
     log: TestLog,
     segments: Segments,
     definition: TestDefinition,
-    calibration: Calibration,
+    calibration: TankCalibration,
     effects: Sequence[Active] = (),
-) -> RegressionResult:
+) -> FuelLaw:
     """a, n and the rate at the reference flux of one test, with their verdicts, ``effects`` acting."""
     try:
         return result(fit([evidence_for(log, segments, definition, calibration, effects)]))
     except AbsentError as error:
-        return RegressionResult.absent(str(error))
+        return FuelLaw.absent(str(error))
 
 
 def regress_together(tests: Sequence[Evidence]) -> Joint:

@@ -10,7 +10,7 @@ that it has.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import exp, log, pi
@@ -19,9 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.assembly.calibrated import FITTED_MASS, FITTED_TEMPERATURE, ONE_BY_ONE
 from hfanalysis.calibrate.evidence import burn_time_of
-from hfanalysis.calibrate.regression import UNIT_OF_A, judge_regression, rate_at
+from hfanalysis.calibrate.regression import judge_regression, rate_at
 from hfanalysis.calibrate.verdicts import PHYSICAL_M
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine, burn
@@ -32,6 +31,7 @@ from hfanalysis.inference.full_run import LONGEST
 from hfanalysis.inference.gap import flowing, residuals_of
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.subject import Subject
+from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, Calibration, RegressionBasis, RegressionTest
 from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 
 Array = NDArray[np.float64]
@@ -49,7 +49,7 @@ DERIVED = {"vapor_mass_at_t_v": "kg", "mass_at_t_feed": "kg", "oxidizer_mass_liq
            "oxidizer_flow_peak": "kg/s"}  # fmt: skip
 
 
-def fitted_together(subject: Subject, effects: Sequence[Active], one_by_one: Mapping[str, Any]) -> dict[str, Any]:
+def fitted_together(subject: Subject, effects: Sequence[Active], one_by_one: Calibration) -> Calibration:
     """The content of calibration.json, its constants fitted together with ``effects`` in the model.
 
     ``subject``: the test with its base calibration, from which the fit starts; ``one_by_one``: the calibration with the
@@ -73,23 +73,19 @@ class _Constants:
     subject: Subject
     observed: Observed
     found: Candidate
-    one_by_one: Mapping[str, Any]
+    one_by_one: Calibration
 
-    def product(self) -> dict[str, Any]:
+    def product(self) -> Calibration:
         """The content of calibration.json."""
-        mine = {**self._of_tank(), **self._derived(), **self._law()}
-        kept = {name: self.one_by_one[name] for name in mine if name in self.one_by_one}
+        mine, before = {**self._of_tank(), **self._derived(), **self._law()}, self.one_by_one.quantities
         about = "C_i, K_loss, m, the load and its temperature, a and n: fitted together to all channels, with the "
-        return {
-            **self.one_by_one,
-            **{name: quantity.to_json() for name, quantity in mine.items()},
-            "notes": [
-                *self.one_by_one["notes"],
-                about + f"adopted effects held; one by one they are under {ONE_BY_ONE}",
-            ],
-            "regression": self._about(),
-            ONE_BY_ONE: kept,
-        }
+        note = about + "adopted effects held; one by one they are under one_by_one"
+        return self.one_by_one.but(
+            **mine,
+            notes=(*self.one_by_one.notes, note),
+            regression=self._about(),
+            one_by_one={name: before[name] for name in mine if name in before},
+        )
 
     @cached_property
     def engine(self) -> Engine:
@@ -132,8 +128,8 @@ class _Constants:
         out["m"] = self._exponent()
         before = self._free("oxidizer_mass")[0].center
         said = f"fitted with all else, from {before:.3f} kg, which is believed to 1 % at best"
-        out[FITTED_MASS] = self._quantity("oxidizer_mass", "kg", verdict=IDENTIFIED, why=said)
-        out[FITTED_TEMPERATURE] = self._quantity("temperature", "K", verdict=IDENTIFIED)
+        out["oxidizer_mass_fitted"] = self._quantity("oxidizer_mass", "kg", verdict=IDENTIFIED, why=said)
+        out["tank_temperature"] = self._quantity("temperature", "K", verdict=IDENTIFIED)
         return out
 
     def _exponent(self) -> Quantity:
@@ -234,27 +230,23 @@ class _Constants:
             ),
         }  # fmt: skip
 
-    def _about(self) -> dict[str, Any]:
+    def _about(self) -> RegressionBasis:
         """What a and n rest on, as :func:`hfanalysis.calibrate.regression.result` has it."""
-        stated: dict[str, Any] = next(iter(self.one_by_one["regression"].get("tests", [])), {})
+        stated = next((test.given for test in self.one_by_one.regression.tests), {})
         names = ", ".join(sorted(active.effect.name for active in self.engine.effects))
         told = f"all channels from the opening to {self._window[1]:.2f} s, together with C_i, K_loss, m and the load"
-        test = {
-            **stated,
+        mine = {
             "test": self.subject.definition.test.id,
-            "fitted_with": [told, f"adopted effects, held: {names}"],
-            "window": list(self._window),
+            "fitted_with": (told, f"adopted effects, held: {names}"),
+            "window": self._window,
             "burn_time_measured": stated.get("burn_time_measured"),
             "burn_time_model": burn_time_of(self.engine, self.burnt),
             "initial_temperature": self.engine.temperature,
-            "flux_range": list(self._fluxes),
-            **self._of_chamber(),
+            "flux_range": self._fluxes,
         }
-        return {
-            "reference_flux": {"value": self._reference_flux, "unit": "kg/(m^2 s)", "std": None, "ci95": None},
-            "misfit": self.found.chi2,
-            "tests": [test],
-        }
+        test = RegressionTest.model_validate({**stated, **mine, **self._of_chamber()})
+        flux = Quantity(self._reference_flux, UNIT_OF_FLUX)
+        return RegressionBasis(reference_flux=flux, misfit=self.found.chi2, tests=(test,))
 
     def _of_chamber(self) -> dict[str, float]:
         """How well the chamber's pressure is met, and by how many independent values."""

@@ -8,10 +8,10 @@ import numpy as np
 
 from hfanalysis.calibrate.measured_pressures import Histories
 from hfanalysis.calibrate.rest import MODEL_MASS_SPREAD, blowdown_mass
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 from hfanalysis.thermo.saturation import Saturation
 
 UNSTATED = 0.01

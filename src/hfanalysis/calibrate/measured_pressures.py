@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.noise import LONG, Noise, pool
 from hfanalysis.record.signals import Signal, live_signals
 from hfanalysis.segment.breaks import kink
-from hfanalysis.segment.phases import Segments
 from hfanalysis.thermo.saturation import Saturation
 
 Array = NDArray[np.float64]
@@ -51,7 +51,7 @@ class Histories:
         origin = segments.t_open.value or 0.0
         signals = {name: signal.shifted(origin) for name, signal in live_signals(log).items() if name in PRESSURES}
         noises = _noises(signals, segments)
-        burning = segments.kind.name == "hot_fire"
+        burning = segments.kind == "hot_fire"
         for name in ("p_tank", "p_run", *(("p_chamber",) if burning else ())):
             if name not in signals:
                 raise AbsentError(f"test {definition.test.id}: the log has no {name} to calibrate with")

@@ -22,11 +22,11 @@ from hfanalysis.calibrate.evidence import Evidence, burn_time_of
 from hfanalysis.calibrate.likelihood import Surface, Weights, first_guess, surface, weights_from
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, FuelLaw, RegressionBasis, RegressionTest
 from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 
 Array = NDArray[np.float64]
 
-UNIT_OF_A = "m/s (kg/m^2/s)^-n"
 WIDEST_N = 0.1
 """Standard deviation of n from which on a test does not tell a and n apart."""
 
@@ -212,25 +212,7 @@ def _slopes(evidence: Evidence, flux: float, best: Array, step: float = 0.01) ->
     return np.column_stack(columns)
 
 
-@dataclass(frozen=True)
-class RegressionResult:
-    """Quantities by their names in calibration.json, and what they rest on."""
-
-    quantities: dict[str, Quantity]
-    about: dict[str, Any]
-
-    @classmethod
-    def absent(cls, reason: str) -> RegressionResult:
-        """Nothing can be said, and why."""
-        names = ("a", "n", "regression_rate_reference")
-        return cls({n: Quantity.absent(reason, verdict=NOT_IDENTIFIABLE) for n in names}, {})
-
-    def to_json(self) -> dict[str, Any]:
-        """Part of calibration.json."""
-        return {**{n: q.to_json() for n, q in self.quantities.items()}, "regression": self.about}
-
-
-def result(found: Fitted) -> RegressionResult:
+def result(found: Fitted) -> FuelLaw:
     """Judge a fit and say what it rests on."""
     flux = found.reference_flux
     shift = log(flux / found.flux)
@@ -245,16 +227,16 @@ def result(found: Fitted) -> RegressionResult:
     verdict, why = judge_regression(found.surface.bounded, (n_low, n_high), n_std, flux, spread)
     known = spread <= WIDEST_RATE
     a_std = law.a * 0.5 * (a_high - a_low) / NORMAL_95
-    quantities = {
-        "a": Quantity(law.a, UNIT_OF_A, a_std, (exp(a_low), exp(a_high)), verdict=verdict, why=why),
-        "n": Quantity(law.n, "", n_std, (n_low, n_high), verdict=verdict, why=why),
-        "regression_rate_reference": Quantity(
+    return FuelLaw(
+        a=Quantity(law.a, UNIT_OF_A, a_std, (exp(a_low), exp(a_high)), verdict=verdict, why=why),
+        n=Quantity(law.n, "", n_std, (n_low, n_high), verdict=verdict, why=why),
+        regression_rate_reference=Quantity(
             exp(ln_rate), "m/s", exp(ln_rate) * spread, (exp(low), exp(high)),
             verdict=IDENTIFIED if known else NOT_IDENTIFIABLE,
             why=rate_at(flux),
         ),
-    }  # fmt: skip
-    return RegressionResult(quantities, _about(found, flux))
+        regression=_about(found, flux),
+    )  # fmt: skip
 
 
 def rate_at(flux: float) -> str:
@@ -285,41 +267,38 @@ def judge_regression(
     )
 
 
-def _about(found: Fitted, flux: float) -> dict[str, Any]:
-    law = found.law
-    return {
-        "reference_flux": {"value": flux, "unit": "kg/(m^2 s)", "std": None, "ci95": None},
-        "misfit": found.misfit,
-        "tests": [_about_test(e, w, law) for e, w in zip(found.evidence, found.weights, strict=True)],
-    }
+def _about(found: Fitted, flux: float) -> RegressionBasis:
+    tests = (_about_test(e, w, found.law) for e, w in zip(found.evidence, found.weights, strict=True))
+    return RegressionBasis(reference_flux=Quantity(flux, UNIT_OF_FLUX), misfit=found.misfit, tests=tuple(tests))
 
 
-def _about_test(evidence: Evidence, weights: Weights, law: Regression) -> dict[str, Any]:
+def _about_test(evidence: Evidence, weights: Weights, law: Regression) -> RegressionTest:
     burnt = evidence.burnt(law)
     predicted = evidence.predict(law)
     assert predicted is not None
     residual = (evidence.observed - predicted)[: evidence.time.size]
-    return {
-        "test": evidence.test,
-        "fitted_with": list(evidence.remarks) + [f"burn time: {s.source}" for s in (evidence.burn_time,) if s],
-        "window": [float(evidence.time[0]), float(evidence.time[-1])],
-        "burn_time_measured": evidence.burn_time.value if evidence.burn_time else None,
-        "burn_time_std": evidence.burn_time.std if evidence.burn_time else None,
-        "burn_time_model": burn_time_of(evidence.engine, burnt),
-        "fuel_left_measured": evidence.fuel_left.value if evidence.fuel_left else None,
-        "initial_temperature": evidence.engine.temperature,
-        "flux_range": flux_range(evidence, burnt),
-        "p_chamber_rms": float(np.sqrt(np.mean(residual**2))),
-        "p_chamber_bias": float(residual.mean()),
-        "independent_samples": weights.effective,
-    }
+    burn_time = evidence.burn_time
+    return RegressionTest(
+        test=evidence.test,
+        fitted_with=(*evidence.remarks, *([f"burn time: {burn_time.source}"] if burn_time else [])),
+        window=(float(evidence.time[0]), float(evidence.time[-1])),
+        burn_time_measured=burn_time.value if burn_time else None,
+        burn_time_std=burn_time.std if burn_time else None,
+        burn_time_model=burn_time_of(evidence.engine, burnt),
+        fuel_left_measured=evidence.fuel_left.value if evidence.fuel_left else None,
+        initial_temperature=evidence.engine.temperature,
+        flux_range=flux_range(evidence, burnt),
+        p_chamber_rms=float(np.sqrt(np.mean(residual**2))),
+        p_chamber_bias=float(residual.mean()),
+        independent_samples=weights.effective,
+    )
 
 
-def flux_range(evidence: Evidence, burnt: Burn) -> list[float]:
+def flux_range(evidence: Evidence, burnt: Burn) -> tuple[float, float]:
     """Least and largest oxidizer flux [kg/m^2/s] over the compared window."""
     part = (burnt.time >= evidence.time[0]) & (burnt.time <= evidence.time[-1])
     flux = burnt.output("oxidizer_flow")[part] / (pi * burnt.state("port_radius")[part] ** 2)
-    return [float(flux.min()), float(flux.max())]
+    return float(flux.min()), float(flux.max())
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,12 @@ mass.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.engine.tank import mass_along_blowdown, split
-from hfanalysis.quantity import Quantity
+from hfanalysis.sentences import said, text
 from hfanalysis.thermo.saturation import Property, Saturation
 
 Array = NDArray[np.float64]
@@ -25,24 +24,6 @@ STRATIFIED = 2.0
 
 MODEL_MASS_SPREAD = 0.05
 """Relative standard deviation of the blowdown's own mass from heat and stratification that an adiabatic tank lacks."""
-
-
-@dataclass(frozen=True)
-class Rest:
-    """What is known of the tank before and just after the opening; quantities in SI, ``remarks`` in words."""
-
-    pressure: Quantity
-    temperature: Quantity
-    bulk_temperature: Quantity
-    liquid_fraction: Quantity
-    blowdown_mass: Quantity
-    liquid_phase_heat: Quantity
-    load_cell_mass: Quantity
-    remarks: tuple[str, ...]
-
-    def to_json(self) -> dict[str, Any]:
-        """The ``rest`` block of calibration.json."""
-        return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
 
 @dataclass(frozen=True)
@@ -98,20 +79,35 @@ def state_remarks(
     if not np.isfinite(t):
         limit = saturation.pressure_range[1]
         return None, [
-            f"at rest the tank stands at {pressure / 1e5:.1f} bar, above nitrous oxide's critical pressure "
-            f"({limit / 1e5:.1f} bar): it is supercharged or its gauge is off, and no saturated tank"
+            text(
+                "at rest the tank stands at {pressure}, above nitrous oxide's critical pressure ({limit}): it is "
+                "supercharged or its gauge is off, and no saturated tank",
+                pressure=said(pressure, "bar", ".1f"),
+                limit=said(limit, "bar", ".1f"),
+            )
         ]
     parts = split(saturation, volume, mass, t)
     share = parts.liquid / float(saturation.liquid_density(t)) / volume
-    where = f"{mass:.2f} kg in {volume * 1e3:.1f} L at {pressure / 1e5:.1f} bar ({t - 273.15:.1f} degC if saturated)"
+    where = text(
+        "{mass:.2f} kg in {volume:.1f} L at {pressure} ({warmth:.1f} degC if saturated)",
+        mass=mass,
+        volume=volume * 1e3,
+        pressure=said(pressure, "bar", ".1f"),
+        warmth=t - 273.15,
+    )
     if parts.vapor < 0.0:
         fits = _coldest_fit(saturation, volume, mass)
         return share, [
-            f"{where}: more than the tank holds as saturated liquid; it fits only below {fits - 273.15:.0f} degC, so "
-            "the bulk is colder than the gauge says, the mass is too large, or the tank is supercharged"
+            text(
+                "{where}: more than the tank holds as saturated liquid; it fits only below {fits:.0f} degC, so the "
+                "bulk is colder than the gauge says, the mass is too large, or the tank is supercharged",
+                where=where,
+                fits=fits - 273.15,
+            )
         ]
     if parts.liquid < 0.0:
-        return share, [f"{where}: less than the saturated vapour alone would weigh; mass, volume or pressure is off"]
+        less = "{where}: less than the saturated vapour alone would weigh; mass, volume or pressure is off"
+        return share, [text(less, where=where)]
     return share, []
 
 

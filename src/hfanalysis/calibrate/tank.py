@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, reduce
-from hfanalysis.calibrate.calibration import Calibration
+from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
 from hfanalysis.calibrate.measured_pressures import Histories, Reading, read_at_break
@@ -17,10 +17,11 @@ from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judge
 from hfanalysis.calibrate.with_effects import VaporPhase, acting
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.products.calibration import CoefficientHistory, Rest, TankConstants, TankHistory
+from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
-from hfanalysis.segment.phases import Segments
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 
@@ -44,7 +45,7 @@ NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_f
 
 def calibrate(
     log: TestLog, segments: Segments, definition: TestDefinition, samples: int, effects: Sequence[Active] = ()
-) -> Calibration:
+) -> TankCalibration:
     """Calibrate the tank of one test, ``effects`` acting; ``samples`` repetitions give the intervals.
 
     Raises AbsentError where neither C_i nor anything else can be had because p_tank, p_run or t_v is missing.
@@ -77,7 +78,7 @@ class _Work:
         self.t_end, self.t_end_std, self.end_reason = self._vapor_end()
         self.at_end = self._read(self.t_end, self.t_end - t_v, 0.3) if np.isfinite(self.t_end) else None
 
-    def result(self, samples: int) -> Calibration:
+    def result(self, samples: int) -> TankCalibration:
         """Reduce, draw, judge."""
         losses_only = self._losses()
         blocked = self._blocked()
@@ -85,10 +86,10 @@ class _Work:
         if blocked or mass is None or self.volume is None or self.area is None:
             reason = blocked or self._missing(mass)
             quantities = {n: Quantity.absent(reason, verdict=NOT_IDENTIFIABLE) for n in NAMES} | losses_only
-            return Calibration(quantities, None, None, None, tuple(self.warnings), tuple(self.notes))
+            return TankCalibration(self._constants(quantities))
         return self._reduced(mass, samples)
 
-    def _reduced(self, mass: LoadedMass, samples: int) -> Calibration:
+    def _reduced(self, mass: LoadedMass, samples: int) -> TankCalibration:
         assert self.volume is not None
         assert self.area is not None
         p_end = self.at_end.value if self.at_end else float("nan")
@@ -108,7 +109,18 @@ class _Work:
         quantities = self._quantities(nominal, draws, inputs, left)
         loaded = Quantity(mass.value, "kg", mass.std, verdict="identified", why=mass.source)
         quantities["oxidizer_mass"] = loaded
-        return Calibration(quantities, rest, history, content, tuple(self.warnings), tuple(self.notes), draws)
+        return TankCalibration(self._constants(quantities, rest, history, content), draws)
+
+    def _constants(
+        self,
+        quantities: dict[str, Quantity],
+        rest: Rest | None = None,
+        history: CoefficientHistory | None = None,
+        content: TankHistory | None = None,
+    ) -> TankConstants:
+        about = {"rest": rest, "C_i_history": history, "tank_history": content}
+        said = {"notes": tuple(self.notes), "warnings": tuple(self.warnings)}
+        return TankConstants.model_validate({**quantities, **about, **said})
 
     def _acting(self, tables: Tables, inputs: Inputs) -> tuple[Inputs, VaporPhase | None]:
         """The inputs and the vapour phase with the effects in; what they cannot be in is said."""

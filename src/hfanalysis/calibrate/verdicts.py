@@ -8,6 +8,7 @@ from hfanalysis.calibrate.blowdown import EXPONENTS, Inputs, Reduction
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.blowdown import implied_heat
 from hfanalysis.quantity import IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+from hfanalysis.sentences import said, text
 from hfanalysis.thermo.saturation import Saturation
 
 PHYSICAL_C_I = (0.05, 1.0)
@@ -60,9 +61,12 @@ def judge_exponent(
         return Quantity.absent(_no_root(r, inputs, duration, draws), verdict=NOT_IDENTIFIABLE)
     std = draws.std("m")
     if std > WIDEST_M:
-        reason = (
-            f"the vapour phase lasts {duration:.3f} s and loses {(inputs.p_v - inputs.p_end) / 1e5:.2f} bar: "
-            f"too little to tell m ({r.m:.2f} +/- {std:.2f})"
+        reason = text(
+            "the vapour phase lasts {duration:.3f} s and loses {loss}: too little to tell m ({m:.2f} +/- {std:.2f})",
+            duration=duration,
+            loss=said(inputs.p_v - inputs.p_end, "bar", ".2f"),
+            m=r.m,
+            std=std,
         )
         return Quantity.absent(reason, verdict=NOT_IDENTIFIABLE)
     low, high = draws.interval("m", r.m)
@@ -84,7 +88,11 @@ def _no_root(r: Reduction, inputs: Inputs, duration: float, draws: Draws) -> str
         )
     if inputs.p_end >= inputs.p_v:
         return "the tank pressure does not fall over the vapour phase: something feeds it"
-    return (
-        f"no exponent between {EXPONENTS[0]:.2f} and {EXPONENTS[-1]:.1f} takes the tank from {inputs.p_v / 1e5:.1f} to "
-        f"{inputs.p_end / 1e5:.1f} bar in {duration:.3f} s"
+    return text(
+        "no exponent between {low:.2f} and {high:.1f} takes the tank from {first} to {last} in {duration:.3f} s",
+        low=EXPONENTS[0],
+        high=EXPONENTS[-1],
+        first=said(inputs.p_v, "bar", ".1f"),
+        last=said(inputs.p_end, "bar", ".1f"),
+        duration=duration,
     )

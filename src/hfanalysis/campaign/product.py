@@ -2,18 +2,36 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 from hfanalysis.campaign.pooling import pooled
 from hfanalysis.campaign.regression import regression_of
 from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.campaign import (
+    Agreement,
+    CommonLaw,
+    Diagnosed,
+    EffectRow,
+    NoLaw,
+    ParameterRow,
+    StandRow,
+    TestRow,
+    Together,
+)
+from hfanalysis.products.diagnosis import Diagnosis, NamedEffect
+from hfanalysis.products.disk import read_json
+from hfanalysis.products.flight import Flight
+from hfanalysis.products.model import Product
+from hfanalysis.products.validation import Validation
 from hfanalysis.progress import Progress
 from hfanalysis.quantity import IDENTIFIED, Quantity
 from hfanalysis.record.definition import TestDefinition
+
+P = TypeVar("P", bound=Product)
 
 HARDWARE = ("C_i", "K_loss", "m")
 """Calibrated numbers that belong to the stand and not to the load of a test."""
@@ -21,36 +39,35 @@ HARDWARE = ("C_i", "K_loss", "m")
 CALIBRATED = (*HARDWARE, "a", "n")
 MEASURED = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust")
 
-_NOTHING = ("stand", "injector_area", "kind", "source", "date", "apogee", "diagnosis", "page")
-_EMPTY: dict[str, Any] = {"calibration": {}, "performance": {}}
-
 STATUS = {DONE: "done", INPUT_AT_FAULT: "input at fault", ABSENT: "not in the log"}
 
 
-def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> dict[str, Any]:
+def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> TestRow:
     """A test in short; ``folder`` is where its products are, some of which there may not be.
 
     Where its run ended by a fault, theirs or ours, what still lies there is of an earlier one and counts for nothing.
     """
-    status = {"status": STATUS.get(ended.status, "defect"), "reason": ended.said or None}
-    if definition is None or ended.status not in (DONE, ABSENT):
-        return {**dict.fromkeys(_NOTHING), **status, **_EMPTY}
-    calibration, validation = _read(folder / "calibration.json"), _read(folder / "validation.json")
-    performance = (validation.get("performance") or {}).get("measured") or {}
-    about = definition.test
-    return {
-        "stand": stand_of(definition),
-        "injector_area": _injector(definition),
-        "kind": about.kind,
-        "source": about.source,
-        "date": str(about.date) if about.date else None,
-        **status,
-        "calibration": {name: calibration[name] for name in CALIBRATED if name in calibration},
-        "performance": {name: performance[name] for name in MEASURED if name in performance},
-        "apogee": _read(folder / "flight.json").get("apogee"),
-        "diagnosis": _diagnosed(_read(folder / "diagnosis.json")),
-        "page": f"{folder.name}/report.html" if (folder / "report.html").exists() else None,
-    }
+    counts = definition is not None and ended.status in (DONE, ABSENT)
+    about = definition.test if definition is not None and counts else None
+    where = folder if counts else None
+    calibration, validation = _read(Calibration, where), _read(Validation, where)
+    flight, diagnosis = _read(Flight, where), _read(Diagnosis, where)
+    constants = calibration.quantities if calibration else {}
+    measured = validation.performance.measured.quantities if validation else {}
+    return TestRow(
+        stand=stand_of(definition) if definition is not None and counts else None,
+        injector_area=_injector(definition) if definition is not None and counts else None,
+        kind=about.kind if about else None,
+        source=about.source if about else None,
+        date=str(about.date) if about and about.date else None,
+        status=STATUS.get(ended.status, "defect"),
+        reason=ended.said or None,
+        calibration={name: constants[name] for name in CALIBRATED if name in constants},
+        performance={name: measured[name] for name in MEASURED if name in measured},
+        apogee=flight.apogee if flight else None,
+        diagnosis=_diagnosed(diagnosis) if diagnosis else None,
+        page=f"{folder.name}/report.html" if counts and (folder / "report.html").exists() else None,
+    )
 
 
 def stand_of(definition: TestDefinition) -> str | None:
@@ -66,104 +83,94 @@ def _injector(definition: TestDefinition) -> float | None:
     return None if area is None else area.value
 
 
-def _read(path: Path) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    return found
+def _read(kind: type[P], folder: Path | None) -> P | None:
+    if folder is None or not (folder / kind.file).exists():
+        return None
+    return kind.from_json(read_json(folder / kind.file))
 
 
-def _diagnosed(product: Mapping[str, Any]) -> dict[str, Any] | None:
+def _diagnosed(product: Diagnosis) -> Diagnosed:
     kept = ("verdict", "effects", "posterior", "partners")
-    return {name: product[name] for name in kept if name in product} if product else None
+    return Diagnosed(**{name: getattr(product, name) for name in kept})
 
 
-def stand_row(
-    rows: Mapping[str, Mapping[str, Any]], root: Path, out: Path | None, progress: Progress
-) -> dict[str, Any]:
+def stand_row(rows: Mapping[str, TestRow], root: Path, out: Path | None, progress: Progress) -> StandRow:
     """What the tests of one stand, by name, say together."""
-    return {
-        "tests": list(rows),
-        "constants": {name: _constant(rows, name) for name in HARDWARE},
-        "effects": _effects(rows),
-        "regression": _regression(rows, root, out, progress),
-    }
+    return StandRow(
+        tests=tuple(rows),
+        constants={name: _constant(rows, name) for name in HARDWARE},
+        effects=_effects(rows),
+        regression=_regression(rows, root, out, progress),
+    )
 
 
-def _constant(rows: Mapping[str, Mapping[str, Any]], name: str) -> dict[str, Any]:
-    if name == "C_i" and len({row["injector_area"] for row in rows.values()}) > 1:
-        return Quantity.absent("the tests have different injectors").to_json()
+def _constant(rows: Mapping[str, TestRow], name: str) -> Together:
+    if name == "C_i" and len({row.injector_area for row in rows.values()}) > 1:
+        return Together(mean=Quantity.absent("the tests have different injectors"))
     return _together(_calibrated(rows, name), "identified")
 
 
-def _calibrated(rows: Mapping[str, Mapping[str, Any]], name: str) -> dict[str, Quantity]:
+def _calibrated(rows: Mapping[str, TestRow], name: str) -> dict[str, Quantity]:
     """The numbers of tests that identify it: what is unphysical or free is no property of the stand."""
-    found = {test: row["calibration"].get(name) or {} for test, row in rows.items()}
-    return {test: Quantity.from_json(q) for test, q in found.items() if q.get("verdict") == IDENTIFIED}
+    found = {test: row.calibration[name] for test, row in rows.items() if name in row.calibration}
+    return {test: quantity for test, quantity in found.items() if quantity.verdict == IDENTIFIED}
 
 
-def _together(found: Mapping[str, Quantity], what: str) -> dict[str, Any]:
+def _together(found: Mapping[str, Quantity], what: str) -> Together:
     """The mean of the tests in which a number is ``what``, or the reason why there is none."""
     mean = pooled(found)
     if mean is None:
         known = [test for test, q in found.items() if q.std]
-        return Quantity.absent(f"{what} in {f'{known[0]} only' if known else 'no test'}; two are needed").to_json()
+        where = f"{known[0]} only" if known else "no test"
+        return Together(mean=Quantity.absent(f"{what} in {where}; two are needed"))
     verdict = "agree" if mean.agree else "disagree: they differ by more than their deviations allow"
-    return {
-        **mean.mean.to_json(),
-        "between": mean.between,
-        "agreement": {"verdict": verdict, "probability": mean.probability},
-        "tests": list(mean.tests),
-    }
+    return Together(
+        mean=mean.mean,
+        between=mean.between,
+        agreement=Agreement(verdict=verdict, probability=mean.probability),
+        tests=mean.tests,
+    )
 
 
-def _effects(rows: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+def _effects(rows: Mapping[str, TestRow]) -> dict[str, EffectRow]:
     """Every effect that some test names: how probable it is in each, and its numbers where it is named."""
-    diagnosed = {test: row["diagnosis"] for test, row in rows.items() if row["diagnosis"]}
-    named = {test: {e["name"]: e for e in found["effects"]} for test, found in diagnosed.items()}
+    diagnosed = {test: row.diagnosis for test, row in rows.items() if row.diagnosis}
+    named = {test: {e.name: e for e in found.effects} for test, found in diagnosed.items()}
     return {
-        name: {
-            "named_in": [test for test in named if name in named[test]],
-            "probability": {test: _probability(diagnosed[test], named[test].get(name), name) for test in diagnosed},
-            "parameters": _parameters(
-                {test: found[name]["parameters"] for test, found in named.items() if name in found}
-            ),
-        }
+        name: EffectRow(
+            named_in=tuple(test for test in named if name in named[test]),
+            probability={test: probability_of(diagnosed[test], named[test].get(name), name) for test in diagnosed},
+            parameters=_parameters({test: found[name].parameters for test, found in named.items() if name in found}),
+        )
         for name in dict.fromkeys(name for found in named.values() for name in found)
     }
 
 
-def _probability(diagnosis: Mapping[str, Any], named: Mapping[str, Any] | None, name: str) -> float | None:
+def probability_of(diagnosis: Diagnosed, named: NamedEffect | None, name: str) -> float | None:
     """Of being there: as stated where it is named, or else as the first effect or beside it, whichever is more.
 
     None where it was not tried.
     """
     if named:
-        return float(named["probability"])
-    tried = [found[name] for found in (diagnosis["posterior"], diagnosis.get("partners") or {}) if name in found]
+        return named.probability
+    tried = [found[name] for found in (diagnosis.posterior, diagnosis.partners) if name in found]
     return max(tried, default=None)
 
 
-def _parameters(found: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+def _parameters(found: Mapping[str, Mapping[str, Quantity]]) -> dict[str, ParameterRow]:
     """Each parameter by test, and their mean where there are several."""
     names = dict.fromkeys(name for parameters in found.values() for name in parameters)
-    return {
-        name: {
-            "by_test": {test: parameters[name] for test, parameters in found.items() if name in parameters},
-            "together": _together(
-                {test: Quantity.from_json(p[name]) for test, p in found.items() if name in p}, "known"
-            ),
-        }
-        for name in names
-    }
+    rows = [{test: own[name] for test, own in found.items() if name in own} for name in names]
+    together = (ParameterRow(by_test=row, together=_together(row, "known")) for row in rows)
+    return dict(zip(names, together, strict=True))
 
 
-def _regression(
-    rows: Mapping[str, Mapping[str, Any]], root: Path, out: Path | None, progress: Progress
-) -> dict[str, Any]:
+def _regression(rows: Mapping[str, TestRow], root: Path, out: Path | None, progress: Progress) -> CommonLaw | NoLaw:
     """a and n of one law for all tests that say something of them; else the reason."""
-    able = [test for test, row in rows.items() if (row["calibration"].get("a") or {}).get("value") is not None]
+    able = [test for test, row in rows.items() if "a" in row.calibration and row.calibration["a"].value is not None]
     if len(able) < 2:
-        return {"reason": f"two tests are needed, and a and n are known of {len(able) or 'none'}"}
+        return NoLaw(reason=f"two tests are needed, and a and n are known of {len(able) or 'none'}")
     try:
         return regression_of(able, root, out, progress)
     except AbsentError as error:
-        return {"reason": str(error)}
+        return NoLaw(reason=str(error))

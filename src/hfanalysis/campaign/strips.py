@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from markupsafe import Markup, escape
 
 from hfanalysis.charts.svg import Axis, lettering, nice_ticks, shortened, tick_text
+from hfanalysis.quantity import Quantity
 from hfanalysis.wording.numbers import exponent_of, in_words
 from hfanalysis.wording.scales import reading_unit, scale, superscript
 
@@ -15,15 +15,15 @@ WIDTH, LEFT, RIGHT, TOP, ROW, BOTTOM = 640.0, 130.0, 24.0, 8.0, 26.0, 44.0
 """[px] of a picture; ``ROW`` is the height of a test's."""
 
 
-def strip(name: str, found: Mapping[str, Mapping[str, Any]], together: Mapping[str, Any]) -> Markup:
+def strip(name: str, found: Mapping[str, Quantity], together: Quantity) -> Markup:
     """The picture of a quantity by test; empty where fewer than two tests have a value."""
-    known = {test: q for test, q in found.items() if q.get("value") is not None}
+    known = {test: q for test, q in found.items() if q.value is not None}
     if len(known) < 2:
         return Markup()
     given = next(iter(known.values()))
-    shown = scale(reading_unit(name, str(given.get("unit") or "")))
-    ends = {test: [shown(x) for x in (*(q.get("ci95") or ()), q["value"])] for test, q in known.items()}
-    band = [shown(x) for x in together.get("ci95") or ()]
+    shown = scale(reading_unit(name, given.unit))
+    ends = {test: [shown(x) for x in (*(q.interval or ()), q.value or 0.0)] for test, q in known.items()}
+    band = [shown(x) for x in together.interval or ()]
     low, high = min(map(min, ends.values())), max(map(max, ends.values()))
     exponent = exponent_of(max(abs(low), abs(high)))
     size = 10.0**exponent

@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
+from hfanalysis.products.campaign import CommonLaw, Diagnosed, NoLaw, Together
 from hfanalysis.wording.numbers import listed, shown
 
 HIDDEN = 0.01
 """Probability below which its number is not given."""
 
 
-def agreement(together: Mapping[str, Any]) -> str:
+def agreement(together: Together | CommonLaw) -> str:
     """Whether tests agree on a number, and how probable so large a scatter is; why there is none together."""
-    found = together.get("agreement")
+    found = together.agreement
     if found is None:
-        return str(together.get("reason") or "")
-    chance, verdict = found["probability"], found["verdict"].partition(":")[0]
+        return (together.mean.reason or "") if isinstance(together, Together) else ""
+    chance, verdict = found.probability, found.verdict.partition(":")[0]
     return f"{verdict} ({'< 0.001' if chance < 1e-3 else f'{chance:.2g}'} by chance)"
 
 
-def diagnosed(diagnosis: Mapping[str, Any] | None) -> str:
+def diagnosed(diagnosis: Diagnosed | None) -> str:
     """What a test's diagnosis says, in a few words."""
     if diagnosis is None:
         return "not diagnosed"
-    if diagnosis["effects"]:
-        return listed([f"{row['name']} ({row['probability']:.2f})" for row in diagnosis["effects"]])
-    return "nothing that can be claimed" if diagnosis["verdict"] == "none" else str(diagnosis["verdict"])
+    if diagnosis.effects:
+        return listed([f"{row.name} ({row.probability:.2f})" for row in diagnosis.effects])
+    return "nothing that can be claimed" if diagnosis.verdict == "none" else diagnosis.verdict
 
 
 def alone(test: str) -> str:
@@ -34,10 +32,10 @@ def alone(test: str) -> str:
     return f"{test} is the only test of this stand here: there is nothing to compare it with."
 
 
-def regression_sentence(product: Mapping[str, Any]) -> str:
+def regression_sentence(product: CommonLaw | NoLaw) -> str:
     """a and n of all tests of a stand, and whether one law does."""
-    if "reason" in product:
-        return f"No common regression law: {product['reason']}."
-    a, n = (shown(product[name]) for name in ("a", "n"))
+    if isinstance(product, NoLaw):
+        return f"No common regression law: {product.reason}."
+    a, n = map(shown, (product.a, product.n))
     law = f"a = ({a.value} ± {a.std}) {a.unit}, n = {n.value} ± {n.std}"
-    return f"One regression law for {listed(product['tests'])}: {law}. The tests {agreement(product)}."
+    return f"One regression law for {listed(list(product.tests))}: {law}. The tests {agreement(product)}."

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from hfanalysis.cli.exit_status import tell
 from hfanalysis.cli.perform import stage
@@ -15,6 +13,7 @@ from hfanalysis.effects import FOLDER, library
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted import file_for
 from hfanalysis.inference.adopted.effects import of_diagnosis, write_adopted
+from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.disk import read_json
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
@@ -27,7 +26,7 @@ MARK = "Adopted by hfa diagnose"
 def apply(request: Request, stand: bool) -> None:
     """Diagnose, and adopt what is named, proved on the test that it was. Raises AbsentError where nothing is."""
     context = stage("diagnose", proved_as_before(request))
-    path = adopt(context, context.read_json("diagnosis.json"), stand)
+    path = adopt(context, context.read(Diagnosis), stand)
     tell(f"{path}: written; every stage of {_whose(context, stand)} now has it in its model")
 
 
@@ -54,30 +53,30 @@ def retract(request: Request, stand: bool) -> None:
     tell(f"{path}: removed; the model of {_whose(context, stand)} is the base model again")
 
 
-def adopt(context: Context, diagnosis: Mapping[str, Any], stand: bool = False) -> Path:
+def adopt(context: Context, diagnosis: Diagnosis, stand: bool = False) -> Path:
     """Write the effects that a diagnosis.json names; returns the file.
 
     Raises AbsentError where it names none, InputError for a file that somebody has written by hand.
     """
-    if diagnosis["verdict"] != "named" or not diagnosis["effects"]:
+    if diagnosis.verdict != "named" or not diagnosis.effects:
         raise AbsentError(
             f"test {context.id}: there is nothing to adopt: the diagnosis names no effect (verdict "
-            f"{diagnosis['verdict']!r}; what holds 90 %: {', '.join(diagnosis['set90'])})"
+            f"{diagnosis.verdict!r}; what holds 90 %: {', '.join(diagnosis.set90)})"
         )
     path = _path(context, stand)
     if path.is_file() and not path.read_text(encoding="utf-8", errors="replace").startswith(f"# {MARK}"):
         raise InputError(f"{path}: found a file that no diagnosis wrote; expected none: move it away first")
-    found = of_diagnosis(diagnosis["effects"], library(context.root / FOLDER))
+    found = of_diagnosis(diagnosis.effects, library(context.root / FOLDER))
     write_adopted(path, found, _header(context, diagnosis, stand))
     return path
 
 
-def _header(context: Context, diagnosis: Mapping[str, Any], stand: bool) -> list[str]:
-    named = ", ".join(f"{e['name']} with probability {e['probability']:.2f}" for e in diagnosis["effects"])
+def _header(context: Context, diagnosis: Diagnosis, stand: bool) -> list[str]:
+    named = ", ".join(f"{e.name} with probability {e.probability:.2f}" for e in diagnosis.effects)
     option = " --stand" if stand else ""
     return [
         f"{MARK} {context.id} --apply{option} (hfanalysis {__version__}).",
-        f"Verdict {diagnosis['verdict']}: {named}.",
+        f"Verdict {diagnosis.verdict}: {named}.",
         f"Every stage of {_whose(context, stand)} has it in its model as long as this file is here. To remove it:",
         f"delete the file, or hfa diagnose {context.id} --retract{option}",
     ]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from rich.text import Text
 
@@ -18,8 +17,10 @@ from hfanalysis.cli.tables import new_table, paper
 from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.processors import processors
+from hfanalysis.products.campaign import Campaign, Together
 from hfanalysis.products.disk import atomic, to_json, write_json
 from hfanalysis.progress import Progress
+from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition, find_definition
 from hfanalysis.stages.open_test import PROCESSED, RAW, open_test
 from hfanalysis.wording.numbers import in_words, shown
@@ -52,21 +53,12 @@ def campaign(request: Request) -> int:
     with watch("campaign", request.quiet) as progress:
         ended = {**_run(list(definitions), request, progress), **refused}
         rows = {test: row_of(definitions.get(test), folder / test, ended[test]) for test in sorted(tests)}
-        stands = dict.fromkeys(str(row["stand"]) for row in rows.values() if row["stand"])
-        product = {
-            "tests": rows,
-            "stands": {
-                stand: stand_row(
-                    {test: row for test, row in rows.items() if row["stand"] == stand},
-                    request.root,
-                    request.out,
-                    progress,
-                )
-                for stand in stands
-            },
-        }
+        stands = dict.fromkeys(row.stand for row in rows.values() if row.stand)
+        by_stand = {stand: {test: row for test, row in rows.items() if row.stand == stand} for stand in stands}
+        said = {stand: stand_row(own, request.root, request.out, progress) for stand, own in by_stand.items()}
+        product = Campaign(tests=rows, stands=said)
     folder.mkdir(parents=True, exist_ok=True)
-    write_json(folder / "campaign.json", product)
+    write_json(folder / product.file, product)
     with atomic(folder / "campaign.html") as scratch:
         scratch.write_text(page(product), encoding="utf-8")
     _show(product, request, folder)
@@ -117,7 +109,7 @@ def _status(ended: Mapping[str, Ended]) -> int:
     return DONE
 
 
-def _show(product: Mapping[str, Any], request: Request, folder: Path) -> None:
+def _show(product: Campaign, request: Request, folder: Path) -> None:
     if request.as_json:
         put(to_json(product))
     elif not request.quiet:
@@ -125,37 +117,37 @@ def _show(product: Mapping[str, Any], request: Request, folder: Path) -> None:
         tell(f"written: {folder / 'campaign.html'}")
 
 
-def _print(product: Mapping[str, Any]) -> None:
+def _print(product: Campaign) -> None:
     """The tests in a table, what each one's model lacks, and for each stand what its tests say together."""
     console = paper()
     table = new_table("test", *(in_words(name) for name in _SHOWN), "apogee", title="tests")
-    for test, row in product["tests"].items():
-        found = [*(row["performance"].get(name) for name in _SHOWN), row["apogee"]]
+    for test, row in product.tests.items():
+        found = [*(row.performance.get(name) for name in _SHOWN), row.apogee]
         table.add_row(test, *map(_number, found))
     console.print(table)
-    for test, row in product["tests"].items():
-        console.print(Text(f"  {test}: the model lacks: {diagnosed(row['diagnosis'])}"), soft_wrap=True)
-    for name, stand in product["stands"].items():
-        if len(stand["tests"]) == 1:
+    for test, row in product.tests.items():
+        console.print(Text(f"  {test}: the model lacks: {diagnosed(row.diagnosis)}"), soft_wrap=True)
+    for name, stand in product.stands.items():
+        if len(stand.tests) == 1:
             continue
-        constants = stand["constants"]
+        constants = stand.constants
         table = new_table("", *constants, title=f"stand: {name}")
-        for test in stand["tests"]:
-            table.add_row(test, *(_number(product["tests"][test]["calibration"].get(c)) for c in constants))
-        table.add_row("together", *map(_number, constants.values()), style="bold")
+        for test in stand.tests:
+            table.add_row(test, *(_number(product.tests[test].calibration.get(c)) for c in constants))
+        table.add_row("together", *(_number(together.mean) for together in constants.values()), style="bold")
         console.print(table)
         for constant, together in constants.items():
             console.print(Text(f"  {constant}: {_agreed(together)}"), soft_wrap=True)
-        console.print(Text(f"  {regression_sentence(stand['regression'])}"), soft_wrap=True)
+        console.print(Text(f"  {regression_sentence(stand.regression)}"), soft_wrap=True)
 
 
-def _agreed(together: Mapping[str, Any]) -> str:
-    return f"the tests {agreement(together)}" if together.get("agreement") else agreement(together)
+def _agreed(together: Together) -> str:
+    return f"the tests {agreement(together)}" if together.agreement else agreement(together)
 
 
-def _number(quantity: Mapping[str, Any] | None) -> Text:
+def _number(quantity: Quantity | None) -> Text:
     """With its deviation and unit; what a verdict says against it."""
-    if not quantity or quantity.get("value") is None:
+    if quantity is None or quantity.value is None:
         return Text("–")
     text = shown(quantity)
     number = f"{text.value} ± {text.std}" if text.std else text.value

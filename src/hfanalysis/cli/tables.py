@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from hfanalysis.cli.exit_status import nobody_reads
-from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
+from hfanalysis.products.model import AdoptedEffect
+from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context
 from hfanalysis.wording import numbers as wording
-from hfanalysis.wording.numbers import Shown, in_words, is_quantity, quantities, shown
+from hfanalysis.wording.numbers import Shown, in_words, ordered, shown
+
+if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
+    from hfanalysis.products.calibration import RegressionBasis
+    from hfanalysis.products.campaign import CommonLaw
+    from hfanalysis.products.validation import Validation
 
 _NARROWEST = 140
 """Columns assumed where nobody says (a pipe), so that tables do not break."""
@@ -68,8 +74,9 @@ def show(name: str, context: Context) -> None:
 def _adopted(name: str, context: Context) -> str:
     """The effects with which a stage's product was made, in words."""
     product = _MADE_WITH_EFFECTS.get(name)
-    there = product is not None and context.product(product).is_file()
-    return wording.adopted_in_words(context.read_json(product)["effects"]) if product and there else ""
+    if product is None or not context.product(product).is_file():
+        return ""
+    return wording.adopted_in_words([AdoptedEffect.from_json(e) for e in context.read_json(product)["effects"]])
 
 
 _MADE_WITH_EFFECTS = {
@@ -97,7 +104,7 @@ def new_table(*columns: str, title: str) -> Table:
     return table
 
 
-def _quantities(found: Mapping[str, Mapping[str, Any]], title: str, width: int) -> Table:
+def _quantities(found: Mapping[str, Quantity], title: str, width: int) -> Table:
     wide, roomy = width >= _WIDE, width >= _ROOMY
     columns = ("symbol", *[""] * wide, "value", "± std", *["95 % interval"] * roomy, "unit", "verdict")
     table = new_table(*columns, title=title)
@@ -109,7 +116,7 @@ def _quantities(found: Mapping[str, Mapping[str, Any]], title: str, width: int) 
     return table
 
 
-def _notes(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+def _notes(found: Mapping[str, Quantity]) -> Iterator[str]:
     """Why a quantity is missing, or judged as it is, where that is not plain."""
     for name, quantity in found.items():
         text: Shown = shown(quantity)
@@ -117,113 +124,124 @@ def _notes(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
             yield f"{name}: {text.verdict}: {text.why}"
 
 
-def _print(console: Console, found: Mapping[str, Mapping[str, Any]], title: str) -> None:
+def _print(console: Console, found: Mapping[str, Quantity], title: str) -> None:
     console.print(_quantities(found, title, console.width))
     for note in _notes(found):
         console.print(Text(f"  {note}"), soft_wrap=True)
 
 
 def _ingest(context: Context, console: Console) -> None:
+    from hfanalysis.products.ingest import Ingest
+
     table = new_table("channel", "column", "unit", "samples", "rate", "least", "largest", "flags", title="channels")
-    for name, row in context.read_json("ingest.json")["channels"].items():
-        factor, unit = wording.people_unit(row["unit"])
-        ends = [Text("–" if row[end] is None else f"{factor * row[end]:.4g}") for end in ("least", "largest")]
-        flags = ", ".join(f"{count} {flag}" for flag, count in row["flags"].items())
-        rate = "" if row["rate"] is None else f"{row['rate']:.4g} Hz"
-        table.add_row(name, Text(row["label"]), unit, str(row["samples"]), rate, *ends, flags)
+    for name, row in context.read(Ingest).channels.items():
+        factor, unit = wording.people_unit(row.unit)
+        ends = [Text("–" if end is None else f"{factor * end:.4g}") for end in (row.least, row.largest)]
+        flags = ", ".join(f"{count} {flag}" for flag, count in row.flags.items())
+        rate = "" if row.rate is None else f"{row.rate:.4g} Hz"
+        table.add_row(name, Text(row.label), unit, str(row.samples), rate, *ends, flags)
     console.print(table)
 
 
 def _segment(context: Context, console: Console) -> None:
-    product = context.read_json("segments.json")
-    found = {name: product[name] for name in wording.EVENTS if name in product}
-    kind = wording.KINDS.get(product.get("kind", ""), str(product.get("kind", "")))
-    _print(console, found, f"phases (seconds after the valve opens): recognised as {kind}")
-    by_hand = ", ".join(product.get("engineer", []))
-    if by_hand:
-        console.print(Text(f"  set by the engineer in test.toml: {by_hand}"))
+    from hfanalysis.products.segments import Segments
+
+    product = context.read(Segments)
+    kind = wording.KINDS.get(product.kind, product.kind)
+    _print(console, product.quantities, f"phases (seconds after the valve opens): recognised as {kind}")
+    if product.engineer:
+        console.print(Text(f"  set by the engineer in test.toml: {', '.join(product.engineer)}"))
 
 
 def _calibrate(context: Context, console: Console) -> None:
-    found = quantities(context.read_json("calibration.json"))
-    segments = context.read_json("segments.json")
-    times = {name: segments[name] for name in ("t_feed", "t_v", "t_purge") if name in segments}
-    _print(console, {name: found[name] for name in found if name not in times} | times, "calibration")
-    _regression(context.read_json("calibration.json").get("regression", {}), console)
+    from hfanalysis.products.calibration import Calibration
+    from hfanalysis.products.segments import Segments
+
+    product, events = context.read(Calibration), context.read(Segments).events
+    times = {name: events[name] for name in ("t_feed", "t_v", "t_purge")}
+    _print(console, ordered(product.quantities) | times, "calibration")
+    _regression(product.regression, console)
 
 
-def _regression(regression: Mapping[str, Any], console: Console) -> None:
+def _regression(regression: RegressionBasis, console: Console) -> None:
     """What a and n were fitted with, and how well."""
-    for test in regression.get("tests", []):
-        console.print(Text(f"  a, n: {'; '.join(test['fitted_with'])}"), soft_wrap=True)
-        burn = test["burn_time_measured"]
+    for test in regression.tests:
+        console.print(Text(f"  a, n: {'; '.join(test.fitted_with)}"), soft_wrap=True)
+        burn = test.burn_time_measured
         seen = "" if burn is None else f" (measured {burn:.2f} s)"
         console.print(
             Text(
-                f"  a, n leave {test['p_chamber_rms'] / 1e5:.3f} bar rms in p_chamber over the window, "
-                f"{test['independent_samples']:.0f} independent values; burn time {test['burn_time_model']:.2f} s{seen}"
+                f"  a, n leave {test.p_chamber_rms / 1e5:.3f} bar rms in p_chamber over the window, "
+                f"{test.independent_samples:.0f} independent values; burn time {test.burn_time_model:.2f} s{seen}"
             ),
             soft_wrap=True,
         )
 
 
-def show_regression(product: Mapping[str, Any]) -> None:
+def show_regression(product: CommonLaw) -> None:
     """Print a and n of several tests, together and each alone."""
     console = paper()
-    _print(console, quantities(product), f"regression common to {', '.join(product['tests'])}")
-    _regression(product["regression"], console)
-    agreement = product["agreement"]
-    console.print(Text(f"  the tests {agreement['verdict']} (probability {agreement['probability']:.2g})"))
-    for name, found in product["alone"].items():
-        _print(console, quantities(found), f"{name} alone")
+    _print(console, ordered(product.quantities), f"regression common to {', '.join(product.tests)}")
+    _regression(product.regression, console)
+    agreement = product.agreement
+    console.print(Text(f"  the tests {agreement.verdict} (probability {agreement.probability:.2g})"))
+    for name, found in product.alone.items():
+        _print(console, ordered(found.quantities), f"{name} alone")
 
 
-def _performance(context: Context, console: Console) -> None:
-    product = context.read_json("validation.json")
-    performance = product.get("performance", {})
+def _performance(product: Validation, console: Console) -> None:
+    performance = product.performance
     table = new_table("", "measured", "± std", "model", "± std ", "unit", title="performance")
     for column in table.columns[1:5]:
         column.justify = "right"
-    for name, measured in performance.get("measured", {}).items():
-        found, model = shown(measured), shown(performance.get("model", {}).get(name) or {"value": None})
-        if measured["value"] is not None or model.value != "–":
+    for name, measured in performance.measured.quantities.items():
+        model = shown(performance.model.quantities.get(name) or Quantity.absent("not modelled"))
+        found = shown(measured)
+        if measured.value is not None or model.value != "–":
             table.add_row(in_words(name), found.value, found.std, model.value, model.std, found.unit or model.unit)
     console.print(table)
-    for name, reason in product.get("absent", {}).items():
+    for name, reason in product.absent.items():
         console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=True)
 
 
 def _validate(context: Context, console: Console) -> None:
-    _performance(context, console)
+    from hfanalysis.products.validation import Validation
+
+    product = context.read(Validation)
+    _performance(product, console)
     table = new_table("run", "channel", "phase", "rms", "bias", "noise", "unit", title="measured minus model")
-    for run, channels in context.read_json("validation.json").get("gap", {}).items():
+    for run, channels in product.gap.items():
         for channel, phases in channels.items():
             for phase, gap in phases.items():
-                factor, unit = wording.people_unit(gap["unit"])
-                numbers = (wording.tidy(factor * gap[key], 3) for key in ("rms", "bias", "noise"))
+                factor, unit = wording.people_unit(gap.unit)
+                numbers = (wording.tidy(factor * size, 3) for size in (gap.rms, gap.bias, gap.noise))
                 table.add_row(run, channel, phase, *numbers, unit)
     console.print(table)
 
 
 def _flight(context: Context, console: Console) -> None:
-    product = context.read_json("flight.json")
-    _values(console, quantities(product), f"flight, thrust {product['thrust']}")
-    _values(console, quantities(product["stability"]), "stability")
-    for name, check in product["checks"].items():
-        style = {"passed": "green", "failed": "red"}.get(check["result"], "yellow")
-        line = Text.assemble(f"  {in_words(name)}: ", (check["result"], style), f": {check['why']}")
+    from hfanalysis.products.flight import Flight
+
+    product = context.read(Flight)
+    _values(console, ordered(product.quantities), f"flight, thrust {product.thrust}")
+    _values(console, ordered(product.stability.quantities), "stability")
+    for name, check in product.checks.items():
+        style = {"passed": "green", "failed": "red"}.get(check.result, "yellow")
+        line = Text.assemble(f"  {in_words(name)}: ", (check.result, style), f": {check.why}")
         console.print(line, soft_wrap=True)
 
 
 def _diagnose(context: Context, console: Console) -> None:
-    product = context.read_json("diagnosis.json")
-    for i, sentence in enumerate(product["sentences"]):
+    from hfanalysis.products.diagnosis import Diagnosis
+
+    product = context.read(Diagnosis)
+    for i, sentence in enumerate(product.sentences):
         console.print(Text(sentence, style="bold" if i == 0 else ""), soft_wrap=True)
-    likely = sorted(((p, n) for n, p in product["posterior"].items() if p >= SHOWN), reverse=True)
+    likely = sorted(((p, n) for n, p in product.posterior.items() if p >= SHOWN), reverse=True)
     console.print(Text("  probabilities: " + ", ".join(f"{name} {p:.2f}" for p, name in likely)), soft_wrap=True)
-    if partners := {name: p for name, p in (product.get("partners") or {}).items() if p >= SHOWN}:
+    if partners := {name: p for name, p in product.partners.items() if p >= SHOWN}:
         console.print(Text("  beside it: " + ", ".join(f"{n} {p:.2f}" for n, p in partners.items())), soft_wrap=True)
-    for warning in (*product["notes"], *product["warnings"]):
+    for warning in (*product.notes, *product.warnings):
         console.print(Text(f"  {warning}", style="yellow"), soft_wrap=True)
 
 
@@ -241,12 +259,17 @@ def show_engine(product: Mapping[str, Any]) -> None:
     words = (product["engine"], product["command"], f"conventions: {product['conventions']}")
     console.print(Text("  ".join(words), style="bold"))
     console.print(Text(f"oxidizer enthalpy: {product['oxidizer_enthalpy']['of']}"))
-    _values(
-        console, {name: data for name, data in quantities(product).items() if name != "oxidizer_enthalpy"}, "engine"
-    )
+    _values(console, _engine_quantities(product), "engine")
     for name, part in product.items():
-        if isinstance(part, Mapping) and not is_quantity(part) and name != "provenance":
-            _values(console, quantities(part), in_words(name))
+        if isinstance(part, Mapping) and "value" not in part and name != "provenance":
+            _values(console, _engine_quantities(part), in_words(name))
+
+
+def _engine_quantities(part: Mapping[str, Any]) -> dict[str, Quantity]:
+    found = {name: data for name, data in part.items() if isinstance(data, Mapping) and "value" in data}
+    return ordered(
+        {n: Quantity.from_json({"std": None, **data}) for n, data in found.items() if n != "oxidizer_enthalpy"}
+    )
 
 
 def show_effects(product: Mapping[str, Any]) -> None:
@@ -270,14 +293,14 @@ def _strength(effect: Mapping[str, Any]) -> str:
     return f"{name} {wording.tidy(factor * typical['typical'], 6)} {unit.strip('-')}".strip()
 
 
-def _values(console: Console, found: Mapping[str, Mapping[str, Any]], title: str) -> None:
+def _values(console: Console, found: Mapping[str, Quantity], title: str) -> None:
     """A table of values, with intervals where any has one, and below it what cannot be had, by reason."""
-    spread = any(quantity.get("std") for quantity in found.values())
+    spread = any(quantity.std for quantity in found.values())
     table = new_table("", "value", *(["± std", "95 % interval"] if spread else []), "unit", title=title)
     absent: dict[str, list[str]] = {}
     for name, quantity in found.items():
         text = shown(quantity)
-        if quantity["value"] is None:
+        if quantity.value is None:
             absent.setdefault(text.why, []).append(in_words(name))
         else:
             extra = [text.std, text.interval] if spread else []

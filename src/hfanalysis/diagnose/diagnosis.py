@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -36,17 +35,29 @@ from hfanalysis.inference.fitting.fade import abrupt
 from hfanalysis.inference.fitting.hypothesis import TABLE
 from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.subject import Subject
+from hfanalysis.products.diagnosis import (
+    NO_TIME,
+    ClosedFraction,
+    Compared,
+    Constants,
+    Diagnosis,
+    FormError,
+    Gap,
+    GapByPhase,
+    Plausibility,
+    Tried,
+)
 from hfanalysis.progress import Progress, silent
 from hfanalysis.quantity import Quantity
 
 
 @dataclass(frozen=True)
-class Diagnosis:
+class Diagnosed:
     """What was found, the verdict, the proof, and the product."""
 
     naming: Naming
     verdict: Verdict
-    product: dict[str, Any]
+    product: Diagnosis
 
 
 def diagnose(
@@ -55,7 +66,7 @@ def diagnose(
     other: Callable[[], OtherTest | None] = lambda: None,
     progress: Progress = silent,
     settings: Settings | None = None,
-) -> Diagnosis:
+) -> Diagnosed:
     """Localise, name and prove; ``other`` finds another test to prove it on, if there is something to prove.
 
     Raises AbsentError where no engine is stated or too little was recorded.
@@ -67,11 +78,11 @@ def diagnose(
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
     product = _product(found, verdict, proof, catalogue)
-    product["notes"] = [*subject.notes, *product["notes"]]
-    product["sentences"] = story(product)
+    sentences = story(product)
     if poor_fit(found.named.leftover):
-        product["sentences"] += shown(subject.log, subject.segments, subject.definition).sentences
-    return Diagnosis(found, verdict, product)
+        sentences += shown(subject.log, subject.segments, subject.definition).sentences
+    notes = (*subject.notes, *product.notes)
+    return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
 
 
 def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Effect]:
@@ -79,90 +90,91 @@ def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Eff
     return {n: e for n, e in effects.items() if not e.of_sensor or set(e.sites) & set(observed.names)}
 
 
-def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue) -> dict[str, Any]:
+def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue) -> Diagnosis:
     observed, chosen = found.bench.observed, verdict.chosen
     equations = by_equation(verdict.posterior, found)
-    compared = np.concatenate([channel.time for channel in observed.channels])
-    return {
-        "verdict": verdict.label,
-        "effects": effects_product(verdict),
-        "set90": verdict.set90,
-        "posterior": verdict.posterior,
-        "partners": verdict.partners,
-        "by_equation": equations,
-        "evidences": verdict.evidences,
-        "unknown_elsewhere": verdict.elsewhere,
-        "tried": [_tried(c, found) for c in (*found.singles, *found.sets, *found.unknown)],
-        "leftover": found.named.leftover,
-        "localisation": places(verdict, found),
-        "likeliest_place": likeliest_place(verdict, found, equations),
-        "gap": _gap(found.base, chosen, proof, observed),
-        "upper_limits": upper_limits(verdict, found, catalogue),
-        "twins": _twins(verdict, catalogue),
-        "not_it": [] if poor_fit(found.named.leftover) else _not_it(verdict),
-        "decisive_measurements": _decisive(verdict, catalogue),
-        "plausibility": {
-            name: row for name, row in _plausibility(found, chosen).items() if name in (*verdict.set90, *verdict.added)
-        },
-        "constants": _constants(found, verdict),
-        "weak_form": weak_product(
-            weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))
-        ),
-        "compared": {
-            "channels": list(observed.names),
-            "start": float(compared[compared > 0.0].min()),
-            "end": float(compared.max()),
-            "model_form_error": _errors(chosen),
-            "chi_square": chosen.leftover,
-            "chi_square_without": found.base.leftover,
-            **_fade(found.base, observed),
-        },
-        "probabilities_from": "probabilities.json" if scale().temperature != 1.0 else "raw evidences",
-        "notes": list(proof.notes),
-        "warnings": [] if chosen.fit.converged else ["the last fit did not converge: sizes and intervals are rough"],
-        "runtime_s": {"value": None, "reason": "times stand in run.log, so that products are the same from run to run"},
-        "seed": 0,
-    }
+    left = {*verdict.set90, *verdict.added}
+    residuals = weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))
+    unsure = () if chosen.fit.converged else ("the last fit did not converge: sizes and intervals are rough",)
+    return Diagnosis(
+        verdict=verdict.label,
+        effects=effects_product(verdict),
+        set90=tuple(verdict.set90),
+        posterior=verdict.posterior,
+        partners=verdict.partners,
+        by_equation=equations,
+        evidences=verdict.evidences,
+        unknown_elsewhere=verdict.elsewhere,
+        tried=tuple(_tried(c, found) for c in (*found.singles, *found.sets, *found.unknown)),
+        leftover=found.named.leftover,
+        localisation=places(verdict, found),
+        likeliest_place=likeliest_place(verdict, found, equations),
+        gap=_gap(found.base, chosen, proof, observed),
+        upper_limits=upper_limits(verdict, found, catalogue),
+        twins=_twins(verdict, catalogue),
+        not_it=() if poor_fit(found.named.leftover) else _not_it(verdict),
+        decisive_measurements=_decisive(verdict, catalogue),
+        plausibility={name: row for name, row in _plausibility(found, chosen).items() if name in left},
+        constants=_constants(found, verdict),
+        weak_form=weak_product(residuals),
+        compared=_compared(found, chosen, observed),
+        probabilities_from="probabilities.json" if scale().temperature != 1.0 else "raw evidences",
+        notes=proof.notes,
+        warnings=unsure,
+        runtime_s=NO_TIME,
+        seed=0,
+    )
 
 
-def _fade(base: Candidate, observed: Observed) -> dict[str, Any]:
-    """The time in which the fire went out, where it shows, and that in which the chamber empties without fuel."""
+def _compared(found: Naming, chosen: Candidate, observed: Observed) -> Compared:
+    """With the time in which the fire went out, where it shows, and that in which the chamber empties without fuel."""
+    times = np.concatenate([channel.time for channel in observed.channels])
+    out = Compared(
+        channels=tuple(observed.names),
+        start=float(times[times > 0.0].min()),
+        end=float(times.max()),
+        model_form_error=_errors(chosen),
+        chi_square=chosen.leftover,
+        chi_square_without=found.base.leftover,
+    )
     if FADE not in observed.stated:
-        return {}
+        return out
     seconds, log_std = observed.stated[FADE]
-    at_once = abrupt(observed, base.fit.burnt.steps.engine)
-    return {FADE: Quantity(seconds, "s", seconds * log_std), "abrupt_end": Quantity(at_once, "s")}
+    at_once = abrupt(observed, found.base.fit.burnt.steps.engine)
+    return out.but(fuel_fade=Quantity(seconds, "s", seconds * log_std), abrupt_end=Quantity(at_once, "s"))
 
 
-def _gap(base: Candidate, chosen: Candidate, proof: Proof, observed: Observed) -> dict[str, Any]:
+def _gap(base: Candidate, chosen: Candidate, proof: Proof, observed: Observed) -> Gap:
     """The gap without and with what was found, by channel and phase [SI], and how much of it each arm closes."""
-    return {
-        "before": gap.root_mean_square(base.fit, observed),
-        "after": gap.root_mean_square(chosen.fit, observed),
-        "noise": gap.noise_of(observed),
-        "by_phase": {"before": gap.by_phase(base.fit, observed), "after": gap.by_phase(chosen.fit, observed)},
-        "closed_fraction": {arm: proof.fractions.get(arm) for arm in ("same", "held_out", "other_test", "placebo")},
-        "closed_by_free_form": proof.fractions.get("placebo_free_form"),
-        "other_test": proof.other,
-    }
+    arms = proof.fractions
+    return Gap(
+        before=gap.root_mean_square(base.fit, observed),
+        after=gap.root_mean_square(chosen.fit, observed),
+        noise=gap.noise_of(observed),
+        by_phase=GapByPhase(before=gap.by_phase(base.fit, observed), after=gap.by_phase(chosen.fit, observed)),
+        closed_fraction=ClosedFraction(**{arm: arms.get(arm) for arm in ClosedFraction.model_fields}),
+        closed_by_free_form=arms.get("placebo_free_form"),
+        other_test=proof.other,
+    )
 
 
-def _tried(candidate: Candidate, found: Naming) -> dict[str, Any]:
+def _tried(candidate: Candidate, found: Naming) -> Tried:
     """A row of what was tried: its names, the log evidence beyond the base model's, and the form it was judged at."""
-    return {
-        "names": list(candidate.names),
-        "unknown": candidate.unknown,
-        "log_evidence": candidate.log_evidence - found.base.log_evidence,
-        "model_form_error": _errors(candidate),
-    }
+    return Tried(
+        names=tuple(candidate.names),
+        unknown=candidate.unknown,
+        log_evidence=candidate.log_evidence - found.base.log_evidence,
+        model_form_error=_errors(candidate),
+    )
 
 
-def _errors(candidate: Candidate) -> dict[str, float]:
+def _errors(candidate: Candidate) -> FormError:
     """The model-form error that a candidate asks for, as parts of the channels' ranges."""
-    return dict(zip(("tank", "chamber"), candidate.form.errors, strict=True))
+    tank, chamber = candidate.form.errors
+    return FormError(tank=tank, chamber=chamber)
 
 
-def _constants(found: Naming, verdict: Verdict) -> dict[str, dict[str, Quantity]]:
+def _constants(found: Naming, verdict: Verdict) -> Constants:
     """The base model's constants as fitted without and with the effects; m above all."""
     units = {"a": "m/s (kg/m^2/s)^-n", "area": "m^2", "loss_factor": "1/m^4", "oxidizer_mass": "kg", "temperature": "K"}
     out: dict[str, dict[str, Quantity]] = {}
@@ -173,11 +185,11 @@ def _constants(found: Naming, verdict: Verdict) -> dict[str, dict[str, Quantity]
             for n in values
             if "." not in n and not n.startswith(TABLE)
         }
-    return out
+    return Constants.from_json(out)
 
 
-def _plausibility(found: Naming, chosen: Candidate) -> dict[str, dict[str, Any]]:
-    out: dict[str, dict[str, Any]] = {}
+def _plausibility(found: Naming, chosen: Candidate) -> dict[str, Plausibility]:
+    out: dict[str, Plausibility] = {}
     for candidate in found.singles:
         name = candidate.names[0]
         out.setdefault(name, judged(acting_in(candidate.fit)[name]))
@@ -188,28 +200,29 @@ LIKELY = 0.02
 """Probability below which a listed effect is said not to be it."""
 
 
-def _not_it(verdict: Verdict) -> list[str]:
+def _not_it(verdict: Verdict) -> tuple[str, ...]:
     """Listed effects that were tried and are not it, nor beside it."""
-    return sorted(
+    named = (
         n
         for n, p in verdict.posterior.items()
         if n not in ("none", "unknown", *verdict.added) and max(p, verdict.partners.get(n, 0.0)) < LIKELY
     )
+    return tuple(sorted(named))
 
 
-def _twins(verdict: Verdict, catalogue: Catalogue) -> list[list[str]]:
+def _twins(verdict: Verdict, catalogue: Catalogue) -> tuple[tuple[str, ...], ...]:
     """Groups of names in the answer that these channels hardly tell apart, as the effects declare."""
     groups = []
     for name in (*verdict.set90, *verdict.added):
         if name in catalogue.effects and catalogue.effects[name].twins:
-            group = sorted({name, *catalogue.effects[name].twins})
+            group = tuple(sorted({name, *catalogue.effects[name].twins}))
             if group not in groups:
                 groups.append(group)
-    return groups
+    return tuple(groups)
 
 
-def _decisive(verdict: Verdict, catalogue: Catalogue) -> list[str]:
+def _decisive(verdict: Verdict, catalogue: Catalogue) -> tuple[str, ...]:
     """What would decide between the names that are left; nothing where none is claimed."""
     left = () if verdict.label == "none" else dict.fromkeys((*verdict.added, *verdict.set90))
     names = [n for n in left if n in catalogue.effects]
-    return list(dict.fromkeys(f"{n}: {catalogue.effects[n].decisive}" for n in names if catalogue.effects[n].decisive))
+    return tuple(dict.fromkeys(f"{n}: {catalogue.effects[n].decisive}" for n in names if catalogue.effects[n].decisive))

@@ -12,13 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.products.segments import Segments
+from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
+from hfanalysis.sentences import capitalised, joined, said, text
 from hfanalysis.validate.performance import fire_of
-from hfanalysis.validate.sensor_faults import Finding, findings
+from hfanalysis.validate.sensor_faults import findings
 
 Array = NDArray[np.float64]
 
@@ -82,7 +84,7 @@ class Shown:
     def sentences(self) -> list[str]:
         """All of it, sensors first."""
         texts = [*(found.text for found in self.wrong), *(sign.text for sign in self.signs)]
-        return [f"{text if text[1] == '_' else text[0].upper() + text[1:]}." for text in texts]
+        return [joined("", [words if words[1] == "_" else capitalised(words), "."]) for words in texts]
 
 
 def shown(log: TestLog, segments: Segments, definition: TestDefinition) -> Shown:
@@ -138,16 +140,23 @@ def fall_at_opening(log: TestLog, segments: Segments) -> Sign | None:
 
 
 def _in_words(found: Opening, falls: bool, dips: bool) -> str:
-    parts = []
+    parts: list[str] = []
     if falls:
         parts.append(
-            f"p_tank falls by {found.fall / BAR:.1f} ± {found.std / BAR:.1f} bar as the valve opens, beyond what it "
-            "goes on to fall by while liquid flows: at rest it was not the pressure of the bulk"
+            text(
+                "p_tank falls by {fall} as the valve opens, beyond what it goes on to fall by while liquid flows: at "
+                "rest it was not the pressure of the bulk",
+                fall=said(found.fall, "bar", ".1f", found.std, ".1f"),
+            )
         )
     if dips:
         parts.append(
-            f"at {found.lowest:.1f} s p_tank is {found.dip / BAR:.1f} bar below the course of its later fall, and "
-            "comes back to it: vapour is made late (tank_nonequilibrium)"
+            text(
+                "at {lowest:.1f} s p_tank is {dip} below the course of its later fall, and comes back to it: vapour is "
+                "made late (tank_nonequilibrium)",
+                lowest=found.lowest,
+                dip=said(found.dip, "bar", ".1f"),
+            )
         )
     if not dips:
         parts.append(
@@ -156,7 +165,7 @@ def _in_words(found: Opening, falls: bool, dips: bool) -> str:
         )
     elif falls:
         parts.append("how much of the fall is a hot ullage's (tank_stratification) these channels do not tell")
-    return "; ".join(parts)
+    return joined("; ", parts)
 
 
 def _steady_until(segments: Segments) -> float | None:
@@ -215,12 +224,14 @@ def open_check_valve(log: TestLog, segments: Segments) -> Sign | None:
     if found is None or found.more < LEAST_FLOW or found.fell < SAGS * found.pressure:
         return None
     std = float(np.sqrt(2.0) * np.hypot(log["p_tank"].accuracy, log["p_purge"].accuracy))
-    text = (
-        f"the purge line falls from {found.opens:.1f} s on, but stays {found.above_at_end / BAR:.1f} bar above the "
-        f"tank at the end, {found.more / BAR:.1f} bar more than as its check valve opened: nitrogen flows into the "
-        "tank (n2_purge)"
+    words = text(
+        "the purge line falls from {opens:.1f} s on, but stays {above} above the tank at the end, {more} more than as "
+        "its check valve opened: nitrogen flows into the tank (n2_purge)",
+        opens=found.opens,
+        above=said(found.above_at_end, "bar", ".1f"),
+        more=said(found.more, "bar", ".1f"),
     )
-    return Sign(("n2_purge",), "p_purge", found.opens, found.end, Quantity(found.more, "Pa", std), text)
+    return Sign(("n2_purge",), "p_purge", found.opens, found.end, Quantity(found.more, "Pa", std), words)
 
 
 def _signal(log: TestLog, segments: Segments, name: str) -> Signal | None:

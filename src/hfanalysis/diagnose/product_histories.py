@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.diagnose.diagnosis import Diagnosis
+from hfanalysis.diagnose.diagnosis import Diagnosed
 from hfanalysis.inference.gap import residuals_of
 from hfanalysis.record.channels import unit_of
 
 Array = NDArray[np.float64]
 
 
-def write_histories(path: Path, found: Diagnosis, provenance: Mapping[str, Any]) -> None:
+def write_histories(path: Path, found: Diagnosed, provenance: Mapping[str, Any]) -> None:
     """Groups ``sources/SITE`` {time, mean, low90, high90}, ``residuals/CHANNEL`` {time, before, after, noise_std}.
 
     A second source at a site is ``sources/SITE 2``.
@@ -28,13 +28,14 @@ def write_histories(path: Path, found: Diagnosis, provenance: Mapping[str, Any])
     before, after = (residuals_of(f, observed) for f in (found.naming.base.fit, found.verdict.chosen.fit))
     with h5py.File(path, "w", libver="latest") as file:
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
-        rows = found.product["localisation"]
-        for name, row in zip(numbered([row["site"] for row in rows]), rows, strict=True):
+        rows = found.product.localisation
+        for name, row in zip(numbered([row.site for row in rows]), rows, strict=True):
             group = file.create_group(f"sources/{name}")
-            group.attrs["equation"] = row["equation"]
-            history = row["history"]
-            columns = {key: np.array(history[key]) for key in ("time", "mean", "low90", "high90")}
-            _write(group, history["unit"], **columns)
+            group.attrs["equation"] = row.equation
+            history = row.history
+            assert history is not None
+            columns = {key: np.array(getattr(history, key)) for key in ("time", "mean", "low90", "high90")}
+            _write(group, history.unit, **columns)
         for channel in observed.channels:
             burning = ~channel.resting
             columns = {

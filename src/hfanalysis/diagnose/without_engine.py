@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
 
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import scale
@@ -11,13 +10,16 @@ from hfanalysis.diagnose.model_free import Shown, Sign, shown
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.subject import Subject
+from hfanalysis.products.diagnosis import NO_TIME, ClosedFraction, Compared, Diagnosis, Gap, NamedEffect, Place
+from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
-from hfanalysis.validate.sensor_faults import ZERO, Finding
+from hfanalysis.sentences import text
+from hfanalysis.validate.sensor_faults import ZERO
 
 DRIFT = "load_cell_drift"
 
 
-def channels_alone(subject: Subject, why: str) -> dict[str, Any]:
+def channels_alone(subject: Subject, why: str) -> Diagnosis:
     """The product of a diagnosis without a model. Raises AbsentError where the channels show nothing wrong either.
 
     A thrust cell that does not come back to its zero has drifted, whatever the engine did. That thrust and chamber
@@ -29,51 +31,59 @@ def channels_alone(subject: Subject, why: str) -> dict[str, Any]:
     if not seen.wrong and not seen.signs:
         raise AbsentError(f"{why}; its channels, by themselves, show nothing wrong")
     stated = _stated(seen)
-    effects = [_drift(found) for found in seen.wrong if found.verdict == ZERO]
-    names = [name for name in (*stated["posterior"], *stated["partners"]) if name not in ("none", "unknown")]
-    return {
-        **stated,
-        "effects": effects,
-        "localisation": [*(_place(f, subject) for f in seen.wrong), *(_place_of(sign) for sign in seen.signs)],
-        "gap": {"before": {}, "after": {}, "noise": {}, "closed_fraction": dict.fromkeys(ARMS)},
-        "upper_limits": {},
-        "twins": [],
-        "not_it": [],
-        "decisive_measurements": [f"{name}: {effect(name).decisive}" for name in names],
-        "plausibility": {row["name"]: row["plausibility"] for row in effects},
-        "compared": {"channels": sorted({c for f in seen.wrong for c in f.channels} | {s.channel for s in seen.signs})},
-        "sentences": [*seen.sentences, f"No more can be said without a model to compare with: {why}."],
-        "notes": [
+    effects = tuple(_drift(found) for found in seen.wrong if found.verdict == ZERO)
+    names = [name for name in (*stated.posterior, *stated.partners) if name not in ("none", "unknown")]
+    channels = {c for f in seen.wrong for c in f.channels} | {s.channel for s in seen.signs}
+    return Diagnosis(
+        verdict=stated.verdict,
+        effects=effects,
+        set90=stated.set90,
+        posterior=stated.posterior,
+        partners=stated.partners,
+        localisation=(*(_place(f, subject) for f in seen.wrong), *(_place_of(sign) for sign in seen.signs)),
+        gap=Gap(before={}, after={}, noise={}, closed_fraction=NOTHING_CLOSED),
+        upper_limits={},
+        twins=(),
+        not_it=(),
+        decisive_measurements=tuple(f"{name}: {effect(name).decisive}" for name in names),
+        plausibility={row.name: row.plausibility for row in effects},
+        compared=Compared(channels=tuple(sorted(channels))),
+        notes=(
             "only what the channels show by themselves was judged; no probability of other effects was formed; "
             "what is stated is as sure as any evidence was on simulated tests; of two names, or of one that may have a "
-            "part in it, the odds are even"
-        ],
-        "warnings": [],
-        "runtime_s": {"value": None, "reason": "times stand in run.log, so that products are the same from run to run"},
-        "seed": 0,
-    }
+            "part in it, the odds are even",
+        ),
+        warnings=(),
+        runtime_s=NO_TIME,
+        seed=0,
+        sentences=(*seen.sentences, text("No more can be said without a model to compare with: {why}.", why=why)),
+    )
 
 
-def _stated(seen: Shown) -> dict[str, Any]:
+NOTHING_CLOSED = ClosedFraction(same=None, held_out=None, other_test=None, placebo=None)
+
+
+@dataclass(frozen=True)
+class _Stated:
     """The verdict and the probabilities: of the first of what is seen, and of what is beside it."""
+
+    verdict: str
+    set90: tuple[str, ...]
+    posterior: dict[str, float]
+    partners: dict[str, float]
+
+
+def _stated(seen: Shown) -> _Stated:
     sure = _sure()
     groups = [(DRIFT,) for found in seen.wrong if found.verdict == ZERO] + [sign.names for sign in seen.signs]
     if not groups:
-        return {
-            "verdict": "unknown",
-            "set90": ["unknown"],
-            "posterior": {"unknown": sure, "none": 1.0 - sure},
-            "partners": {},
-        }
+        return _Stated("unknown", ("unknown",), {"unknown": sure, "none": 1.0 - sure}, {})
     even = {name: sure / len(group) for group in groups for name in group}
     first = {name: even[name] for name in groups[0]}
     perhaps = {name: 0.5 * sure for sign in seen.signs for name in sign.besides}
-    return {
-        "verdict": "named" if all(len(group) == 1 for group in groups) else "ambiguous",
-        "set90": list(first),
-        "posterior": {**first, "unknown": 1.0 - sure},
-        "partners": {name: p for name, p in (even | perhaps).items() if name not in first},
-    }
+    partners = {name: p for name, p in (even | perhaps).items() if name not in first}
+    verdict = "named" if all(len(group) == 1 for group in groups) else "ambiguous"
+    return _Stated(verdict, tuple(first), {**first, "unknown": 1.0 - sure}, partners)
 
 
 def _sure() -> float:
@@ -81,44 +91,36 @@ def _sure() -> float:
     return 1.0 - scale().misled
 
 
-ARMS: Sequence[str] = ("same", "held_out", "other_test", "placebo")
+def _drift(found: Finding) -> NamedEffect:
+    return NamedEffect(
+        name=DRIFT,
+        probability=_sure(),
+        equation="sensor",
+        meaning=effect(DRIFT).meaning,
+        parameters={"drift": found.size},
+        plausibility=judged(effect(DRIFT).at(drift=found.size.value or 0.0)),
+    )
 
 
-def _drift(found: Finding) -> dict[str, Any]:
-    size: Quantity = found.size
-    value = size.value or 0.0
-    parameters: Mapping[str, Quantity] = {"drift": size}
-    return {
-        "name": DRIFT,
-        "probability": _sure(),
-        "equation": "sensor",
-        "meaning": effect(DRIFT).meaning,
-        "parameters": parameters,
-        "plausibility": judged(effect(DRIFT).at(drift=value)),
-    }
-
-
-def _place(found: Finding, subject: Subject) -> dict[str, Any]:
+def _place(found: Finding, subject: Subject) -> Place:
     end = subject.segments.time("t_end") or subject.segments.time("t_fuel_out") or 0.0
     equation = "sensor" if found.verdict == ZERO else "nozzle"
     return _row(equation, found.verdict, "liquid", (0.0, end), found.size, found.channels[0])
 
 
-def _place_of(sign: Sign) -> dict[str, Any]:
+def _place_of(sign: Sign) -> Place:
     equation, phase = effect(sign.names[0]).equation, "purge" if sign.channel == "p_purge" else "liquid"
     return _row(equation, " or ".join(sign.names), phase, (sign.start, sign.end), sign.size, sign.channel)
 
 
-def _row(
-    equation: str, site: str, phase: str, span: tuple[float, float], size: Quantity, channel: str
-) -> dict[str, Any]:
-    return {
-        "equation": equation,
-        "site": site,
-        "phase": phase,
-        "t_start": Quantity(span[0], "s"),
-        "t_end": Quantity(span[1], "s"),
-        "source": size,
-        "channel": channel,
-        "significance": 0.0,
-    }
+def _row(equation: str, site: str, phase: str, span: tuple[float, float], size: Quantity, channel: str) -> Place:
+    return Place(
+        equation=equation,
+        site=site,
+        phase=phase,
+        t_start=Quantity(span[0], "s"),
+        t_end=Quantity(span[1], "s"),
+        source=size,
+        channel=channel,
+        significance=0.0,
+    )

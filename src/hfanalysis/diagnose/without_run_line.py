@@ -6,16 +6,14 @@ the tank's pressure does. Such an area is no C_i, and is reported as none; a dia
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
-from typing import Any
 
 from hfanalysis.calibrate.fuel_law import regress
 from hfanalysis.calibrate.tank import calibrate
-from hfanalysis.products.disk import to_json
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
-from hfanalysis.segment.phases import Segments
 
 SAMPLES = 50
 """Repetitions of the calibration with drawn inputs: a diagnosis takes the load's deviation from them, and no more."""
@@ -26,11 +24,10 @@ NOTE = (
 )
 
 
-def lumped_calibration(log: TestLog, segments: Segments, definition: TestDefinition) -> dict[str, Any]:
+def lumped_calibration(log: TestLog, segments: Segments, definition: TestDefinition) -> Calibration:
     """What calibration.json would hold if the feed line lost nothing. Raises AbsentError as a calibration does."""
     channels = {**log.channels, "p_run": replace(log["p_tank"], name="p_run")}
     lossless = replace(log, channels=channels)
     tank = calibrate(lossless, segments, definition, SAMPLES)
     regression = regress(lossless, segments, definition, tank)
-    found: dict[str, Any] = json.loads(to_json({**regression.quantities, **tank.to_json()}))
-    return found
+    return tank.with_law(regression)

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.sentences import Text, said
+
 if TYPE_CHECKING:
     from hfanalysis.engine.unsteady import Engine
 
@@ -72,9 +74,9 @@ class Believable:
     unit: str = ""
     factor: float = 1.0
 
-    def text(self, value: float) -> str:
+    def text(self, value: float) -> Text:
         """A size [SI] as people read it."""
-        return f"{value * self.factor:.3g} {self.unit}".strip()
+        return said(value, self.unit, size=1.0 / self.factor)
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.flight.pitch import ATTACK, HEIGHT, HIGH, LOW, MARGIN, SPEED, STEP, Flights
+from hfanalysis.products.flight import Mean, WindMargin
 
 Array = NDArray[np.float64]
 
@@ -33,17 +33,17 @@ class Margin:
         """Two standard deviations on each side of the mean."""
         return self.mean - 2.0 * self.std, self.mean + 2.0 * self.std
 
-    def to_json(self) -> dict[str, Any]:
+    def product(self) -> WindMargin:
         """Numbers for flight.json: at departure, least and largest, and whether the band keeps within the limits."""
         low, high = self.band
-        return {
-            "wind": self.wind,
-            "departure": {"mean": float(self.mean[0]), "std": float(self.std[0])},
-            "least": float(low.min()),
-            "largest": float(high.max()),
-            "apogee": self.apogee,
-            "result": "passed" if low.min() >= LOW and high.max() <= HIGH else "failed",
-        }
+        return WindMargin(
+            wind=self.wind,
+            departure=Mean(mean=float(self.mean[0]), std=float(self.std[0])),
+            least=float(low.min()),
+            largest=float(high.max()),
+            apogee=self.apogee,
+            result="passed" if low.min() >= LOW and high.max() <= HIGH else "failed",
+        )
 
 
 def margin(flights: Flights) -> Margin | None:

@@ -14,15 +14,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.assembly.calibrated import FITTED_TEMPERATURE, Regression, engine_of_test, starting_for
+from hfanalysis.assembly.calibrated import Regression, engine_of_test, starting_for
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.model import OUTPUTS, evaluate_rates
 from hfanalysis.engine.sites import SITES
 from hfanalysis.engine.unsteady import Burn, Engine, burn
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, line_at
-from hfanalysis.segment.phases import Segments
 from hfanalysis.thermo.nitrous import saturation
 
 Array = NDArray[np.float64]
@@ -87,7 +88,7 @@ class FullRun:
 def run_full(
     log: TestLog,
     segments: Segments,
-    calibration: Mapping[str, Any],
+    calibration: Calibration,
     definition: TestDefinition,
     effects: Sequence[Active] = (),
 ) -> FullRun:
@@ -96,9 +97,9 @@ def run_full(
     Raises AbsentError where the test does not state it or it is not calibrated.
     """
     law = Regression.of(calibration)
-    fitted = calibration.get(FITTED_TEMPERATURE)
-    if fitted is not None:  # with adopted effects, together with all else
-        engine = engine_of_test(definition, calibration, float(fitted["value"]), law, effects)
+    fitted = calibration.tank_temperature
+    if fitted is not None and fitted.value is not None:  # with adopted effects, together with all else
+        engine = engine_of_test(definition, calibration, fitted.value, law, effects)
         follows = definition.model.conventions != "report"
         return FullRun(engine, _burn(engine, follows), follows)
     tank = Signal.of(log["p_tank"]).shifted(segments.t_open.value or 0.0)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from hfanalysis.inference.fitting.fade import with_abrupt_end
 from hfanalysis.inference.fitting.hypothesis import Hypothesis, base_hypothesis
@@ -12,22 +10,23 @@ from hfanalysis.inference.fitting.tables import with_other_tables
 from hfanalysis.inference.full_run import run_full
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.reduction import observe_test
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 
 
 @dataclass(frozen=True)
 class Subject:
     """What a diagnosis is made from: a test's log, its segments and base calibration, and what was stated.
 
-    The calibration is empty where none could be had; ``notes`` say what stands for a missing channel.
+    The calibration is None where none could be had; ``notes`` say what stands for a missing channel.
     """
 
     log: TestLog
     segments: Segments
-    calibration: Mapping[str, Any]
+    calibration: Calibration | None
     definition: TestDefinition
     notes: tuple[str, ...] = ()
 
@@ -41,6 +40,7 @@ class Subject:
 
     def hypothesis(self) -> Hypothesis:
         """The base model with its constants free."""
+        assert self.calibration is not None
         full = run_full(self.log, self.segments, self.calibration, self.definition)
         return base_hypothesis(full.engine, self.calibration, self.definition.model.conventions != "report")
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
 
 if TYPE_CHECKING:
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
     from hfanalysis.inference.linear import Linearized
     from hfanalysis.inference.observations.observed import Observed
     from hfanalysis.inference.places import Place
+    from hfanalysis.products.segments import Segments
     from hfanalysis.record.signals import Signal
-    from hfanalysis.segment.phases import Segments
 
 Array = NDArray[np.float64]
 
@@ -55,14 +56,6 @@ class Samples(NamedTuple):
     signals: Mapping[str, Signal]
     segments: Segments
     steady: float
-
-
-class Amount(NamedTuple):
-    """A quantity in people's units."""
-
-    value: float
-    std: float
-    unit: str
 
 
 @dataclass(frozen=True)
@@ -136,8 +129,11 @@ class Unknown(ABC):
         """It over time as a fit that has it says."""
 
     @staticmethod
-    def words(row: Mapping[str, Any], where: str, amount: Amount) -> str:
-        """A sentence of a row of the localisation that has its ``known_by``: ``where`` it is, its mean ``amount``."""
+    def words(row: diagnosis.Place, known: Quantity, where: str, unit: str) -> str:
+        """A sentence of a row of the localisation that has the quantity it is ``known_by``, and is ``where``.
+
+        ``unit``: in which people have the row's source.
+        """
         raise NotImplementedError
 
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +13,13 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.flight.curve import STEPS, Curve, accumulated, altitude_gain, even_curve
 from hfanalysis.measured_flight.propellant import Propellant, propellant
 from hfanalysis.measured_flight.thrust import MeasuredThrust, measured_thrust
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.segment.phases import Segments
 from hfanalysis.thermo import atmosphere, combustion
 
 Array = NDArray[np.float64]
@@ -60,7 +59,7 @@ class Firing:
 def firing(
     log: TestLog,
     segments: Segments | None,
-    calibration: Mapping[str, Any] | None,
+    calibration: Calibration | None,
     definition: TestDefinition,
     raw_thrust: bool = False,
 ) -> Firing:

@@ -19,7 +19,8 @@ from hfanalysis.flight.ascent import TRACE, Ascent, ascend
 from hfanalysis.flight.descent import Leg, descend, fall
 from hfanalysis.measured_flight import stability
 from hfanalysis.measured_flight.firing import Firing
-from hfanalysis.measured_flight.uncertainty import Dispersion, disperse, inputs, rows
+from hfanalysis.measured_flight.uncertainty import Dispersion, Input, disperse, inputs, rows
+from hfanalysis.products import flight as products
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.rocket.vehicle import gravity
@@ -40,7 +41,7 @@ class Launch:
     firing: Firing
     ascent: Ascent
     dispersion: Dispersion
-    inputs: dict[str, Any]
+    inputs: dict[str, Input]
     samples: int
     seed: int
 
@@ -56,26 +57,29 @@ def launch(firing: Firing, rocket: Rocket, samples: int, seed: int, progress: Pr
                   samples, seed)  # fmt: skip
 
 
-def product(found: Launch, rocket: Rocket, stable: stability.Stability | str) -> dict[str, Any]:
+def product(found: Launch, rocket: Rocket, stable: stability.Stability | str) -> products.Flight:
     """The content of flight.json."""
     firing = found.firing
     flown = summary.quantities(
         firing.vehicle, found.ascent, firing.rail_length, firing.canopies, found.dispersion.spreads()
     )
-    return {
-        **flown,
-        **_on_pad(found),
-        "checks": {
-            "rail_departure_velocity": rail_check(flown["rail_departure_velocity"]),
-            **stability.checks(stable),
-        },
+    rail = rail_check(flown["rail_departure_velocity"])
+    drawn = {name: _drawn(given) for name, given in found.inputs.items()}
+    about = {
+        "checks": {"rail_departure_velocity": rail, **stability.checks(stable)},
         "thrust": firing.thrust_is,
         "drag": drag_from(rocket),
         "masses": dict(firing.propellant.how),
-        "dispersion": {"flights": found.samples, "seed": found.seed, "inputs": found.inputs},
+        "dispersion": products.Dispersion(flights=found.samples, seed=found.seed, inputs=drawn),
         "stability": stability.product(stable),
-        "notes": list(firing.notes),
+        "notes": firing.notes,
     }
+    return products.Flight.from_json({**flown, **_on_pad(found), **about})
+
+
+def _drawn(given: Input) -> products.DispersionInput:
+    origin = "test.toml" if given.stated else "default"
+    return products.DispersionInput(std=given.std, unit=given.unit, origin=origin, of=given.of)
 
 
 def _on_pad(found: Launch) -> dict[str, Quantity]:
@@ -93,14 +97,14 @@ def _on_pad(found: Launch) -> dict[str, Quantity]:
     }
 
 
-def rail_check(speed: Quantity) -> dict[str, Any]:
+def rail_check(speed: Quantity) -> products.Check:
     """Whether the rail is left fast enough: passed, failed, or unknown where the 95 % interval holds the limit."""
-    limit = {"limit": LEAST_RAIL_DEPARTURE, "unit": "m/s", "is": "at least"}
-    if speed.value is None:
-        return {**limit, "result": "unknown", "why": speed.reason}
-    low, high = speed.interval or (speed.value, speed.value)
-    result = "passed" if low >= LEAST_RAIL_DEPARTURE else "failed" if high < LEAST_RAIL_DEPARTURE else "unknown"
-    return {**limit, "result": result, "why": f"{speed.value:.1f} m/s, 95 % from {low:.1f} to {high:.1f}"}
+    result, why = "unknown", str(speed.reason)
+    if speed.value is not None:
+        low, high = speed.interval or (speed.value, speed.value)
+        result = "passed" if low >= LEAST_RAIL_DEPARTURE else "failed" if high < LEAST_RAIL_DEPARTURE else "unknown"
+        why = f"{speed.value:.1f} m/s, 95 % from {low:.1f} to {high:.1f}"
+    return products.Check(limit=LEAST_RAIL_DEPARTURE, unit="m/s", side="at least", result=result, why=why)
 
 
 def write_histories(

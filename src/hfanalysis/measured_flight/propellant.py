@@ -10,21 +10,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.assembly.calibrated import one_by_one
 from hfanalysis.calibrate.loaded_mass import load_cell_mass
 from hfanalysis.calibrate.measured_pressures import Histories
 from hfanalysis.errors import AbsentError
 from hfanalysis.flight.curve import accumulated
 from hfanalysis.measured_flight.thrust import MeasuredThrust
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 from hfanalysis.thermo.constants import GAS_CONSTANT
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.units import Value
@@ -80,7 +79,7 @@ class Oxidizer:
 def propellant(
     log: TestLog,
     segments: Segments | None,
-    calibration: Mapping[str, Any] | None,
+    calibration: Calibration | None,
     definition: TestDefinition,
     thrust: MeasuredThrust,
 ) -> Propellant:
@@ -134,13 +133,13 @@ def _ending_at(mass: Array, rest: float) -> Array:
 def _oxidizer(
     log: TestLog,
     segments: Segments | None,
-    calibration: Mapping[str, Any] | None,
+    calibration: Calibration | None,
     definition: TestDefinition,
     thrust: MeasuredThrust,
     time: Array,
     loaded: float,
 ) -> Oxidizer:
-    if calibration is not None and segments is not None and one_by_one(calibration)["C_i"]["value"]:
+    if calibration is not None and segments is not None and calibration.alone("C_i").value:
         return _through_injector(log, segments, calibration, definition, time, loaded)
     unknown = np.full(time.size, np.nan)
     cell = log.get("m_tank")
@@ -163,7 +162,7 @@ def _by_load_cell(cell: Signal, time: Array, loaded: float) -> Array:
 def _through_injector(
     log: TestLog,
     segments: Segments,
-    calibration: Mapping[str, Any],
+    calibration: Calibration,
     definition: TestDefinition,
     time: Array,
     loaded: float,
@@ -173,7 +172,8 @@ def _through_injector(
     assert definition.tank.volume is not None
     assert definition.injector is not None
     assert definition.injector.area is not None
-    discharge = one_by_one(calibration)["C_i"]["value"]  # which empties the tank of what was weighed
+    discharge = calibration.alone("C_i").value  # which empties the tank of what was weighed
+    assert discharge is not None
     volume, area = definition.tank.volume.value, discharge * definition.injector.area.value
     source = saturation_of(definition.model.properties)
     histories = Histories.of(log, segments, definition, float(time[-1]))
@@ -211,9 +211,7 @@ def _gas(time: Array, start: float, volume: float, velocity: Array, nitrogen: Ar
     return mass
 
 
-def _fuel(
-    definition: TestDefinition, calibration: Mapping[str, Any] | None, time: Array, flow: Array
-) -> tuple[Array, str]:
+def _fuel(definition: TestDefinition, calibration: Calibration | None, time: Array, flow: Array) -> tuple[Array, str]:
     """Fuel left [kg] over time, and how it was found."""
     grain, observed = definition.grain, definition.observed
     assert grain is not None
@@ -233,11 +231,11 @@ def _fuel(
     return np.maximum(per_area * (outer**2 - radius**2), 0.0), words
 
 
-def _exponent(definition: TestDefinition, calibration: Mapping[str, Any] | None) -> tuple[float, str]:
+def _exponent(definition: TestDefinition, calibration: Calibration | None) -> tuple[float, str]:
     grain = definition.grain
     if grain is not None and grain.n is not None:
         return grain.n, "[grain] n"
-    found = one_by_one(calibration or {}).get("n") or {}
-    if found.get("value") is not None and 0.0 < found["value"] <= 2.0:
-        return float(found["value"]), "calibrated n"
+    found = calibration.alone("n").value if calibration is not None else None
+    if found is not None and 0.0 < found <= 2.0:
+        return found, "calibrated n"
     return PARAFFIN_EXPONENT, "no n is known: taken as for paraffin"

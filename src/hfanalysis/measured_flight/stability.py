@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from hfanalysis.flight.ascent import arguments
 from hfanalysis.flight.margin import Margin, margin
 from hfanalysis.flight.pitch import GUST_INTENSITY, HIGH, LOW, aero, fly_in_wind
 from hfanalysis.measured_flight.firing import Firing
+from hfanalysis.products import flight
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.rocket.aerodynamics import Shape, center_of_pressure, components, drag_parts
@@ -99,43 +99,49 @@ def _engine_center(firing: Firing, place: Masses, definition: TestDefinition) ->
     return np.asarray(balance([place.dry, *_load(firing, place, definition)]).center - place.front)
 
 
-def product(found: Stability | str) -> dict[str, Any]:
+def product(found: Stability | str) -> flight.Stability:
     """What flight.json says of stability."""
     if isinstance(found, str):
-        return {"margin_at_rail_departure": Quantity.absent(found)}
+        return flight.Stability(margin_at_rail_departure=Quantity.absent(found))
     parts = components(found.outside, SLOW)
     slope, place = center_of_pressure(parts)
     calmest = found.margins[0]
-    return {
-        "margin_at_rail_departure": Quantity(float(calmest.mean[0]), "", float(calmest.std[0]) or None),
-        "static_margin_on_pad": Quantity((place - float(found.balance.center[0])) / found.outside.diameter),
-        "normal_force_slope": Quantity(slope, "1/rad"),
-        "center_of_pressure": Quantity(place, "m"),
-        "center_of_gravity_loaded": Quantity(float(found.balance.center[0]), "m"),
-        "center_of_gravity_empty": Quantity(float(found.balance.center[-1]), "m"),
-        "mach": SLOW,
-        "slopes": {part.name: {"slope": part.slope, "position": part.position} for part in parts},
-        "drag_parts": drag_parts(found.outside, SLOW, 0.0),
-        "limits": [LOW, HIGH],
-        "gust_intensity": GUST_INTENSITY,
-        "winds": [m.to_json() for m in found.margins],
-        "notes": list(found.notes),
-    }
+    return flight.Stability(
+        margin_at_rail_departure=Quantity(float(calmest.mean[0]), "", float(calmest.std[0]) or None),
+        static_margin_on_pad=Quantity((place - float(found.balance.center[0])) / found.outside.diameter),
+        normal_force_slope=Quantity(slope, "1/rad"),
+        center_of_pressure=Quantity(place, "m"),
+        center_of_gravity_loaded=Quantity(float(found.balance.center[0]), "m"),
+        center_of_gravity_empty=Quantity(float(found.balance.center[-1]), "m"),
+        mach=SLOW,
+        slopes={part.name: flight.Slope(slope=part.slope, position=part.position) for part in parts},
+        drag_parts=drag_parts(found.outside, SLOW, 0.0),
+        limits=(LOW, HIGH),
+        gust_intensity=GUST_INTENSITY,
+        winds=tuple(m.product() for m in found.margins),
+        notes=found.notes,
+    )
 
 
-def checks(found: Stability | str) -> dict[str, dict[str, Any]]:
+def checks(found: Stability | str) -> dict[str, flight.Check]:
     """Whether the margin keeps within its limits, two standard deviations included, in every wind."""
     return {
-        "least_static_margin": _check(found, {"limit": LOW, "is": "at least"}, "least", lambda margin: margin >= LOW),
-        "largest_static_margin": _check(found, {"limit": HIGH, "is": "at most"}, "largest", lambda m: m <= HIGH),
+        "least_static_margin": _check(found, LOW, "at least", lambda m: m.least, lambda margin: margin >= LOW),
+        "largest_static_margin": _check(found, HIGH, "at most", lambda m: m.largest, lambda margin: margin <= HIGH),
     }
 
 
-def _check(found: Stability | str, limit: dict[str, Any], key: str, holds: Callable[[float], bool]) -> dict[str, Any]:
-    stated = {**limit, "unit": "calibers"}
-    if isinstance(found, str):
-        return {**stated, "result": "unknown", "why": found}
-    said = [m.to_json() for m in found.margins]
-    words = ", ".join(f"{m[key]:.2f} in a wind of {m['wind']:.1f} m/s" for m in said)
-    kept = all(holds(m[key]) for m in said)
-    return {**stated, "result": "passed" if kept else "failed", "why": f"{words}; mean and two standard deviations"}
+def _check(
+    found: Stability | str,
+    limit: float,
+    side: str,
+    extreme: Callable[[flight.WindMargin], float],
+    holds: Callable[[float], bool],
+) -> flight.Check:
+    result, why = "unknown", str(found)
+    if not isinstance(found, str):
+        said = [(extreme(m), m.wind) for m in (margin.product() for margin in found.margins)]
+        words = ", ".join(f"{margin:.2f} in a wind of {wind:.1f} m/s" for margin, wind in said)
+        result = "passed" if all(holds(margin) for margin, _ in said) else "failed"
+        why = f"{words}; mean and two standard deviations"
+    return flight.Check(limit=limit, unit="calibers", side=side, result=result, why=why)

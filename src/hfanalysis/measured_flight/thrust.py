@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
+from hfanalysis.sentences import said, text
 from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
 
 Array = NDArray[np.float64]
@@ -76,7 +77,9 @@ def _left(found: Thrust) -> float:
 
 def _drift_taken(found: Thrust) -> tuple[str, ...]:
     taken = found.error - _left(found)
-    return (f"{taken:.0f} N of the load cell's drift taken off over the burn",) if abs(taken) >= 0.5 else ()
+    if abs(taken) < 0.5:
+        return ()
+    return (text("{taken} of the load cell's drift taken off over the burn", taken=said(taken, "N", ".0f")),)
 
 
 def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tuple[float, str]:

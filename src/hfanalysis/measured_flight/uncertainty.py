@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,10 +64,6 @@ class Input:
     unit: str
     stated: bool
     of: str
-
-    def to_json(self) -> dict[str, Any]:
-        """As flight.json has it."""
-        return {"std": self.std, "unit": self.unit, "from": "test.toml" if self.stated else "default", "of": self.of}
 
 
 def inputs(firing: Firing, rocket: Rocket) -> dict[str, Input]:

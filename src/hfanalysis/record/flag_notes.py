@@ -43,13 +43,23 @@ def told(found: Iterable[tuple[str, Found]], channels: Counter[str]) -> Iterator
     for channel, what in found:
         together[what].append(channel)
     for what, names in together.items():
-        yield f"{_whose(names, what, channels)} flagged {what.flag}"
+        yield with_flag(_whose(names, what, channels), what.flag)
+
+
+def of_one(channel: str, samples: str) -> str:
+    """Samples ("3 of 100 samples") of one channel."""
+    return f"channel {channel}: {samples}"
+
+
+def with_flag(whose: str, flag: str) -> str:
+    """That these carry a flag."""
+    return f"{whose} flagged {flag}"
 
 
 def _whose(names: Sequence[str], what: Found, channels: Counter[str]) -> str:
     samples = f"{what.count} of {what.samples} samples"
     if len(names) == 1:
-        return f"channel {names[0]}: {samples}"
+        return of_one(names[0], samples)
     if len(names) < channels[what.file]:
         return f"channels {', '.join(names)}: the same {samples}"
     return f"{what.file}: {samples} of all {len(names)} channels"

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis import sentences
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.units import near
 
@@ -103,7 +104,8 @@ def read_log(path: Path) -> TestLog:
         raise InputError(f"{path}: cannot be read as HDF5 ({error}); expected a product of ingest") from None
     with file:
         channels = {name: _channel(file, name) for name in json.loads(file.attrs["channels"])}
-        warnings = tuple(json.loads(file.attrs["warnings"]))
+        quoted = sentences.from_json(json.loads(file.attrs.get("quoted", "{}")))
+        warnings = tuple(sentences.revived(json.loads(file.attrs["warnings"]), quoted))
         return TestLog(channels, warnings, json.loads(file.attrs["provenance"]))
 
 

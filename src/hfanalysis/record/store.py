@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis import sentences
 from hfanalysis.record.log import Channel, Flag
 
 _FLAG_MEANINGS = " ".join(flag.name.lower() for flag in Flag if flag.name)
@@ -53,6 +54,8 @@ class Store:
         """What holds for the whole log."""
         self._file.attrs["channels"] = json.dumps(self._names)
         self._file.attrs["warnings"] = json.dumps(list(warnings))
+        if quoted := sentences.quoted_in(warnings):
+            self._file.attrs["quoted"] = json.dumps(sentences.to_json(quoted))
         self._file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
 
     def _dataset(self, name: str, data: NDArray[Any]) -> Any:

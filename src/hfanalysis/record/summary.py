@@ -6,38 +6,37 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.products.ingest import ChannelSummary, Ingest
 from hfanalysis.record.log import Channel, Flag, Floats, TestLog
 
 
-def summary(log: TestLog) -> dict[str, Any]:
+def summary(log: TestLog) -> Ingest:
     """The content of ``ingest.json``: ``channels`` by name, and the warnings of the ingest."""
-    return {
-        "channels": {name: channel_summary(channel) for name, channel in log.channels.items()},
-        "warnings": list(log.warnings),
-    }
+    channels = {name: channel_summary(channel) for name, channel in log.channels.items()}
+    return Ingest(channels=channels, warnings=tuple(log.warnings))
 
 
-def channel_summary(channel: Channel) -> dict[str, Any]:
-    """One channel: label, unit, samples, rate [Hz], range of the good samples [SI], flags, accuracy, zero, drift."""
+def channel_summary(channel: Channel) -> ChannelSummary:
+    """One channel in a few numbers [SI]."""
     good = channel.values[channel.good]
-    return {
-        "label": channel.label,
-        "unit": channel.unit,
-        "samples": int(channel.values.size),
-        "good": int(good.size),
-        "rate": rate(channel.time),
-        "start": _number(channel.time, np.nanmin),
-        "end": _number(channel.time, np.nanmax),
-        "least": _number(good, np.min),
-        "largest": _number(good, np.max),
-        "flags": flag_counts(channel),
-        "accuracy": channel.accuracy,
-        "accuracy_stated": channel.accuracy_stated,
-        "zero": channel.zero,
-        "zero_std": channel.zero_std,
-        "drift": channel.drift,
-        "history": list(channel.history),
-    }
+    return ChannelSummary(
+        label=channel.label,
+        unit=channel.unit,
+        samples=int(channel.values.size),
+        good=int(good.size),
+        rate=rate(channel.time),
+        start=_number(channel.time, np.nanmin),
+        end=_number(channel.time, np.nanmax),
+        least=_number(good, np.min),
+        largest=_number(good, np.max),
+        flags=flag_counts(channel),
+        accuracy=channel.accuracy,
+        accuracy_stated=channel.accuracy_stated,
+        zero=channel.zero,
+        zero_std=channel.zero_std,
+        drift=channel.drift,
+        history=tuple(channel.history),
+    )
 
 
 def rate(time: Floats) -> float | None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.record.logspec import ChannelSpec
 from hfanalysis.record.quiet import Firing, Level, Trace, after, before, level
+from hfanalysis.sentences import said, text
 from hfanalysis.units import Value, si_unit
 
 Floats = NDArray[np.float64]
@@ -47,11 +48,20 @@ def ambient_zero(spec: ChannelSpec, trace: Trace, firing: Firing | None, ambient
     error = found.value - ambient.value
     if abs(error) > max(5.0 * accuracy, FAR):
         return _none(
-            f"channel {spec.name}: zero not taken: it reads {found.value / 1e5:.3f} bar in the quiet time, "
-            f"not ambient {ambient.value / 1e5:.3f} bar"
+            text(
+                "channel {name}: zero not taken: it reads {level} in the quiet time, not ambient {ambient}",
+                name=spec.name,
+                level=said(found.value, "bar", ".3f"),
+                ambient=said(ambient.value, "bar", ".3f"),
+            )
         )
     std = float(np.hypot(found.std, ambient.std or 0.0))
     return Zero(error, std, history=(f"zero: {error:.6g} Pa taken off, so that {found.time:.3f} s reads ambient",))
+
+
+def not_back(channel: str) -> str:
+    """How it is said that a cell does not come back."""
+    return f"channel {channel}: does not return to zero"
 
 
 def tare(spec: ChannelSpec, trace: Trace, firing: Firing | None, accuracy: float) -> Zero:
@@ -89,7 +99,7 @@ def _with_drift(spec: ChannelSpec, first: Level, last: Level, trace: Trace, star
     history = (f"tare: {first.value:.6g} taken off at {first.time:.3f} s, {last.value:.6g} at {last.time:.3f} s",)
     lot = max(5.0 * accuracy, 0.02 * float(np.max(np.abs(trace.values - first.value))))
     unit = si_unit(spec.dimension)
-    note = f"channel {spec.name}: does not return to zero after the firing: {drift:.4g} {unit}"
+    note = f"{not_back(spec.name)} after the firing: {drift:.4g} {unit}"
     return Zero(
         first.value, std, drift, (max(first.time, start), last.time), history, (note,) if abs(drift) > lot else ()
     )

@@ -10,13 +10,17 @@ from typing import Any
 from markupsafe import Markup
 
 from hfanalysis.charts.chart import Chart, Series
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
+from hfanalysis.products.validation import Validation
+from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
 from hfanalysis.report.figure import figure
-from hfanalysis.report.material import EVENTS, Material
+from hfanalysis.report.material import Material
 from hfanalysis.report.page import kind, render
 from hfanalysis.report.payload import payload
 from hfanalysis.report.sections import charts
-from hfanalysis.wording.numbers import MINUS, Shown, fixed, quantities, shown
+from hfanalysis.wording.numbers import MINUS, Shown, fixed, ordered, shown
 from hfanalysis.wording.scales import SYSTEMS
 
 _LEFT_OUT = {"raw", "model", "residual"}
@@ -88,36 +92,38 @@ def _tables(one: Material, other: Material) -> Iterator[tuple[str, Markup]]:
             yield title, html.table(title, caption, columns, rows)
 
 
-def _performance(material: Material) -> Mapping[str, Mapping[str, Any]]:
-    return quantities((material.product("validation").get("performance") or {}).get("measured") or {})
+def _performance(material: Material) -> Mapping[str, Quantity]:
+    validation = material.get(Validation)
+    return ordered(validation.performance.measured.quantities) if validation is not None else {}
 
 
-def _calibration(material: Material) -> Mapping[str, Mapping[str, Any]]:
-    return quantities(material.product("calibration"))
+def _calibration(material: Material) -> Mapping[str, Quantity]:
+    calibration = material.get(Calibration)
+    return ordered(calibration.quantities) if calibration is not None else {}
 
 
-def _phases(material: Material) -> Mapping[str, Mapping[str, Any]]:
-    segments = material.product("segments")
-    return {name: segments[name] for name in EVENTS if isinstance(segments.get(name), Mapping)}
+def _phases(material: Material) -> Mapping[str, Quantity]:
+    segments = material.get(Segments)
+    return segments.events if segments is not None else {}
 
 
-def _row(name: str, mine: Mapping[str, Any] | None, theirs: Mapping[str, Any] | None) -> tuple[Any, ...]:
-    cells = [Markup("–") if not quantity else _cell(name, quantity) for quantity in (mine, theirs)]
-    return (html.symbol_and_words(name), *cells, *_difference(name, mine or {}, theirs or {}))
+def _row(name: str, mine: Quantity | None, theirs: Quantity | None) -> tuple[Any, ...]:
+    cells = [Markup("–") if quantity is None else _cell(name, quantity) for quantity in (mine, theirs)]
+    return (html.symbol_and_words(name), *cells, *_difference(name, mine, theirs))
 
 
-def _cell(name: str, quantity: Mapping[str, Any]) -> Markup:
-    verdict = str(quantity.get("verdict") or "")
+def _cell(name: str, quantity: Quantity) -> Markup:
+    verdict = quantity.verdict or ""
     judged = Markup(" ") + html.verdict(verdict) if verdict and html.mark(verdict) != "good" else Markup()
     return html.value(quantity, name) + judged
 
 
-def _difference(name: str, mine: Mapping[str, Any], theirs: Mapping[str, Any]) -> tuple[Markup, Markup]:
+def _difference(name: str, mine: Quantity | None, theirs: Quantity | None) -> tuple[Markup, Markup]:
     """The difference of two quantities with its standard deviation, and how many of those it is."""
-    if mine.get("value") is None or theirs.get("value") is None:
+    if mine is None or theirs is None or mine.value is None or theirs.value is None:
         return Markup(), Markup()
-    value, std = theirs["value"] - mine["value"], math.hypot(mine.get("std") or 0.0, theirs.get("std") or 0.0)
-    between = {"value": value, "std": std, "unit": mine.get("unit")}
+    value, std = theirs.value - mine.value, math.hypot(mine.std or 0.0, theirs.std or 0.0)
+    between = Quantity(value, mine.unit, std)
     si, team = (_signed(shown(between, system, name, True)) for system in SYSTEMS)
     return html.both(si, team), _sigmas(value, std)
 

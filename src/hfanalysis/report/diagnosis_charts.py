@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.colours import style_of
 from hfanalysis.charts.svg import value_range
 from hfanalysis.diagnose.answer.words import EQUATIONS
+from hfanalysis.products.diagnosis import Diagnosis, Lacking
 from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report.material import Material, required
 from hfanalysis.report.time_charts import over_time
@@ -44,34 +44,35 @@ def place(equation: str) -> str:
     return EQUATIONS.get(equation, equation.replace("_", " "))
 
 
-def with_what(product: Mapping[str, Any]) -> str:
+def with_what(product: Diagnosis) -> str:
     """What the better of the two models has that the base model has not; empty where nothing is claimed."""
-    if product["effects"]:
-        return f"with {listed([str(row['name']) for row in product['effects']])}"
-    return "" if product["verdict"] == "none" else "with the unknown source"
+    if product.effects:
+        return f"with {listed([row.name for row in product.effects])}"
+    return "" if product.verdict == "none" else "with the unknown source"
 
 
-def sources(material: Material, product: Mapping[str, Any]) -> Iterator[Chart | None]:
+def sources(material: Material, product: Diagnosis) -> Iterator[Chart | None]:
     """What the model lacks over time, for every row of the localisation."""
-    for number, row in enumerate(product["localisation"], 1):
-        history = row.get("history")
+    for number, row in enumerate(product.localisation, 1):
+        history = row.history
         if history is None:
             continue
-        unit, factor = READ.get(history["unit"], (history["unit"], 1.0))
-        time, mean, low, high = (np.asarray(history[key], float) for key in ("time", "mean", "low90", "high90"))
-        style = style_of(str(row["channel"])) if row.get("channel") else _STYLES.get(row["equation"], "other")
+        unit, factor = READ.get(history.unit, (history.unit, 1.0))
+        columns = (history.time, history.mean, history.low90, history.high90)
+        time, mean, low, high = (np.asarray(column, float) for column in columns)
+        style = style_of(row.channel) if row.channel else _STYLES.get(row.equation, "other")
         lines = [
             Series("90 % band", style, time, factor * low, "band", factor * high),
-            Series(str(row["site"]), style, time, factor * mean),
+            Series(row.site, style, time, factor * mean),
         ]
-        where = place(row["equation"]) + (f" ({row['channel']})" if row.get("channel") else "")
-        title = f"What {where} lacks: {row['site']}"
+        where = place(row.equation) + (f" ({row.channel})" if row.channel else "")
+        title = f"What {where} lacks: {row.site}"
         caption = (
             "All calibrated constants were fitted together with it. Gain in log evidence credited to it: "
-            f"{tidy(float(row['significance']), 3)}."
+            f"{tidy(row.significance, 3)}."
         )
-        caption += " It stands beside what is named." if row.get("beside") else ""
-        axis, key = (str(row["site"]).replace("_", " "), unit), f"diagnosis-source-{number}"
+        caption += " It stands beside what is named." if row.beside else ""
+        axis, key = (row.site.replace("_", " "), unit), f"diagnosis-source-{number}"
         yield over_time(
             material,
             key,
@@ -86,10 +87,10 @@ def sources(material: Material, product: Mapping[str, Any]) -> Iterator[Chart | 
         )
 
 
-def residuals(material: Material, product: Mapping[str, Any]) -> Iterator[Chart | None]:
+def residuals(material: Material, product: Diagnosis) -> Iterator[Chart | None]:
     """Measured less model of every channel, without and with what is missing."""
     better = with_what(product)
-    for channel in product["compared"]["channels"]:
+    for channel in product.compared.channels:
         table = material.table("diagnosis", f"residuals/{channel}")
         if not table:
             continue
@@ -101,21 +102,21 @@ def residuals(material: Material, product: Mapping[str, Any]) -> Iterator[Chart 
         ]
         if better:
             lines.insert(2, Series("with it", style_of(channel), time, after))
-        words = LONG_NAMES.get(channel, str(channel))
+        words = LONG_NAMES.get(channel, channel)
         title, key = f"{words.capitalize()}: what is left", f"diagnosis-left-{_slug(channel)}"
         axis = ("measured − model", table["before"].unit)
         caption = f"Dashed: the model alone; solid: {better}." if better else ""
         yield over_time(material, key, title, axis, lines, caption, span=around([time]), height=220.0, difference=True)
 
 
-def weak_form(material: Material, product: Mapping[str, Any]) -> Iterator[Chart | None]:
+def weak_form(material: Material, product: Diagnosis) -> Iterator[Chart | None]:
     """What each governing equation lacks by itself, from the measured channels alone."""
-    for equation, found in (product.get("weak_form") or {}).items():
-        if "value" not in found:
+    for equation, found in product.weak_form.items():
+        if found.reason is not None:
             continue
-        unit, factor = READ.get(found["unit"], (found["unit"], 1.0))
-        names = ("time", "value", "low90", "high90", "explained")
-        time, value, low, high, explained = (np.asarray(found[name], float) for name in names)
+        unit, factor = READ.get(found.unit, (found.unit, 1.0))
+        columns = (found.time, found.value, found.low90, found.high90, found.explained)
+        time, value, low, high, explained = (np.asarray(column, float) for column in columns)
         style = _STYLES.get(equation, "other")
         lines = [
             Series("90 % band", style, time, factor * low, "band", factor * high),
@@ -139,17 +140,17 @@ def weak_form(material: Material, product: Mapping[str, Any]) -> Iterator[Chart 
         )
 
 
-def _weak_words(found: Mapping[str, Any]) -> str:
+def _weak_words(found: Lacking) -> str:
     """Where it is beyond two standard deviations, and how much on average."""
-    chi = found["significance"]
-    said = f"Chi-square {tidy(float(chi['chi_square']), 3)} on {chi['degrees_of_freedom']} degrees of freedom."
-    mean, start, end = (found[key] for key in ("mean", "t_start", "t_end"))
-    if mean.get("value") is None:
-        return f"{str(mean.get('reason') or 'nowhere beyond the noise').capitalize()}. {said}"
-    unit, factor = {"W": READ["W"], "kg/s": READ["kg/s"]}.get(found["unit"], (found["unit"], 1.0))
+    chi, mean, start, end = found.significance, found.mean, found.t_start, found.t_end
+    said = f"Chi-square {tidy(chi.chi_square, 3)} on {chi.degrees_of_freedom} degrees of freedom." if chi else ""
+    if mean is None or mean.value is None or start is None or end is None:
+        reason = (mean.reason if mean else None) or "nowhere beyond the noise"
+        return f"{reason.capitalize()}. {said}"
+    unit, factor = {"W": READ["W"], "kg/s": READ["kg/s"]}.get(found.unit, (found.unit, 1.0))
     return (
-        f"From {fixed(start['value'], 1)} to {fixed(end['value'], 1)} s it lacks {tidy(factor * mean['value'], 3)} ± "
-        f"{tidy(factor * mean['std'], 2)} {unit} on average. {said}"
+        f"From {fixed(start.value or 0.0, 1)} to {fixed(end.value or 0.0, 1)} s it lacks "
+        f"{tidy(factor * mean.value, 3)} ± {tidy(factor * (mean.std or 0.0), 2)} {unit} on average. {said}"
     )
 
 

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from markupsafe import Markup
 
+from hfanalysis.products.diagnosis import Diagnosis, Plausibility
+from hfanalysis.quantity import Quantity
 from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.report import html
 from hfanalysis.report.diagnosis_charts import READ, with_what
 from hfanalysis.wording.numbers import MINUS, fixed, in_words
 from hfanalysis.wording.scales import scale
-
-Product = Mapping[str, Any]
 
 SHOWN = 0.005
 """Probability from which on a name has a row of its own."""
@@ -37,13 +37,12 @@ _ARMS = {
 }
 
 
-def probabilities(product: Product) -> Markup | None:
+def probabilities(product: Diagnosis) -> Markup | None:
     """Every likely name with its probability, and how plausible its size is; None where no names competed."""
-    if "none" not in product["posterior"]:
+    if "none" not in product.posterior:
         return None
-    posterior, inside = product["posterior"], product["set90"]
-    chosen = {row["name"]: row["plausibility"] for row in product["effects"]}
-    sizes = {**product["plausibility"], **chosen}
+    posterior, inside = product.posterior, product.set90
+    sizes = {**product.plausibility, **{row.name: row.plausibility for row in product.effects}}
     ordered = sorted(posterior, key=lambda name: (-posterior[name], name))
     kept = [name for name in ordered if posterior[name] >= SHOWN or name in inside or name in _ALWAYS]
     rows = [
@@ -56,7 +55,7 @@ def probabilities(product: Product) -> Markup | None:
         )
         for name in kept
     ]
-    beside = {name for name, p in (product.get("partners") or {}).items() if p >= SHOWN}
+    beside = {name for name, p in product.partners.items() if p >= SHOWN}
     rest = sum(name not in kept and name not in beside for name in ordered)
     others = f" {rest} other names are below {SHOWN:g} each." if rest else ""
     caption = f"Probability of each name.{others} {_trust(product)}"
@@ -64,31 +63,31 @@ def probabilities(product: Product) -> Markup | None:
     return html.table("Probabilities", caption, columns, rows)
 
 
-def partners(product: Product) -> Markup | None:
+def partners(product: Diagnosis) -> Markup | None:
     """Effects that may be there beside the first, with their probabilities; None where one effect is all."""
-    found, added = product.get("partners") or {}, [row["name"] for row in product["effects"]]
+    found, added = product.partners, [row.name for row in product.effects]
     kept = sorted((n for n, p in found.items() if p >= SHOWN or n in added), key=lambda n: (-found[n], n))
     if not kept:
         return None
     rows = [(name, _probability(found[name]), _bar(found[name]), "yes" if name in added else "") for name in kept]
-    tried = ", by all sets of effects that were tried" if "none" in product["posterior"] else ""
-    caption = f"Effects beside {(added or product['set90'])[0]}{tried}."
+    tried = ", by all sets of effects that were tried" if "none" in product.posterior else ""
+    caption = f"Effects beside {(added or product.set90)[0]}{tried}."
     return html.table("Beside it", caption, ("name", ">probability", "", "added to the model"), rows)
 
 
-def parameters(product: Product) -> Markup | None:
+def parameters(product: Diagnosis) -> Markup | None:
     """The effects' own constants, as they were added to the model; None where there is no model, or nothing was."""
-    if not product.get("constants"):
+    if product.constants is None:
         return None
     rows = [
         (
-            Markup("<span>{}</span>").format(effect["name"]),
+            Markup("<span>{}</span>").format(effect.name),
             name.replace("_", " "),
             html.value(found),
             html.interval(found),
         )
-        for effect in product["effects"]
-        for name, found in effect["parameters"].items()
+        for effect in product.effects
+        for name, found in effect.parameters.items()
     ]
     caption = "Constants of what was added to the model, ± one standard deviation, and within which 95 % lie."
     columns = ("effect", "constant", ">value", ">95 %")
@@ -106,26 +105,29 @@ def _bar(value: float) -> Markup:
     )
 
 
-def _plausible(size: Mapping[str, Any]) -> Markup:
-    sign = {True: ("good", "✓", "plausible"), False: ("bad", "✕", "hard to believe")}
-    kind, mark, word = sign.get(size["plausible"], ("open", "?", "not judged"))
+def _plausible(size: Plausibility) -> Markup:
+    sign: dict[bool | None, tuple[str, str, str]] = {
+        True: ("good", "✓", "plausible"),
+        False: ("bad", "✕", "hard to believe"),
+    }
+    kind, mark, word = sign.get(size.plausible, ("open", "?", "not judged"))
     badge = Markup('<span class="verdict {}"><span aria-hidden="true">{}</span> {}</span> {}')
-    return badge.format(kind, mark, word, html.switchable(str(size["why"])))
+    return badge.format(kind, mark, word, html.switchable(size.why))
 
 
-def _trust(product: Product) -> str:
+def _trust(product: Diagnosis) -> str:
     """What the probabilities rest on."""
-    if product.get("probabilities_from") == "raw evidences":
+    if product.probabilities_from == "raw evidences":
         return "They are raw evidences, not calibrated on simulated tests."
-    return "They were calibrated on simulated tests." if product.get("probabilities_from") else ""
+    return "They were calibrated on simulated tests." if product.probabilities_from else ""
 
 
-def gaps(product: Product) -> Markup:
+def gaps(product: Diagnosis) -> Markup:
     """Residual of every channel without and with what is missing, beside the noise."""
-    gap = product["gap"]
+    gap = product.gap
     rows = [
-        (LONG_NAMES.get(name, name), *(_in_unit(name, gap[key].get(name)) for key in ("before", "after", "noise")))
-        for name in gap["before"]
+        (LONG_NAMES.get(name, name), *(_in_unit(name, size.get(name)) for size in (gap.before, gap.after, gap.noise)))
+        for name in gap.before
     ]
     caption = (
         "Root mean square of measured less model over the burn, beside the noise of the averages that are compared. "
@@ -135,18 +137,19 @@ def gaps(product: Product) -> Markup:
     return html.table("Gap", caption, columns, rows)
 
 
-def gaps_by_phase(product: Product) -> Markup | None:
+def gaps_by_phase(product: Diagnosis) -> Markup | None:
     """What is beyond the noise, by phase."""
-    found = product["gap"].get("by_phase") or {}
-    before, after = found.get("before") or {}, found.get("after") or {}
+    found = product.gap.by_phase
+    if found is None:
+        return None
     rows = [
         (
             LONG_NAMES.get(name, name),
             in_words(phase),
             _in_unit(name, size),
-            _in_unit(name, after.get(name, {}).get(phase)),
+            _in_unit(name, found.after.get(name, {}).get(phase)),
         )
-        for name, phases in before.items()
+        for name, phases in found.before.items()
         for phase, size in phases.items()
     ]
     caption = "What is beyond the noise: square root of max(0, rms² − noise²)."
@@ -158,14 +161,15 @@ def _in_unit(channel: str, value: float | None) -> Markup:
     return html.amount(value, unit_of(channel), 3, True)
 
 
-def proof(product: Product) -> Markup:
+def proof(product: Diagnosis) -> Markup:
     """How much of the gap closes, and on which data; in words where it is not known."""
-    found, other = product["gap"]["closed_fraction"], product["gap"].get("other_test") or {}
+    found, other = product.gap.closed_fraction, product.gap.other_test
     rows: list[tuple[Any, ...]] = []
     for arm, (words, why) in _ARMS.items():
-        named = f"{words} ({other['test']})" if arm == "other_test" and other.get("test") else words
-        rows.append((named, _closed(found.get(arm)), "" if found.get(arm) is not None else why))
-    free = product["gap"].get("closed_by_free_form")
+        named = f"{words} ({other.test})" if arm == "other_test" and other is not None else words
+        part: float | None = getattr(found, arm)
+        rows.append((named, _closed(part), "" if part is not None else why))
+    free = product.gap.closed_by_free_form
     if free is not None:
         rows.append(("placebo: a free curve of equal freedom", _closed(free), ""))
     caption = (
@@ -181,14 +185,14 @@ def _closed(part: float | None) -> str:
     return f"{100.0 * part:.0f} %".replace("-", MINUS) + (" (wider)" if part < 0.0 else "")
 
 
-def constants(product: Product) -> Iterator[Markup]:
+def constants(product: Diagnosis) -> Iterator[Markup]:
     """The calibrated constants without and with the effects, m first; nothing where no model was fitted."""
-    if not product.get("constants"):
+    if product.constants is None:
         return
-    without, better = product["constants"]["without"], product["constants"]["with"]
+    without, better = product.constants.without, product.constants.better
     arm = with_what(product)
-    if "m" in without and without["m"].get("value") is not None:
-        values = [fixed(float(side["m"]["value"]), 2) for side in (without, better)]
+    if "m" in without and without["m"].value is not None:
+        values = [fixed(side["m"].value or 0.0, 2) for side in (without, better)]
         said = f"m {values[0]} without, {values[1]} {arm}." if arm else f"m {values[0]}."
         yield html.paragraph(Markup("Polytropic exponent of the vapour: <strong>{}</strong>").format(said), "told")
     names = sorted(without, key=lambda name: name != "m")
@@ -205,16 +209,16 @@ def _head(name: str) -> Markup:
     return html.symbol_and_words(name) if words is None else Markup('<span class="words">{}</span>').format(words)
 
 
-def limits(product: Product) -> Markup | None:
+def limits(product: Diagnosis) -> Markup | None:
     """The size below which every effect stays that is not in the model."""
-    rows = [(Markup("<span>{}</span>").format(name), _limit(found)) for name, found in product["upper_limits"].items()]
+    rows = [(Markup("<span>{}</span>").format(name), _limit(found)) for name, found in product.upper_limits.items()]
     caption = "Each of these, if it is there at all, is smaller than this with 95 % probability."
     return html.table("Upper limits", caption, ("effect", ">upper limit"), rows) if rows else None
 
 
-def _limit(found: Mapping[str, Any]) -> Markup:
-    if found.get("value") is None:
-        return Markup.escape(str(found.get("reason") or "–"))
-    unit, factor = READ.get(found["unit"], (found["unit"], 1.0))
-    value = factor * found["value"]
+def _limit(found: Quantity) -> Markup:
+    if found.value is None:
+        return Markup.escape(found.reason or "–")
+    unit, factor = READ.get(found.unit, (found.unit, 1.0))
+    value = factor * found.value
     return html.amount(value, unit, max(3, len(f"{abs(scale(unit)(value)):.0f}")), True)

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from markupsafe import Markup, escape
 
-from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL
+from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL, Quantity
+from hfanalysis.sentences import Quoted, Text
 from hfanalysis.wording.numbers import MINUS, Shown, decimals_for, fixed, in_words, shown, tidy
 from hfanalysis.wording.scales import scale, superscript
 
-_UNITS_IN_TEXT = {"bar": ("Pa", 1e5), "Pa": ("Pa", 1.0), "N": ("N", 1.0), "N s": ("N s", 1.0)}
 _NEGATIVE, _POWER = re.compile(r"(?<![\w.)])-(?=\d)"), re.compile(r"(?<=[A-Za-z)])\^(-?\d)(?![\d.])")
-_NUMBER = r"[+\-−]?\d+(?:\.\d+)?"
-_IN_TEXT = re.compile(rf"(?<![\w.])({_NUMBER})((?: ± )\d+(?:\.\d+)?)? (bar|Pa|N s|N)(?![\w/^²·])")
 
 
 def both(si: str, team: str, style: str = "", value: float | None = None, unit: str = "") -> Markup:
@@ -40,36 +38,43 @@ def amount(value: float | None, unit: str, digits: int = 4, difference: bool = F
     return both(texts[0], texts[1], "number", value, unit)
 
 
-def switchable(text: str) -> Markup:
-    """A sentence of a product as pages are set, its pressures and forces ready for the other system of units."""
-    text = _NEGATIVE.sub(MINUS, _POWER.sub(lambda found: superscript(int(found[1])), text))
-    parts, last = [], 0
-    for found in _IN_TEXT.finditer(text):
-        parts += [
-            escape(text[last : found.start()]),
-            _converted(found[1], (found[2] or "").removeprefix(" ± "), found[3]),
-        ]
-        last = found.end()
-    return Markup("").join([*parts, escape(text[last:])])
+def switchable(words: str) -> Markup:
+    """A sentence of a product as pages are set, the quantities that it knows ready for the other system of units."""
+    known = words.quoted if isinstance(words, Text) else {}
+    pieces = {_set(piece): (piece, quantity) for piece, quantity in known.items() if _converts(piece, quantity)}
+    if not pieces:
+        return escape(_set(words))
+    longest_first = sorted(map(re.escape, pieces), key=len, reverse=True)
+    parts = re.split(rf"(?<![\w.−-])({'|'.join(longest_first)})(?!\w)", _set(words))
+    return Markup("").join(_converted(part, *pieces[part]) if part in pieces else escape(part) for part in parts)
 
 
-def _converted(number: str, std: str, unit: str) -> Markup:
-    """A number, and what it is uncertain by if that is there, in the other unit as well."""
-    si, factor = _UNITS_IN_TEXT[unit]
-    team = scale(si, "team")
-    value = team(float(number.replace("−", "-")) * factor)
-    if not std:
-        digits = sum(c.isdigit() for c in number)
-        return both(f"{number} {unit}", f"{tidy(value, max(3, digits))} {team.unit}")
-    spread = team.factor * float(std) * factor
-    decimals = decimals_for(value, spread)
-    return both(f"{number} ± {std} {unit}", f"{fixed(value, decimals)} ± {fixed(spread, decimals)} {team.unit}")
+def _set(words: str) -> str:
+    """With real minus signs and superscripts."""
+    return _NEGATIVE.sub(MINUS, _POWER.sub(lambda found: superscript(int(found[1])), words))
 
 
-def value(quantity: Mapping[str, Any], name: str = "", std_last: bool = False) -> Markup:
+def _converts(piece: str, quantity: Quoted) -> bool:
+    """Whether it is said in a unit that the systems of units have two of."""
+    si, team = (scale(quantity.unit, system) for system in ("si", "team"))
+    return si != team and piece.endswith(f" {si.unit}")
+
+
+def _converted(shown: str, piece: str, quantity: Quoted) -> Markup:
+    """A quantity, and what it is uncertain by if that is there, in the other unit as well, no finer than it was."""
+    si, team = (scale(quantity.unit, system) for system in ("si", "team"))
+    if quantity.std:
+        spread = team.factor * quantity.std
+        decimals = decimals_for(team(quantity.value), spread)
+        return both(shown, f"{fixed(team(quantity.value), decimals)} ± {fixed(spread, decimals)} {team.unit}")
+    digits = sum(c.isdigit() for c in piece.removesuffix(si.unit))
+    return both(shown, f"{tidy(team(quantity.value), max(3, digits))} {team.unit}")
+
+
+def value(quantity: Quantity, name: str = "", std_last: bool = False) -> Markup:
     """A quantity with its standard deviation and unit; ``std_last`` puts the deviation behind the unit."""
     si, team = _shown(quantity, name)
-    number = both(si.value, team.value, "number", quantity.get("value"), str(quantity.get("unit") or ""))
+    number = both(si.value, team.value, "number", quantity.value, quantity.unit)
     std = Markup(" ") + both(f"± {si.std}", f"± {team.std}", "std") if si.std else Markup()
     unit = Markup(" ") + both(si.unit, team.unit, "unit") if si.unit or team.unit else Markup()
     if std and si.unit.startswith("×") and not std_last:
@@ -78,14 +83,19 @@ def value(quantity: Mapping[str, Any], name: str = "", std_last: bool = False) -
     return Markup('<span class="quantity">{}{}</span>').format(number, rest)
 
 
-def interval(quantity: Mapping[str, Any], name: str = "") -> Markup:
+def interval(quantity: Quantity, name: str = "") -> Markup:
     """Its 95 % interval."""
     si, team = _shown(quantity, name)
     return both(si.interval, team.interval)
 
 
-def _shown(quantity: Mapping[str, Any], name: str) -> tuple[Shown, Shown]:
+def _shown(quantity: Quantity, name: str) -> tuple[Shown, Shown]:
     return shown(quantity, "si", name), shown(quantity, "team", name)
+
+
+def remark(quantity: Quantity) -> Markup:
+    """Why it is as it is, or why it is not there."""
+    return switchable(quantity.why or quantity.reason or "")
 
 
 def symbol(name: str) -> Markup:

@@ -6,18 +6,23 @@ import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from hfanalysis.charts.envelope import Floats
 from hfanalysis.charts.svg import Event, Phase
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.flight import Flight
+from hfanalysis.products.model import Product
+from hfanalysis.products.segments import EVENTS, Segments
+from hfanalysis.products.validation import Validation
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.wording.numbers import adopted_in_words
 
-EVENTS = ("t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+P = TypeVar("P", bound=Product)
 _BEFORE, _AFTER = 2.0, 3.0
 """[s] shown before the opening and after the last event."""
 
@@ -46,13 +51,21 @@ class Material:
 
     definition: TestDefinition
     log: TestLog
-    products: Mapping[str, Mapping[str, Any]]
+    products: Mapping[str, Product]
     stores: Mapping[str, Store] = field(default_factory=dict)
     absent: Mapping[str, str] = field(default_factory=dict)
 
-    def product(self, name: str) -> Mapping[str, Any]:
-        """A JSON product; empty where there is none."""
-        return self.products.get(name) or {}
+    def get(self, kind: type[P]) -> P | None:
+        """A JSON product; None where there is none."""
+        found = self.products.get(kind.file.removesuffix(".json"))
+        return found if isinstance(found, kind) else None
+
+    def need(self, kind: type[P]) -> P:
+        """A JSON product. Raises AbsentError where there is none, with the reason."""
+        found = self.get(kind)
+        if found is None:
+            raise AbsentError(self.why_not(kind.file.removesuffix(".json")))
+        return found
 
     def table(self, store: str, group: str = "") -> Table:
         """A group of an HDF5 product; empty where there is none."""
@@ -69,8 +82,8 @@ class Material:
     @property
     def adopted(self) -> str:
         """The adopted effects of the model in a sentence; empty where there are none."""
-        products = (self.product(name) for name in ("validation", "calibration", "flight"))
-        return adopted_in_words(next((effects for p in products if (effects := p.get("effects"))), []))
+        products = (self.get(Validation), self.get(Calibration), self.get(Flight))
+        return adopted_in_words(next((product.effects for product in products if product and product.effects), ()))
 
     @property
     def fired(self) -> bool:
@@ -84,8 +97,8 @@ class Material:
 
     def event(self, name: str) -> float | None:
         """An event's instant [s after the opening; t_open in log time]."""
-        value = (self.product("segments").get(name) or {}).get("value")
-        return None if value is None else float(value)
+        segments = self.get(Segments)
+        return None if segments is None else segments.quantities[name].value
 
 
 def window(material: Material) -> tuple[float, float]:
@@ -103,14 +116,13 @@ def window(material: Material) -> tuple[float, float]:
 
 def event_list(material: Material) -> list[Event]:
     """The events that the test has."""
-    segments = material.product("segments")
-    if not material.fired:
+    segments = material.get(Segments)
+    if segments is None or not material.fired:
         return []
-    found = [Event(0.0, segments["t_open"].get("std") or 0.0, "t_open")]
-    for name in EVENTS:
-        time = material.event(name)
-        if time is not None:
-            found.append(Event(time, segments[name].get("std") or 0.0, name))
+    found = [Event(0.0, segments.t_open.std or 0.0, "t_open")]
+    for name, event in segments.events.items():
+        if event.value is not None:
+            found.append(Event(event.value, event.std or 0.0, name))
     return found
 
 

@@ -14,6 +14,7 @@ from markupsafe import Markup
 
 from hfanalysis.charts.chart import Chart
 from hfanalysis.charts.style import sheet
+from hfanalysis.products.segments import Segments
 from hfanalysis.report.figure import figure
 from hfanalysis.report.material import Material
 from hfanalysis.report.payload import as_json, payload
@@ -117,5 +118,6 @@ def _source_words(source: str) -> str:
 
 def kind(material: Material) -> str:
     """What kind of test it was, as recognised, else as stated."""
-    found = material.product("segments").get("kind") or material.definition.test.kind
-    return wording.KINDS.get(found, str(found))
+    segments = material.get(Segments)
+    found = segments.kind if segments is not None else material.definition.test.kind
+    return wording.KINDS.get(found, found)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hfanalysis.record.signals import Signal
+from hfanalysis.sentences import said, text
 
 CRITICAL_RATIO = 1.80
 """p_c / p_a at which a nozzle unchokes, ((gamma + 1)/2)^(gamma/(gamma - 1)): 1.77 to 1.83 for gamma of 1.2 to 1.3."""
@@ -26,7 +27,8 @@ def find_unchoking(chamber: Signal, ambient: float, t_feed: float, offset: float
         return "the chamber pressure never chokes the nozzle"
     last = int(np.flatnonzero(smooth > limit)[-1])
     if last >= smooth.size - 2:
-        return f"the log ends with the nozzle still choked ({(smooth[-1] - offset) / 1e5:.1f} bar in the chamber)"
+        left = said(float(smooth[-1]) - offset, "bar", ".1f")
+        return text("the log ends with the nozzle still choked ({left} in the chamber)", left=left)
     time = float(part.time[last])
     nearby = np.abs(part.time - time) < max(0.3, 6.0 * chamber.step)
     slope = abs(float(np.polyfit(part.time[nearby] - time, smooth[nearby], 1)[0]))

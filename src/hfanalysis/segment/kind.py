@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hfanalysis.record.signals import Signal
+from hfanalysis.sentences import said, text
 
 COLDEST_FIRE = 700.0
 """Apparent c* [m/s] below which nothing burns: cold nitrous oxide gives 250 to 400, poor combustion 1000 and more."""
@@ -50,7 +51,7 @@ def recognise(
             return _by_velocity(excess + ambient, mean_flow, throat_area, excess > 0.9 * ambient)
         if "p_run" in signals:
             return _by_share(excess, signals["p_run"].mean(start, end) - ambient)
-        return excess > ambient, f"the chamber stands {excess / 1e5:.1f} bar above ambient"
+        return excess > ambient, text("the chamber stands {excess} above ambient", excess=said(excess, "bar", ".1f"))
 
     start, end = span[0] + 0.4 * (span[1] - span[0]), span[1]
     if not np.isfinite(signals["p_chamber"].mean(start, end)):

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
 from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
@@ -21,12 +20,12 @@ from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.segment.sanity import BESIDE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
+from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation
 
 FUEL_LEFT = 0.05
 """Part of the grain that may be left over as slivers when its fuel is gone."""
 
-EVENTS = ("t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
 LONGEST_RUN = 120.0
 """Seconds after the opening in which events are looked for."""
 
@@ -42,58 +41,6 @@ LARGEST_OFFSET = 3e5
 BY_HAND = "set by the engineer"
 
 
-@dataclass(frozen=True)
-class Segments:
-    """Events of a test: quantities [s] after the opening; ``t_open`` in log time.
-
-    ``engineer`` names what was set by hand; ``notes`` say what was seen beside the events.
-    """
-
-    t_open: Quantity
-    events: dict[str, Quantity]
-    kind: Kind
-    engineer: tuple[str, ...] = ()
-    found: dict[str, float] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-    supercharged: bool = False
-
-    def time(self, name: str) -> float | None:
-        """An event's instant [s], None where the test does not have it."""
-        return self.events[name].value
-
-    def std(self, name: str) -> float:
-        """An event's standard deviation [s]; 0 where there is none."""
-        return self.events[name].std or 0.0
-
-    def to_json(self) -> dict[str, Any]:
-        """The content of segments.json."""
-        order = sorted((q.value, n) for n, q in self.events.items() if q.value is not None)
-        return {
-            "kind": self.kind.name,
-            "kind_reason": self.kind.why,
-            "misfire": self.kind.misfire,
-            "supercharged": self.supercharged,
-            "t_open": self.t_open,
-            **self.events,
-            "order": [name for _, name in order],
-            "engineer": list(self.engineer),
-            "found_where_engineer_set": self.found,
-            "notes": list(self.notes),
-            "warnings": list(self.warnings),
-        }
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Segments:
-        """The inverse of :meth:`to_json`."""
-        events = {name: Quantity.from_json(data[name]) for name in EVENTS}
-        kind = Kind(data["kind"], data["kind_reason"], data["misfire"])
-        found = dict(data["found_where_engineer_set"])
-        lists = (tuple(data["notes"]), tuple(data["warnings"]))
-        opening = Quantity.from_json(data["t_open"])
-        return cls(opening, events, kind, tuple(data["engineer"]), found, *lists, supercharged=data["supercharged"])
-
-
 def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
     """All events of a log. Raises AbsentError where nothing opens: a log with no firing in it."""
     signals = live_signals(log)
@@ -104,11 +51,19 @@ def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
     dead = [f"{n} never changes or has no good samples: left out" for n in log.channels if n not in signals]
     unsure += strange_tank(shifted.get("p_tank"))
     search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std)
-    result = search.run()
-    result = replace(result, warnings=(*dead, *unsure, *result.warnings))
-    t_open = Quantity(opening.time, "s", max(opening.std, 1e-9), why=f"from {', '.join(opening.channels)}")
-    engineer = tuple(name for name in ("t_open", *EVENTS) if name in definition.segments)
-    return replace(result, t_open=t_open, engineer=engineer)
+    kind = search.run()
+    return Segments.of(
+        Quantity(opening.time, "s", max(opening.std, 1e-9), why=f"from {', '.join(opening.channels)}"),
+        search.events,
+        kind=kind.name,
+        kind_reason=kind.why,
+        misfire=kind.misfire,
+        supercharged=search.supercharged,
+        engineer=tuple(name for name in ("t_open", *EVENTS) if name in definition.segments),
+        found_where_engineer_set=search.found,
+        notes=tuple(search.notes),
+        warnings=(*dead, *unsure, *search.warnings),
+    )
 
 
 def _check_stated(definition: TestDefinition, signals: Mapping[str, Signal]) -> None:
@@ -170,8 +125,8 @@ class _Search:
         self.warnings: list[str] = []
         self.supercharged = False
 
-    def run(self) -> Segments:
-        """Every event in an order in which each can use the ones before."""
+    def run(self) -> Kind:
+        """Every event in an order in which each can use the ones before; the kind of test."""
         self._take("t_v", self._liquid_end())
         self._take("t_feed", self._line_full())
         self._take("t_purge", self._nitrogen())
@@ -180,10 +135,7 @@ class _Search:
         self._take("t_end", self._unchoking(kind))
         self._take("t_fuel_out", self._fuel_end(kind))
         self._check_order()
-        events = {name: self.events[name] for name in EVENTS}
-        nothing = Quantity.absent("set by the caller")
-        found = (self.found, tuple(self.notes), tuple(self.warnings))
-        return Segments(nothing, events, kind, (), *found, supercharged=self.supercharged)
+        return kind
 
     def _take(self, name: str, found: tuple[float, float] | str) -> None:
         stated = self.definition.segments.get(name)
@@ -212,7 +164,8 @@ class _Search:
         if not len(found):
             return reason
         start, end = max(found, key=lambda hole: hole[1] - hole[0])
-        return f"{reason}; {SHOWN_BY[name]} has no good samples from {start:.2f} to {end:.2f} s, where it may be"
+        hole = "{reason}; {channel} has no good samples from {start:.2f} to {end:.2f} s, where it may be"
+        return text(hole, reason=reason, channel=SHOWN_BY[name], start=start, end=end)
 
     def _holes(self, name: str, start: float, end: float) -> Sequence[Sequence[float]]:
         channel = self.signals.get(SHOWN_BY[name])
@@ -314,8 +267,8 @@ class _Search:
         rest, t_purge = self.signals["p_tank"].mean(-3.0, -0.05), self._time("t_purge")
         if rest > critical:
             self.supercharged = True
-            above = f"above the critical pressure ({critical / 1e5:.1f} bar)"
-            self.warnings.append(f"the tank is supercharged: {rest / 1e5:.1f} bar before the opening, {above}")
+            above = "the tank is supercharged: {rest} before the opening, above the critical pressure ({critical})"
+            self.warnings.append(text(above, rest=said(rest, "bar", ".1f"), critical=said(critical, "bar", ".1f")))
         elif t_purge is not None and t_purge < FROM_THE_START:
             self.supercharged = True
             self.warnings.append("the tank is supercharged: nitrogen feeds it from the opening on")
@@ -329,9 +282,13 @@ class _Search:
             return
         if rest > float(source.pressure(warmth + SATURATION_MARGIN)):
             self.warnings.append(
-                f"the tank stands at {rest / 1e5:.1f} bar before the opening, but saturation at the "
-                f"{warmth - 273.15:.0f} degC of its thermometer is {float(source.pressure(warmth)) / 1e5:.1f} bar: "
-                "it is supercharged, or the thermometer does not see the oxidizer"
+                text(
+                    "the tank stands at {rest} before the opening, but saturation at the {warmth:.0f} degC of its "
+                    "thermometer is {saturated}: it is supercharged, or the thermometer does not see the oxidizer",
+                    rest=said(rest, "bar", ".1f"),
+                    warmth=warmth - 273.15,
+                    saturated=said(float(source.pressure(warmth)), "bar", ".1f"),
+                )
             )
 
     def _tank_temperature(self) -> float | None:

@@ -8,6 +8,7 @@ from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Array, Signal
 from hfanalysis.segment.breaks import Break
 from hfanalysis.segment.refine import refine_kink
+from hfanalysis.sentences import said, text
 
 SMALLEST_SAG = 0.01
 """The line has to lose at least this part of its pressure before a sag is believed."""
@@ -84,8 +85,11 @@ def _line(time: Array, value: Array) -> float:
 def _held_shut(tank: Signal, level: float, time: float) -> str | None:
     standing = tank.mean(time - 0.05, time + 0.05 + 2.0 * tank.step)
     if standing > 1.1 * level:
-        return (
-            f"the purge line sags at {time:.2f} s, but the tank ({standing / 1e5:.1f} bar) stands above it "
-            f"({level / 1e5:.1f} bar): no nitrogen can enter"
+        return text(
+            "the purge line sags at {time:.2f} s, but the tank ({standing}) stands above it ({level}): no nitrogen can "
+            "enter",
+            time=time,
+            standing=said(standing, "bar", ".1f"),
+            level=said(level, "bar", ".1f"),
         )
     return None

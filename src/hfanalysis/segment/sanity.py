@@ -9,6 +9,7 @@ import numpy as np
 
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.opening import Opening
+from hfanalysis.sentences import said, text
 
 SHOWN_BY = {"t_feed": "p_run", "t_v": "p_tank", "t_purge": "p_purge", "t_fuel_out": "p_chamber", "t_end": "p_chamber"}
 """The channel that an event is looked for in first."""
@@ -51,6 +52,11 @@ def strange_tank(tank: Signal | None) -> list[str]:
     if not np.isfinite(rest) or IN_TANKS[0] <= rest <= IN_TANKS[1]:
         return []
     return [
-        f"p_tank reads {rest / 1e5:.4g} bar before the opening, where a tank of nitrous oxide has "
-        f"{IN_TANKS[0] / 1e5:.0f} to {IN_TANKS[1] / 1e5:.0f} bar: is its unit right?"
+        text(
+            "p_tank reads {rest} before the opening, where a tank of nitrous oxide has {least:.0f} to {most}: is its "
+            "unit right?",
+            rest=said(rest, "bar", ".4g"),
+            least=IN_TANKS[0] / 1e5,
+            most=said(IN_TANKS[1], "bar", ".0f"),
+        )
     ]

@@ -27,7 +27,7 @@ import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from hfanalysis.errors import InputError
 from hfanalysis.products import disk as products
@@ -36,6 +36,10 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.stages import ORDER
 from hfanalysis.units import near
 
+if TYPE_CHECKING:
+    from hfanalysis.products.model import Product
+
+P = TypeVar("P", bound="Product")
 BASE = "base_"
 """How a product's name begins that is made without adopted effects, by a stage that also makes one with them."""
 
@@ -123,6 +127,14 @@ class Context:
         if self.stage is None or name not in self.stage.products:
             raise ValueError(f"{name} is not declared as a product of this stage")
         return products.temporary_path(self.product(name))
+
+    def read(self, product: type[P], name: str = "") -> P:
+        """A finished JSON product, of another name than its usual one where that is given."""
+        return product.from_json(self.read_json(name or product.file))
+
+    def write(self, product: Product, name: str = "") -> None:
+        """Write a JSON product of the running stage, with the test's name first and its provenance last."""
+        self.write_json(name or product.file, product.to_json())
 
     def write_json(self, name: str, data: Mapping[str, Any]) -> None:
         """Write a JSON product of the running stage, with the test's name first and its provenance last."""

@@ -7,14 +7,15 @@ the same.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from hfanalysis.errors import AbsentError
-from hfanalysis.stages.base import Context, Stage
+from hfanalysis.stages.base import BASE, Context, Stage
 
 if TYPE_CHECKING:
     from hfanalysis.engine.effect import Active
+    from hfanalysis.products.calibration import Calibration
 
 
 def run(context: Context) -> None:
@@ -24,45 +25,44 @@ def run(context: Context) -> None:
     adopted = read_adopted(context.root, context.definition)
     base = _calibration(context, ())
     found = _with_effects(context, base, adopted.acting) if adopted.acting else base
-    context.write_json("base_calibration.json", {**base, "effects": []})
-    context.write_json("calibration.json", {**found, "effects": adopted.to_json()})
+    context.write(base.but(effects=()), BASE + found.file)
+    context.write(found.but(effects=adopted.product()))
 
 
-def _with_effects(context: Context, base: Mapping[str, Any], effects: Sequence[Active]) -> dict[str, Any]:
+def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]) -> Calibration:
     """The same with adopted effects; where one acts on the engine, its constants are fitted together."""
     from hfanalysis.calibrate.joint_fit import fitted_together
     from hfanalysis.inference.subject import Subject
+    from hfanalysis.products.segments import Segments
     from hfanalysis.record.log import read_log
-    from hfanalysis.segment.phases import Segments
 
     found = _calibration(context, effects)
     if all(active.effect.of_sensor for active in effects):
         return found
     context.progress("fitting all constants together, adopted effects in", None)
-    segments = Segments.from_json(context.read_json("segments.json"))
+    segments = context.read(Segments)
     subject = Subject(read_log(context.product("ingest.h5")), segments, base, context.definition)
     try:
         return fitted_together(subject, effects, found)
     except AbsentError as missing:
         alone = f"constants were found one by one, not together with the adopted effects: {missing}"
-        return {**found, "warnings": [*found["warnings"], alone]}
+        return found.but(warnings=(*found.warnings, alone))
 
 
-def _calibration(context: Context, effects: Sequence[Active]) -> dict[str, Any]:
+def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     """The content of calibration.json with these effects acting."""
     from hfanalysis.calibrate.fuel_law import regress
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.inference.adopted.corrected_log import corrected
+    from hfanalysis.products.segments import Segments
     from hfanalysis.record.log import read_log
-    from hfanalysis.segment.phases import Segments
 
-    segments = Segments.from_json(context.read_json("segments.json"))
+    segments = context.read(Segments)
     log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)
     context.progress("repeating the calibration with drawn inputs", None)
     result = calibrate(log, segments, context.definition, int(context.parameter("samples")), effects)
     context.progress("fitting the regression", None)
-    regression = regress(log, segments, context.definition, result, effects)
-    return {**regression.to_json(), **result.to_json()}
+    return result.with_law(regress(log, segments, context.definition, result, effects))
 
 
 STAGE = Stage(

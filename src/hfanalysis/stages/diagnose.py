@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
-from hfanalysis.stages.base import Context, Stage
+from hfanalysis.stages.base import BASE, Context, Stage
 
 if TYPE_CHECKING:
     from hfanalysis.diagnose.answer.proof import OtherTest
@@ -38,28 +38,29 @@ def run(context: Context) -> None:
         found = diagnose(subject, effects, lambda: _other(context), context.progress, settings)
     except AbsentError as missing:
         write_empty(context.scratch("diagnosis.h5"), context.provenance())
-        context.write_json("diagnosis.json", channels_alone(subject, str(missing)))
+        context.write(channels_alone(subject, str(missing)))
         return
     write_histories(context.scratch("diagnosis.h5"), found, context.provenance())
-    context.write_json("diagnosis.json", found.product)
+    context.write(found.product)
 
 
 def subject_of(context: Context) -> Subject:
     """What the products of a test give a diagnosis to work on; without a calibration where none can be had."""
     from hfanalysis.diagnose.without_run_line import NOTE, lumped_calibration
     from hfanalysis.inference.subject import Subject
+    from hfanalysis.products.calibration import Calibration
+    from hfanalysis.products.segments import Segments
     from hfanalysis.record.log import read_log
-    from hfanalysis.segment.phases import Segments
 
     log = read_log(context.product("ingest.h5"))
-    segments = Segments.from_json(context.read_json("segments.json"))
+    segments = context.read(Segments)
     if "calibrate" not in context.absent:
-        return Subject(log, segments, context.read_json("base_calibration.json"), context.definition)
+        return Subject(log, segments, context.read(Calibration, BASE + Calibration.file), context.definition)
     if "p_tank" in log and "p_run" not in log:
         with suppress(AbsentError):
             found = lumped_calibration(log, segments, context.definition)
             return Subject(log, segments, found, context.definition, (NOTE,))
-    return Subject(log, segments, {}, context.definition)
+    return Subject(log, segments, None, context.definition)
 
 
 def _check_proof_test(context: Context) -> None:

@@ -18,17 +18,17 @@ def run(context: Context) -> None:
     from hfanalysis.measured_flight.firing import firing
     from hfanalysis.measured_flight.product import launch, product, write_histories
     from hfanalysis.measured_flight.stability import stability
+    from hfanalysis.products.calibration import Calibration
+    from hfanalysis.products.segments import Segments
     from hfanalysis.record.log import read_log
-    from hfanalysis.segment.phases import Segments
 
     definition = context.definition
     if definition.rocket is None:
         raise AbsentError(f"test {context.id}: test.toml has no [rocket] to fly")
-    adopted = read_adopted(context.root, definition)
-    segments = Segments.from_json(context.read_json("segments.json"))
+    adopted, segments = read_adopted(context.root, definition), context.read(Segments)
     # physics that was adopted is in the measured thrust; what sensors add to it is taken off
     log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, adopted.acting)
-    calibration = None if "calibrate" in context.absent else context.read_json("calibration.json")
+    calibration = None if "calibrate" in context.absent else context.read(Calibration)
     flown = firing(log, segments, calibration, definition, bool(context.parameter("raw_thrust")))
     found = launch(
         flown, definition.rocket, int(context.parameter("flights")), int(context.parameter("seed")), context.progress
@@ -40,8 +40,7 @@ def run(context: Context) -> None:
     context.scratch("{test}.rse").write_text(files.rse, encoding="utf-8")
     context.scratch("{test}_rocketpy.py").write_text(rocketpy(found, definition, stable, files), encoding="utf-8")
     write_histories(context.scratch("flight.h5"), found, stable, context.provenance())
-    body = {**product(found, definition.rocket, stable), "effects": adopted.to_json(), "warnings": []}
-    context.write_json("flight.json", body)
+    context.write(product(found, definition.rocket, stable).but(effects=adopted.product(), warnings=()))
 
 
 STAGE = Stage(

@@ -15,7 +15,7 @@ def run(context: Context) -> None:
     from hfanalysis.record.summary import summary
 
     ingest(context.definition, context.scratch("ingest.h5"), context.progress)
-    context.write_json("ingest.json", summary(read_log(context.scratch("ingest.h5"))))
+    context.write(summary(read_log(context.scratch("ingest.h5"))))
 
 
 STAGE = Stage(name="ingest", needs=(), products=("ingest.h5", "ingest.json"), run=run, adopts=False)

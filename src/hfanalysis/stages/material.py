@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hfanalysis.products.kinds import KINDS
 from hfanalysis.record.log import read_log
 from hfanalysis.report.material import Material, read_store
 from hfanalysis.stages.base import BASE, Context, load_stage
@@ -18,7 +19,7 @@ def load(context: Context) -> Material:
             if stage.name in context.absent:
                 absent[path.stem] = context.absent[stage.name]
             elif path.suffix == ".json" and not path.name.startswith(BASE):
-                products[path.stem] = context.read_json(path.name)
+                products[path.stem] = context.read(KINDS[path.name])
             elif path.suffix == ".h5" and path.name != _LOG:
                 stores[path.stem] = read_store(path)
     return Material(context.definition, read_log(context.product(_LOG)), products, stores, absent)

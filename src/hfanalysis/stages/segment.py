@@ -14,8 +14,7 @@ def run(context: Context) -> None:
     from hfanalysis.segment.phases import find_phases
 
     log = read_log(context.product("ingest.h5"))
-    segments = find_phases(log, context.definition)
-    context.write_json("segments.json", segments.to_json())
+    context.write(find_phases(log, context.definition))
 
 
 STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run, adopts=False)

@@ -12,21 +12,22 @@ from hfanalysis.stages.base import Context, Stage
 def run(context: Context) -> None:
     """Compare what can be compared; what cannot says why."""
     from hfanalysis.inference.adopted.effects import read_adopted
+    from hfanalysis.products.calibration import Calibration
+    from hfanalysis.products.segments import Segments
     from hfanalysis.record.log import read_log
-    from hfanalysis.segment.phases import Segments
     from hfanalysis.validate.histories import write_histories
     from hfanalysis.validate.residuals import write_residuals
     from hfanalysis.validate.validation import validate
 
     log = read_log(context.product("ingest.h5"))
-    segments = Segments.from_json(context.read_json("segments.json"))
+    segments = context.read(Segments)
     absent = context.absent.get("calibrate")
-    calibration = None if absent else context.read_json("calibration.json")
+    calibration = None if absent else context.read(Calibration)
     adopted = read_adopted(context.root, context.definition)
     found = validate(log, segments, context.definition, calibration, absent, adopted.acting)
     write_residuals(context.scratch("residuals.h5"), found.residuals, context.provenance())
     write_histories(context.scratch("performance.h5"), found.histories, context.provenance())
-    context.write_json("validation.json", {**found.to_json(), "effects": adopted.to_json()})
+    context.write(found.product.but(effects=adopted.product()))
 
 
 STAGE = Stage(

@@ -7,10 +7,8 @@ r^(2 n + 1) = r_0^(2 n + 1) + (2 n + 1) a pi^-n integral of mdot^n dt.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +17,11 @@ from hfanalysis.assembly.calibrated import Regression, effective_area
 from hfanalysis.compiled import compiled
 from hfanalysis.engine.nozzle import expand
 from hfanalysis.engine.unsteady import Engine
+from hfanalysis.products.calibration import TankConstants
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 from hfanalysis.thermo.combustion_table import Grid, gas_at
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.validate.tank_free import TankAlone
@@ -62,7 +61,7 @@ class Flows:
 
 
 def oxidizer_flow(
-    log: TestLog, segments: Segments, calibration: Mapping[str, Any], definition: TestDefinition, alone: TankAlone,
+    log: TestLog, segments: Segments, calibration: TankConstants, definition: TestDefinition, alone: TankAlone,
     time: Array,
 ) -> Array:  # fmt: skip
     """[kg/s] at given times: from the measured pressures while there is liquid, then from the tank alone."""

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.engine.unsteady import Engine
+from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO
-from hfanalysis.segment.phases import Segments
 from hfanalysis.validate.flows import STEP, Flows, ideal_characteristic_velocity, nozzle_along
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import FORMAT

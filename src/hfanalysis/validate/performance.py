@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.assembly.calibrated import mass_of
 from hfanalysis.calibrate.evidence_from_log import VIDEO
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
 from hfanalysis.inference.full_run import FullRun, moved
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
+from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
 from hfanalysis.validate.thrust import Thrust, thrust_of
 
@@ -46,7 +45,7 @@ class Fire:
 
 def fire_of(segments: Segments, definition: TestDefinition) -> Fire | str:
     """The burn as seen on video, else until the fuel is gone, else until the chamber unchokes; or why there is none."""
-    if segments.kind.name != "hot_fire" or segments.kind.misfire:
+    if segments.kind != "hot_fire" or segments.misfire:
         return "nothing burns in this test"
     seen = definition.observed.burn_time if definition.observed else None
     if seen is not None:
@@ -55,11 +54,11 @@ def fire_of(segments: Segments, definition: TestDefinition) -> Fire | str:
         found = segments.time(name)
         if found is not None:
             return Fire(found, max(segments.std(name), 1e-3), f"{name}: {words}")
-    return f"the end of the burn is not known: {segments.events['t_end'].reason}"
+    return text("the end of the burn is not known: {reason}", reason=segments.t_end.reason)
 
 
 def measured(
-    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Mapping[str, Any] | None
+    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Calibration | None
 ) -> dict[str, Quantity]:
     """The measured column, and ``total_impulse_of_file``: the raw integral over the whole file."""
     fire = fire_of(segments, definition)
@@ -112,10 +111,13 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     last = abs(signal.mean(fire.end - 0.2, fire.end + 0.2))
     bridged = [_across(whole, max(start, 0.0), min(end, fire.end)) for start, end in unseen]
     errors = (_bias(channel) * fire.end, SPAN * thrust.error * 0.5 * fire.end, last * fire.std, *bridged)
-    drift = f"; {thrust.error:.0f} N of the cell's drift taken off" if thrust.error else ""
+    drift = (
+        text("; {error} of the cell's drift taken off", error=said(thrust.error, "N", ".0f")) if thrust.error else ""
+    )
     lacking = sum(min(end, fire.end) - max(start, 0.0) for start, end in unseen)
-    said = f"; {lacking:.2f} s without samples bridged by straight lines" if lacking else ""
-    return Quantity(value, "N s", float(np.linalg.norm(errors)), why=f"over the burn{drift}{said}")
+    holes = f"; {lacking:.2f} s without samples bridged by straight lines" if lacking else ""
+    why = text("over the burn{drift}{holes}", drift=drift, holes=holes)
+    return Quantity(value, "N s", float(np.linalg.norm(errors)), why=why)
 
 
 def _across(signal: Signal, start: float, end: float) -> float:
@@ -187,14 +189,14 @@ def _average(impulse: Quantity, burn_time: Quantity) -> Quantity:
 
 
 def _oxidizer(
-    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Mapping[str, Any] | None
+    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Calibration | None
 ) -> Quantity:
     """Loaded, less what is stated to be left."""
     after = definition.observed.oxidizer_mass_after if definition.observed else None
     stated = definition.tank.oxidizer_mass if definition.tank else None
-    found = (calibration or {}).get("oxidizer_mass") or {}
-    if found.get("value") is not None:
-        return _less(Value(found["value"], found["std"]), after)
+    found = calibration.oxidizer_mass if calibration is not None else None
+    if found is not None and found.value is not None:
+        return _less(Value(found.value, found.std), after)
     if stated is not None:
         return _less(stated, after)
     cell = load_cell_mass(log, segments)
@@ -235,7 +237,7 @@ class _Column:
 _UNITS = ("s", "N s", "s", "Pa", "N", "N", "kg", "kg")
 
 
-def modelled(full: FullRun, calibration: Mapping[str, Any]) -> dict[str, Quantity]:
+def modelled(full: FullRun, calibration: Calibration) -> dict[str, Quantity]:
     """The model's column, with what the calibrated constants' uncertainties make of it."""
     engine = full.engine
     nominal = _Column.of(full, full.burnt, engine.oxidizer_mass, engine.fuel_mass).values
@@ -256,15 +258,19 @@ def modelled(full: FullRun, calibration: Mapping[str, Any]) -> dict[str, Quantit
     return out
 
 
-def _changes(full: FullRun, calibration: Mapping[str, Any]) -> list[dict[str, float]]:
+def _changes(full: FullRun, calibration: Calibration) -> list[dict[str, float]]:
     """One standard deviation of each calibrated constant; a and n along and across their combination."""
-    engine, std = full.engine, {k: (calibration[k].get("std") or 0.0) for k in ("C_i", "m", "K_loss")}
-    area = engine.feed.area * (1.0 + std["C_i"] / calibration["C_i"]["value"])
-    changes = [{"area": area}, {"loss_factor": engine.feed.loss_factor + std["K_loss"]}]
-    changes.append({"oxidizer_mass": engine.oxidizer_mass + (mass_of(calibration).get("std") or 0.0)})
-    if engine.polytropic_exponent is not None and std["m"] > 0.0:
-        changes.append({"polytropic_exponent": engine.polytropic_exponent + std["m"]})
-    rate, flux = calibration["regression_rate_reference"], calibration["regression"]["reference_flux"]["value"]
-    changes.append({"a": engine.a * (1.0 + rate["std"] / rate["value"])})
-    n = engine.n + calibration["n"]["std"]
-    return [*changes, {"n": n, "a": rate["value"] / flux**n}]
+    engine, discharge, m = full.engine, calibration.C_i, calibration.m.std or 0.0
+    rate, flux = calibration.regression_rate_reference, calibration.regression.reference_flux
+    assert discharge.value is not None
+    assert rate.value is not None
+    assert flux is not None
+    assert flux.value is not None
+    area = engine.feed.area * (1.0 + (discharge.std or 0.0) / discharge.value)
+    changes = [{"area": area}, {"loss_factor": engine.feed.loss_factor + (calibration.K_loss.std or 0.0)}]
+    changes.append({"oxidizer_mass": engine.oxidizer_mass + (calibration.load.std or 0.0)})
+    if engine.polytropic_exponent is not None and m > 0.0:
+        changes.append({"polytropic_exponent": engine.polytropic_exponent + m})
+    changes.append({"a": engine.a * (1.0 + (rate.std or 0.0) / rate.value)})
+    n = engine.n + (calibration.n.std or 0.0)
+    return [*changes, {"n": n, "a": rate.value / flux.value**n}]

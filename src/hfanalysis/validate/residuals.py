@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.products.segments import Segments
+from hfanalysis.products.validation import PhaseGap
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 
 Array = NDArray[np.float64]
 
@@ -74,9 +75,9 @@ def phases_of(time: Array, t_feed: float, t_v: float | None, t_purge: float | No
     return phase.astype(np.int8)
 
 
-def gaps(residuals: Sequence[Residual]) -> dict[str, Any]:
+def gaps(residuals: Sequence[Residual]) -> dict[str, dict[str, PhaseGap]]:
     """Per channel and phase: root mean square, bias and noise floor of the residual, in the channel's unit."""
-    out: dict[str, Any] = {}
+    out = {}
     for r in residuals:
         phases = {}
         for number, name in enumerate(PHASES):
@@ -84,13 +85,13 @@ def gaps(residuals: Sequence[Residual]) -> dict[str, Any]:
             if not part.any():
                 continue
             x = r.residual[part]
-            phases[name] = {
-                "rms": float(np.sqrt(np.mean(x**2))),
-                "bias": float(x.mean()),
-                "noise": float(np.sqrt(np.mean(r.noise_std[part] ** 2))),
-                "samples": int(part.sum()),
-                "unit": r.unit,
-            }
+            phases[name] = PhaseGap(
+                rms=float(np.sqrt(np.mean(x**2))),
+                bias=float(x.mean()),
+                noise=float(np.sqrt(np.mean(r.noise_std[part] ** 2))),
+                samples=int(part.sum()),
+                unit=r.unit,
+            )
         out[r.channel] = phases
     return out
 

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi, sqrt
-from typing import Any
 
 import numpy as np
 
 from hfanalysis.engine.nozzle import choked_flow_factor, expand
+from hfanalysis.products.segments import Segments
+from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
+from hfanalysis.sentences import said, text
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.thrust import thrust_of
 
 ZERO = "does not return to zero"
 """Of this ingest has warned already."""
+
+DISAGREE = "thrust and p_c A_t disagree"
 
 ZERO_SHARE = 0.02
 """Part of the largest thrust from which on a cell that does not come back to zero is called so."""
@@ -31,20 +33,6 @@ TOLERANCE = 0.08
 
 BALANCE = (1350.0, 1680.0)
 """Characteristic velocity [m/s] of nitrous oxide and paraffin at O/F 3 to 9, burnt to 90 to 100 %."""
-
-
-@dataclass(frozen=True)
-class Finding:
-    """A sensor that cannot be right: which ``channels``, a short ``verdict``, the sentence ``text``, and its size."""
-
-    channels: tuple[str, ...]
-    verdict: str
-    text: str
-    size: Quantity
-
-    def to_json(self) -> dict[str, Any]:
-        """As validation.json has it."""
-        return {"channels": list(self.channels), "verdict": self.verdict, "text": self.text, "size": self.size}
 
 
 def findings(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire | str) -> list[Finding]:
@@ -66,12 +54,15 @@ def _zero(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fi
     if abs(error) < max(ZERO_SHARE * peak, 5.0 * std):
         return None
     where = f"with the chamber back at ambient ({thrust.since:.1f} s)" if thrust.since > 0.0 else "after the burn"
-    text = (
-        f"the thrust cell does not return to zero: it reads {error:+.0f} N {where}, "
-        f"{100.0 * abs(error) / peak:.0f} % of the peak; where it is left in, up to {abs(error) * fire.end:.0f} N s of "
-        "impulse are its drift"
+    words = text(
+        "the thrust cell does not return to zero: it reads {error} {where}, {share:.0f} % of the peak; where it is "
+        "left in, up to {impulse} of impulse are its drift",
+        error=said(error, "N", "+.0f"),
+        where=where,
+        share=100.0 * abs(error) / peak,
+        impulse=said(abs(error) * fire.end, "N s", ".0f"),
     )
-    return Finding(("thrust",), ZERO, text, Quantity(error, "N", std))
+    return Finding(channels=("thrust",), verdict=ZERO, text=words, size=Quantity(error, "N", std))
 
 
 def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> Finding | None:
@@ -90,12 +81,19 @@ def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, f
     value, error = thrust / (pressure * area), 2.0 * relative
     if low * (1.0 - TOLERANCE - error) <= value <= high * (1.0 + TOLERANCE + error):
         return None
-    text = (
-        f"thrust and p_c A_t disagree: F/(p_c A_t) is {value:.2f} while liquid flows, a nozzle gives {low:.2f} to "
-        f"{high:.2f} at {pressure / 1e5:.1f} bar (throat of {area * 1e6:.0f} mm^2: {source}); thrust cell, chamber "
-        "gauge or throat is off"
+    words = text(
+        "thrust and p_c A_t disagree: F/(p_c A_t) is {value:.2f} while liquid flows, a nozzle gives {low:.2f} to "
+        "{high:.2f} at {pressure} (throat of {area:.0f} mm^2: {source}); thrust cell, chamber gauge or throat is off",
+        value=value,
+        low=low,
+        high=high,
+        pressure=said(pressure, "bar", ".1f"),
+        area=area * 1e6,
+        source=source,
     )
-    return Finding(("thrust", "p_chamber"), "thrust and p_c A_t disagree", text, Quantity(value, "", value * relative))
+    return Finding(
+        channels=("thrust", "p_chamber"), verdict=DISAGREE, text=words, size=Quantity(value, "", value * relative)
+    )
 
 
 def _steady(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> tuple[float, float] | None:

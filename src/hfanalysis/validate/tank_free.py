@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +17,12 @@ from hfanalysis.engine.tank import split
 from hfanalysis.engine.tank_alone import TankAlone as WithEffects
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
+from hfanalysis.products.calibration import TankConstants
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, line_at
-from hfanalysis.segment.phases import Segments
+from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 from hfanalysis.validate.residuals import Residual, compared
@@ -61,15 +62,14 @@ class TankAlone:
 def run_tank_alone(
     log: TestLog,
     segments: Segments,
-    calibration: Mapping[str, Any],
+    calibration: TankConstants,
     definition: TestDefinition,
     constant: bool,
     effects: Sequence[Active] = (),
 ) -> TankAlone:
     """The tank from t_feed on with the measured chamber pressure; ``constant``: losses by phase instead of K_loss.
 
-    ``calibration`` is the content of calibration.json. Raises AbsentError where C_i, and with it the model, cannot be
-    had.
+    Raises AbsentError where C_i, and with it the model, cannot be had.
     """
     area = effective_area(definition, calibration)
     saturation = saturation_of(definition.model.properties)
@@ -83,7 +83,7 @@ def run_tank_alone(
     feed = FeedSystem(definition.tank.volume.value, area, *_feed_loss(calibration, constant))
     chamber = _chamber(log, segments, definition, part.time)
     mass, temperature = _start(saturation, tank, feed, calibration, segments, start)
-    m = calibration["m"]["value"]
+    m = calibration.m.value
     acting = [active for active in effects if active.effect.term is not None]
     if acting:
         alone = tank_of_test(definition, feed, mass, temperature, exponent(calibration)[0], acting)
@@ -135,7 +135,7 @@ def _with_effects(
 def run_tank_free(
     log: TestLog,
     segments: Segments,
-    calibration: Mapping[str, Any],
+    calibration: TankConstants,
     definition: TestDefinition,
     effects: Sequence[Active] = (),
 ) -> list[Residual]:
@@ -158,11 +158,11 @@ def run_tank_free(
     ]
 
 
-def _feed_loss(calibration: Mapping[str, Any], constant: bool) -> tuple[float, tuple[float, float] | None]:
+def _feed_loss(calibration: TankConstants, constant: bool) -> tuple[float, tuple[float, float] | None]:
     """K_loss, or the report's constant losses by phase."""
     if constant:
-        liquid = calibration["p_loss_liquid"]["value"] or 0.0
-        vapor = calibration["p_loss_vapor"]["value"]
+        liquid = calibration.p_loss_liquid.value or 0.0
+        vapor = calibration.p_loss_vapor.value
         return 0.0, (liquid, vapor if vapor is not None else liquid)
     return loss_factor(calibration), None
 
@@ -178,7 +178,7 @@ def _start(
     saturation: Saturation,
     tank: Signal,
     feed: FeedSystem,
-    calibration: Mapping[str, Any],
+    calibration: TankConstants,
     segments: Segments,
     start: float,
 ) -> tuple[float, float]:
@@ -189,12 +189,20 @@ def _start(
     """
     pressure = line_at(tank, start)
     temperature = float(saturation.temperature(min(pressure, 0.9999 * saturation.pressure_range[1])))
-    mass = float(calibration["mass_at_t_feed"]["value"])
+    mass = calibration.mass_at_t_feed.value
+    assert mass is not None
     parts = split(saturation, feed.volume, mass, temperature)
     if min(parts.liquid, parts.vapor) < 0.0:
         side = "do not fit" if parts.vapor < 0.0 else "are less than the vapour of"
         raise AbsentError(
-            f"the tank cannot be saturated at {start:.2f} s: {mass:.2f} kg {side} {feed.volume * 1e3:.1f} L at "
-            f"{pressure / 1e5:.1f} bar; there is no tank model to run"
+            text(
+                "the tank cannot be saturated at {start:.2f} s: {mass:.2f} kg {side} {volume:.1f} L at {pressure}; "
+                "there is no tank model to run",
+                start=start,
+                mass=mass,
+                side=side,
+                volume=feed.volume * 1e3,
+                pressure=said(pressure, "bar", ".1f"),
+            )
         )
     return mass, temperature

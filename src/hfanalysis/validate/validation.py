@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,10 +13,12 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun, run_full
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.segments import Segments
+from hfanalysis.products.validation import Closure, Column, Performance, Validation
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
-from hfanalysis.segment.phases import Segments
 from hfanalysis.validate import histories as histories_of
 from hfanalysis.validate import performance
 from hfanalysis.validate.chamber_forced import run_chamber_forced
@@ -25,7 +27,7 @@ from hfanalysis.validate.full import compare_full
 from hfanalysis.validate.histories import Histories
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import Residual, gaps
-from hfanalysis.validate.sensor_faults import ZERO, Finding, findings
+from hfanalysis.validate.sensor_faults import ZERO, findings
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
 
 Found = TypeVar("Found")
@@ -35,50 +37,31 @@ RATIO_NAMES = ("c_star", "c_star_efficiency", "thrust_coefficient", "thrust_coef
 
 
 @dataclass(frozen=True)
-class Validation:
-    """Residuals by mode, the performance table, histories, and what looks wrong with the sensors.
+class Validated:
+    """The product, and what goes to HDF5: residuals by mode, and histories."""
 
-    ``told``: verdicts of which ingest has warned.
-    """
-
+    product: Validation
     residuals: dict[str, list[Residual]]
-    measured: dict[str, Quantity]
-    model: dict[str, Quantity]
     histories: Histories
-    sensors: list[Finding]
-    absent: dict[str, str] = field(default_factory=dict)
-    told: tuple[str, ...] = ()
-
-    def to_json(self) -> dict[str, Any]:
-        """The content of validation.json."""
-        notes = [note for found in self.residuals.values() for r in found for note in r.notes]
-        return {
-            "performance": {"measured": self.measured, "model": self.model},
-            "gap": {mode: gaps(found) for mode, found in self.residuals.items()},
-            "closure": self.histories.closure,
-            "sensors": self.sensors,
-            "absent": self.absent,
-            "notes": list(dict.fromkeys(notes)),
-            "warnings": [finding.text for finding in self.sensors if finding.verdict not in self.told],
-        }
 
 
 def validate(
     log: TestLog,
     segments: Segments,
     definition: TestDefinition,
-    calibration: Mapping[str, Any] | None,
+    calibration: Calibration | None,
     uncalibrated: str | None,
     effects: Sequence[Active] = (),
-) -> Validation:
+) -> Validated:
     """Validate a test, ``effects`` acting; ``uncalibrated`` says why ``calibration`` is None.
 
     Raises AbsentError where there is nothing to compare and nothing to measure.
     """
     work = _Work(log, segments, definition, calibration, uncalibrated, effects)
     found = work.result()
-    if not found.residuals and all(q.value is None for q in found.measured.values()):
-        raise AbsentError(next(iter(found.absent.values())))
+    measured = found.product.performance.measured.quantities.values()
+    if not found.residuals and all(q.value is None for q in measured):
+        raise AbsentError(next(iter(found.product.absent.values())))
     return found
 
 
@@ -90,20 +73,20 @@ class _Work:
         log: TestLog,
         segments: Segments,
         definition: TestDefinition,
-        calibration: Mapping[str, Any] | None,
+        calibration: Calibration | None,
         uncalibrated: str | None,
         effects: Sequence[Active],
     ) -> None:
         self.log, self.segments, self.definition = log, segments, definition
         self.effects = effects
         self.true = corrected(log, segments.t_open.value or 0.0, effects)
-        self.calibration = calibration or {}
+        self._calibration = calibration
         self.uncalibrated = uncalibrated
         self.ambient = definition.ambient_pressure.value
         self.fire = performance.fire_of(segments, definition)
         self.absent: dict[str, str] = {}
 
-    def result(self) -> Validation:
+    def result(self) -> Validated:
         """All modes, tables and histories."""
         full = self._try("full", self._full)
         flows = self._try("histories", lambda: self._flows(full))
@@ -112,20 +95,37 @@ class _Work:
             "chamber_forced": self._try("chamber_forced", lambda: self._chamber_forced(full, flows)),
             "full": compare_full(self.log, self.segments, full) if full else None,
         }
-        measured = performance.measured(self.true, self.segments, self.definition, self.calibration)
+        measured = performance.measured(self.true, self.segments, self.definition, self._calibration)
         if full is not None:
             model = performance.modelled(full, self.calibration)
         else:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
         sensors = findings(self.true, self.segments, self.definition, self.fire)
         kept = {mode: found for mode, found in residuals.items() if found}
-        told = (ZERO,) if any(ZERO in warning for warning in self.log.warnings) else ()
-        return Validation(kept, measured, model, self._histories(full, flows), sensors, self.absent, told)
+        told = any(ZERO in warning for warning in self.log.warnings)
+        histories = self._histories(full, flows)
+        notes = [note for found in kept.values() for r in found for note in r.notes]
+        product = Validation(
+            performance=Performance(measured=Column.from_json(measured), model=Column.from_json(model)),
+            gap={mode: gaps(found) for mode, found in kept.items()},
+            closure=Closure.from_json(histories.closure),
+            sensors=tuple(sensors),
+            absent=self.absent,
+            notes=tuple(dict.fromkeys(notes)),
+            warnings=tuple(finding.text for finding in sensors if not (told and finding.verdict == ZERO)),
+        )
+        return Validated(product, kept, histories)
+
+    @property
+    def calibration(self) -> Calibration:
+        """What every run needs. Raises AbsentError where there is none."""
+        if self._calibration is None:
+            raise AbsentError(str(self.uncalibrated))
+        return self._calibration
 
     def _try(self, name: str, work: Callable[[], Found]) -> Found | None:
         try:
-            if self.uncalibrated is not None:
-                raise AbsentError(self.uncalibrated)
+            _ = self.calibration
             return work()
         except (AbsentError, ArithmeticError, ValueError) as error:
             self.absent[name] = str(error)
@@ -172,6 +172,5 @@ class _Work:
 
     def _heat(self) -> dict[str, Quantity]:
         """Heat that the calibrated tank takes in the liquid phase, where it can be told."""
-        rest = self.calibration.get("rest") or {}
-        found = rest.get("liquid_phase_heat")
-        return {"liquid_phase_heat": Quantity.from_json({"std": None, **found})} if found else {}
+        rest = self.calibration.rest
+        return {"liquid_phase_heat": rest.liquid_phase_heat} if rest else {}

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
+from hfanalysis.products.model import AdoptedEffect
+from hfanalysis.quantity import Quantity
+from hfanalysis.sentences import Text, said
 from hfanalysis.wording.scales import reading_unit, scale, superscript
 
 NAMES: dict[str, str] = {
@@ -102,34 +104,34 @@ def people_unit(unit: str) -> tuple[float, str]:
     return found.factor, found.unit
 
 
-def shown(quantity: Mapping[str, Any], system: str = "si", name: str = "", difference: bool = False) -> Shown:
-    """A quantity of a product (``{"value": …}``) as people read it in one of the systems of units.
+def shown(quantity: Quantity, system: str = "si", name: str = "", difference: bool = False) -> Shown:
+    """A quantity as people read it in one of the systems of units.
 
     Args:
-        quantity: as products state it.
+        quantity: of a product.
         system: of units: "si" or "team".
         name: the quantity's, which may ask for a unit of its own.
         difference: whether no zero point of a unit concerns it.
     """
-    verdict = str(quantity.get("verdict") or "")
-    if quantity.get("value") is None:
-        return Shown("–", "", "", "", verdict or "absent", str(quantity.get("reason") or ""))
-    found = scale(reading_unit(name, str(quantity.get("unit") or "")), system)
+    verdict = quantity.verdict or ""
+    if quantity.value is None:
+        return Shown("–", "", "", "", verdict or "absent", quantity.reason or "")
+    found = scale(reading_unit(name, quantity.unit), system)
     factor, zero, unit = found.factor, 0.0 if difference else found.zero, found.unit
-    value, std = factor * quantity["value"] + zero, factor * (quantity.get("std") or 0.0)
+    value, std = factor * quantity.value + zero, factor * (quantity.std or 0.0)
     exponent = 0 if unit == "s" else exponent_of(max(abs(value), std))
     if exponent:
         unit = f"×10{superscript(exponent)} {unit}".strip()
         factor, zero, value, std = (x / 10.0**exponent for x in (factor, zero, value, std))
     decimals = min(decimals_for(value, std), _FINEST.get(unit, 8))
-    interval = [fixed(factor * end + zero, decimals) for end in quantity.get("ci95") or ()]
+    interval = [fixed(factor * end + zero, decimals) for end in quantity.interval or ()]
     return Shown(
         fixed(value, decimals),
-        fixed(std, decimals) if quantity.get("std") else "",
+        fixed(std, decimals) if quantity.std else "",
         " … ".join(interval),
         unit,
         verdict,
-        str(quantity.get("why") or ""),
+        quantity.why or "",
     )
 
 
@@ -167,24 +169,24 @@ def tidy(value: float, digits: int = 4) -> str:
     return f"{value:.{digits}g}".replace("-", MINUS)
 
 
-def adopted_in_words(effects: Sequence[Mapping[str, Any]]) -> str:
+def adopted_in_words(effects: Sequence[AdoptedEffect]) -> str:
     """A sentence about the adopted effects that a product states; empty where it states none."""
     if not effects:
         return ""
-    named = [f"{e['name']} {_values_in_words(e['parameters'])}" for e in effects]
-    return f"With {listed(named)} adopted (engines/{effects[0]['file']})."
+    named = [f"{e.name} {_values_in_words(e.parameters)}" for e in effects]
+    return f"With {listed(named)} adopted (engines/{effects[0].file})."
 
 
-def _values_in_words(parameters: Mapping[str, Mapping[str, Any]]) -> str:
+def _values_in_words(parameters: Mapping[str, Quantity]) -> str:
     """The strength of an effect, then what else is stated of it."""
     texts = [(name, _plainly(quantity)) for name, quantity in parameters.items()]
     others = ", ".join(f"{name} {text}" for name, text in texts[1:])
     return texts[0][1] + (f" ({others})" if others else "")
 
 
-def _plainly(quantity: Mapping[str, Any]) -> str:
+def _plainly(quantity: Quantity) -> str:
     """A value with its deviation and unit, to few digits; differences of temperature stay differences."""
-    unit, value, std = str(quantity["unit"]), float(quantity["value"]), float(quantity.get("std") or 0.0)
+    unit, value, std = quantity.unit, quantity.value or 0.0, quantity.std or 0.0
     factor, unit = (1.0, unit) if unit == "K" else people_unit("" if unit == "-" else unit)
     if unit == "W" and abs(value) >= _KILOWATTS:
         factor, unit = 1e-3, "kW"
@@ -194,14 +196,8 @@ def _plainly(quantity: Mapping[str, Any]) -> str:
     return f"{fixed(factor * value, decimals)} ± {fixed(factor * std, decimals)} {unit}".strip()
 
 
-def is_quantity(data: Any) -> bool:
-    """Whether a part of a product is a quantity."""
-    return isinstance(data, Mapping) and "value" in data and ("unit" in data or "reason" in data)
-
-
-def quantities(product: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
-    """The quantities of a product, the known ones in their usual order, then the others as they come."""
-    found = {name: data for name, data in product.items() if is_quantity(data)}
+def ordered(found: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """Quantities by name, the known ones in their usual order, then the others as they come."""
     order = [*(name for name in NAMES if name in found), *(name for name in found if name not in NAMES)]
     return {name: found[name] for name in order}
 
@@ -215,7 +211,12 @@ def in_words(name: str) -> str:
     return NAMES.get(name, name.replace("_", " "))
 
 
-def listed(names: list[str]) -> str:
+def said_of(quantity: Quantity, unit: str, form: str = ".3g", std_form: str = ".2g", sign: float = 1.0) -> Text:
+    """A quantity with its deviation in a sentence, shown in ``unit``; ``sign`` -1 turns it."""
+    return said(sign * (quantity.value or 0.0), unit, form, quantity.std or 0.0, std_form)
+
+
+def listed(names: Sequence[str]) -> str:
     """Names in a sentence.
 
     >>> listed(["a", "b", "c"])

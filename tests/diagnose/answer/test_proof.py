@@ -53,7 +53,7 @@ def test_the_right_effect_closes_the_gap_of_another_test_from_wherever_it_was_ca
     assert proof.fractions["other_test"] is not None
     assert proof.fractions["other_test"] > 0.9
     assert proof.other is not None
-    assert proof.other["after"]["p_tank"] < 0.3 * proof.other["before"]["p_tank"]
+    assert proof.other.after["p_tank"] < 0.3 * proof.other.before["p_tank"]
 
 
 def test_a_wrong_effect_does_not() -> None:

@@ -251,8 +251,8 @@ def test_a_size_beyond_belief_costs_evidence() -> None:
         assert lost(typical) == 0.0, name
         assert 1.0 < lost(huge) <= MOST_LOST, name
         assert lost(of_size(name, -5.0)) == lost(huge), name
-        assert judged(huge)["plausible"] is False, name
-        assert judged(typical)["plausible"] is True, name
+        assert judged(huge).plausible is False, name
+        assert judged(typical).plausible is True, name
     assert lost(effect("tank_heat").at(power=1e9)) == MOST_LOST
 
 
@@ -337,10 +337,10 @@ def test_what_is_too_little_for_a_claim_is_no_place_but_the_likeliest(monkeypatc
     verdict = verdict_of(found)
     assert (verdict.label, verdict.chosen.names) == ("none", ())
     assert verdict.posterior["nozzle_throat_erosion"] > 0.9
-    assert places(verdict, found) == []
+    assert places(verdict, found) == ()
     place = likeliest_place(verdict, found, ["nozzle"])
     assert place is not None
-    assert place["equation"] == "nozzle"
+    assert place.equation == "nozzle"
 
 
 TIME = np.linspace(0.0, 10.0, 201)
@@ -361,11 +361,11 @@ def test_what_rises_slowly_may_have_begun_before_it_is_seen(begins: float, rises
     source = Acting("grain", "kg/s", TIME, mean, np.full(TIME.size, 0.025), None)
     phases = {"liquid": 0.0, "end": 10.0}
     row = of_acting("regression_factor", source, 20.0, phases, blur=0.1)
-    low, high = row["t_start"].interval
+    low, high = row.t_start.interval
     assert low == pytest.approx(since, abs=0.01)
-    assert high == pytest.approx(row["t_start"].value + 0.196, abs=1e-3)
+    assert high == pytest.approx(row.t_start.value + 0.196, abs=1e-3)
     assert ("at the latest" in place_sentence(row)) == (rises > 0.0)
-    known = of_acting("fuel_sliver", source, 20.0, phases)["t_start"]
+    known = of_acting("fuel_sliver", source, 20.0, phases).t_start
     assert known.interval == pytest.approx((known.value - 0.098, known.value + 0.098), abs=1e-3)
 
 
@@ -438,8 +438,8 @@ def test_where_nothing_is_claimed_the_likeliest_place_is_told_all_the_same(monke
         place = likeliest_place(verdict, found, by_equation(verdict.posterior, found))
         assert (place is not None) == there, gain
         if place is not None:
-            assert (place["equation"], place["phase"]) == ("nozzle", "liquid")
-            assert place["significance"] == pytest.approx(gain)
+            assert (place.equation, place.phase) == ("nozzle", "liquid")
+            assert place.significance == pytest.approx(gain)
             assert "history" not in place
 
 
@@ -486,11 +486,11 @@ def test_partners_that_explain_as_much_share_the_probability(monkeypatch) -> Non
 
 def test_the_effect_is_given_with_its_size() -> None:
     row = effects_product(verdict_of(eroded()))[0]
-    assert row["name"] == "nozzle_throat_erosion"
-    rate = row["parameters"]["rate"]
+    assert row.name == "nozzle_throat_erosion"
+    rate = row.parameters["rate"]
     assert abs(rate.value - 2e-4) < 3.5 * rate.std
     assert rate.unit == "m/s"
-    assert row["plausibility"]["plausible"] is True
+    assert row.plausibility.plausible is True
 
 
 @cache
@@ -523,7 +523,7 @@ def test_an_effect_that_another_test_lacks_does_not_close_its_gap() -> None:
     assert found.other is not None
     fraction = found.fractions["other_test"]
     assert fraction is None or fraction < 0.0
-    assert found.other["after"]["p_chamber"] > found.other["before"]["p_chamber"]
+    assert found.other.after["p_chamber"] > found.other.before["p_chamber"]
 
 
 def test_the_other_test_keeps_the_constants_that_were_found_here() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from tests.diagnose.answer.test_verdict import eroded, probable
 from tests.inference import made
+from tests.products.filled import filled
 
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.verdict import effects_product, places, verdict_of
@@ -22,10 +23,11 @@ from hfanalysis.diagnose.answer.words import (
     story,
 )
 from hfanalysis.effects import effect
+from hfanalysis.products.diagnosis import ClosedFraction, Diagnosis
 from hfanalysis.quantity import Quantity
 
 
-def product(label: str, **more: Any) -> dict[str, Any]:
+def product(label: str, **more: Any) -> Diagnosis:
     """A small product of a verdict."""
     gains = {
         "none": (("nozzle_throat_erosion", -20.0),),
@@ -36,7 +38,7 @@ def product(label: str, **more: Any) -> dict[str, Any]:
     verdict = verdict_of(found)
     fractions = {"same": 0.98, "held_out": 0.9, "other_test": None, "placebo": 0.1}
     rms = {name: 2.0 * size for name, size in made.NOISE.items()}
-    return {
+    given = {
         "verdict": label,
         "partners": {},
         "by_equation": by_equation(verdict.posterior, found),
@@ -51,12 +53,13 @@ def product(label: str, **more: Any) -> dict[str, Any]:
         "decisive_measurements": [] if label == "none" else ["nozzle_throat_erosion: the throat's diameter"],
         **more,
     }
+    return filled(Diagnosis, given)
 
 
 @pytest.mark.parametrize("label", ["none", "named", "ambiguous", "unknown"])
 def test_every_verdict_is_said_in_sentences(label: str) -> None:
     given = product(label)
-    said, probability = story(given), given["posterior"].get("nozzle_throat_erosion", 0.0)
+    said, probability = story(given), given.posterior.get("nozzle_throat_erosion", 0.0)
     assert all(line.endswith(".") and "None" not in line and "nan" not in line for line in said)
     expected = {
         "none": "Nothing is missing",
@@ -74,13 +77,13 @@ def test_what_is_likelier_than_none_is_said_where_nothing_is_claimed() -> None:
     odds = {"none": 0.1, "unknown": 0.7, "tank_heat": 0.2}
     stated = product("none", posterior=odds, set90=["unknown", "tank_heat"])
     assert headline(stated).startswith("Nothing is claimed to be missing: unknown (0.70)")
-    assert headline({**stated, "posterior": {**odds, "none": 0.6}}).startswith("Nothing is missing from the model")
+    assert headline(stated.but(posterior={**odds, "none": 0.6})).startswith("Nothing is missing from the model")
 
 
 def test_more_than_noise_is_told_where_nothing_explains_it() -> None:
     restless = product("none", compared={"chi_square": 2.2})
-    restless["gap"]["before"] = {**restless["gap"]["before"], "thrust": 9.0 * made.NOISE["thrust"]}
-    said = story(restless)
+    before = {**restless.gap.before, "thrust": 9.0 * made.NOISE["thrust"]}
+    said = story(restless.but(gap=restless.gap.but(before=before)))
     assert len(said) == 2
     assert "chi-square 2.2 per observation, most of it in thrust" in said[1]
     assert all("chi-square" not in line for line in story(product("named", compared={"chi_square": 2.2})))
@@ -89,13 +92,13 @@ def test_more_than_noise_is_told_where_nothing_explains_it() -> None:
 def test_sentences_give_sizes_in_the_units_of_engineers() -> None:
     row = places(verdict_of(eroded()), eroded())[0]
     assert " N on average" in place_sentence(row)
-    heat = {**row, "equation": "tank_energy", "source": Quantity(900.0, "W", 150.0)}
+    heat = row.but(equation="tank_energy", source=Quantity(900.0, "W", 150.0))
     assert "the tank's energy differs by 0.9 ± 0.15 kW" in place_sentence(heat)
-    assert "(thrust)" in place_sentence({**row, "channel": "thrust"})
-    assert place_sentence({**row, "beside": True}).endswith("still open.")
-    assert gap_line("thrust", product("named")["gap"]) == "thrust: rms 10 N without, 5 N with it; noise 5 N."
+    assert "(thrust)" in place_sentence(row.but(channel="thrust"))
+    assert place_sentence(row.but(beside=True)).endswith("still open.")
+    assert gap_line("thrust", product("named").gap) == "thrust: rms 10 N without, 5 N with it; noise 5 N."
     assert proof_sentences(product("named"))[0].startswith("98 % of the gap closes")
-    assert proof_sentences({"gap": {"closed_fraction": {}}}) == []
+    assert proof_sentences(filled(Diagnosis, {})) == []
 
 
 @pytest.mark.parametrize(
@@ -104,9 +107,9 @@ def test_sentences_give_sizes_in_the_units_of_engineers() -> None:
 )
 def test_an_effect_that_closes_next_to_nothing_is_explained(same: float | None, said: str) -> None:
     found = product("named")
-    found["gap"] = {**found["gap"], "closed_fraction": {"same": same}}
+    found = found.but(gap=found.gap.but(closed_fraction=filled(ClosedFraction, {"same": same})))
     assert proof_sentences(found)[-1].startswith(f"{said}what names the effect is smaller than the noise")
-    assert proof_sentences({**found, "effects": []}) == proof_sentences(found)[:-1]
+    assert proof_sentences(found.but(effects=())) == proof_sentences(found)[:-1]
 
 
 @pytest.mark.parametrize(("seconds", "said"), [(0.06, True), (0.012, False)])
@@ -123,7 +126,7 @@ def test_a_fire_that_dies_slowly_is_said_beside_what_an_empty_chamber_takes(seco
 def test_an_impossible_size_is_said() -> None:
     row = effects_product(verdict_of(eroded()))[0]
     assert "hard to believe" not in effect_sentence(row)
-    unlikely = {**row, "plausibility": judged(effect("nozzle_throat_erosion").at(rate=2e-3))}
+    unlikely = row.but(plausibility=judged(effect("nozzle_throat_erosion").at(rate=2e-3)))
     assert "hard to believe" in effect_sentence(unlikely)
     assert "2 mm/s is beyond 0.4 mm/s" in effect_sentence(unlikely)
 
@@ -139,12 +142,13 @@ def test_names_that_an_unknown_does_not_exclude_are_in_the_headline() -> None:
 
 
 def test_a_gap_that_a_wrong_effect_closes_as_well_proves_nothing() -> None:
-    gap = product("named")["gap"]
-    alike, wider = ({"same": 0.9, "held_out": 0.8, "other_test": None, "placebo": p} for p in (0.85, -0.16))
-    said = " ".join(proof_sentences(product("named", gap={**gap, "closed_fraction": alike})))
+    gap = product("named").gap
+    arms = ClosedFraction(same=0.9, held_out=0.8, other_test=None, placebo=None)
+    alike, wider = (gap.but(closed_fraction=arms.but(placebo=placebo)) for placebo in (0.85, -0.16))
+    said = " ".join(proof_sentences(product("named", gap=alike)))
     assert "85 % with the best wrong effect" in said
     assert "proves nothing here" in said
-    said = " ".join(proof_sentences(product("named", gap={**gap, "closed_fraction": wider})))
+    said = " ".join(proof_sentences(product("named", gap=wider)))
     assert "the best wrong effect widens it by 16 %" in said
     assert "proves nothing" not in said
 
@@ -163,14 +167,14 @@ def test_where_names_leave_a_choice_the_equation_may_be_sure(
 ) -> None:
     posterior = dict(zip(("combustion_efficiency", "chamber_heat_loss"), names, strict=True))
     given = {"verdict": verdict, "posterior": posterior, "by_equation": {"chamber_energy": by_equation, "grain": 0.01}}
-    assert equation_sentence(given) == said
+    assert equation_sentence(filled(Diagnosis, given)) == said
 
 
 def test_it_is_said_that_no_model_comes_near_a_test_and_which_comes_nearest() -> None:
     rows = [(["n2_purge"], False, 80.0), (["n2_purge", "tank_heat"], False, 90.0), (["offset of p_tank"], True, 95.0)]
     tried = [{"names": names, "unknown": strange, "log_evidence": gain} for names, strange, gain in rows]
-    assert poor_fit_sentence({"leftover": 2.0, "tried": tried}) == []
-    (said,) = poor_fit_sentence({"leftover": 18.76, "tried": tried})
+    assert poor_fit_sentence(filled(Diagnosis, {"leftover": 2.0, "tried": tried})) == []
+    (said,) = poor_fit_sentence(filled(Diagnosis, {"leftover": 18.76, "tried": tried}))
     assert "(n2_purge and tank_heat) leaves a chi-square of 18.8" in said
-    (bare,) = poor_fit_sentence({"leftover": 18.76, "tried": tried[2:]})
+    (bare,) = poor_fit_sentence(filled(Diagnosis, {"leftover": 18.76, "tried": tried[2:]}))
     assert "the best with names leaves" in bare

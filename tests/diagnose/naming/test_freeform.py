@@ -80,7 +80,7 @@ def test_wind_on_the_stand_is_seen_behind_a_coarse_form() -> None:
     history = best.history(bench.observed)
     assert (np.abs(history.mean - wind(history.time)) < 3.5 * history.std).mean() > 0.95
     row = of_unknown(history, 1.0, bench.observed.phases)
-    assert row["rms"].value == pytest.approx(60.0 / np.sqrt(2.0), rel=0.2)
+    assert row.rms.value == pytest.approx(60.0 / np.sqrt(2.0), rel=0.2)
     assert "goes up and down by 4" in place_sentence(row)
 
 

@@ -101,18 +101,18 @@ def test_its_size_is_the_hidden_one(hidden: str) -> None:
 def test_its_equation_is_the_place(hidden: str) -> None:
     found = named(hidden)
     row = places(verdict_of(found), found)[0]
-    assert row["equation"] == effect(hidden).equation
-    assert row["site"] == hidden
-    assert row["history"]["low90"] < row["history"]["mean"]
+    assert row.equation == effect(hidden).equation
+    assert row.site == hidden
+    assert row.history.low90 < row.history.mean
 
 
 def test_heat_is_given_in_watts_from_first_to_last() -> None:
     found = named("tank_heat")
     row = places(verdict_of(found), found)[0]
-    assert row["source"].unit == "W"
-    assert abs(row["source"].value - 3000.0) < 3.0 * row["source"].std
-    assert row["t_start"].value < 0.3
-    assert row["t_end"].value > 5.0
+    assert row.source.unit == "W"
+    assert abs(row.source.value - 3000.0) < 3.0 * row.source.std
+    assert row.t_start.value < 0.3
+    assert row.t_end.value > 5.0
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -237,7 +237,7 @@ def test_a_leak_that_no_effect_is_shows_as_unknown_in_the_tank() -> None:
     assert verdict.label == "unknown", verdict.posterior
     row = places(verdict, found)[0]
     # what p_tank alone cannot tell apart
-    assert row["equation"] in ("tank_volume", "tank_energy")
+    assert row.equation in ("tank_volume", "tank_energy")
     assert verdict.chosen.unknown
 
 
@@ -246,11 +246,11 @@ def test_the_leak_is_seen_when_it_is_there() -> None:
     candidate = next(c for c in found.unknown if c.names == ("tank_leak",))
     observed = found.bench.observed
     row = of_unknown(candidate.history(observed), 1.0, observed.phases)
-    time, mean = (np.array(row["history"][n]) for n in ("time", "mean"))
+    time, mean = (np.array(getattr(row.history, n)) for n in ("time", "mean"))
     inside = (time > 2.5) & (time < 3.5)
     outside = (time < 1.0) | (time > 5.0)
     assert np.abs(mean[inside]).mean() > 3.0 * np.abs(mean[outside]).mean()
-    assert row["t_start"].value == pytest.approx(1.9, abs=0.7)
+    assert row.t_start.value == pytest.approx(1.9, abs=0.7)
 
 
 FALLEN = {"size": -0.03, "start": 1.87, "duration": 0.8, "edge": 0.04}
@@ -268,12 +268,12 @@ def test_what_comes_and_goes_at_once_is_unknown_with_its_instants() -> None:
     assert verdict.label == "unknown", verdict.posterior
     row = places(verdict, found)[0]
     assert verdict.chosen.names == ("injector_factor",)
-    assert row["equation"] == "injector"
-    assert row["phase"] == "liquid"
+    assert row.equation == "injector"
+    assert row.phase == "liquid"
     for end, instant in (("t_start", FALLEN["start"]), ("t_end", FALLEN["start"] + FALLEN["duration"])):
         # it is there from where its edge has risen to a twentieth
-        assert row[end].value == pytest.approx(instant, abs=0.12)
-    assert row["source"].value == pytest.approx(FALLEN["size"], abs=0.006)
+        assert getattr(row, end).value == pytest.approx(instant, abs=0.12)
+    assert row.source.value == pytest.approx(FALLEN["size"], abs=0.006)
     inside = verdict.chosen.history(found.bench.observed)
     middle = np.abs(inside.time - (FALLEN["start"] + 0.5 * FALLEN["duration"])) < 0.2
     assert (np.abs(inside.mean[middle] - FALLEN["size"]) < 3.0 * inside.std[middle]).all()
@@ -290,9 +290,9 @@ def test_a_thrust_of_another_clock_is_unknown_with_its_delay() -> None:
     verdict = verdict_of(found)
     assert verdict.label == "unknown", verdict.posterior
     row = places(verdict, found)[0]
-    assert (row["equation"], row["channel"], row["source"].unit) == ("sensor", "thrust", "N")
-    assert abs(row["delay"].value - 0.1) < 3.0 * row["delay"].std
-    assert row["delay"].std < 0.01
+    assert (row.equation, row.channel, row.source.unit) == ("sensor", "thrust", "N")
+    assert abs(row.delay.value - 0.1) < 3.0 * row.delay.std
+    assert row.delay.std < 0.01
     assert re.fullmatch(r"A sensor \(thrust\) is read \d+(\.\d)? ± [\d.]+ ms late\.", place_sentence(row))
 
 

@@ -46,10 +46,10 @@ def test_a_valve_that_opens_slowly_is_a_source_in_the_feed_with_its_time() -> No
     assert found.unknown
     assert found.log_evidence - base.log_evidence > plain.log_evidence + 50.0  # 0.3 s are seen in the blocks as well
     row = row_of(found, bench)
-    assert (row["equation"], row["phase"], row["source"].unit) == ("feed", "liquid", "Pa")
-    assert abs(row["opens_in"].value - 0.3) < 3.0 * row["opens_in"].std
-    assert row["t_start"].value < 0.02
-    assert row["t_end"].value == pytest.approx(0.3, abs=0.05)
+    assert (row.equation, row.phase, row.source.unit) == ("feed", "liquid", "Pa")
+    assert abs(row.opens_in.value - 0.3) < 3.0 * row.opens_in.std
+    assert row.t_start.value < 0.02
+    assert row.t_end.value == pytest.approx(0.3, abs=0.05)
     assert re.fullmatch(
         r"The valve takes 30\d ± [\d.]+ ms to open, by the run line's pressure; .*", place_sentence(row)
     )
@@ -71,11 +71,11 @@ def test_a_flow_that_fails_is_a_source_in_the_injector_with_its_time() -> None:
     assert found.names == (plain.place.name,)
     assert found.log_evidence > base.log_evidence + 0.7 * plain.log_evidence  # blocks that are left there deny it
     row = row_of(found, bench)
-    assert (row["equation"], row["phase"], row["source"].unit) == ("injector", "liquid", "kg/s")
-    assert row["t_end"].value == pytest.approx(t_v, abs=0.02)
-    assert abs(row["t_start"].value - (t_v - 0.1)) < 3.0 * row["t_start"].std
+    assert (row.equation, row.phase, row.source.unit) == ("injector", "liquid", "kg/s")
+    assert row.t_end.value == pytest.approx(t_v, abs=0.02)
+    assert abs(row.t_start.value - (t_v - 0.1)) < 3.0 * row.t_start.std
     flow = flow_before(base.fit, t_v, plain.seconds)
-    assert min(row["history"]["mean"]) == pytest.approx(-0.4 * flow, rel=0.3)
+    assert min(row.history.mean) == pytest.approx(-0.4 * flow, rel=0.3)
     assert re.fullmatch(
         r"In the last \d+ ± \d+ ms of the liquid the injector's flow fails, by .* g/s on average: .*",
         place_sentence(row),
@@ -98,10 +98,10 @@ def test_a_flow_that_swings_is_a_source_in_the_injector_with_its_frequency() -> 
     base, found, bench = with_plain(replace(hidden, share=0.025, phase=1.2), swing.EFFECT.at(**given))
     assert found.log_evidence - base.log_evidence > hidden.log_evidence + 50.0  # slower than the blocks
     row = row_of(found, bench)
-    assert row["equation"] == "injector"
-    assert abs(row["source"].value - 0.03) < 3.0 * row["source"].std
-    assert row["source"].std < 0.003
-    assert (row["t_start"].value, row["t_end"].value) == (pytest.approx(0.8, abs=0.2), pytest.approx(2.6, abs=0.2))
+    assert row.equation == "injector"
+    assert abs(row.source.value - 0.03) < 3.0 * row.source.std
+    assert row.source.std < 0.003
+    assert (row.t_start.value, row.t_end.value) == (pytest.approx(0.8, abs=0.2), pytest.approx(2.6, abs=0.2))
     assert re.search(r"swings by (2.9|3|3.1) ± 0.\d+ % at 4 Hz", place_sentence(row))
 
 
@@ -109,11 +109,11 @@ def test_a_clock_that_is_late_is_a_source_in_the_sensor_with_its_delay() -> None
     base, found, bench = with_plain(LateChannel(0.04, 60.0), late_channel.EFFECT.at(delay=0.05))
     assert found.log_evidence > base.log_evidence + 60.0
     row = row_of(found, bench)
-    assert (row["equation"], row["channel"], row["source"].unit) == ("sensor", "thrust", "N")
-    assert row["delay"].value == pytest.approx(0.05, abs=0.01)
-    assert (row["t_start"].value, row["phase"]) == (0.0, "vapor")  # it shows most where the thrust falls
-    assert max(row["history"]["mean"]) > 10.0 * abs(row["history"]["mean"][5])
-    assert row["source"].value < 0.5 * np.mean(row["history"]["mean"])  # what it lacks at the start is not drawn
+    assert (row.equation, row.channel, row.source.unit) == ("sensor", "thrust", "N")
+    assert row.delay.value == pytest.approx(0.05, abs=0.01)
+    assert (row.t_start.value, row.phase) == (0.0, "vapor")  # it shows most where the thrust falls
+    assert max(row.history.mean) > 10.0 * abs(row.history.mean[5])
+    assert row.source.value < 0.5 * np.mean(row.history.mean)  # what it lacks at the start is not drawn
     assert re.search(r"\(thrust\) is read (4\d|5\d)(\.\d)? ± \S+ ms late", place_sentence(row))
 
 
@@ -160,5 +160,5 @@ def test_a_factor_acts_most_where_what_it_multiplies_is_large() -> None:
     place = next(place for place in PLACES if place.name == "injector_factor")
     less = History(place, time, np.repeat([-0.05, -0.1], 50), np.ones(100), 0.1)
     phases = {"liquid": 0.0, "vapor": 1.0, "end": 2.0}
-    assert of_unknown(less, 1.0, phases)["phase"] == "vapor"
-    assert of_unknown(made.replace(less, whole=flow), 1.0, phases)["phase"] == "liquid"
+    assert of_unknown(less, 1.0, phases).phase == "vapor"
+    assert of_unknown(made.replace(less, whole=flow), 1.0, phases).phase == "liquid"

@@ -25,6 +25,7 @@ from tests.diagnose.recorded import (
 )
 from tests.effects.runs import own_state
 from tests.engine.stand import engine_on_stand
+from tests.products.filled import loaded
 
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import UNITS, weak_residuals
@@ -60,7 +61,7 @@ def test_chi_square_is_as_large_as_its_degrees_of_freedom() -> None:
     for seed in range(20):
         for residual in residuals(recorded(run_of(), seed, spacing=0.04), calibrated(seed)).values():
             found = significance(residual)
-            ratios.append(found["chi_square"] / found["degrees_of_freedom"])
+            ratios.append(found.chi_square / found.degrees_of_freedom)
     assert float(np.mean(ratios)) == pytest.approx(1.0, abs=0.1)
 
 
@@ -163,7 +164,7 @@ def test_what_was_not_recorded_is_said() -> None:
     assert reasons["nozzle"] == "thrust is missing"
     assert all(reasons[name] is None for name in (*TANK, "chamber_mass"))
     entry = weak_product(tuple(residuals(test.without("p_run")).values()))["feed"]
-    assert entry == {"unit": "bar", "reason": "p_run is missing"}
+    assert entry.to_json() == {"unit": "bar", "reason": "p_run is missing"}
     alone = residuals(test.without("p_tank", "p_run"))
     assert alone["feed"].reason == "p_tank and p_run are missing"
     assert np.abs(alone["nozzle"].value).max() < 5.0
@@ -201,17 +202,17 @@ def test_the_product_says_where_and_how_much() -> None:
     heat = effect("tank_heat").at(power=6000.0, begun=1.0)
     entries = weak_product(tuple(residuals(recorded(run_of(heat), seed=5)).values()))
     entry = entries["tank_energy"]
-    mean, start = entry["mean"], entry["t_start"]
+    mean, start = entry.mean, entry.t_start
     assert isinstance(mean, Quantity)
     assert mean.value is not None
     assert mean.std is not None
     assert abs(mean.value - 6000.0) < 3.0 * mean.std
-    assert entry["phase"] == "liquid"
+    assert entry.phase == "liquid"
     assert start.value < 1.0
-    assert entry["significance"]["chi_square"] > 5.0 * entry["significance"]["degrees_of_freedom"]
+    assert entry.significance.chi_square > 5.0 * entry.significance.degrees_of_freedom
     quiet = weak_product(tuple(of().values()))["tank_energy"]
-    assert quiet["phase"] is None
-    assert quiet["mean"].reason == "nowhere beyond two standard deviations"
+    assert quiet.phase is None
+    assert quiet.mean.reason == "nowhere beyond two standard deviations"
 
 
 def test_its_time_grows_with_a_log_no_faster_than_its_length_squared() -> None:
@@ -243,7 +244,7 @@ def test_a_constant_that_is_not_known_here_is_refused() -> None:
 
 def test_the_spread_of_a_fit_is_that_of_its_constants() -> None:
     engine = engine_on_stand()
-    hypothesis = base_hypothesis(engine, {"oxidizer_mass": {"value": engine.oxidizer_mass, "std": 0.3}})
+    hypothesis = base_hypothesis(engine, loaded(engine.oxidizer_mass, 0.3))
     size = hypothesis.size
     fitted = SimpleNamespace(hypothesis=hypothesis, x=np.zeros(size), covariance=0.25 * np.eye(size))
     spread = Spread.of_fit(cast("Any", fitted))

@@ -10,12 +10,15 @@ from typing import Any
 
 import pytest
 from tests.inference.adopted.firing import make_root
+from tests.products.filled import filled
 
 from hfanalysis.cli import main
 from hfanalysis.cli.adopt import adopt, proved_as_before
 from hfanalysis.cli.request import Request
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted.effects import read_adopted
+from hfanalysis.products.diagnosis import Diagnosis
+from hfanalysis.products.disk import write_json
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
 
@@ -29,7 +32,7 @@ def opened(root: Path) -> Context:
     return open_test(root, "T1")
 
 
-NAMED = {
+NAMED: dict[str, Any] = {
     "verdict": "named",
     "set90": ["tank_heat"],
     "effects": [
@@ -49,22 +52,22 @@ NAMED = {
 
 
 def test_what_a_diagnosis_names_is_adopted(root: Path) -> None:
-    path = adopt(opened(root), NAMED)
+    path = adopt(opened(root), filled(Diagnosis, NAMED))
     assert path == root / "engines" / "T1.effects.toml"
     text = path.read_text(encoding="utf-8")
     assert "tank_heat with probability 0.83" in text.splitlines()[1]
     assert "hfa diagnose T1 --retract" in text
     (effect,) = read_adopted(root, opened(root).definition).effects
     assert effect.values == (912.3456789, 0.2345678, 31.23456, 0.4123456)
-    adopt(opened(root), NAMED)  # a diagnosis may write over a diagnosis
+    adopt(opened(root), filled(Diagnosis, NAMED))  # a diagnosis may write over a diagnosis
     path.write_text('[tank_heat]\npower = "1 kW"\n', encoding="utf-8")
     with pytest.raises(InputError, match="found a file that no diagnosis wrote"):
-        adopt(opened(root), NAMED)
+        adopt(opened(root), filled(Diagnosis, NAMED))
     path.unlink()
 
 
 def test_for_a_stand_it_is_adopted_for_all_its_tests(root: Path) -> None:
-    path = adopt(opened(root), NAMED, stand=True)
+    path = adopt(opened(root), filled(Diagnosis, NAMED), stand=True)
     assert path.name == "paper.effects.toml"
     assert read_adopted(root, opened(root).definition).file == "paper.effects.toml"
     path.unlink()
@@ -80,14 +83,14 @@ def test_for_a_stand_it_is_adopted_for_all_its_tests(root: Path) -> None:
 )
 def test_what_is_not_named_is_not_adopted(root: Path, diagnosis: dict[str, Any]) -> None:
     with pytest.raises(AbsentError, match=f"nothing to adopt.*{diagnosis['verdict']}.*{diagnosis['set90'][-1]}"):
-        adopt(opened(root), diagnosis)
+        adopt(opened(root), filled(Diagnosis, diagnosis))
     assert not (root / "engines" / "T1.effects.toml").exists()
 
 
 def test_a_diagnosis_beyond_the_bounds_of_an_effect_writes_nothing(root: Path) -> None:
     wild = {"name": "tank_heat", "probability": 1.0, "parameters": {"power": {"value": 1e6, "unit": "W", "std": None}}}
     with pytest.raises(InputError, match=r"diagnosis\.json, tank_heat\.power.*expected 0 to 20000 W"):
-        adopt(opened(root), {**NAMED, "effects": [wild]})
+        adopt(opened(root), filled(Diagnosis, {**NAMED, "effects": [wild]}))
     assert not (root / "engines" / "T1.effects.toml").exists()
 
 
@@ -113,7 +116,7 @@ def test_apply_and_retract_on_the_command_line(
     def diagnosed(_name: str, request: Request) -> Context:
         context = open_test(request.root, request.test)
         context.out.mkdir(parents=True, exist_ok=True)
-        context.product("diagnosis.json").write_text(json.dumps(NAMED), encoding="utf-8")
+        write_json(context.product("diagnosis.json"), filled(Diagnosis, NAMED))
         return context
 
     monkeypatch.setattr("hfanalysis.cli.adopt.stage", diagnosed)
@@ -140,7 +143,7 @@ def test_a_stand_that_is_not_stated_cannot_adopt(root: Path) -> None:
     toml = root / "raw_tests" / "T1" / "test.toml"
     toml.write_text(toml.read_text(encoding="utf-8").replace('stand = "paper"\n', ""), encoding="utf-8")
     with pytest.raises(InputError, match=r"test\.stand: is missing"):
-        adopt(opened(root), NAMED, stand=True)
+        adopt(opened(root), filled(Diagnosis, NAMED), stand=True)
 
 
 @pytest.mark.parametrize(

@@ -63,7 +63,7 @@ def test_values_have_units_and_deviations(root: Path) -> None:
     assert purge.named["area"] == pytest.approx(8e-6)
     assert purge.named["temperature"] == pytest.approx(293.15)
     assert purge.named["supply_pressure"] == 38e5
-    power = found.to_json()[1]["parameters"]["power"]
+    power = found.product()[1].parameters["power"]
     assert (power.value, power.std, power.unit) == (900.0, 150.0, "W")
 
 

@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from tests.engine.stand import engine_on_stand
 from tests.inference import logged
+from tests.products.filled import loaded
 from tests.segment.stand import signal
 
 from hfanalysis.effects import effect
@@ -84,7 +85,7 @@ def observations(late: bool, of: TestLog, noted: float, std: float = 6e-3, t_v: 
 
 def hypothesis(late: bool = True) -> Hypothesis:
     engine = short_of_fuel(late)
-    return base_hypothesis(engine, {"oxidizer_mass": {"value": engine.oxidizer_mass, "std": 0.02}})
+    return base_hypothesis(engine, loaded(engine.oxidizer_mass, 0.02))
 
 
 def truth(late: bool = True) -> Array:

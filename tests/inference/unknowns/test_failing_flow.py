@@ -13,9 +13,9 @@ from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
 from hfanalysis.inference.observations.reduction import observe_test
 from hfanalysis.inference.unknowns.failing_flow import UNEVEN, FailingFlow
+from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 
 SEGMENTS = logged.segments(t_fuel_out=Quantity.absent("not seen"))
 T_V = SEGMENTS.time("t_v") or 0.0

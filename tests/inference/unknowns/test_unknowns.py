@@ -68,8 +68,8 @@ class WornThroat(Unknown):
         return History(self.place, time, np.full(50, part), np.full(50, std), 0.1, sizes)
 
     @staticmethod
-    def words(row, where, amount):
-        return f"The throat is {100.0 * row['wider_by'].value:.0f} % wider."
+    def words(row, known, where, unit):
+        return f"The throat is {100.0 * known.value:.0f} % wider."
 
 
 UNKNOWN = WornThroat
@@ -109,6 +109,6 @@ def test_an_unknown_of_one_file_is_seen_fitted_drawn_and_said(with_worn_throat: 
     assert found.log_evidence > base.log_evidence + 12.0
     assert not [a for a in found.fit.burnt.steps.engine.effects if has_name(a.effect)]
     row = of_unknown(found.history(wider), 1.0, wider.phases)
-    assert (row["equation"], row["site"]) == ("nozzle", "worn throat")
-    assert np.ptp(row["history"]["mean"]) == 0.0
-    assert place_sentence(row) == f"The throat is {100.0 * row['wider_by'].value:.0f} % wider."
+    assert (row.equation, row.site) == ("nozzle", "worn throat")
+    assert np.ptp(row.history.mean) == 0.0
+    assert place_sentence(row) == f"The throat is {100.0 * row.wider_by.value:.0f} % wider."

@@ -8,9 +8,10 @@ of the name.
 from __future__ import annotations
 
 from math import log
-from typing import Any
 
 from hfanalysis.engine.effect import Active
+from hfanalysis.products.diagnosis import Plausibility
+from hfanalysis.sentences import text
 
 STEEPNESS = 3.0
 """Log of the odds lost per squared e-fold beyond the limit."""
@@ -38,13 +39,14 @@ def lost(active: Active) -> float:
     return 0.0 if beyond <= 1.0 else min(STEEPNESS * log(beyond) ** 2 + 1.0, MOST_LOST)
 
 
-def judged(active: Active) -> dict[str, Any]:
+def judged(active: Active) -> Plausibility:
     """How large the effect is, whether that is possible, and why."""
     limit = active.effect.believable
     if limit is None:
-        return {"size": None, "plausible": None, "why": "nothing is known of how large this effect can be"}
+        return Plausibility(size=None, plausible=None, why="nothing is known of how large this effect can be")
     chosen = _parameter(active)
     size, most = limit.text(active.strengths[chosen]), limit.text(limit.most)
     possible = excess(active) <= 1.0
-    why = f"{chosen} of {size}" + (f" is below {most}" if possible else f" is beyond {most}: {limit.why}")
-    return {"size": size, "plausible": possible, "why": why}
+    judgement = "{chosen} of {size} is below {most}" if possible else "{chosen} of {size} is beyond {most}: {why}"
+    why = text(judgement, chosen=chosen, size=size, most=most, why=limit.why)
+    return Plausibility(size=size, plausible=possible, why=why)

@@ -10,13 +10,13 @@ there; gaps are measured at the finest, where a sensor's offset and gain are all
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.inference.candidate import Bench, Candidate
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.gap import closed, frozen, held_out, root_mean_square, total_gap
 from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.products import diagnosis
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Proof:
     """Parts of the gap that are closed, by arm; None where an arm could not be had, and why in ``notes``."""
 
     fractions: dict[str, float | None]
-    other: dict[str, Any] | None
+    other: diagnosis.OtherTest | None
     notes: tuple[str, ...]
 
 
@@ -48,7 +48,7 @@ def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
         notes.append("the gap was within the noise of blocks before: there is no fraction of it to close")
     fractions["held_out"] = held_out(base, after, fitted, observed)
     elsewhere = _elsewhere(chosen, other) if other is not None else None
-    fractions["other_test"] = elsewhere["closed_fraction"] if elsewhere else None
+    fractions["other_test"] = elsewhere.closed_fraction if elsewhere else None
     if other is None:
         notes.append("there is no other test of this stand to prove it on")
     elif elsewhere is None:
@@ -66,7 +66,7 @@ def _placebo(found: Naming, chosen: Candidate) -> Candidate | None:
     return max(wrong, key=lambda c: c.log_evidence, default=None)
 
 
-def _elsewhere(chosen: Candidate, other: OtherTest) -> dict[str, Any] | None:
+def _elsewhere(chosen: Candidate, other: OtherTest) -> diagnosis.OtherTest | None:
     """The other test without and with the effects, their constants frozen and its own free."""
     observed, bench = other.observed, Bench(other.observed)
     without, explained = (bench.settled(h) for h in (other.hypothesis, frozen(other.hypothesis, chosen.fit)))
@@ -74,9 +74,9 @@ def _elsewhere(chosen: Candidate, other: OtherTest) -> dict[str, Any] | None:
         return None
     base, after = without.fit, explained.fit
     gaps = [total_gap(f, observed) for f in (base, after)]
-    return {
-        "test": other.name,
-        "closed_fraction": closed(*gaps),
-        "before": root_mean_square(base, observed),
-        "after": root_mean_square(after, observed),
-    }
+    return diagnosis.OtherTest(
+        test=other.name,
+        closed_fraction=closed(*gaps),
+        before=root_mean_square(base, observed),
+        after=root_mean_square(after, observed),
+    )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +28,7 @@ from hfanalysis.engine.effect import Active, Parameter
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.unknown import History, has_name
+from hfanalysis.products.diagnosis import NamedEffect, Place, SourceHistory
 from hfanalysis.quantity import NORMAL_95, Quantity
 
 Array = NDArray[np.float64]
@@ -141,10 +141,10 @@ def _chosen(found: Naming, top: str) -> Candidate:
     return best
 
 
-def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
+def effects_product(verdict: Verdict) -> tuple[NamedEffect, ...]:
     """What was added to the model: name, probability, equation, parameters, and how large that is."""
     if verdict.label not in ("named", "ambiguous"):
-        return []
+        return ()
     found = verdict.chosen.fit
     values, stds = found.values, found.stds
     out = []
@@ -156,16 +156,16 @@ def effects_product(verdict: Verdict) -> list[dict[str, Any]]:
             if (full := f"{name}.{p.name}") in values
         }
         out.append(
-            {
-                "name": name,
-                "probability": verdict.partners.get(name, verdict.posterior[verdict.top]),
-                "equation": active.effect.equation,
-                "meaning": active.effect.meaning,
-                "parameters": parameters,
-                "plausibility": judged(active),
-            }
+            NamedEffect(
+                name=name,
+                probability=verdict.partners.get(name, verdict.posterior[verdict.top]),
+                equation=active.effect.equation,
+                meaning=active.effect.meaning,
+                parameters=parameters,
+                plausibility=judged(active),
+            )
         )
-    return out
+    return tuple(out)
 
 
 def _within(parameter: Parameter, value: float, std: float) -> Quantity:
@@ -175,13 +175,13 @@ def _within(parameter: Parameter, value: float, std: float) -> Quantity:
     return Quantity(value, unit, std, (max(low, min(parameter.low, value)), min(high, max(parameter.high, value))))
 
 
-def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
+def places(verdict: Verdict, found: Naming) -> tuple[Place, ...]:
     """Where, when and how much: the source of every named effect, or the unknown one."""
     observed, chosen = found.bench.observed, verdict.chosen
     if verdict.label == "none":
-        return []
+        return ()
     gain = chosen.log_evidence - found.base.log_evidence
-    out = []
+    out: list[Place] = []
     if chosen.unknown:
         out.append(of_unknown(chosen.history(observed), gain, observed.phases))
     for name in verdict.added:
@@ -190,11 +190,11 @@ def places(verdict: Verdict, found: Naming) -> list[dict[str, Any]]:
     beside = next((c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]), None)
     if beside is not None and (rest := beside.log_evidence - chosen.log_evidence) > 0.0:
         row = of_unknown(beside.history(observed), rest, observed.phases)
-        out.append({**row, "beside": True, "significance": min(rest, 0.5 * out[-1]["significance"])})
-    return out
+        out.append(row.but(beside=True, significance=min(rest, 0.5 * out[-1].significance)))
+    return tuple(out)
 
 
-def likeliest_place(verdict: Verdict, found: Naming, equations: Iterable[str]) -> dict[str, Any] | None:
+def likeliest_place(verdict: Verdict, found: Naming, equations: Iterable[str]) -> Place | None:
     """Where nothing is claimed, the place at which something would most likely be; None where nothing is seen at all.
 
     ``equations``: the most probable first.
@@ -204,10 +204,10 @@ def likeliest_place(verdict: Verdict, found: Naming, equations: Iterable[str]) -
     likeliest = likeliest_of(equations, verdict.posterior, verdict.evidences, found)
     if likeliest is None:
         return None
-    return {k: v for k, v in _of_candidate(likeliest, found).items() if k != "history"}
+    return Place(**{name: v for name, v in _of_candidate(likeliest, found).given.items() if name != "history"})
 
 
-def _of_candidate(candidate: Candidate, found: Naming) -> dict[str, Any]:
+def _of_candidate(candidate: Candidate, found: Naming) -> Place:
     """The row of a single effect or a source that is not claimed."""
     observed, gain = found.bench.observed, candidate.log_evidence - found.base.log_evidence
     if candidate.unknown:
@@ -215,12 +215,12 @@ def _of_candidate(candidate: Candidate, found: Naming) -> dict[str, Any]:
     return of_acting(candidate.names[0], acting(candidate.fit, candidate.names[0], observed), gain, observed.phases)
 
 
-def of_unknown(history: History, gain: float, phases: Mapping[str, float]) -> dict[str, Any]:
+def of_unknown(history: History, gain: float, phases: Mapping[str, float]) -> Place:
     """A row for an unknown source."""
     place = history.place
     made = Acting(place.equation, place.unit, history.time, history.mean, history.std, place.sensor)
     row = of_acting(place.name, made, gain, phases, history.blur, history.stretch)
-    return {**row, "phase": _phase(history.time, history.of_equation, phases), **history.sizes}
+    return row.but(phase=_phase(history.time, history.of_equation, phases), **history.sizes)
 
 
 SEEN = 0.05
@@ -239,7 +239,7 @@ Z90 = 1.6449
 def of_acting(
     name: str, source: Acting, gain: float, phases: Mapping[str, float],
     blur: float | None = None, stretch: tuple[float, float] | None = None,
-) -> dict[str, Any]:  # fmt: skip
+) -> Place:  # fmt: skip
     """A row of the localisation: equation, phase, from when to when, how much, with bands.
 
     ``stretch``: from when to when it acts [s], where its size does not tell.
@@ -256,24 +256,25 @@ def of_acting(
     off = max(blur or 0.0, step)
     risen = float(source.time[inside & (size >= FULL * size[inside].max())][0])
     since = _since(first, off, risen) if blur is not None and stretch is None else None
-    return {
-        "equation": source.equation,
-        "site": name,
-        "phase": _phase(source.time, source.mean, phases),
-        "t_start": Quantity(first, "s", off, since),
-        "t_end": Quantity(last, "s", off),
-        "source": Quantity(float(source.mean[inside].mean()), source.unit, AVERAGED * float(source.std[inside].mean())),
-        "rms": Quantity(float(np.sqrt(np.mean(source.mean[inside] ** 2))), source.unit),
-        "channel": source.channel,
-        "significance": gain,
-        "history": {
-            "unit": source.unit,
-            "time": source.time.tolist(),
-            "mean": source.mean.tolist(),
-            "low90": (source.mean - Z90 * source.std).tolist(),
-            "high90": (source.mean + Z90 * source.std).tolist(),
-        },
-    }
+    half = Z90 * source.std
+    return Place(
+        equation=source.equation,
+        site=name,
+        phase=_phase(source.time, source.mean, phases),
+        t_start=Quantity(first, "s", off, since),
+        t_end=Quantity(last, "s", off),
+        source=Quantity(float(source.mean[inside].mean()), source.unit, AVERAGED * float(source.std[inside].mean())),
+        rms=Quantity(float(np.sqrt(np.mean(source.mean[inside] ** 2))), source.unit),
+        channel=source.channel,
+        significance=gain,
+        history=SourceHistory(
+            unit=source.unit,
+            time=tuple(source.time.tolist()),
+            mean=tuple(source.mean.tolist()),
+            low90=tuple((source.mean - half).tolist()),
+            high90=tuple((source.mean + half).tolist()),
+        ),
+    )
 
 
 def _since(first: float, std: float, risen: float) -> tuple[float, float]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.weak_form.weak import WeakResidual
+from hfanalysis.products.diagnosis import ChiSquare, Lacking
 from hfanalysis.quantity import Quantity
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ SAME = 1e-8
 NOTHING = Quantity.absent("nowhere beyond two standard deviations")
 
 
-def weak_product(residuals: Sequence[WeakResidual]) -> dict[str, dict[str, Any]]:
+def weak_product(residuals: Sequence[WeakResidual]) -> dict[str, Lacking]:
     """Every equation's residual by its name.
 
     ``value``, ``low90``, ``high90`` and ``explained`` over ``time``; where what the engine with its effects leaves
@@ -37,11 +37,11 @@ def weak_product(residuals: Sequence[WeakResidual]) -> dict[str, dict[str, Any]]
     return {r.equation: _entry(r) for r in residuals}
 
 
-def _entry(residual: WeakResidual) -> dict[str, Any]:
+def _entry(residual: WeakResidual) -> Lacking:
     if residual.reason is not None:
-        return {"unit": residual.unit, "reason": residual.reason}
+        return Lacking(unit=residual.unit, reason=residual.reason)
     half = Z90 * residual.std
-    out: dict[str, Any] = {
+    found = {
         "unit": residual.unit,
         "time": residual.time.tolist(),
         "value": residual.value.tolist(),
@@ -52,11 +52,11 @@ def _entry(residual: WeakResidual) -> dict[str, Any]:
         "significance": significance(residual),
     }
     if residual.closing is not None:
-        out["closing_mass"] = Quantity(residual.closing[0], "kg", residual.closing[1])
-    return out
+        found["closing_mass"] = Quantity(residual.closing[0], "kg", residual.closing[1])
+    return Lacking.from_json(found)
 
 
-def _where(residual: WeakResidual) -> dict[str, Any]:
+def _where(residual: WeakResidual) -> dict[str, Quantity | str | None]:
     """Where something is lacking, and how much on average."""
     left = residual.left
     seen = np.flatnonzero(np.abs(left) > SEEN * residual.std)
@@ -77,10 +77,10 @@ def _where(residual: WeakResidual) -> dict[str, Any]:
     }
 
 
-def significance(residual: WeakResidual) -> dict[str, float | int]:
+def significance(residual: WeakResidual) -> ChiSquare:
     """Chi-square of what is left against zero, with its degrees of freedom."""
     scaled = residual.covariance / np.outer(residual.std, residual.std)
     values, vectors = np.linalg.eigh(scaled)
     new = values > SAME
     along = vectors[:, new].T @ (residual.left / residual.std)
-    return {"chi_square": float((along**2 / values[new]).sum()), "degrees_of_freedom": int(new.sum())}
+    return ChiSquare(chi_square=float((along**2 / values[new]).sum()), degrees_of_freedom=int(new.sum()))

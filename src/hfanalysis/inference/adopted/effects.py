@@ -11,16 +11,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.engine.effect import Active, Effect, Parameter
 from hfanalysis.errors import InputError
 from hfanalysis.inference.adopted import adopted_file
 from hfanalysis.products.disk import atomic
+from hfanalysis.products.model import AdoptedEffect
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.document import place, read_toml
 from hfanalysis.units import DIMENSIONS, Value, near, parse
+
+if TYPE_CHECKING:
+    from hfanalysis.products.diagnosis import NamedEffect
 
 ABSOLUTE_TEMPERATURE = 100.0
 """[K] A parameter that is never below this is a temperature; others in kelvin are differences."""
@@ -42,9 +46,10 @@ class Adopted:
         """The effects that are not of strength 0, with which a model is the base model."""
         return tuple(active for active in self.effects if not active.idle)
 
-    def to_json(self) -> list[dict[str, Any]]:
+    def product(self) -> tuple[AdoptedEffect, ...]:
         """As products have it: name, file, and every parameter as a quantity."""
-        return [{"name": a.effect.name, "file": self.file, "parameters": self._quantities(a)} for a in self.effects]
+        named = ((active, active.effect.name) for active in self.effects)
+        return tuple(AdoptedEffect(name=name, file=self.file, parameters=self._quantities(a)) for a, name in named)
 
     def _quantities(self, active: Active) -> dict[str, Quantity]:
         stated = (self.stated or {}).get(active.effect.name, {})
@@ -119,14 +124,14 @@ def _dimension(parameter: Parameter) -> str | None:
     return next((name for name, found in DIMENSIONS.items() if found.si == parameter.unit), None)
 
 
-def of_diagnosis(effects: Sequence[Mapping[str, Any]], known: Mapping[str, Effect]) -> Adopted:
+def of_diagnosis(effects: Sequence[NamedEffect], known: Mapping[str, Effect]) -> Adopted:
     """The effects that a diagnosis.json names. Raises InputError for what a file of them could not hold."""
     stated = {}
-    for found in sorted(effects, key=lambda e: str(e["name"])):
-        name = str(found["name"])
+    for found in sorted(effects, key=lambda e: e.name):
+        name = found.name
         units = {p.name: p.unit for p in known[name].parameters} if name in known else {}
-        values = {key: q for key, q in found["parameters"].items() if q["value"] is not None}
-        table = {key: _text(Value(float(q["value"]), q.get("std")), units.get(key, "")) for key, q in values.items()}
+        values = {key: Value(q.value, q.std) for key, q in found.parameters.items() if q.value is not None}
+        table = {key: _text(value, units.get(key, "")) for key, value in values.items()}
         stated[name] = _values(Path("diagnosis.json"), name, table, known)
     return _adopted(stated, known)
 

@@ -20,6 +20,7 @@ from hfanalysis.engine.effect import Active, Effect
 from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.inference.splines import Splines
+from hfanalysis.products.calibration import Calibration
 
 Array = NDArray[np.float64]
 
@@ -263,18 +264,17 @@ def _moved(effects: tuple[Active, ...], values: Mapping[str, float]) -> tuple[Ac
     return tuple(out)
 
 
-def base_hypothesis(engine: Engine, calibration: Mapping[str, Any], follow: bool = True) -> Hypothesis:
+def base_hypothesis(engine: Engine, calibration: Calibration, follow: bool = True) -> Hypothesis:
     """The report's model with its calibrated constants free.
 
     ``follow``: the oxidizer enters the chamber with the enthalpy that the tank's content has at that moment.
     """
     exponent, spread = ASSUMED_EXPONENT
-    loaded = calibration.get("oxidizer_mass") or {}
     mass = engine.oxidizer_mass
     free = [
         Free("area", engine.feed.area, 0.5, "positive"),
         Free("polytropic_exponent", exponent, spread, least=-M_RANGE, most=M_RANGE),
-        Free("oxidizer_mass", mass, max(float(loaded.get("std") or 0.0), LEAST_MASS_ERROR * mass)),
+        Free("oxidizer_mass", mass, max(calibration.oxidizer_mass.std or 0.0, LEAST_MASS_ERROR * mass)),
         Free("temperature", engine.temperature, 5.0),
         Free("a", engine.a * mid_flux(engine) ** (engine.n - USUAL_N[0]), 1.0, "positive"),
         Free("n", *USUAL_N, least=-N_RANGE, most=N_RANGE),

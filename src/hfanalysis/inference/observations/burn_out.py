@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.inference.observations.recorded import LONGEST, TOGETHER
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 
 Array = NDArray[np.float64]
 

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from hfanalysis.inference.observations.flow_end import AROUND_END, flow_end_without_fuel, noted_flow_end
 from hfanalysis.inference.observations.recorded import LONGEST, log_end, log_start
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 
 Array = NDArray[np.float64]
 

@@ -15,10 +15,10 @@ from hfanalysis.inference.observations.channel import SHARE
 from hfanalysis.inference.observations.frame import BLOCK
 from hfanalysis.inference.observations.recorded import ALIKE, accuracy_of, signal_of
 from hfanalysis.inference.observations.wander import wander_of
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 
 Array = NDArray[np.float64]
 

@@ -25,10 +25,10 @@ from hfanalysis.inference.observations.purge_line import PurgeLine, purge_line
 from hfanalysis.inference.observations.recorded import ALIKE, recorded
 from hfanalysis.inference.unknown import Samples
 from hfanalysis.inference.unknowns import in_samples
+from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.phases import Segments
 
 Array = NDArray[np.float64]
 

@@ -5,16 +5,15 @@ Such a file holds an ``UNKNOWN``: a class of :class:`hfanalysis.inference.unknow
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import lru_cache
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import Any
 
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.linear import Linearized
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import LinearUnknown, Samples, Unknown
+from hfanalysis.products.diagnosis import Place
 
 
 @lru_cache(maxsize=1)
@@ -38,6 +37,6 @@ def in_slopes(fitted: Fit, observed: Observed) -> list[LinearUnknown]:
     return sorted((unknown for kind in kinds() for unknown in kind.in_slopes(about)), key=lambda u: -u.log_evidence)
 
 
-def kind_of(row: Mapping[str, Any]) -> type[Unknown] | None:
+def kind_of(row: Place) -> type[Unknown] | None:
     """The kind that has words of its own for a row of the localisation."""
-    return next((kind for kind in kinds() if kind.known_by and kind.known_by in row), None)
+    return next((kind for kind in kinds() if row.known_by(kind.known_by) is not None), None)

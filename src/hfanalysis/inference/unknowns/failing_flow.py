@@ -7,9 +7,7 @@ blocks are compared: no name could be judged by them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +20,12 @@ from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
 from hfanalysis.inference.places import Place
-from hfanalysis.inference.unknown import POINTS, SHAPE, Amount, History, Samples, Unknown, nameless_effect
+from hfanalysis.inference.unknown import POINTS, SHAPE, History, Samples, Unknown, nameless_effect
+from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
+from hfanalysis.sentences import text
+from hfanalysis.wording.numbers import said_of
 
 Array = NDArray[np.float64]
 
@@ -153,12 +154,12 @@ class FailingFlow(Unknown):
         return History(self.place, time, mean, relative * np.abs(mean), std, sizes)
 
     @staticmethod
-    def words(row: Mapping[str, Any], where: str, amount: Amount) -> str:
-        within = row["fails_within"]
-        return (
-            f"In the last {1e3 * within.value:.2g} ± {1e3 * within.std:.1g} ms of the liquid the injector's flow "
-            f"fails, by {-amount.value:.2g} ± {amount.std:.1g} {amount.unit} on average: chamber pressure and thrust "
-            "fall before the tank's shows the end of the liquid, as where gas comes in with it."
+    def words(row: diagnosis.Place, known: Quantity, where: str, unit: str) -> str:
+        return text(
+            "In the last {within} of the liquid the injector's flow fails, by {lost} on average: chamber pressure and "
+            "thrust fall before the tank's shows the end of the liquid, as where gas comes in with it.",
+            within=said_of(known, "ms", ".2g", ".1g"),
+            lost=said_of(row.source, unit, ".2g", ".1g", -1.0),
         )
 
 

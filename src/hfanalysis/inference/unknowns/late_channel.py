@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +19,12 @@ from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.fitting.predict import misread
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import Place
-from hfanalysis.inference.unknown import SHAPE, Amount, History, Samples, Unknown, nameless_effect
+from hfanalysis.inference.unknown import SHAPE, History, Samples, Unknown, nameless_effect
+from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.channels import unit_of
+from hfanalysis.sentences import capitalised, text
+from hfanalysis.wording.numbers import said_of
 
 Array = NDArray[np.float64]
 
@@ -121,9 +123,8 @@ class LateChannel(Unknown):
         return History(place, time[drawn], mean[drawn], std, START_UP, sizes, whole)
 
     @staticmethod
-    def words(row: Mapping[str, Any], where: str, amount: Amount) -> str:
-        delay = row["delay"]
-        return f"{where[0].upper()}{where[1:]} is read {1e3 * delay.value:.3g} ± {1e3 * delay.std:.2g} ms late."
+    def words(row: diagnosis.Place, known: Quantity, where: str, unit: str) -> str:
+        return text("{where} is read {delay} late.", where=capitalised(where), delay=said_of(known, "ms"))
 
 
 def _misfit(thrust: Array, pressure: Array) -> float:

@@ -6,9 +6,7 @@ chamber's pressure, or as the line fills. Behind one that takes its time it come
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +19,11 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import Place
-from hfanalysis.inference.unknown import POINTS, SHAPE, Amount, History, Samples, Unknown, nameless_effect
+from hfanalysis.inference.unknown import POINTS, SHAPE, History, Samples, Unknown, nameless_effect
+from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
+from hfanalysis.sentences import text
+from hfanalysis.wording.numbers import said_of
 
 Array = NDArray[np.float64]
 
@@ -142,12 +143,9 @@ class SlowValve(Unknown):
         return History(self.place, time, mean, np.abs(moved) + SHAPE * np.abs(mean), std, sizes)
 
     @staticmethod
-    def words(row: Mapping[str, Any], where: str, amount: Amount) -> str:
-        opens = row["opens_in"]
-        return (
-            f"The valve takes {1e3 * opens.value:.3g} ± {1e3 * opens.std:.2g} ms to open, by the run line's pressure; "
-            "the model's opens at once."
-        )
+    def words(row: diagnosis.Place, known: Quantity, where: str, unit: str) -> str:
+        opens = "The valve takes {opens} to open, by the run line's pressure; the model's opens at once."
+        return text(opens, opens=said_of(known, "ms"))
 
 
 def loss_share(times: Array, seconds: float) -> Array:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi, sin, tanh
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +22,12 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import Place
-from hfanalysis.inference.unknown import POINTS, Amount, History, Samples, Unknown, nameless_effect
+from hfanalysis.inference.unknown import POINTS, History, Samples, Unknown, nameless_effect
+from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
+from hfanalysis.sentences import text
+from hfanalysis.wording.numbers import said_of
 
 Array = NDArray[np.float64]
 
@@ -176,11 +179,14 @@ class Swing(Unknown):
         return np.asarray(share * there * np.sin(2.0 * np.pi * self.frequency * time + phase))
 
     @staticmethod
-    def words(row: Mapping[str, Any], where: str, amount: Amount) -> str:
-        return (
-            f"From {row['t_start'].value:.1f} to {row['t_end'].value:.1f} s the flow swings by {amount.value:.2g} ± "
-            f"{amount.std:.1g} {amount.unit} at {row['frequency'].value:.2g} Hz: run line and chamber show it in "
-            "opposite directions."
+    def words(row: diagnosis.Place, known: Quantity, where: str, unit: str) -> str:
+        return text(
+            "From {start:.1f} to {end:.1f} s the flow swings by {swing} at {frequency:.2g} Hz: run line and chamber "
+            "show it in opposite directions.",
+            start=row.t_start.value,
+            end=row.t_end.value,
+            swing=said_of(row.source, unit, ".2g", ".1g"),
+            frequency=known.value,
         )
 
 

@@ -2,30 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.wording.numbers import quantities
+from hfanalysis.wording.numbers import ordered
 
 _CAPTION = "One standard deviation and the 95 % interval: noise, stated accuracies, masses and phase times together."
 
 
 def render(material: Material) -> Iterator[Block]:
     """The table, and the notes of the calibration."""
-    product = material.product("calibration")
+    product = material.need(Calibration)
     columns = ("quantity", ">value", ">95 % interval", "verdict", "why")
-    yield html.table("Calibration", _CAPTION, columns, (_row(*item) for item in quantities(product).items()))
-    for note in product.get("notes", []):
-        yield html.paragraph(html.switchable(str(note)))
+    yield html.table("Calibration", _CAPTION, columns, (_row(*item) for item in ordered(product.quantities).items()))
+    for note in product.notes:
+        yield html.paragraph(html.switchable(note))
 
 
-def _row(name: str, quantity: Mapping[str, Any]) -> tuple[Any, ...]:
-    why = html.switchable(str(quantity.get("why") or quantity.get("reason") or ""))
-    judged = html.verdict(str(quantity.get("verdict") or ""))
-    return html.symbol_and_words(name), html.value(quantity, name), html.interval(quantity, name), judged, why
+def _row(name: str, quantity: Quantity) -> tuple[Any, ...]:
+    number = html.value(quantity, name), html.interval(quantity, name)
+    return html.symbol_and_words(name), *number, html.verdict(quantity.verdict or ""), html.remark(quantity)
 
 
 SECTION = Section("Calibration", 70, ("calibration",), render)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator
 
 from markupsafe import Markup
 
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.report import diagnosis_charts as charts
 from hfanalysis.report import diagnosis_tables as tables
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
+from hfanalysis.sentences import capitalised, joined
 
 _SHARED = ("segments", "calibration")
 """Products without which there is no diagnosis: their absence is told once."""
@@ -20,10 +21,10 @@ _SHARED = ("segments", "calibration")
 
 def render(material: Material) -> Iterator[Block]:
     """The story in words, its numbers and pictures, and what is looked up, behind folds."""
-    if not material.has("diagnosis"):
+    product = material.get(Diagnosis)
+    if product is None:
         yield _absent(material)
         return
-    product = material.product("diagnosis")
     yield from _story(product)
     yield tables.probabilities(product)
     yield tables.partners(product)
@@ -42,9 +43,9 @@ _WEAK = (
 )
 
 
-def headline(product: Mapping[str, Any]) -> str:
+def headline(product: Diagnosis) -> str:
     """The verdict in a sentence; empty where the product has none."""
-    return str(next(iter(product.get("sentences") or ()), ""))
+    return next(iter(product.sentences), "")
 
 
 def _absent(material: Material) -> Markup:
@@ -56,25 +57,25 @@ def _absent(material: Material) -> Markup:
     return words.format(html.switchable(reason))
 
 
-def _story(product: Mapping[str, Any]) -> Iterator[Markup]:
+def _story(product: Diagnosis) -> Iterator[Markup]:
     yield html.paragraph(html.switchable(headline(product)), "lead diagnosed")
-    yield html.bullets(map(html.switchable, map(str, product["sentences"][1:])), "told")
-    untold = [text for text in product["decisive_measurements"] if not _told(product, text)]
+    yield html.bullets(map(html.switchable, product.sentences[1:]), "told")
+    untold = [text for text in product.decisive_measurements if not _told(product, text)]
     if untold:
         yield html.paragraph("What would decide:")
         yield html.bullets(map(html.switchable, untold), "said")
-    for group in product["twins"]:
-        if not set(group) & set(product["not_it"]):
-            yield html.paragraph(f"These channels hardly tell apart: {', '.join(map(str, group))}.")
+    for group in product.twins:
+        if not set(group) & set(product.not_it):
+            yield html.paragraph(f"These channels hardly tell apart: {', '.join(group)}.")
 
 
-def _told(product: Mapping[str, Any], text: str) -> bool:
-    return any(str(text) in sentence for sentence in product["sentences"])
+def _told(product: Diagnosis, text: str) -> bool:
+    return any(text in sentence for sentence in product.sentences)
 
 
-def _gap(material: Material, product: Mapping[str, Any]) -> Iterator[Block]:
+def _gap(material: Material, product: Diagnosis) -> Iterator[Block]:
     """The residual of every channel without and with what is missing, and the proof; nothing where no model ran."""
-    if not product["gap"]["before"]:
+    if not product.gap.before:
         return
     yield from charts.residuals(material, product)
     if not charts.with_what(product):
@@ -85,17 +86,17 @@ def _gap(material: Material, product: Mapping[str, Any]) -> Iterator[Block]:
     yield tables.proof(product)
 
 
-def _unfound(product: Mapping[str, Any]) -> Iterator[Block]:
+def _unfound(product: Diagnosis) -> Iterator[Block]:
     """What was looked for and not found."""
-    names = ", ".join(map(str, product["not_it"]))
+    names = ", ".join(product.not_it)
     excluded = html.paragraph(f"Tried, and not it: {names}.") if names else None
     yield from _folded("What was not found", [excluded, tables.limits(product)])
 
 
-def _unasked(product: Mapping[str, Any]) -> Markup | None:
+def _unasked(product: Diagnosis) -> Markup | None:
     """Equations that lack a channel."""
-    found = (product.get("weak_form") or {}).items()
-    texts = [f"{charts.place(name)}: {part['reason']}" for name, part in found if "reason" in part]
+    found = product.weak_form.items()
+    texts = [f"{charts.place(name)}: {part.reason}" for name, part in found if part.reason is not None]
     return html.bullets(map(html.switchable, texts), "said") if texts else None
 
 
@@ -111,22 +112,21 @@ def _folded(head: str, blocks: Iterable[Block], words: str = "") -> Iterator[Blo
     yield Markup("</details>")
 
 
-def _remarks(product: Mapping[str, Any]) -> Iterator[Markup]:
+def _remarks(product: Diagnosis) -> Iterator[Markup]:
     """What was compared, and what to bear in mind."""
-    for text in product["warnings"]:
-        yield Markup('<p class="absent"><strong>Warning:</strong> {}</p>').format(html.switchable(str(text)))
-    compared = product["compared"]
-    said = list(map(_sentence, product["notes"]))
-    if "end" in compared:
-        span = f"from {html.seconds(compared['start'])} to {html.seconds(compared['end'])}"
-        said.insert(0, f"Compared: {', '.join(map(str, compared['channels']))}, {span}.")
+    for text in product.warnings:
+        yield Markup('<p class="absent"><strong>Warning:</strong> {}</p>').format(html.switchable(text))
+    compared = product.compared
+    said = list(map(_sentence, product.notes))
+    if compared.start is not None and compared.end is not None:
+        span = f"from {html.seconds(compared.start)} to {html.seconds(compared.end)}"
+        said.insert(0, f"Compared: {', '.join(compared.channels)}, {span}.")
     if said:
         yield html.bullets(map(html.switchable, said), "said")
 
 
-def _sentence(note: Any) -> str:
-    text = str(note)
-    return f"{text[:1].upper()}{text[1:]}."
+def _sentence(text: str) -> str:
+    return joined("", [capitalised(text), "."])
 
 
 SECTION = Section("Diagnosis", 58, (), render)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,10 +11,12 @@ from markupsafe import Markup
 from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.colours import STYLES
 from hfanalysis.charts.svg import Event
+from hfanalysis.products.flight import Check, Flight, Stability
+from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
 from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.wording.numbers import in_words, quantities
+from hfanalysis.wording.numbers import in_words, ordered
 
 _CURVES = {"height": ("Height above ground", "m"), "speed": ("Speed", "m/s"), "acceleration": ("Acceleration", "m/s^2")}
 _SIGNS = {"passed": "good", "failed": "bad"}
@@ -28,32 +30,30 @@ _GEOMETRY = (
 
 def render(material: Material) -> Iterator[Block]:
     """The numbers with their bands, the checks, the way up, and the margin."""
-    product = material.product("flight")
+    product = material.need(Flight)
     caption = "One standard deviation and 95 % interval from flights that differ in what is uncertain."
     columns = ("quantity", ">value", ">95 % interval", "remark")
-    found = quantities(product) | quantities(product.get("stability") or {})
+    found = ordered(product.quantities) | ordered(product.stability.quantities)
     yield html.table("Flight", caption, columns, (_row(*item) for item in found.items()))
-    yield html.bullets((_check(*item) for item in (product.get("checks") or {}).items()), "plain")
+    yield html.bullets((_check(*item) for item in product.checks.items()), "plain")
     for name, (title, unit) in _CURVES.items():
         yield _curve(material, name, title, unit)
-    yield _margin(material) or _without_margin(product.get("stability") or {})
-    for note in product.get("notes", []):
-        yield html.paragraph(html.switchable(str(note)))
+    yield _margin(material) or _without_margin(product.stability)
+    for note in product.notes:
+        yield html.paragraph(html.switchable(note))
 
 
-def _row(name: str, quantity: Mapping[str, Any]) -> tuple[Any, ...]:
-    why = html.switchable(str(quantity.get("why") or quantity.get("reason") or ""))
-    return in_words(name), html.value(quantity, name), html.interval(quantity, name), why
+def _row(name: str, quantity: Quantity) -> tuple[Any, ...]:
+    return in_words(name), html.value(quantity, name), html.interval(quantity, name), html.remark(quantity)
 
 
-def _check(name: str, check: Mapping[str, Any]) -> Markup:
-    result = str(check.get("result", ""))
-    kind = _SIGNS.get(result, "open")
+def _check(name: str, check: Check) -> Markup:
+    kind = _SIGNS.get(check.result, "open")
     badge = Markup('<span class="verdict {}"><span aria-hidden="true">{}</span> {}</span>')
-    limit = html.amount(check.get("limit"), str(check.get("unit", "")))
-    why = Markup(' <span class="because">{}</span>').format(check["why"]) if check.get("why") else Markup()
+    limit = html.amount(check.limit, check.unit)
+    why = Markup(' <span class="because">{}</span>').format(check.why) if check.why else Markup()
     words = Markup("{} {}: {} {}{}")
-    return words.format(badge.format(kind, html.MARKS[kind], result), in_words(name), check.get("is", ""), limit, why)
+    return words.format(badge.format(kind, html.MARKS[kind], check.result), in_words(name), check.side, limit, why)
 
 
 def _curve(material: Material, name: str, title: str, unit: str) -> Chart | None:
@@ -75,8 +75,8 @@ def _curve(material: Material, name: str, title: str, unit: str) -> Chart | None
 
 
 def _rail_limit(material: Material) -> float | None:
-    check = (material.product("flight").get("checks") or {}).get("rail_departure_velocity") or {}
-    return check.get("limit")
+    check = material.need(Flight).checks.get("rail_departure_velocity")
+    return check.limit if check else None
 
 
 def _over_flight(
@@ -109,24 +109,23 @@ def _over_flight(
 
 def _events(material: Material) -> Iterator[Event]:
     """The end of the rail, where the flight is as fast as it leaves it, and of the burn."""
-    product, ascent = material.product("flight"), material.table("flight", "ascent")
-    departure, burn = ((product.get(name) or {}).get("value") for name in ("rail_departure_velocity", "burn_time"))
+    product, ascent = material.need(Flight), material.table("flight", "ascent")
+    departure, burn = product.rail_departure_velocity.value, product.burn_time.value
     if departure is not None and "speed" in ascent:
         fast = np.flatnonzero(ascent["speed"].values >= departure)
         if fast.size:
             yield Event(float(ascent["time"].values[fast[0]]), 0.0, "off the rail")
     if burn is not None:
-        yield Event(float(burn), 0.0, "burn out")
+        yield Event(burn, 0.0, "burn out")
 
 
 def _margin(material: Material) -> Chart | None:
     """The static margin in every wind: mean and two standard deviations over gusts, beside its limits."""
-    said = material.product("flight").get("stability") or {}
-    winds = [(float(wind["wind"]), material.table("flight", f"stability/{i}"))
-             for i, wind in enumerate(said.get("winds") or [])]  # fmt: skip
-    if not winds or not all("margin_mean" in table for _, table in winds):
+    said = material.need(Flight).stability
+    winds = [(wind.wind, material.table("flight", f"stability/{i}")) for i, wind in enumerate(said.winds)]
+    if not winds or said.limits is None or not all("margin_mean" in table for _, table in winds):
         return None
-    low, high = said["limits"]
+    low, high = said.limits
     bands, lines = zip(*(_in_wind(wind, table, STYLES[i % len(STYLES)]) for i, (wind, table) in enumerate(winds)),
                        strict=True)  # fmt: skip
     times = [line.time for line in lines]
@@ -139,7 +138,7 @@ def _margin(material: Material) -> Chart | None:
         "From the end of the rail until the rocket is as slow again. Lines: mean over flights in gusts of {:.0f} % in "
         "head winds of {}; bands: two standard deviations. Dashed: the limits of {:g} and {:g} calibers; below, a gust "
         "may turn the rocket over, above, it turns far into the wind."
-    ).format(100.0 * said.get("gust_intensity", 0.0), speeds, low, high)
+    ).format(100.0 * said.gust_intensity, speeds, low, high)
     about = ("Static margin in wind", "margin", "calibers")
     return _over_flight(
         material, "flight-margin", about, [*bands, *lines, *limits], around(times), caption, span, 320.0
@@ -156,9 +155,9 @@ def _in_wind(wind: float, table: Table, style: str) -> tuple[Series, Series]:
     )
 
 
-def _without_margin(stability: Mapping[str, Any]) -> Markup | None:
+def _without_margin(stability: Stability) -> Markup | None:
     """Why no margin is drawn, and what to add."""
-    reason = str((stability.get("margin_at_rail_departure") or {}).get("reason") or "")
+    reason = stability.margin_at_rail_departure.reason
     if not reason:
         return None
     add = _GEOMETRY if "[rocket.geometry]" in reason else "state it in test.toml" if "not given" in reason else ""

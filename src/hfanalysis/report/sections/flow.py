@@ -9,6 +9,7 @@ import numpy as np
 from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.envelope import Floats
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import Calibration
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.sections.regression import flows_absent
@@ -28,9 +29,11 @@ def render(material: Material) -> Iterator[Block]:
 
 def _history(material: Material, *names: str) -> list[Floats] | None:
     """Columns of the calibrated tank's history: time first."""
-    history = material.product("calibration").get("tank_history") or {}
-    columns = [np.asarray(history.get(name, []), dtype=float) for name in ("time", *names)]
-    return columns if all(column.size > 1 for column in columns) else None
+    calibration = material.get(Calibration)
+    history = calibration.tank_history if calibration is not None else None
+    if history is None or len(history.time) < 2:
+        return None
+    return [np.asarray(getattr(history, name), dtype=float) for name in ("time", *names)]
 
 
 def lines(material: Material) -> Iterator[Series]:

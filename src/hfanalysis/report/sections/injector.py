@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 from markupsafe import Markup
@@ -11,6 +10,8 @@ from markupsafe import Markup
 from hfanalysis.charts import svg
 from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.envelope import Floats
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
 from hfanalysis.report.material import Material, window
 from hfanalysis.report.sections import Block, Section
@@ -43,12 +44,12 @@ def _drop(material: Material) -> Chart | None:
 
 
 def _coefficient(material: Material) -> Chart | None:
-    history = material.product("calibration").get("C_i_history") or {}
-    time, value = (np.asarray(history.get(key, []), dtype=float) for key in ("time", "value"))
-    if time.size < 2:
+    calibration = material.get(Calibration)
+    history = calibration.C_i_history if calibration is not None else None
+    if calibration is None or history is None or len(history.time) < 2:
         return None
-    std = np.broadcast_to(np.asarray(history.get("std", 0.0), dtype=float), time.shape)
-    quantity = material.product("calibration").get("C_i") or {}
+    time, value, std = (np.asarray(column, dtype=float) for column in (history.time, history.value, history.std))
+    quantity = calibration.C_i
     return over_time(
         material,
         "injector-coefficient",
@@ -62,17 +63,17 @@ def _coefficient(material: Material) -> Chart | None:
     )
 
 
-def _series(time: Floats, value: Floats, std: Floats, quantity: Mapping[str, Any]) -> Iterator[Series]:
+def _series(time: Floats, value: Floats, std: Floats, quantity: Quantity) -> Iterator[Series]:
     yield Series("95 % interval", "C_i", time, value - 1.96 * std, "band", value + 1.96 * std)
     yield Series("C_i(t)", "C_i", time, value)
-    if quantity.get("value") is not None:
-        level = np.full(2, float(quantity["value"]))
+    if quantity.value is not None:
+        level = np.full(2, quantity.value)
         yield Series("calibrated", "C_i", time[[0, -1]], level, "level")
 
 
-def _caption(quantity: Mapping[str, Any]) -> Markup:
+def _caption(quantity: Quantity) -> Markup:
     words = Markup("Each instant taken for itself, with its 95 % interval.")
-    if quantity.get("value") is not None:
+    if quantity.value is not None:
         words += Markup(" Dashed: the calibrated C_i = {}.").format(html.value(quantity))
     return words + Markup(" A coefficient that drifts says that the model lacks something.")
 

@@ -8,10 +8,12 @@ from typing import Any
 from markupsafe import Markup
 
 from hfanalysis.charts.svg import Phase
+from hfanalysis.products.segments import Segments
+from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
-from hfanalysis.report.material import EVENTS, Material, phase_list
+from hfanalysis.report.material import Material, phase_list
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.wording.numbers import in_words, is_quantity
+from hfanalysis.wording.numbers import in_words
 
 _CAPTION = Markup("Seconds after the valve opens; t<sub>open</sub> in log time.")
 
@@ -24,8 +26,8 @@ def render(material: Material) -> Iterator[Block]:
     yield html.table(
         "Events", _CAPTION, ("event", "what happens", ">time", ">95 % interval", "remark"), _rows(material)
     )
-    for note in material.product("segments").get("notes", []):
-        yield html.paragraph(str(note))
+    for note in material.need(Segments).notes:
+        yield html.paragraph(note)
 
 
 def _strip(found: list[Phase]) -> Markup:
@@ -40,15 +42,14 @@ def _item(phase: Phase) -> Markup:
 
 
 def _rows(material: Material) -> Iterator[tuple[Any, ...]]:
-    segments = material.product("segments")
-    for name in ("t_open", *EVENTS):
-        if is_quantity(segments.get(name)):
-            yield _row(name, segments[name], name in segments.get("engineer", []))
+    segments = material.need(Segments)
+    for name, event in segments.quantities.items():
+        yield _row(name, event, name in segments.engineer)
 
 
-def _row(name: str, quantity: dict[str, Any], by_hand: bool) -> tuple[Any, ...]:
+def _row(name: str, quantity: Quantity, by_hand: bool) -> tuple[Any, ...]:
     hand = Markup("<strong>set by the engineer</strong> ") if by_hand else Markup()
-    why = quantity.get("why") or quantity.get("reason") or ""
+    why = quantity.why or quantity.reason or ""
     return html.symbol(name), in_words(name), html.value(quantity), html.interval(quantity), hand + why
 
 

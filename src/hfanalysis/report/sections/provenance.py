@@ -31,7 +31,8 @@ def _entries(material: Material) -> Iterator[tuple[str, Markup]]:
     """Each fact once, from the last product that states it."""
     seen = set()
     for product in _LAST:
-        for key, text in flat(material.product(product).get("provenance") or {}):
+        found = material.products.get(product)
+        for key, text in flat(found.provenance if found else {}):
             name = f"{product}: {key}" if key.startswith(_OF_EACH) else key
             if name not in seen:
                 seen.add(name)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from markupsafe import Markup
 
 from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.calibration import Calibration, RegressionBasis
+from hfanalysis.products.validation import Validation
 from hfanalysis.report import html
 from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.time_charts import over_time
-from hfanalysis.wording.numbers import is_quantity
 from hfanalysis.wording.scales import SLOW
 
 _LAW = ("a", "n", "regression_rate_reference")
@@ -29,7 +29,8 @@ def render(material: Material) -> Iterator[Block]:
 
 def flows_absent(material: Material) -> str:
     """Why the validation has no flows, in its own words."""
-    return str((material.product("validation").get("absent") or {}).get("flows", ""))
+    validation = material.get(Validation)
+    return validation.absent.get("flows", "") if validation is not None else ""
 
 
 def _line(table: Table, name: str, label: str, style: str) -> list[Series]:
@@ -57,28 +58,25 @@ def _rate(material: Material) -> Chart | None:
 
 
 def _law(material: Material) -> Markup | None:
-    calibration = material.product("calibration")
-    found = [name for name in _LAW if is_quantity(calibration.get(name))]
-    if not found:
+    calibration = material.get(Calibration)
+    if calibration is None:
         return None
+    law = ((name, calibration.quantities[name]) for name in _LAW)
     said = [
         Markup("{}: {} {}").format(
-            html.symbol_and_words(name),
-            html.value(calibration[name], name),
-            html.verdict(str(calibration[name].get("verdict", ""))),
+            html.symbol_and_words(name), html.value(quantity, name), html.verdict(quantity.verdict or "")
         )
-        for name in found
+        for name, quantity in law
     ]
-    return html.bullets(said, "plain") + _fitted_with(calibration.get("regression") or {})
+    return html.bullets(said, "plain") + _fitted_with(calibration.regression)
 
 
-def _fitted_with(regression: Mapping[str, Any]) -> Markup:
+def _fitted_with(regression: RegressionBasis) -> Markup:
     """The oxidizer flow and the effects behind a and n, which mean nothing without them."""
-    tests = [test for test in regression.get("tests", []) if test.get("fitted_with")]
     words = Markup('<p class="note">{} fitted with:</p>{}')
     return Markup().join(
-        words.format(test.get("test", ""), html.bullets(map(html.switchable, test["fitted_with"]), "said"))
-        for test in tests
+        words.format(test.test, html.bullets(map(html.switchable, test.fitted_with), "said"))
+        for test in regression.tests
     )
 
 

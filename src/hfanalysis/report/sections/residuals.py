@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 from markupsafe import Markup
@@ -11,6 +10,7 @@ from markupsafe import Markup
 from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.colours import style_of
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.validation import Validation
 from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report import html
 from hfanalysis.report.material import Material, Table, required, window
@@ -34,19 +34,21 @@ _NUMBERS = ("measured", "model", "residual", "noise_std")
 
 def render(material: Material) -> Iterator[Block]:
     """Two charts for each mode and channel, then the gaps as a table."""
-    groups = material.stores["residuals"]
+    groups, validation = material.stores["residuals"], material.get(Validation)
     if not groups:
-        absent = list((material.product("validation").get("absent") or {}).values())
-        raise AbsentError(str(absent[0]) if absent else "no mode of validation ran")
+        absent = validation.absent.values() if validation is not None else ()
+        raise AbsentError(next(iter(absent), "no mode of validation ran"))
     for mode in sorted({name.partition("/")[0] for name in groups}, key=_order):
         yield Markup('<h3 class="mode">{}</h3>').format(MODES.get(mode, in_words(mode)))
         for name, table in groups.items():
             if name.startswith(f"{mode}/"):
                 yield from _charts(material, mode, name.partition("/")[2], table)
-    yield _gaps(material.product("validation").get("gap") or {})
-    for mode, reason in (material.product("validation").get("absent") or {}).items():
+    if validation is None:
+        return
+    yield _gaps(validation)
+    for mode, reason in validation.absent.items():
         if mode in MODES:
-            yield html.paragraph(Markup("{}: {}").format(in_words(mode).capitalize(), html.switchable(str(reason))))
+            yield html.paragraph(Markup("{}: {}").format(in_words(mode).capitalize(), html.switchable(reason)))
 
 
 def _order(mode: str) -> tuple[int, str]:
@@ -98,12 +100,12 @@ def _known(mode: str) -> str:
     return "Drawn until nitrogen enters, which this model leaves out." if mode in _UNTIL_NITROGEN else ""
 
 
-def _gaps(gap: Mapping[str, Any]) -> Any:
+def _gaps(validation: Validation) -> Markup | None:
     caption = "Root mean square and mean of measured less model, beside the noise of a sample."
     columns = ("mode", "channel", "phase", ">rms", ">bias", ">noise")
     rows = [
-        (in_words(mode), channel, phase, *(html.amount(g[key], g["unit"], 3, True) for key in ("rms", "bias", "noise")))
-        for mode, channels in gap.items()
+        (in_words(mode), channel, phase, *(html.amount(size, g.unit, 3, True) for size in (g.rms, g.bias, g.noise)))
+        for mode, channels in validation.gap.items()
         for channel, phases in channels.items()
         for phase, g in phases.items()
     ]

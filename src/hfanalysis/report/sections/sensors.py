@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from markupsafe import Markup
 
 from hfanalysis.charts.colours import COLOURS
+from hfanalysis.products.ingest import ChannelSummary, Ingest
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
@@ -20,23 +21,23 @@ _COLUMNS = ("channel", "column in the log", ">range", ">accuracy", ">zero", ">dr
 
 def render(material: Material) -> Iterator[Block]:
     """One row per channel."""
-    rows = (_row(name, channel) for name, channel in material.product("ingest")["channels"].items())
+    rows = (_row(name, channel) for name, channel in material.need(Ingest).channels.items())
     yield html.table("Sensors", _CAPTION, _COLUMNS, rows)
 
 
-def _row(name: str, channel: Mapping[str, Any]) -> tuple[Any, ...]:
-    unit = str(channel["unit"])
-    assumed = Markup() if channel["accuracy_stated"] else Markup(" <em>(assumed)</em>")
-    flags = ", ".join(f"{count} {flag}" for flag, count in channel["flags"].items()) or "none"
+def _row(name: str, channel: ChannelSummary) -> tuple[Any, ...]:
+    unit = channel.unit
+    assumed = Markup() if channel.accuracy_stated else Markup(" <em>(assumed)</em>")
+    flags = ", ".join(f"{count} {flag}" for flag, count in channel.flags.items()) or "none"
     return (
         _name(name),
-        Markup("<bdi>{}</bdi>").format(channel["label"]),
-        _range(channel["least"], channel["largest"], unit),
-        html.amount(channel["accuracy"], unit, 3, True) + assumed,
-        "–" if channel["zero_std"] is None else html.amount(channel["zero"], unit, 3, True),
-        html.amount(channel["drift"], unit, 3, True) if channel["drift"] else "–",
-        f"{tidy(channel['rate'])} Hz" if channel["rate"] else "–",
-        f"{flags} of {channel['samples']}",
+        Markup("<bdi>{}</bdi>").format(channel.label),
+        _range(channel.least, channel.largest, unit),
+        html.amount(channel.accuracy, unit, 3, True) + assumed,
+        "–" if channel.zero_std is None else html.amount(channel.zero, unit, 3, True),
+        html.amount(channel.drift, unit, 3, True) if channel.drift else "–",
+        f"{tidy(channel.rate)} Hz" if channel.rate else "–",
+        f"{flags} of {channel.samples}",
     )
 
 

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from markupsafe import Markup
 
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.diagnosis import Diagnosis
+from hfanalysis.products.ingest import Ingest
+from hfanalysis.products.validation import Finding, Validation
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.flag_notes import of_one, with_flag
+from hfanalysis.record.zero import not_back
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.sections.diagnosis import headline
 from hfanalysis.wording import numbers as wording
-from hfanalysis.wording.numbers import in_words, listed, quantities
+from hfanalysis.wording.numbers import in_words, listed
 
 KEY_NUMBERS = ("burn_time", "total_impulse", "specific_impulse", "peak_thrust", "peak_chamber_pressure")
 """What is asked for first, where the validation has it."""
@@ -34,7 +41,8 @@ def render(material: Material) -> Iterator[Block]:
 
 def _diagnosed(material: Material) -> Markup | None:
     """The first sentence of the diagnosis."""
-    said = headline(material.product("diagnosis"))
+    diagnosis = material.get(Diagnosis)
+    said = headline(diagnosis) if diagnosis else ""
     words = Markup('<p class="lead diagnosed"><a href="#diagnosis">Diagnosis</a>: {}</p>')
     return words.format(html.switchable(said)) if said else None
 
@@ -48,16 +56,18 @@ def spoken_absences(material: Material) -> dict[str, str]:
     return told
 
 
-def key_numbers(material: Material) -> dict[str, Mapping[str, Any]]:
+def key_numbers(material: Material) -> dict[str, Quantity]:
     """The measured numbers that come first; where there are none, what the calibration has instead."""
-    performance = material.product("validation").get("performance") or {}
-    measured = performance.get("measured") or {}
-    found = {name: measured[name] for name in KEY_NUMBERS if (measured.get(name) or {}).get("value") is not None}
-    flow = material.product("calibration").get("oxidizer_flow_peak") or {}
-    return found or ({"oxidizer_flow_peak": flow} if flow.get("value") is not None else {})
+    validation, calibration = material.get(Validation), material.get(Calibration)
+    if validation is not None:
+        measured = validation.performance.measured.quantities
+        if found := {name: measured[name] for name in KEY_NUMBERS if measured[name].value is not None}:
+            return found
+    flow = calibration.oxidizer_flow_peak if calibration is not None else None
+    return {"oxidizer_flow_peak": flow} if flow is not None and flow.value is not None else {}
 
 
-def _numbers(found: Mapping[str, Mapping[str, Any]]) -> Markup | None:
+def _numbers(found: Mapping[str, Quantity]) -> Markup | None:
     if not found:
         return None
     item = Markup("<div><dt>{}</dt><dd>{}</dd></div>")
@@ -82,22 +92,27 @@ def sentence(material: Material) -> str:
 
 def _sensor_sentence(material: Material) -> list[str]:
     """What looks wrong with the sensors, in a sentence of its own."""
-    found = [_of_channels(fault) for fault in material.product("validation").get("sensors", [])]
+    found = [_of_channels(fault) for fault in _faults(material)]
     return [f"Sensors: {'; '.join(found)}."] if found else []
 
 
-def _of_channels(fault: Mapping[str, Any]) -> str:
-    channels, verdict = list(map(str, fault.get("channels", []))), str(fault.get("verdict", ""))
+def _faults(material: Material) -> tuple[Finding, ...]:
+    validation = material.get(Validation)
+    return validation.sensors if validation is not None else ()
+
+
+def _of_channels(fault: Finding) -> str:
+    channels, verdict = list(fault.channels), fault.verdict
     return verdict if not channels or verdict.startswith(channels[0]) else f"{listed(channels)} {verdict}"
 
 
-def by_mark(material: Material) -> dict[str, dict[str, Mapping[str, Any]]]:
+def by_mark(material: Material) -> dict[str, dict[str, Quantity]]:
     """What a calibration is asked for first, by how far it can be trusted."""
-    found = quantities(material.product("calibration"))
-    out: dict[str, dict[str, Mapping[str, Any]]] = {"good": {}, "bad": {}, "open": {}}
-    for name in wording.MASTHEAD:
-        if name in found:
-            out[html.mark(str(found[name].get("verdict") or ""))][name] = found[name]
+    calibration = material.get(Calibration)
+    out: dict[str, dict[str, Quantity]] = {"good": {}, "bad": {}, "open": {}}
+    found = calibration.quantities if calibration is not None else {}
+    for name, quantity in ((name, found[name]) for name in wording.MASTHEAD if name in found):
+        out[html.mark(quantity.verdict or "")][name] = quantity
     return out
 
 
@@ -120,59 +135,58 @@ def _finding(kind: str, head: str, items: Any) -> Markup:
     return Markup(block).format(kind, html.MARKS[kind], head, html.bullets(items, "plain"))
 
 
-def _by_reason(found: Mapping[str, Mapping[str, Any]], kind: str) -> list[tuple[str, dict[str, Mapping[str, Any]]]]:
+def _by_reason(found: Mapping[str, Quantity], kind: str) -> list[tuple[str, dict[str, Quantity]]]:
     """The quantities with their reason, those together that have the same one."""
-    groups: dict[str, dict[str, Mapping[str, Any]]] = {}
+    groups: dict[str, dict[str, Quantity]] = {}
     for name, quantity in found.items():
-        why = "" if kind == "good" else str(quantity.get("why") or quantity.get("reason") or "")
+        why = "" if kind == "good" else quantity.why or quantity.reason or ""
         groups.setdefault(why, {})[name] = quantity
     return list(groups.items()) if kind != "good" else [("", {name: found[name]}) for name in found]
 
 
-def _judged(why: str, found: Mapping[str, Mapping[str, Any]]) -> Markup:
+def _judged(why: str, found: Mapping[str, Quantity]) -> Markup:
     names = Markup().join(_named(name, quantity) for name, quantity in found.items())
     return names + (Markup('<span class="because">{}</span>').format(html.switchable(why)) if why else Markup())
 
 
-def _named(name: str, quantity: Mapping[str, Any]) -> Markup:
+def _named(name: str, quantity: Quantity) -> Markup:
     number = Markup()
-    if quantity.get("value") is not None:
+    if quantity.value is not None:
         number = Markup('<span class="judged">{}</span>').format(html.value(quantity, name))
     return Markup('<span class="names">{}{}</span>').format(html.symbol_and_words(name), number)
 
 
 _OF_SENSORS = re.compile(r"^channel |\b(cell|gauge|thermometer|clock|sensor|disagree)\b", re.IGNORECASE)
-_FLAGGED = re.compile(r"^channel (.+): (\d+ of \d+) samples flagged (\w+)$")
-_RETURNS = re.compile(r"^channel (\w+): does not return to zero")
 
 
 def warnings(material: Material) -> tuple[list[str], list[str]]:
     """What every product warns of, each once: of the sensors and the log, and of the rest."""
-    validation = material.product("validation").get("sensors", [])
-    faults = [str(fault["text"]) for fault in validation]
-    covered = {channel for fault in validation for channel in fault.get("channels", [])}
-    logged = list(map(str, material.product("ingest").get("warnings", [])))
-    sensors = [text for text in logged if not _repeats(text, covered)]
+    found = _faults(material)
+    faults = [fault.text for fault in found]
+    # what validation says at length, ingest has said in short
+    said = tuple(not_back(channel) for fault in found for channel in fault.channels)
     others: list[str] = []
-    for name, product in reversed(list(material.products.items())):
-        for text in map(str, product.get("warnings", []) if name != "ingest" else []):
+    for product in reversed(list(material.products.values())):
+        for text in () if isinstance(product, Ingest) else product.warned:
             (faults if _OF_SENSORS.search(text) else others).append(text)
-    faults += [text for text in sensors if not _FLAGGED.match(text)] + _flagged(sensors)
+    faults += [text for text in _logged(material.get(Ingest)) if not text.startswith(said)]
     return list(dict.fromkeys(faults)), list(dict.fromkeys([*others, *material.definition.warnings]))
 
 
-def _repeats(text: str, covered: Collection[str]) -> bool:
-    """Whether the ingest says in short what the validation says at length."""
-    found = _RETURNS.match(text)
-    return bool(found and found[1] in covered)
-
-
-def _flagged(texts: list[str]) -> list[str]:
-    """Flagged samples of many channels, one line for each flag."""
+def _logged(ingest: Ingest | None) -> list[str]:
+    """What the ingest warns of; flagged samples of single channels in one line for each flag, after all else."""
+    if ingest is None:
+        return []
+    flagged = {
+        with_flag(of_one(name, f"{share} samples"), flag): (flag, f"{name} ({share})")
+        for name, channel in ingest.channels.items()
+        for flag, share in ((flag, f"{count} of {channel.samples}") for flag, count in channel.flags.items())
+    }
     by_flag: dict[str, list[str]] = {}
-    for found in filter(None, map(_FLAGGED.match, texts)):
-        by_flag.setdefault(found[3], []).append(f"{found[1]} ({found[2]})")
-    return [f"samples flagged {flag}: {listed(channels)}" for flag, channels in by_flag.items()]
+    for flag, samples in (flagged[words] for words in ingest.warnings if words in flagged):
+        by_flag.setdefault(flag, []).append(samples)
+    together = [f"samples flagged {flag}: {listed(samples)}" for flag, samples in by_flag.items()]
+    return [words for words in ingest.warnings if words not in flagged] + together
 
 
 SECTION = Section("Verdict", 10, (), render)

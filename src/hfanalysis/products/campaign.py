@@ -1,0 +1,122 @@
+"""The content of campaign.json: several tests side by side, and what those of one stand say together."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import GetJsonSchemaHandler, SerializerFunctionWrapHandler, model_serializer
+from pydantic_core import CoreSchema
+
+from hfanalysis.products.calibration import FuelLaw
+from hfanalysis.products.diagnosis import NamedEffect, Sizes
+from hfanalysis.products.model import Is, Part
+from hfanalysis.quantity import Quantity
+
+
+class Diagnosed(Part):
+    """What the diagnosis of a test says, in short."""
+
+    verdict: Annotated[str, Is("none, named, ambiguous or unknown")]
+    effects: Annotated[tuple[NamedEffect, ...], Is("what was added to the model")]
+    posterior: Annotated[Sizes, Is("probability of every name as the first of what is missing", "")]
+    partners: Annotated[Sizes, Is("probability of each further effect if the first is there", "")]
+
+
+class TestRow(Part):
+    """A test in short."""
+
+    __test__ = False
+
+    stand: Annotated[str | None, Is("as [test] states it, or else known by the volume of its tank")]
+    injector_area: Annotated[float | None, Is("as stated", "m^2")]
+    kind: Annotated[str | None, Is("as stated")]
+    source: Annotated[str | None, Is("measured, or generated")]
+    date: Annotated[str | None, Is("as stated")]
+    status: Annotated[str, Is("done, input at fault, not in the log, or defect")]
+    reason: Annotated[str | None, Is("what was said where it is not done")]
+    calibration: Annotated[dict[str, Quantity], Is("constants: C_i, K_loss, m, a, n")]
+    performance: Annotated[dict[str, Quantity], Is("what was measured, as far as it is known")]
+    apogee: Annotated[Quantity | None, Is("predicted, above ground", "m")]
+    diagnosis: Annotated[Diagnosed | None, Is("in short")]
+    page: Annotated[str | None, Is("where its page is")]
+
+
+class Agreement(Part):
+    """Whether tests agree on a number."""
+
+    verdict: Annotated[str, Is("agree or disagree")]
+    probability: Annotated[float, Is("of so large a scatter by chance", "")]
+
+
+class Together(Part):
+    """A number as several tests have it together, or the reason why there is none."""
+
+    mean: Annotated[Quantity, Is("with random effects")]
+    between: Annotated[float | None, Is("how far the tests differ beyond what each states", "of the mean")] = None
+    agreement: Annotated[Agreement | None, Is("of the tests")] = None
+    tests: Annotated[tuple[str, ...], Is("in it: those that identify the number")] = ()
+
+    @model_serializer(mode="wrap")
+    def _flat(self, as_usual: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """The quantity's entries, and the others beside them."""
+        rest: dict[str, Any] = as_usual(self)
+        mean: dict[str, Any] = rest.pop("mean")
+        return mean | rest
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        found = handler.resolve_ref_schema(handler(schema))
+        mean = found["properties"].pop("mean")
+        return {**{name: found[name] for name in ("title", "description", "type", "properties")}, "allOf": [mean]}
+
+
+class ParameterRow(Part):
+    """A parameter of an effect."""
+
+    by_test: Annotated[dict[str, Quantity], Is("where it is named")]
+    together: Annotated[Together, Is("their mean")]
+
+
+class EffectRow(Part):
+    """An effect that some test of the stand names."""
+
+    named_in: Annotated[tuple[str, ...], Is("the tests that name it")]
+    probability: Annotated[dict[str, float | None], Is("by test, first or beside it; null where not tried", "")]
+    parameters: Annotated[dict[str, ParameterRow], Is("by name")]
+
+
+class OfTests(Part):
+    """What is of several tests."""
+
+    tests: Annotated[tuple[str, ...], Is("by name")]
+
+
+class CommonLaw(FuelLaw, OfTests):
+    """One regression law of several tests."""
+
+    agreement: Annotated[Agreement, Is("of the tests")]
+    alone: Annotated[dict[str, FuelLaw], Is("the law of each test")]
+
+
+class NoLaw(Part):
+    """Why there is no common regression law."""
+
+    reason: Annotated[str, Is("why")]
+
+
+class StandRow(Part):
+    """What the tests of one stand say together."""
+
+    tests: Annotated[tuple[str, ...], Is("of this stand")]
+    constants: Annotated[dict[str, Together], Is("C_i, K_loss and m together")]
+    effects: Annotated[dict[str, EffectRow], Is("that some test names")]
+    regression: Annotated[CommonLaw | NoLaw, Is("the law of all its tests, or the reason why there is none")]
+
+
+class Campaign(Part):
+    """Several tests, and their stands."""
+
+    file: ClassVar[str] = "campaign.json"
+
+    tests: Annotated[dict[str, TestRow], Is("by name")]
+    stands: Annotated[dict[str, StandRow], Is("by name")]

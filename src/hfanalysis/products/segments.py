@@ -1,0 +1,54 @@
+"""The content of segments.json: when what happens in a test."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from hfanalysis.products.model import Is, Notes, Product, Warnings, Words
+from hfanalysis.quantity import Quantity
+
+EVENTS = ("t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+
+
+class Segments(Product):
+    """Kind and events of a test; events count from the opening, whose instant is in log time."""
+
+    file: ClassVar[str] = "segments.json"
+
+    kind: Annotated[str, Is("of test, as recognised: hot_fire, cold_flow")]
+    kind_reason: Annotated[Words, Is("what it was recognised by")]
+    misfire: Annotated[bool, Is("stated as a hot fire, and nothing burns")]
+    supercharged: Annotated[bool, Is("nitrogen presses on the tank from the start")]
+    t_open: Annotated[Quantity, Is("the valve opens, in log time", "s")]
+    t_feed: Annotated[Quantity, Is("the feed line is full", "s")]
+    t_v: Annotated[Quantity, Is("the liquid is gone from the tank", "s")]
+    t_purge: Annotated[Quantity, Is("nitrogen enters the tank", "s")]
+    t_fuel_out: Annotated[Quantity, Is("the solid fuel is gone", "s")]
+    t_end: Annotated[Quantity, Is("the chamber unchokes", "s")]
+    order: Annotated[tuple[str, ...], Is("the events that there are, by time")]
+    engineer: Annotated[tuple[str, ...], Is("events that were set by hand")]
+    found_where_engineer_set: Annotated[dict[str, float], Is("what the search finds for these", "s")]
+    notes: Notes
+    warnings: Warnings
+
+    @classmethod
+    def of(cls, t_open: Quantity, events: Mapping[str, Quantity], **about: Any) -> Segments:
+        """With the ``events`` by name, and their order; what ``about`` does not say is nothing special."""
+        order = [name for _, name in sorted((q.value, name) for name, q in events.items() if q.value is not None)]
+        usual = {"kind_reason": "", "misfire": False, "supercharged": False, "found_where_engineer_set": {}}
+        said = {"engineer": (), "notes": (), "warnings": ()}
+        return cls.model_validate({"t_open": t_open, **events, "order": order, **usual, **said, **about})
+
+    @property
+    def events(self) -> dict[str, Quantity]:
+        """The events by name."""
+        return {name: getattr(self, name) for name in EVENTS}
+
+    def time(self, name: str) -> float | None:
+        """An event's instant [s], None where the test does not have it."""
+        return self.events[name].value
+
+    def std(self, name: str) -> float:
+        """An event's standard deviation [s]; 0 where there is none."""
+        return self.events[name].std or 0.0
