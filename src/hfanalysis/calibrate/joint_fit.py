@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import exp, log, pi
+from math import exp, log
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from hfanalysis.calibrate.evidence import burn_time_of
 from hfanalysis.calibrate.regression import judge_regression, rate_at
 from hfanalysis.calibrate.verdicts import PHYSICAL_M
 from hfanalysis.engine.effect import Active
+from hfanalysis.engine.grain import oxidizer_flux
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.candidate import Bench, Candidate
@@ -202,7 +203,7 @@ class _Constants:
     def _fluxes(self) -> tuple[float, float]:
         """Least and largest oxidizer flux over what is compared [kg/m^2/s]."""
         burnt, (start, end) = self.burnt, self._window
-        flux = burnt.output("oxidizer_flow") / (pi * burnt.state("port_radius") ** 2)
+        flux = oxidizer_flux(burnt.output("oxidizer_flow"), burnt.state("port_radius"))
         seen = flux[(burnt.time >= start) & (burnt.time <= end) & (flux > 0.0)]
         return float(seen.min()), float(seen.max())
 

@@ -7,15 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, reduce
+from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
 from hfanalysis.calibrate.measured_pressures import Histories, Reading, read_at_break
 from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
-from hfanalysis.calibrate.with_effects import VaporPhase, acting
+from hfanalysis.calibrate.with_effects import acting
 from hfanalysis.engine.effect import Active
+from hfanalysis.engine.injector import mass_flows
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankConstants, TankHistory
 from hfanalysis.products.segments import Segments
@@ -98,7 +99,7 @@ class _Work:
         self._check_fit(inputs)
         tables = Tables.of(self.histories, self.saturation)
         inputs, vapor = self._acting(tables, inputs)
-        nominal = reduce(tables, self.saturation, inputs, vapor_phase=vapor)
+        nominal = reduce(tables, self.saturation, inputs, phase=vapor)
         draws = draw(tables, self.saturation, inputs, self._spread(mass), samples, vapor)
         self.notes.append(f"loaded mass: {mass.source}")
         left = self._mass_left(nominal, inputs)
@@ -212,7 +213,7 @@ class _Work:
         """Mass that has left through the injector at the histories' times [kg]."""
         h = self.histories
         density = self.saturation.liquid_density(h.tank_temperature(self.saturation))
-        flow = r.C_i * inputs.area * np.sqrt(2.0 * density * np.maximum(h.run - h.chamber, 0.0))
+        flow = mass_flows(r.C_i * inputs.area, density, h.run - h.chamber)
         steps = 0.5 * (flow[1:] + flow[:-1]) * np.diff(h.time)
         return np.concatenate(([0.0], np.cumsum(steps)))
 

@@ -7,7 +7,8 @@ from typing import Any
 
 from hfanalysis.assembly import engine as build
 from hfanalysis.design import steady
-from hfanalysis.design.steady import Grain, Requirement, SteadyEngine
+from hfanalysis.design.steady import Requirement, SteadyEngine
+from hfanalysis.engine.grain import Grain
 from hfanalysis.errors import InputError
 from hfanalysis.flight import constant_thrust
 from hfanalysis.quantity import Quantity
