@@ -22,7 +22,7 @@ from benchmarks.mutants.mutant import ROOT, Mutant
 from benchmarks.mutants.page import page
 from benchmarks.mutants.workshop import Ran, Workshop, state, tests_of
 
-ROOMS = "calibrate,validate,launch,flight,segment,effects"
+ROOMS = "calibrate,validate,measured_flight,flight,segment,effects"
 FOUND = Path(__file__).parent / "found.jsonl"
 
 

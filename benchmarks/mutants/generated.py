@@ -1,4 +1,4 @@
-"""Errors made of the source by rule: constants, thresholds, standard deviations and derived columns, a sample by room."""
+"""Errors made by rule: of constants, thresholds, standard deviations and derived columns; a sample of each room."""
 
 from __future__ import annotations
 
@@ -28,7 +28,14 @@ def of_file(file: Path) -> Iterator[Mutant]:
         name = f"{file.as_posix()}: {owner}: {' '.join(text[start:end].split())[:60]} x {factor}"
         seen[name] = seen.get(name, 0) + 1
         again = f" ({seen[name]})" if seen[name] > 1 else ""
-        yield Mutant(name + again, kind, Edit(file, start, end, f"({factor} * ({text[start:end]}))"))
+        yield Mutant(name + again, kind, Edit(file, start, end, _times(node, text[start:end], factor)))
+
+
+def _times(node: ast.expr, text: str, factor: str) -> str:
+    """Integers stay integers."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, int):
+        return f"(2 * {text})" if factor == "2.0" else f"max({text} // 10, 1)"
+    return f"({factor} * ({text}))"
 
 
 def _every(tree: ast.Module) -> Iterator[tuple[str, str, ast.expr, str]]:

@@ -16,6 +16,9 @@ from benchmarks.mutants.mutant import PACKAGE, ROOT, Mutant, files, source
 
 BESIDE = ("tests", "benchmarks", "simulated", "raw_tests", "engines", "docs", "pipeline")
 SINGLE = ("pyproject.toml", "README.md", "CHANGELOG.md", "LICENSE", "Makefile", "CITATION.cff")
+ELSEWHERE = {"assembly": "cli/test_engines.py", "products": "stages", "charts": "report", "simulate": "cli"}
+"""Tests of rooms that have no folder of their own."""
+
 LONGEST = 900.0
 """[s] after which a run of tests counts as stuck, and the error as noticed."""
 
@@ -34,16 +37,16 @@ class Ran:
 def tests_of(mutant: Mutant) -> Path:
     """The folder of tests of the room that an error is in, the nearest that there is."""
     folder = mutant.edit.file.parent
-    while not (ROOT / "tests" / folder).is_dir():
+    while folder.parts and not (ROOT / "tests" / folder).is_dir():
         folder = folder.parent
-    return Path("tests") / folder
+    return Path("tests") / (folder if folder.parts else ELSEWHERE[mutant.room])
 
 
 def state(mutant: Mutant, tests: bool) -> str:
     """What a result hangs on: the file, the error, and where asked for the room's tests."""
     total = sha256(mutant.edit.applied.encode())
     if tests:
-        for path in sorted((ROOT / tests_of(mutant)).rglob("*.py")):
+        for path in sorted((ROOT / tests_of(mutant)).glob("**/*.py")):
             total.update(path.read_bytes())
     return total.hexdigest()[:16]
 
