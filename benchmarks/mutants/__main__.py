@@ -20,7 +20,7 @@ from benchmarks.mutants.catalogue import catalogue
 from benchmarks.mutants.generated import generated
 from benchmarks.mutants.mutant import ROOT, Mutant
 from benchmarks.mutants.page import page
-from benchmarks.mutants.workshop import Ran, Workshop, state, tests_of
+from benchmarks.mutants.workshop import Ran, Workshop, room_tests, state
 
 ROOMS = "calibrate,validate,measured_flight,flight,segment,effects"
 FOUND = Path(__file__).parent / "found.jsonl"
@@ -65,7 +65,7 @@ def tried(mutants: list[Mutant], found: Path, scratch: Path, again: bool) -> Non
     workshop, clean = Workshop(scratch) if open_ else None, set[Path]()
     for mutant in open_:
         assert workshop is not None
-        folder = tests_of(mutant)
+        folder = room_tests(mutant)
         if folder not in clean:
             ran = workshop.clean(folder)
             if not ran.passed:

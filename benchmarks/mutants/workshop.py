@@ -34,7 +34,7 @@ class Ran:
     seconds: float
 
 
-def tests_of(mutant: Mutant) -> Path:
+def room_tests(mutant: Mutant) -> Path:
     """The folder of tests of the room that an error is in, the nearest that there is."""
     folder = mutant.edit.file.parent
     while folder.parts and not (ROOT / "tests" / folder).is_dir():
@@ -46,7 +46,7 @@ def state(mutant: Mutant, tests: bool) -> str:
     """What a result hangs on: the file, the error, and where asked for the room's tests."""
     total = sha256(mutant.edit.applied.encode())
     if tests:
-        for path in sorted((ROOT / tests_of(mutant)).glob("**/*.py")):
+        for path in sorted((ROOT / room_tests(mutant)).glob("**/*.py")):
             total.update(path.read_bytes())
     return total.hexdigest()[:16]
 
@@ -68,7 +68,7 @@ class Workshop:
         self.warm.mkdir(parents=True, exist_ok=True)
 
     def clean(self, folder: Path) -> Ran:
-        """Tests on the source as it is; compiles what they need."""
+        """Tests on the source as it is; compiles what they need. Raises LookupError where there are none."""
         return self._run(self._ordered(folder, ""), self.warm)
 
     def tried(self, mutant: Mutant) -> Ran:
@@ -80,7 +80,7 @@ class Workshop:
         touched = self._touched(mutant)
         path.write_text(mutant.edit.applied, encoding="utf-8")
         try:
-            return self._run(self._ordered(tests_of(mutant), _module(mutant.edit.file)), cache)
+            return self._run(self._ordered(room_tests(mutant), _module(mutant.edit.file)), cache)
         finally:
             for file in touched:
                 shutil.copy2(PACKAGE / file, self.copy / "src" / "hfanalysis" / file)
@@ -100,7 +100,10 @@ class Workshop:
 
     def _ordered(self, folder: Path, module: str) -> list[str]:
         """Files of tests, those first that import a module."""
-        paths = sorted((self.copy / folder).rglob("test_*.py"))
+        found = self.copy / folder
+        paths = sorted(found.rglob("test_*.py")) if found.is_dir() else [found]
+        if not paths:
+            raise LookupError(f"there are no tests in {folder}")
         near = {path: bool(module) and _imports(path.read_text(encoding="utf-8"), module) for path in paths}
         return [str(path.relative_to(self.copy)) for path in sorted(paths, key=lambda p: (not near[p], p))]
 
