@@ -6,18 +6,23 @@ import ast
 import random
 import re
 from collections.abc import Iterator
+from itertools import islice, zip_longest
 from pathlib import Path
 
 from benchmarks.mutants.mutant import Edit, Mutant, files, source, span
 
 SPREAD = re.compile(r"(^|_)(std|sigma|spread|error|errors)$")
+KINDS = ("spread", "column", "threshold", "constant")
 FACTORS = ("2.0", "0.1")
 
 
 def generated(room: str, number: int, seed: int) -> list[Mutant]:
-    """A sample of a room's errors, the same for the same source and seed."""
+    """A sample of a room's errors, of all kinds alike; the same for the same source and seed."""
     every = [m for file in files() if file.parts[0] == room for m in of_file(file)]
-    return sorted(random.Random(f"{seed} {room}").sample(every, min(number, len(every))), key=lambda m: m.name)
+    random.Random(f"{seed} {room}").shuffle(every)
+    kinds = [[m for m in every if m.kind == kind] for kind in KINDS]
+    in_turn = (m for row in zip_longest(*kinds) for m in row if m is not None)
+    return sorted(islice(in_turn, number), key=lambda m: m.name)
 
 
 def of_file(file: Path) -> Iterator[Mutant]:
@@ -28,14 +33,7 @@ def of_file(file: Path) -> Iterator[Mutant]:
         name = f"{file.as_posix()}: {owner}: {' '.join(text[start:end].split())[:60]} x {factor}"
         seen[name] = seen.get(name, 0) + 1
         again = f" ({seen[name]})" if seen[name] > 1 else ""
-        yield Mutant(name + again, kind, Edit(file, start, end, _times(node, text[start:end], factor)))
-
-
-def _times(node: ast.expr, text: str, factor: str) -> str:
-    """Integers stay integers."""
-    if isinstance(node, ast.Constant) and isinstance(node.value, int):
-        return f"(2 * {text})" if factor == "2.0" else f"max({text} // 10, 1)"
-    return f"({factor} * ({text}))"
+        yield Mutant(name + again, kind, Edit(file, start, end, f"({factor} * ({text[start:end]}))"))
 
 
 def _every(tree: ast.Module) -> Iterator[tuple[str, str, ast.expr, str]]:
@@ -88,11 +86,9 @@ def _derived(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _numbers(node: ast.expr) -> Iterator[ast.expr]:
-    """Numbers in an expression but those that count places or name ranges: no integers below 2, no 0."""
+    """Numbers in an expression but 0; integers are left alone: they count or name places."""
     for part in ast.walk(node):
-        number = isinstance(part, ast.Constant) and type(part.value) in (int, float) and part.value != 0
-        if number and not (type(part.value) is int and part.value < 2):  # type: ignore[attr-defined]
-            assert isinstance(part, ast.expr)
+        if isinstance(part, ast.Constant) and isinstance(part.value, float) and part.value != 0.0:
             yield part
 
 
