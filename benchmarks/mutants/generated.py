@@ -80,7 +80,7 @@ def _derived(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
     elif isinstance(node, ast.keyword) and node.arg and SPREAD.search(node.arg) and not _is_none(node.value):
         yield "spread", node.value
     elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Quantity":
-        yield from (("spread", value) for value in node.args[2:3] if not _is_none(value))
+        yield from (("spread", v) for v in node.args[2:3] if not _is_none(v) and not isinstance(v, ast.Starred))
     elif isinstance(node, ast.Dict):
         yield from (("column", v) for k, v in zip(node.keys, node.values, strict=True) if _is_text(k) and _computed(v))
 
