@@ -13,7 +13,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.sections import Grain, Observed
 from hfanalysis.units import Value
-from hfanalysis.validate.performance import measured, specific_impulse
+from hfanalysis.validate.performance import _average, _less, measured, specific_impulse
 
 GRAIN = Grain(mass=Value(1.6, 0.01))
 
@@ -106,3 +106,19 @@ def test_the_deviation_of_a_specific_impulse_is_that_of_drawn_ones() -> None:
     drawn = i / (9.80665 * (o + f))
     assert found.value == pytest.approx(drawn.mean(), rel=2e-3)
     assert found.std == pytest.approx(drawn.std(), rel=0.03)
+
+
+def test_an_average_is_as_well_known_as_impulse_and_burn_time() -> None:
+    impulse, time = Quantity(16e3, "N s", 300.0), Quantity(9.0, "s", 0.2)
+    rng = np.random.default_rng(5)
+    drawn = (16e3 + 300.0 * rng.standard_normal(20_000)) / (9.0 + 0.2 * rng.standard_normal(20_000))
+    found = _average(impulse, time)
+    assert found.value == pytest.approx(drawn.mean(), rel=2e-3)
+    assert found.std == pytest.approx(drawn.std(), rel=0.03)
+
+
+def test_what_has_burnt_is_as_well_known_as_both_weighings() -> None:
+    """And a weighing whose error nobody states, to a hundredth of what was loaded."""
+    assert _less(Value(1.6, 0.03), None).std == 0.03
+    assert _less(Value(1.6, 0.03), Value(0.4, 0.04)).std == pytest.approx(0.05)
+    assert _less(Value(2.0), Value(0.4)).std == pytest.approx(0.02 * np.sqrt(2.0))
