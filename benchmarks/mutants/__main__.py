@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -54,7 +55,7 @@ def asked_for(asked: argparse.Namespace) -> Iterator[Mutant]:
     every = list(catalogue()) if asked.hand else []
     for room in filter(None, asked.rooms.split(",")):
         every += generated(room, asked.each, asked.seed)
-    yield from (m for m in every if asked.only in m.name)
+    yield from (m for m in every if re.search(asked.only, m.name))
 
 
 def tried(mutants: list[Mutant], found: Path, scratch: Path, again: bool) -> None:
@@ -81,7 +82,7 @@ def main() -> int:
     """Try errors; write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--list", action="store_true", help="only name them")
-    parser.add_argument("--only", default="", help="those whose names hold this")
+    parser.add_argument("--only", default="", help="those whose names this regular expression is in")
     parser.add_argument("--rooms", default=ROOMS, help="of which errors are made by rule")
     parser.add_argument("--no-hand", dest="hand", action="store_false", help="none of those by hand")
     parser.add_argument("--each", type=int, default=20, help="errors by rule in each room")
