@@ -18,7 +18,7 @@ FACTORS = ("2.0", "0.1")
 
 def generated(room: str, number: int, seed: int) -> list[Mutant]:
     """A sample of a room's errors, of all kinds alike; the same for the same source and seed."""
-    every = [m for file in files() if file.parts[0] == room for m in of_file(file)]
+    every = [m for file in files() if file.is_relative_to(room) for m in of_file(file)]
     random.Random(f"{seed} {room}").shuffle(every)
     kinds = [[m for m in every if m.kind == kind] for kind in KINDS]
     in_turn = (m for row in zip_longest(*kinds) for m in row if m is not None)
