@@ -59,6 +59,12 @@ def source(file: Path) -> str:
 
 
 @cache
+def tree(file: Path) -> ast.Module:
+    """A file of the package, parsed."""
+    return ast.parse(source(file))
+
+
+@cache
 def files() -> tuple[Path, ...]:
     """All files of the package, relative to it."""
     return tuple(sorted(p.relative_to(PACKAGE) for p in PACKAGE.rglob("*.py")))
@@ -68,7 +74,7 @@ def places(symbol: str) -> Iterator[tuple[Path, int, int]]:
     """Every definition of a symbol at the top of a module, wherever it is: file, where it starts and ends."""
     for file in files():
         if symbol in source(file):
-            for node in ast.parse(source(file)).body:
+            for node in tree(file).body:
                 if symbol in _defines(node):
                     yield file, *span(source(file), node)
 
