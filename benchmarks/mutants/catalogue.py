@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from benchmarks.mutants.mutant import Edit, Mutant, places, source
 
-BELIEVABLE = re.compile(r'"(\w+)": Limit\("\w+", ([\d.e-]+)')
-"""An effect's name and the largest size that is believed of it, in the definition of LIMITS."""
+BELIEVABLE = re.compile(r'Believable\(\s*"\w+",\s*([\d.e-]+)')
+"""The largest size that is believed of an effect, in its definition."""
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,9 @@ def catalogue() -> Iterator[Mutant]:
 
 
 def _believed() -> Iterator[Mutant]:
-    """Every plausible size ten times larger."""
-    for file, start, end in places("LIMITS"):
+    """Every effect's largest believable size ten times larger."""
+    for file, start, end in places("EFFECT"):
         for found in BELIEVABLE.finditer(source(file), start, end):
-            edit = Edit(file, *found.span(2), f"10.0 * {found.group(2)}")
-            yield Mutant(f"plausible_{found.group(1)}_ten_times", "by hand", edit)
+            yield Mutant(
+                f"believable_{file.stem}_ten_times", "by hand", Edit(file, *found.span(1), f"10.0 * {found.group(1)}")
+            )

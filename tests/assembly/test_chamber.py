@@ -6,7 +6,7 @@ from math import pi
 from pathlib import Path
 
 import pytest
-from stand import definition
+from tests.segment.stand import definition
 
 from hfanalysis.assembly.calibrated import Regression, engine_of_test
 from hfanalysis.assembly.engine import engine, tank

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from engine_sample import TRUTH, evidence
-from stand import Stand, Trial, definition, fire, log_of, segments_of
+from tests.calibrate.engine_sample import TRUTH, evidence
+from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.evidence import Evidence

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from stand import Trial, definition, fire, log_of, segments_of
+from tests.segment.stand import Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.calibrate.blowdown import Inputs, Reduction
 from hfanalysis.calibrate.calibration import Calibration

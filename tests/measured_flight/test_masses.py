@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
-from stand import Trial, definition, fire, log_of, segments_of
+from tests.segment.stand import Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.measured_flight.firing import Gas, _gas_mass
 from hfanalysis.measured_flight.propellant import Propellant, _fuel

@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from stand import definition, fire, log_of, segments_of
+from tests.segment.stand import definition, fire, log_of, segments_of
 
 from hfanalysis.measured_flight.firing import firing
 from hfanalysis.measured_flight.product import Launch, launch, product, write_histories

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from heated_cell import EMPTY, heated, quenched
-from stand import Trial, definition, segments_of
+from tests.segment.heated_cell import EMPTY, heated, quenched
+from tests.segment.stand import Trial, definition, segments_of
 
 from hfanalysis.flight.ascent import RESULTS
 from hfanalysis.flight.summary import ASCENT

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from stand import definition, fire, log_of
+from tests.segment.stand import definition, fire, log_of
 
 from hfanalysis.segment.phases import find_phases
 from hfanalysis.units import Value

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from heated_cell import EMPTY, heated, quenched
-from stand import Trial, definition, fire, log_of, segments_of
+from tests.segment.heated_cell import EMPTY, heated, quenched
+from tests.segment.stand import Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog

@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from stand import THROAT, Trial, channel, definition, fire, log_of, segments_of
+from tests.segment.stand import THROAT, Trial, channel, definition, fire, log_of, segments_of
 
 from hfanalysis.record.sections import Grain
 from hfanalysis.thermo.combustion import Gas, equilibrium
