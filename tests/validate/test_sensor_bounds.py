@@ -7,8 +7,9 @@ from math import pi
 
 import numpy as np
 import pytest
-from tests.segment.stand import THROAT, Trial, channel, definition, fire, log_of, segments_of
+from tests.segment.stand import AMBIENT, THROAT, Trial, channel, definition, fire, log_of, segments_of
 
+from hfanalysis.quantity import Quantity
 from hfanalysis.record.sections import Grain
 from hfanalysis.thermo.combustion import Gas, equilibrium
 from hfanalysis.units import Value
@@ -93,3 +94,36 @@ def test_a_tank_cell_is_compared_where_it_reads_what_is_loaded_to_a_twentieth(
     log = log_of(burn)
     weighed = replace(log, channels={**log.channels, "m_tank": channel("m_tank", burn.time + 100.0, read)})
     assert _cell_reads(weighed, segments_of(burn), loaded) is reads
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.012, False), (0.03, True), (-0.03, True)])
+def test_a_cell_is_named_that_ends_a_fiftieth_of_its_peak_from_zero(burn: Trial, share: float, told: bool) -> None:
+    log = log_of(burn)
+    drift = share * float(np.percentile(burn.values["thrust"][burn.time > 0.0], 99.0))
+    warm = replace(log["thrust"], zero=0.0, zero_std=1.0, drift=drift)
+    found = findings(
+        replace(log, channels={**log.channels, "thrust": warm}), segments_of(burn), definition(burn.stand), FIRE
+    )
+    assert ("does not return to zero" in [f.verdict for f in found]) is told
+
+
+@pytest.mark.parametrize(("times_ambient", "judged"), [(1.6, False), (4.0, True)])
+def test_a_nozzle_that_is_not_choked_says_nothing_of_the_thrust(
+    burn: Trial, times_ambient: float, judged: bool
+) -> None:
+    """Between 1.1 and 1.8 times ambient its flow separates and its thrust is anything."""
+    pressure = np.where(burn.time > 0.0, times_ambient * AMBIENT, AMBIENT)
+    thrust = np.where(burn.time > 0.0, 3.0 * AMBIENT * times_ambient * pi * THROAT**2, 0.0)
+    odd = replace(burn, values={**burn.values, "p_chamber": pressure, "thrust": thrust})
+    verdict = [f.verdict for f in findings(log_of(odd), segments_of(odd), definition(burn.stand), FIRE)]
+    assert ("thrust and p_c A_t disagree" in verdict) is judged
+
+
+@pytest.mark.parametrize(("dry", "judged"), [(0.8, False), (1.3, True)])
+def test_what_lasts_less_than_half_a_second_is_no_steady_part(burn: Trial, dry: float, judged: bool) -> None:
+    """The start takes the first half second; the liquid has to last for as long again."""
+    phases = segments_of(burn, t_v=Quantity(dry, "s", 1e-3))
+    log = log_of(burn)
+    off = replace(log["thrust"], values=0.5 * log["thrust"].values)
+    found = findings(replace(log, channels={**log.channels, "thrust": off}), phases, definition(burn.stand), FIRE)
+    assert bool(found) is judged
