@@ -13,12 +13,14 @@ from tests.segment.stand import Trial, definition, segments_of
 from hfanalysis.flight.ascent import RESULTS
 from hfanalysis.flight.summary import ASCENT
 from hfanalysis.measured_flight.propellant import _exponent, propellant
-from hfanalysis.measured_flight.thrust import MeasuredThrust, measured_thrust
+from hfanalysis.measured_flight.thrust import MeasuredThrust, _drift_taken, measured_thrust
 from hfanalysis.measured_flight.uncertainty import Dispersion
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.sections import Grain
+from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
+from hfanalysis.validate.thrust import Thrust
 
 
 @pytest.fixture(scope="module")
@@ -83,3 +85,11 @@ def test_a_quantity_that_one_flight_in_five_lacks_has_no_spread() -> None:
     found = results(1000).spreads()["apogee"]
     assert found.std == pytest.approx(50.0, rel=0.1)
     assert found.ci95 == pytest.approx((1000.0 - 98.0, 1000.0 + 98.0), abs=15.0)
+
+
+@pytest.mark.parametrize(
+    ("drift", "told"), [(0.3, ()), (0.7, ("1 N of the load cell's drift taken off over the burn",))]
+)
+def test_a_drift_is_told_that_does_not_round_to_nothing(burn: Trial, drift: float, told: tuple[str, ...]) -> None:
+    signal = Signal.of(heated(burn, 0.0)["thrust"])
+    assert _drift_taken(Thrust(signal, drift, np.nan)) == told
