@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from CoolProp.CoolProp import PropsSI
 
-from hfanalysis.engine.model import NITROGEN_CV, SPECIFIC_NITROGEN
+from hfanalysis.engine.closure import NITROGEN_CV, SPECIFIC_NITROGEN
 
 
 @pytest.mark.parametrize("temperature", [220.0, 260.0, 300.0])
