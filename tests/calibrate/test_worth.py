@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from tests.segment.stand import Trial, definition, fire, log_of, segments_of
+from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.calibrate.blowdown import Inputs, Reduction
 from hfanalysis.calibrate.calibration import Calibration
@@ -133,3 +133,18 @@ def test_masses_that_disagree_by_three_deviations_are_remarked(cell: float, own:
         SimpleNamespace(load_cell_mass=Quantity(cell, "kg", 0.05), blowdown_mass=Quantity(own, "kg", 0.5)),
     )
     assert len(_mass_remarks(at_rest, LoadedMass(10.0, 0.05, "as stated"))) == remarks
+
+
+@pytest.mark.parametrize(("samples", "known"), [(2, True), (6, False)])
+def test_a_slow_logger_may_lose_samples_in_the_vapor_phase_as_long_as_others_are_near(
+    samples: int, known: bool
+) -> None:
+    """At 20 Hz two lost samples leave 0.15 s, within four steps; six leave a third of a second."""
+    test = fire(Stand(vapor_time=1.5), rate=20.0)
+    log = log_of(test)
+    tank = log["p_tank"]
+    first = int(np.searchsorted(tank.time, 100.0 + test.t_v + 0.5))
+    flags = np.zeros(tank.time.size, np.uint8)
+    flags[first : first + samples] = 1
+    found = calibrated(replace(log, channels={**log.channels, "p_tank": replace(tank, flags=flags)}), test)
+    assert (found.quantities["m"].value is not None) is known
