@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -73,7 +74,7 @@ def files() -> tuple[Path, ...]:
 def places(symbol: str) -> Iterator[tuple[Path, int, int]]:
     """Every definition of a symbol at the top of a module, wherever it is: file, where it starts and ends."""
     for file in files():
-        if symbol in source(file):
+        if re.search(rf"^(?:def |class )?{symbol}\b", source(file), re.MULTILINE):
             for node in tree(file).body:
                 if symbol in _defines(node):
                     yield file, *span(source(file), node)
@@ -94,5 +95,7 @@ def span(text: str, node: ast.stmt | ast.expr) -> tuple[int, int]:
 
 
 def _at(text: str, line: int, column: int) -> int:
-    lines = text.splitlines(keepends=True)
-    return sum(map(len, lines[: line - 1])) + len(lines[line - 1].encode()[:column].decode())
+    start = 0
+    for _ in range(line - 1):
+        start = text.index("\n", start) + 1
+    return start + len(text[start:].split("\n", 1)[0].encode()[:column].decode())
