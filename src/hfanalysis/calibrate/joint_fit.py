@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.calibrate.evidence import burn_time_of
 from hfanalysis.calibrate.regression import judge_regression, rate_at
+from hfanalysis.calibrate.tank import PEAK_OVER
 from hfanalysis.calibrate.verdicts import PHYSICAL_M
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.grain import oxidizer_flux
@@ -42,9 +43,6 @@ TOLD = 0.8
 
 STEP = 0.1
 """Of its standard deviation, by which a constant is moved to see what follows from it."""
-
-PEAK_OVER = 0.1
-"""Seconds over which the peak flow is a mean."""
 
 DERIVED = {"vapor_mass_at_t_v": "kg", "mass_at_t_feed": "kg", "oxidizer_mass_liquid_phase": "kg",
            "oxidizer_flow_peak": "kg/s"}  # fmt: skip

@@ -55,6 +55,13 @@ NEGLIGIBLE = 0.05
 TESTS_DISAGREE = 0.01
 """Probability of the rise in misfit by common constants below which tests are said to disagree."""
 
+NEAR, EXACT = 1e-4, 1e-7
+"""To what ln r and n are found of a minimum that is one of several, and of the one that is told: along a valley, steps
+are short before its end is reached."""
+
+FIRST_STEP = 500.0
+"""Of the search for a minimum, over what it is found to."""
+
 FAILED = 1e12
 
 
@@ -106,6 +113,7 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
         evidence = [e.with_regression(law) for e in evidence]
         weights = [_weighed(e, law) for e in evidence]
         best = _least(evidence, weights, flux, best)
+    best = _minimum(evidence, weights, flux, best, EXACT)
     return _surveyed(evidence, weights, flux, best)
 
 
@@ -141,8 +149,13 @@ def _scan(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float)
     return points[int(np.argmin(misfits))]
 
 
-def _minimum(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, start: Array) -> Array:
-    """The least misfit from ``start``, by BOBYQA; a start beyond the range of n is moved to its border."""
+def _minimum(
+    evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, start: Array, within: float = NEAR
+) -> Array:
+    """The least misfit from ``start``, by BOBYQA; a start beyond the range of n is moved to its border.
+
+    ``within``: to what ln r and n are found.
+    """
     import nlopt
 
     objective = _objective(evidence, weights, flux)
@@ -151,8 +164,8 @@ def _minimum(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: flo
     solver.set_min_objective(lambda x, _gradient: objective(np.array(x)))
     solver.set_lower_bounds([start[0] - 2.0, RANGE_N[0]])
     solver.set_upper_bounds([start[0] + 2.0, RANGE_N[1]])
-    solver.set_initial_step([0.05, 0.05])
-    solver.set_xtol_abs([1e-4, 1e-4])
+    solver.set_initial_step([FIRST_STEP * within] * 2)
+    solver.set_xtol_abs([within, within])
     solver.set_maxeval(200)
     return np.asarray(solver.optimize(start), dtype=np.float64)
 

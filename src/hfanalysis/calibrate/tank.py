@@ -37,6 +37,9 @@ SPAN_SHARE = 0.25
 LONGEST_GAP = 0.1
 """Part of the liquid phase that one channel may miss in one piece; good samples around it are joined linearly."""
 
+PEAK_OVER = 0.1
+"""Seconds over which the peak flow is a mean."""
+
 FULLEST = 1.05
 """Loaded mass over what the tank holds as liquid at the bulk's temperature, from which on the input is refused."""
 
@@ -218,13 +221,14 @@ class _Work:
         return np.concatenate(([0.0], np.cumsum(steps)))
 
     def _flow_peak(self, left: Array) -> float | None:
-        h = self.histories
-        liquid = h.time < self.t_v
-        n = max(int(0.1 / max(float(np.median(np.diff(h.time))), 1e-6)), 1)
-        if liquid.sum() <= n + 1:
+        """Highest mean flow over PEAK_OVER of the liquid phase, from the opening on [kg/s]."""
+        liquid = self.histories.time < self.t_v
+        t, x = self.histories.time[liquid], left[liquid]
+        if t.size < 2 or t[-1] <= PEAK_OVER:
             return None
-        t, x = h.time[liquid], left[liquid]
-        return float(((x[n:] - x[:-n]) / (t[n:] - t[:-n])).max())
+        t, x = np.append(0.0, t), np.append(x[0] - (x[1] - x[0]) / (t[1] - t[0]) * t[0], x)
+        starts = t[t <= t[-1] - PEAK_OVER]
+        return float((np.interp(starts + PEAK_OVER, t, x) - np.interp(starts, t, x)).max()) / PEAK_OVER
 
     def _read(self, instant: float, before: float, after: float) -> Reading:
         tank = self.histories.signals["p_tank"]

@@ -68,6 +68,13 @@ TICK = 1e-6
 INCREMENT = 1e-7
 """Relative to a state, or to its scale: the difference with which Jacobians are formed."""
 
+PARTS_OF_OCTAVE = 8
+"""Of which the steps' factors are whole numbers. What a Jacobian of differences rounds off is in every error, and by
+steps that follow it a run's last digit would grow to its tolerance."""
+
+ROUNDED_OFF = 1e-6
+"""Part of the tolerance below which an error is what was rounded off."""
+
 
 @inner
 def moves(i: int, burning: bool, c: Array, terms: int) -> bool:
@@ -376,16 +383,25 @@ def record(
 
 
 @inner
+def in_whole_parts(factor: float) -> float:
+    """A step's factor as a whole number of parts of an octave: the last digits of an error change no step."""
+    return float(2.0 ** (np.floor(PARTS_OF_OCTAVE * np.log2(factor) + 0.5) / PARTS_OF_OCTAVE))
+
+
+@inner
 def shortened(h: float, error: float) -> float:
     """The step to try after one whose error was too large."""
-    return h * float(max(0.2, 0.9 * error**-0.2)) if np.isfinite(error) else 0.1 * h
+    return h * in_whole_parts(max(0.2, 0.9 * error**-0.2)) if np.isfinite(error) else 0.1 * h
 
 
 @inner
 def next_step(h: float, error: float, old_error: float, rejected: bool) -> float:
     """The step after an accepted one (PI control)."""
-    factor = 0.9 * max(error, 1e-10) ** -0.14 * old_error**0.08
-    return h * float(min(max(factor, 0.2), 1.0 if rejected else 6.0))
+    most = 1.0 if rejected else 6.0
+    if error < ROUNDED_OFF:
+        return h * most
+    factor = 0.9 * error**-0.14 * old_error**0.08
+    return h * in_whole_parts(min(max(factor, 0.2), most))
 
 
 @inner
