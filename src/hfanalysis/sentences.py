@@ -99,12 +99,13 @@ def quoted_in(data: Any) -> dict[str, Quoted]:
         return dict(data.quoted)
     if isinstance(data, str) or not isinstance(data, Iterable):
         return {}
-    found: dict[str, Quoted] = {}
-    for part in data.values() if isinstance(data, Mapping) else data:
-        if isinstance(part, float):  # of a long history
-            break
-        found |= quoted_in(part)
-    return found
+    parts = data.values() if isinstance(data, Mapping) else () if _history(data) else data
+    return {words: quantity for part in parts for words, quantity in quoted_in(part).items()}
+
+
+def _history(data: Any) -> bool:
+    """Whether it is a list of numbers, which may be long."""
+    return isinstance(data, (list, tuple)) and bool(data) and isinstance(data[0], float)
 
 
 def to_json(quoted: Mapping[str, Quoted]) -> dict[str, dict[str, Any]]:
@@ -124,6 +125,6 @@ def revived(data: Any, quoted: Mapping[str, Quoted]) -> Any:
         return Text(data, own) if own else data
     if isinstance(data, Mapping):
         return {name: revived(part, quoted) for name, part in data.items()}
-    if isinstance(data, list) and not (data and isinstance(data[0], float)):
+    if isinstance(data, list) and not _history(data):
         return [revived(part, quoted) for part in data]
     return data
