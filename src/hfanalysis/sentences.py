@@ -65,7 +65,7 @@ def said(
 ) -> Text:
     """A quantity in words: ``value`` in SI, shown in ``unit`` by a format; with ± ``std`` where that is given.
 
-    ``size``: of a unit that UNITS does not have, in SI.
+    ``size``: of a unit that UNITS does not have, in SI. A number without a unit is only a word.
 
     >>> said(1.25e6, "bar", ".1f", 5e4, ".1f")
     '12.5 ± 0.5 bar'
@@ -74,7 +74,8 @@ def said(
     factor = factor if size is None else size
     spread = "" if std is None else f" ± {std / factor:{std_form}}"
     words = f"{value / factor:{form}}{spread} {unit}".strip()
-    return Text(words, {words: Quoted(float(value), si, None if std is None else float(std))})
+    quoted = {words: Quoted(float(value), si, None if std is None else float(std))}
+    return Text(words, quoted if unit else {})
 
 
 def text(template: str, **parts: Any) -> Text:
