@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from simulated.engines import HOLE_AREA, HOLES, hf5_like
 
-from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.flight.constant_thrust import Vehicle
 from hfanalysis.thermo.combustion import equilibrium

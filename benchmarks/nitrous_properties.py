@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 from benchmarks.other_tables import enthalpies, liquid_density, pressure, vapor_density
 
-from hfanalysis.engine.blowdown import FeedSystem, blow_down
+from hfanalysis.engine.blowdown import blow_down
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.tank import split
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation

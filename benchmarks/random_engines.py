@@ -15,7 +15,7 @@ from time import perf_counter
 
 import numpy as np
 
-from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY

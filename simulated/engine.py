@@ -14,7 +14,8 @@ import numpy as np
 from simulated.stand import AMBIENT, PSI, Array, Truth, _definition, _save, draw_truth, noise
 
 from hfanalysis.assembly.engine import combustion_of
-from hfanalysis.engine.blowdown import Blowdown, FeedSystem, blow_down
+from hfanalysis.engine.blowdown import TankRun, blow_down
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.thermo.combustion import FORMATION_OFFSET, equilibrium
 from hfanalysis.thermo.nitrous import saturation
@@ -109,7 +110,7 @@ def make_log(folder: Path, seed: int) -> EngineTruth:
     return EngineTruth(stand, engine, done.burn_time)
 
 
-def _tank(engine: Engine, done: Burn, time: Array) -> tuple[Blowdown, Array]:
+def _tank(engine: Engine, done: Burn, time: Array) -> tuple[TankRun, Array]:
     """Tank and chamber pressure over the whole log: fire first, cold flow after it."""
     fire = np.interp(time, done.time, done.output("chamber_pressure"))
     gone = time > done.burn_time
@@ -125,7 +126,7 @@ def _tank(engine: Engine, done: Burn, time: Array) -> tuple[Blowdown, Array]:
 
 
 def _write_log(
-    path: Path, stand: Truth, engine: Engine, done: Burn, tank: Blowdown, chamber: Array, generator: np.random.Generator
+    path: Path, stand: Truth, engine: Engine, done: Burn, tank: TankRun, chamber: Array, generator: np.random.Generator
 ) -> None:
     before = generator.uniform(1.5, 4.0)
     last = max(stand.t_purge, done.burn_time) + 3.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi, radians
 
 from hfanalysis.design.sizing import DipTube, size_for_ullage
-from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY

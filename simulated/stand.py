@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from hfanalysis.engine.injector import mass_flow_with_feed
-from hfanalysis.engine.tank import liquid_mass, temperature_rate
+from hfanalysis.engine.tank import energy_derivatives, liquid_mass, temperature_rate
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import LIQUID_VOLUME, LN_PRESSURE, evaluate
 
@@ -121,7 +121,7 @@ def _burn(
         p_run = p_c + full * steady**2 / (2.0 * density * area**2)
         out[0, i], out[1, i], out[2, i], out[3, i], out[4, i] = p, p_run, p_c, mass, flow
         if liquid:
-            rate = temperature_rate(table, volume, mass, t_k, flow, 0.0)
+            rate = temperature_rate(*energy_derivatives(table, volume, mass, t_k), flow, 0.0)
             before = liquid_mass(table, volume, mass, t_k)
             t_k += step * rate
             mass -= step * flow

@@ -17,11 +17,14 @@ from numba import njit, types
 from numba.core import cgutils
 from numba.core.ccallback import CFunc
 from numba.core.typing.templates import Signature
-from numba.extending import intrinsic
+from numba.extending import intrinsic, register_jitable
 
 from hfanalysis.sources import closure, digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+
+Real = Any
+"""A number, or an array of them: what a :func:`law` is given and gives."""
 
 
 @overload
@@ -55,6 +58,12 @@ def inner(function: Function) -> Function:
 def inlined(function: Function) -> Function:
     """As :func:`inner`, always merged into its callers: for the small pieces of what is called most."""
     made: Function = _compiled(function, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    return made
+
+
+def law(function: Function) -> Function:
+    """A formula for numbers and arrays alike: plain Python by itself, and part of the compiled code that calls it."""
+    made: Function = register_jitable(error_model="numpy")(function)
     return made
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.assembly.engine import combustion_of
 from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar, chamber_at
-from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation

@@ -11,7 +11,8 @@ from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments
 
 from hfanalysis.calibrate.rest import blowdown_mass, fit_bulk, liquid_phase_heat, state_remarks
 from hfanalysis.calibrate.tank import calibrate
-from hfanalysis.engine.blowdown import FeedSystem, blow_down
+from hfanalysis.engine.blowdown import blow_down
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.tank import split
 from hfanalysis.errors import InputError
 from hfanalysis.products.calibration import TankConstants

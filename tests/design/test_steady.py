@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
-from hfanalysis.design.steady import Grain, Requirement, SteadyEngine, design, fuel_for_apogee, ideal_specific_impulse
+from hfanalysis.design.steady import Requirement, SteadyEngine, design, fuel_for_apogee, ideal_specific_impulse
+from hfanalysis.engine.grain import Grain
 from hfanalysis.flight.constant_thrust import Vehicle, apogee
 
 ROCKET = Vehicle(52.5, 0.529, 19478e-6, radians(6.0), 1402.0)

@@ -10,7 +10,7 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect, library
 from hfanalysis.engine.effect import Active
-from hfanalysis.engine.model import OUTPUTS, STATES
+from hfanalysis.engine.equations import OUTPUTS, STATES
 from hfanalysis.engine.unsteady import Burn, burn
 
 Array = NDArray[np.float64]

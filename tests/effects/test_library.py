@@ -19,7 +19,8 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect, library
 from hfanalysis.engine.effect import Active
-from hfanalysis.engine.model import OUTPUTS, STATES, neutral
+from hfanalysis.engine.equations import OUTPUTS, STATES
+from hfanalysis.engine.model import neutral
 from hfanalysis.engine.sites import AT_CHAMBER, AT_FLOW, AT_TANK, ENVIRONMENT, HOOK_OF_SITE, RATES, SITES
 from hfanalysis.engine.unsteady import Burn, burn, constants
 

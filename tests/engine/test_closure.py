@@ -12,7 +12,7 @@ from tests.engine.stand import engine_on_stand
 from hfanalysis.effects import effect
 from hfanalysis.engine.batch import burn_many
 from hfanalysis.engine.closure import chamber_energy, vapor_heat, vapor_heat_total
-from hfanalysis.engine.model import OUTPUTS
+from hfanalysis.engine.equations import OUTPUTS
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 
 Array = NDArray[np.float64]

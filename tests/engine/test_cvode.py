@@ -8,7 +8,7 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect
 from hfanalysis.engine.cvode import burn_by_cvode
-from hfanalysis.engine.model import IMPULSE, TANK
+from hfanalysis.engine.equations import IMPULSE, TANK
 from hfanalysis.engine.phases import FUEL_OUT, LIQUID_OUT
 from hfanalysis.engine.unsteady import Engine, burn
 

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
+from hfanalysis.engine.feed_line import line_flow, line_loss
+from hfanalysis.engine.injector import (
+    SMALL_DROP,
+    bent_root,
+    flow_resistance,
+    mass_flow,
+    mass_flow_with_feed,
+    mass_flows,
+)
 
 areas = st.floats(1e-6, 1e-4)
 densities = st.floats(10.0, 1200.0)
@@ -49,3 +58,33 @@ def test_without_a_loss_the_injector_alone_sets_the_flow(area: float, density: f
 @given(areas, densities, drops)
 def test_flow_goes_with_the_root_of_the_drop(area: float, density: float, drop: float) -> None:
     assert mass_flow(area, density, 4.0 * drop) == pytest.approx(2.0 * mass_flow(area, density, drop), rel=1e-12)
+
+
+def test_over_arrays_each_flow_is_its_own() -> None:
+    densities, drops = np.array([750.0, 60.0, 700.0, 10.0]), np.array([20e5, 3e5, -1e5, 500.0])
+    each = [mass_flow(4e-5, rho, dp) for rho, dp in zip(densities, drops, strict=True)]
+    assert mass_flows(4e-5, densities, drops).tolist() == each
+    assert mass_flows(np.full(4, 4e-5), 750.0, 20e5).tolist() == [each[0]] * 4
+
+
+@given(areas, losses, densities, drops)
+def test_the_resistance_is_the_drop_that_a_flow_asks_for(area: float, loss: float, density: float, drop: float) -> None:
+    flow = mass_flow_with_feed(area, loss, density, drop)
+    assert flow_resistance(area, loss) * flow**2 / density == pytest.approx(drop, rel=1e-9)
+
+
+def test_the_bent_root_joins_smoothly_and_ends_with_a_finite_slope() -> None:
+    step = 1e-3 * SMALL_DROP
+    below, at, above = (bent_root(SMALL_DROP + x, SMALL_DROP) for x in (-step, 0.0, step))
+    assert at == pytest.approx(SMALL_DROP**0.5, rel=1e-12)
+    assert above - at == pytest.approx(at - below, rel=2e-3)
+    assert bent_root(1e-9, SMALL_DROP) / 1e-9 == pytest.approx(1.5 / SMALL_DROP**0.5, rel=1e-6)
+
+
+@given(areas, losses, densities, drops)
+def test_a_line_loses_what_is_stated_or_by_the_square_of_its_flow(
+    area: float, factor: float, density: float, drop: float
+) -> None:
+    quadratic = line_flow(area, factor, -1.0, density, drop)
+    own = line_loss(factor, quadratic, density)
+    assert line_flow(area, 0.0, own, density, drop) == pytest.approx(quadratic, rel=1e-6, abs=area * density)

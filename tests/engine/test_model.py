@@ -11,7 +11,7 @@ from hypothesis import strategies as some
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect
-from hfanalysis.engine.model import KEEPS, OUTPUTS, Equations, evaluate_rates
+from hfanalysis.engine.equations import KEEPS, OUTPUTS, Equations, evaluate_rates
 from hfanalysis.engine.unsteady import burn
 
 ENGINE = engine_on_stand(effects=(effect("n2_purge").at(), effect("nozzle_throat_erosion").at(rate=2e-5)))

@@ -9,9 +9,18 @@ from hypothesis import strategies as st
 from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq
 
-from hfanalysis.engine.blowdown import Blowdown, FeedSystem, blow_down, implied_heat
+from hfanalysis.engine.blowdown import TankRun, blow_down
+from hfanalysis.engine.closure import implied_heat
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
-from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, compressibility, mass_along_blowdown, split
+from hfanalysis.engine.tank import (
+    SPECIFIC_GAS_CONSTANT,
+    compressibility,
+    internal_energy,
+    mass_along,
+    mass_along_blowdown,
+    split,
+)
 from hfanalysis.thermo.nitrous import SOURCES, saturation
 from hfanalysis.thermo.saturation import Array, Property, Saturation
 
@@ -33,12 +42,12 @@ def emptied(
     chamber: float = CHAMBER,
     mass: float = MASS,
     heat: float = 0.0,
-) -> Blowdown:
+) -> TankRun:
     time = np.arange(0.0, end, step)
     return blow_down(saturation(source), feed, mass, TEMPERATURE, time, np.full(time.size, chamber), m, heat)
 
 
-def liquid_part(run: Blowdown) -> slice:
+def liquid_part(run: TankRun) -> slice:
     return slice(0, int(np.searchsorted(run.time, run.t_v)))
 
 
@@ -148,6 +157,28 @@ def test_temperature_alone_tells_the_mass_of_an_adiabatic_blowdown(source: str) 
     chosen = np.r_[0 : part.stop : 400, part.stop - 1]
     mass = mass_along_blowdown(saturation(source), VOLUME, run.temperature[-1], run.temperature[chosen])
     np.testing.assert_allclose(mass, run.mass[chosen], rtol=1e-5)
+
+
+def test_the_way_up_along_a_blowdown_is_the_way_down() -> None:
+    nitrous = saturation()
+    temperatures = np.array([290.0, 284.0, 277.0])
+    down = mass_along(nitrous.kernel_table, VOLUME, MASS, TEMPERATURE, temperatures)
+    up = mass_along(
+        nitrous.kernel_table, VOLUME, float(down[-1]), temperatures[-1], np.array([284.0, 290.0, TEMPERATURE])
+    )
+    assert up == pytest.approx([down[1], down[0], MASS], rel=1e-9)
+
+
+def test_the_energy_of_a_tank_is_that_of_its_phases() -> None:
+    nitrous = saturation()
+    mass, temperature = np.array([10.0, 6.0]), np.array([293.0, 280.0])
+    assert internal_energy(nitrous, VOLUME, mass, temperature) == pytest.approx(energy(nitrous, mass, temperature))
+
+
+def test_a_tank_below_its_chamber_holds_the_line_at_its_own_pressure() -> None:
+    """Nothing flows, and nothing is lost on the way."""
+    run = emptied(chamber=70e5, end=0.1)
+    assert run.run_pressure.tolist() == run.pressure.tolist()
 
 
 @pytest.mark.parametrize("m", [0.75, 1.0, 1.3])

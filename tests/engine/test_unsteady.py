@@ -14,9 +14,10 @@ from benchmarks.reference_engine import Reference, Run, differences, in_our_stat
 from numpy.typing import NDArray
 from simulated.engines import hf5_like, maelstrom
 
-from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.feed_line import FeedSystem
+from hfanalysis.engine.grain import flux_power
 from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
-from hfanalysis.engine.unsteady import Burn, Engine, burn, flux_power, vapor_compressibility
+from hfanalysis.engine.unsteady import Burn, Engine, burn, vapor_compressibility
 from hfanalysis.thermo.combustion import equilibrium
 from hfanalysis.thermo.combustion_table import CombustionTable, build
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
@@ -285,7 +286,7 @@ def test_some_random_engines_run_and_some_do_not() -> None:
 
 
 def test_states_that_are_not_numbers_give_rates_that_are_not_and_no_crash() -> None:
-    from hfanalysis.engine.model import OUTPUTS, STATES, evaluate_rates
+    from hfanalysis.engine.equations import OUTPUTS, STATES, evaluate_rates
 
     equations = engine().equations(burnt().steps.composition)
     dy, out = np.zeros(len(STATES)), np.zeros(len(OUTPUTS))

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from simulated.stand import noise
 
-from hfanalysis.engine.blowdown import FeedSystem, blow_down
+from hfanalysis.engine.blowdown import blow_down
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import FileSpec, LogSpec, Test, TestDefinition

@@ -14,9 +14,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from hfanalysis.assembly.engine import combustion_of
-from hfanalysis.engine.blowdown import FeedSystem
 from hfanalysis.engine.effect import Active
-from hfanalysis.engine.tank_alone import TankAlone
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import FuelLaw, TankConstants
@@ -83,37 +82,6 @@ def engine_of_test(
         ambient_pressure=definition.ambient_pressure.value,
         oxidizer_enthalpy=oxidizer_enthalpy(definition, source, temperature),
         effects=tuple(effects),
-    )
-
-
-def tank_of_test(
-    definition: TestDefinition, feed: FeedSystem, mass: float, temperature: float, m: float, effects: Sequence[Active]
-) -> TankAlone:
-    """The tank alone with ``effects``, from a load [kg] at a temperature [K]; ``m``: the vapour's exponent.
-
-    The chamber and grain behind it only stand there: the chamber's pressure is to be given.
-    """
-    return TankAlone.of(
-        Engine(
-            saturation=saturation(definition.model.properties),
-            combustion=combustion_of(),
-            feed=feed,
-            oxidizer_mass=mass,
-            temperature=temperature,
-            polytropic_exponent=m,
-            fuel_mass=1.0,
-            grain_length=0.5,
-            outer_radius=0.04,
-            fuel_density=900.0,
-            a=1e-4,
-            n=0.5,
-            dead_volume=1e-3,
-            throat_area=1e-3,
-            exit_area=3e-3,
-            ambient_pressure=definition.ambient_pressure.value,
-            oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY,
-            effects=tuple(effects),
-        )
     )
 
 

@@ -9,7 +9,8 @@ from math import isfinite, pi
 from hfanalysis.assembly import rocket
 from hfanalysis.design import sizing, steady
 from hfanalysis.engine import unsteady
-from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.feed_line import FeedSystem
+from hfanalysis.engine.grain import Grain
 from hfanalysis.engine.tank import split
 from hfanalysis.errors import InputError
 from hfanalysis.record.engine_file import EngineFile, Needs
@@ -171,10 +172,10 @@ def parachutes(file: EngineFile) -> tuple[Parachute, Parachute] | str:
     return rocket.parachutes(file.rocket)
 
 
-def steady_grain(needs: Needs) -> steady.Grain:
+def steady_grain(needs: Needs) -> Grain:
     """The grain's casing and regression law."""
     grain = needs.file.grain
-    return steady.Grain(
+    return Grain(
         length=needs.value(grain.length, "grain", "length").value,
         outer_radius=needs.value(grain.outer_radius, "grain", "outer_radius").value,
         density=needs.value(grain.density, "grain", "density").value,

@@ -5,36 +5,39 @@ of t_v:
 
     C_i = (m_o - V rho_v(T_v)) / integral of N_i A_i sqrt(2 rho_l (p_run - p_c)) dt
 
-which is the report's iteration on C_i in closed form. m is found by shooting the vapour phase to the pressure at
-t_purge.
+which is the report's iteration on C_i in closed form. m is found by shooting the tank alone over the vapour phase
+to the pressure at t_purge.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
+from scipy.optimize import brentq
 
 from hfanalysis.calibrate.measured_pressures import Histories
 from hfanalysis.compiled import compiled
-from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT
+from hfanalysis.engine.blowdown import TankAlone, TankRun, tank_alone
+from hfanalysis.engine.equations import TANK
+from hfanalysis.engine.feed_line import FeedSystem
+from hfanalysis.engine.injector import mass_flow
+from hfanalysis.engine.tank import compressibility
 from hfanalysis.thermo.saturation import Saturation
 
 Array = NDArray[np.float64]
 
-EXPONENTS = np.geomspace(0.05, 6.0, 49)
-"""Grid on which the root in m is bracketed; no gas expands outside it."""
+EXPONENTS = (0.05, 6.0)
+"""Between which m is looked for; no gas expands outside."""
 
-COARSE = 4
-"""Points of that grid that a first scan steps over."""
+VAPOR_STEPS = 60
+"""Steps of the tank alone over the vapour phase: a second of smooth course, what is measured as means over them."""
 
-ROOT = 1e-10
-"""To what m is found."""
-
-Phase = tuple[Array, Array, Array, float, float, float, float, float, float]
-"""What :func:`_vapor_end` takes, but for m."""
+ROOT = 1e-7
+"""To what m is found; its standard deviation is some 1e-2."""
 
 SETTLING = 2.0
 """K_loss is taken from this many t_feed on: at t_feed itself the line still fills by the last 2 %."""
@@ -89,6 +92,15 @@ class Tables:
         arrays = (1.0 / volume, by_pressure, histories.run, histories.chamber, loss)
         return cls(histories.time, *(np.ascontiguousarray(a) for a in arrays))
 
+    @cached_property
+    def _totals(self) -> list[Array]:
+        return [cumulative_trapezoid(x, self.time, initial=0.0) for x in (self.loss, self.chamber)]
+
+    def behind(self, at: Array) -> list[Array]:
+        """Feed loss and chamber pressure [Pa] at increasing times: means over the cells about them."""
+        edges = np.concatenate([at[:1], 0.5 * (at[1:] + at[:-1]), at[-1:]])
+        return [np.diff(np.interp(edges, self.time, total)) / np.diff(edges) for total in self._totals]
+
 
 @dataclass(frozen=True)
 class Reduction:
@@ -105,17 +117,66 @@ class Reduction:
     temperature_v: float
 
 
-class Vapor(Protocol):
-    """Another model of the vapour phase than the report's."""
+@dataclass(frozen=True)
+class VaporPhase:
+    """How m is shot along the vapour phase: the ``tank`` alone from t_v on, the feed loss and p_c as measured.
 
-    def shoot(self, inputs: Inputs, shift: Shift, area: float) -> tuple[float, float]:
-        """m and the mass at the end [kg], NaN where there is none; ``area``: effective, of the injector [m^2]."""
+    What effects leave in it at t_v: its pressure less that of saturation, ``beside`` [Pa], ``nitrogen`` [kg], and
+    their ``own`` states.
+    """
+
+    tank: TankAlone
+    beside: float = 0.0
+    nitrogen: float = 0.0
+    own: Array | None = None
+
+    @classmethod
+    def plain(cls, saturation: Saturation, inputs: Inputs) -> VaporPhase:
+        """Without effects."""
+        warm = float(saturation.temperature(inputs.p_v))
+        return cls(tank_alone(saturation, FeedSystem(inputs.volume, inputs.area), inputs.mass, warm, 1.0))
+
+    def shoot(self, tables: Tables, inputs: Inputs, shift: Shift, area: float) -> tuple[float, float]:
+        """m at which the model reaches p_end at t_end, and the tank's nitrous oxide there [kg]; NaN: there is none.
+
+        ``area``: effective, of the injector [m^2].
+        """
+        if not (inputs.t_end > inputs.t_v and area > 0.0):
+            return np.nan, np.nan
+        tank, time = self._start(inputs, shift, area), np.linspace(inputs.t_v, inputs.t_end, VAPOR_STEPS + 1)
+        loss, chamber = tables.behind(time)
+        loss, chamber = loss + shift.tank - shift.run, chamber + shift.chamber
+
+        def end(m: float) -> TankRun:
+            return tank.at(vapor_exponent=m).run(time, chamber, loss, vapor=True)
+
+        def miss(m: float) -> float:
+            reached = float(end(m).pressure[-1])
+            # a tank whose pressure hardly falls may run empty
+            return (reached if np.isfinite(reached) else inputs.p_v) - inputs.p_end - shift.tank
+
+        try:
+            m = float(brentq(miss, *EXPONENTS, xtol=ROOT))
+        except ValueError:  # the pressure falls too far, or not far enough, with any
+            return np.nan, np.nan
+        return m, float(end(m).states[-1, TANK])
+
+    def _start(self, inputs: Inputs, shift: Shift, area: float) -> TankAlone:
+        """The tank at t_v: saturated vapour at the pressure that is the nitrous oxide's own."""
+        saturation, pressure = self.tank.engine.saturation, inputs.p_v + shift.tank - self.beside
+        temperature = float(saturation.temperature(pressure))
+        mass = inputs.volume * float(saturation.vapor_density(temperature))
+        z = compressibility(pressure, inputs.volume, mass, temperature)
+        return self.tank.with_feed(inputs.volume, area).at(
+            tank_mass=mass, tank_temperature=temperature, tank_nitrogen=self.nitrogen, vapor_compressibility=z,
+            own=self.own,
+        )  # fmt: skip
 
 
 def reduce(
-    tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift = Shift(), vapor_phase: Vapor | None = None
+    tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift = Shift(), phase: VaporPhase | None = None
 ) -> Reduction:
-    """One reduction with the given inputs and shifted pressures; m of the report's vapour, or of ``vapor_phase``."""
+    """One reduction with the given inputs and shifted pressures; m along ``phase`` (default: without effects)."""
     p_v = inputs.p_v + shift.tank
     t_v = float(saturation.temperature(p_v))
     vapor = inputs.volume * float(saturation.vapor_density(t_v))
@@ -131,24 +192,10 @@ def reduce(
     C_i = (inputs.mass - vapor) / (inputs.area * flow_integral) if flow_integral > 0.0 else np.nan
     area = C_i * inputs.area
     factor = loss_sum / (2.0 * area**2 * square_sum) if square_sum > 0.0 else np.nan
-    z = p_v * inputs.volume / (vapor * SPECIFIC_GAS_CONSTANT * t_v)
-    loss = tables.loss + (shift.tank - shift.run)
-    chamber = tables.chamber + shift.chamber
-    m, end_mass, loss_vapor = _shoot(
-        tables.time,
-        loss,
-        chamber,
-        inputs.t_v,
-        inputs.t_end,
-        p_v,
-        inputs.p_end + shift.tank,
-        vapor,
-        inputs.volume,
-        area,
-        EXPONENTS,
-    )
-    if vapor_phase is not None:
-        m, end_mass = vapor_phase.shoot(inputs, shift, area)
+    z = compressibility(p_v, inputs.volume, vapor, t_v)
+    m, end_mass = (phase or VaporPhase.plain(saturation, inputs)).shoot(tables, inputs, shift, area)
+    dry = (tables.time >= inputs.t_v) & (tables.time < inputs.t_end)
+    loss_vapor = float(tables.loss[dry].mean()) + shift.tank - shift.run if dry.any() and area > 0.0 else np.nan
     return Reduction(C_i, m, z, factor, loss_mean, loss_vapor, vapor, end_mass, t_v)
 
 
@@ -160,9 +207,9 @@ def _liquid_sums(
     integral = 0.0
     products = squares = losses = 0.0
     count = 0
-    before_time, before = 0.0, _specific_flow(density[0], drop[0])
+    before_time, before = 0.0, mass_flow(1.0, density[0], drop[0])
     for i in range(time.size):
-        flow = _specific_flow(density[i], drop[i])
+        flow = mass_flow(1.0, density[i], drop[i])
         if time[i] >= t_v:
             step = time[i] - before_time
             part = (t_v - before_time) / step if step > 0.0 else 0.0
@@ -180,112 +227,3 @@ def _liquid_sums(
             count += 1
     integral += before * max(t_v - before_time, 0.0)
     return integral, products, squares, losses / max(count, 1)
-
-
-@compiled
-def _specific_flow(density: float, drop: float) -> float:
-    return np.sqrt(2.0 * density * drop) if drop > 0.0 else 0.0
-
-
-@compiled
-def _vapor_end(
-    time: Array,
-    loss: Array,
-    chamber: Array,
-    t_v: float,
-    t_end: float,
-    p_v: float,
-    mass: float,
-    volume: float,
-    area: float,
-    m: float,
-) -> float:
-    """Vapour mass at t_end [kg] for a polytropic exponent m (report, eq. 3.11 with measured p_loss and p_c)."""
-    left = mass
-    t = t_v
-    i = min(int(np.searchsorted(time, t_v)), time.size - 1)
-    while t < t_end and i < time.size:
-        step = min(time[i], t_end) - t
-        back = loss[i] + chamber[i]
-        w1 = _vapor_flow(p_v * (left / mass) ** m - back, left / volume, area)
-        middle = max(left - 0.5 * step * w1, 1e-6 * mass)
-        w2 = _vapor_flow(p_v * (middle / mass) ** m - back, middle / volume, area)
-        left = max(left - step * w2, 1e-6 * mass)
-        t = min(time[i], t_end)
-        i += 1
-    return left
-
-
-@compiled
-def _vapor_flow(drop: float, density: float, area: float) -> float:
-    return area * np.sqrt(2.0 * density * drop) if drop > 0.0 else 0.0
-
-
-@compiled
-def _shoot(
-    time: Array,
-    loss: Array,
-    chamber: Array,
-    t_v: float,
-    t_end: float,
-    p_v: float,
-    p_end: float,
-    mass: float,
-    volume: float,
-    area: float,
-    exponents: Array,
-) -> tuple[float, float, float]:
-    """m at which the model reaches p_end at t_end; the vapour mass there; the mean loss over the phase. NaN: none."""
-    if not (t_end > t_v and area > 0.0 and mass > 0.0):
-        return np.nan, np.nan, np.nan
-    total, count = 0.0, 0
-    for i in range(time.size):
-        if t_v <= time[i] < t_end:
-            total += loss[i]
-            count += 1
-    mean_loss = total / count if count > 0 else np.nan
-    args = time, loss, chamber, t_v, t_end, p_v, mass, volume, area
-    low, high = _bracket(args, p_end, exponents, 0, exponents.size - 1, COARSE)
-    if low < 0:
-        low, high = 0, exponents.size - 1  # a root that the coarse scan stepped over
-    low, high = _bracket(args, p_end, exponents, low, high, 1)
-    if low < 0:
-        return np.nan, np.nan, mean_loss
-    m = _root(args, p_end, exponents[low], exponents[high])
-    return m, _vapor_end(*args, m), mean_loss
-
-
-@compiled
-def _excess(args: Phase, p_end: float, m: float) -> float:
-    """Pressure at t_end over the measured [Pa]."""
-    return float(args[5] * (_vapor_end(*args, m) / args[6]) ** m - p_end)
-
-
-@compiled
-def _bracket(args: Phase, p_end: float, exponents: Array, first: int, last: int, stride: int) -> tuple[int, int]:
-    """The first interval of so many points of the grid across which the excess turns negative; -1: none."""
-    k, before = first, _excess(args, p_end, exponents[first])
-    while k < last:
-        following = min(k + stride, last)
-        excess = _excess(args, p_end, exponents[following])
-        if before > 0.0 >= excess:
-            return k, following
-        k, before = following, excess
-    return -1, -1
-
-
-@compiled
-def _root(args: Phase, p_end: float, low: float, high: float) -> float:
-    """Root of the excess in a bracket: false position, the end that stays halved in weight (Illinois)."""
-    at_low, at_high = _excess(args, p_end, low), _excess(args, p_end, high)
-    for _ in range(60):
-        m = high - at_high * (high - low) / (at_high - at_low)
-        moved, excess = abs(m - high), _excess(args, p_end, m)
-        if excess * at_high < 0.0:
-            low, at_low = high, at_high
-        else:
-            at_low *= 0.5
-        high, at_high = m, excess
-        if moved < ROOT or excess == 0.0:
-            break
-    return high

@@ -18,7 +18,8 @@ from hfanalysis.calibrate.rest import (
     liquid_phase_heat,
     state_remarks,
 )
-from hfanalysis.engine.tank import energy_derivatives
+from hfanalysis.engine.injector import mass_flows
+from hfanalysis.engine.tank import along_blowdown, liquid_of
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankHistory
 from hfanalysis.products.model import Numbers
 from hfanalysis.products.segments import Segments
@@ -46,7 +47,7 @@ def tank_history(saturation: Saturation, histories: Histories, inputs: Inputs, l
     t = histories.tank_temperature(saturation)[wet]
     v_l, v_v = saturation.liquid_volume(t)[0], saturation.vapor_volume(t)[0]
     mass = inputs.mass - gone
-    liquid = (mass * v_v - inputs.volume) / (v_v - v_l)
+    liquid = liquid_of(inputs.volume, mass, v_l, v_v)
     per_mole = 1e3 / OXIDIZER_MOLAR_MASS
     flow = np.gradient(gone, time)
     block = np.minimum((np.arange(time.size) * HISTORY_POINTS) // time.size, HISTORY_POINTS - 1)
@@ -75,8 +76,7 @@ def coefficient_history(
         return None
     h = histories
     t = h.tank_temperature(saturation)
-    drop = np.maximum(h.run - h.chamber, 0.0)
-    ideal = inputs.area * np.sqrt(2.0 * saturation.liquid_density(t) * drop)
+    ideal = mass_flows(inputs.area, saturation.liquid_density(t), h.run - h.chamber)
     rows = []
     for middle in np.arange(start + 0.5 * window, end - 0.5 * window + 1e-9, 0.5 * window):
         part = np.abs(h.time - middle) <= 0.5 * window
@@ -86,10 +86,8 @@ def coefficient_history(
         by_wander = h.noises["p_tank"].std_of(_slope_weights(h.time[part]), h.time[part])
         error = max(error, by_wander / float(saturation.pressure_slope(t[part].mean())))
         mass = inputs.mass - float(left[part].mean())
-        by_mass, by_temperature, h_l = energy_derivatives(
-            saturation.kernel_table, inputs.volume, mass, float(t[part].mean())
-        )
-        scale = -by_temperature / (h_l - by_mass) / float(ideal[part].mean())
+        by_temperature = along_blowdown(saturation.kernel_table, inputs.volume, mass, float(t[part].mean()))
+        scale = -by_temperature / float(ideal[part].mean())
         rows.append((middle, scale * slope, abs(scale) * error))
     if not rows:
         return None

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.assembly.calibrated import Regression, starting_for
-from hfanalysis.engine.model import RADIUS
+from hfanalysis.engine.equations import RADIUS
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 
@@ -153,7 +152,7 @@ def _scalars(evidence: Evidence, engine: Engine, burnt: Burn) -> list[float]:
         out.append(burn_time_of(engine, burnt))
     if evidence.fuel_left is not None:
         radius = float(np.interp(evidence.end, burnt.time, burnt.state("port_radius")))
-        out.append(engine.fuel_density * pi * engine.grain_length * (engine.outer_radius**2 - radius**2))
+        out.append(engine.grain.fuel(radius))
     return out
 
 
@@ -162,5 +161,5 @@ def burn_time_of(engine: Engine, burnt: Burn) -> float:
     if burnt.fuel_out:
         return burnt.burn_time
     port, last = float(burnt.states[-1, RADIUS]), burnt.output("fuel_flow")[-1]
-    rate = float(last) / (engine.fuel_density * 2.0 * pi * port * engine.grain_length)
+    rate = float(last / engine.grain.ring(port))
     return burnt.burn_time + min((engine.outer_radius - port) / max(rate, 1e-9), 10.0 * burnt.burn_time)

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import exp, log, pi
+from math import exp, log
 from typing import Any
 
 import numpy as np
@@ -21,8 +21,10 @@ from numpy.typing import NDArray
 
 from hfanalysis.calibrate.evidence import burn_time_of
 from hfanalysis.calibrate.regression import judge_regression, rate_at
+from hfanalysis.calibrate.tank import PEAK_OVER
 from hfanalysis.calibrate.verdicts import PHYSICAL_M
 from hfanalysis.engine.effect import Active
+from hfanalysis.engine.grain import oxidizer_flux
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.candidate import Bench, Candidate
@@ -41,9 +43,6 @@ TOLD = 0.8
 
 STEP = 0.1
 """Of its standard deviation, by which a constant is moved to see what follows from it."""
-
-PEAK_OVER = 0.1
-"""Seconds over which the peak flow is a mean."""
 
 DERIVED = {"vapor_mass_at_t_v": "kg", "mass_at_t_feed": "kg", "oxidizer_mass_liquid_phase": "kg",
            "oxidizer_flow_peak": "kg/s"}  # fmt: skip
@@ -202,7 +201,7 @@ class _Constants:
     def _fluxes(self) -> tuple[float, float]:
         """Least and largest oxidizer flux over what is compared [kg/m^2/s]."""
         burnt, (start, end) = self.burnt, self._window
-        flux = burnt.output("oxidizer_flow") / (pi * burnt.state("port_radius") ** 2)
+        flux = oxidizer_flux(burnt.output("oxidizer_flow"), burnt.state("port_radius"))
         seen = flux[(burnt.time >= start) & (burnt.time <= end) & (flux > 0.0)]
         return float(seen.min()), float(seen.max())
 

@@ -29,6 +29,9 @@ READING_POINTS = 150
 FINEST = 0.002
 """Block means over this time [s]: fine against every phase, coarse enough for hundreds of repetitions."""
 
+BEFORE = 500
+"""Blocks before the opening of a channel that is sampled more slowly than they last."""
+
 
 @dataclass(frozen=True)
 class Histories:
@@ -147,6 +150,9 @@ def _noises(signals: Mapping[str, Signal], segments: Segments) -> dict[str, Nois
 
 
 def _on(signal: Signal, time: Array) -> Array:
-    """A signal on another clock: block means where it is finer than the clock, else linear between its samples."""
-    reduced = signal.between(time[0] - 1.0, time[-1] + 1.0).reduced(FINEST)
+    """A signal on another clock: block means where it is finer than the clock, else linear between its samples.
+
+    Whole blocks before the opening: none is half of before it and half of after.
+    """
+    reduced = signal.between(-BEFORE * FINEST, time[-1] + 1.0).reduced(FINEST)
     return reduced.at(time)

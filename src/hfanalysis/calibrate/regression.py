@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, log, pi
+from math import exp, log
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,8 @@ from scipy.special import chdtrc
 from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.evidence import Evidence, burn_time_of
 from hfanalysis.calibrate.likelihood import Surface, Weights, first_guess, surface, weights_from
+from hfanalysis.engine.grain import oxidizer_flux
+from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, FuelLaw, RegressionBasis, RegressionTest
@@ -53,6 +55,13 @@ NEGLIGIBLE = 0.05
 TESTS_DISAGREE = 0.01
 """Probability of the rise in misfit by common constants below which tests are said to disagree."""
 
+NEAR, EXACT = 1e-4, 1e-7
+"""To what ln r and n are found of a minimum that is one of several, and of the one that is told: along a valley, steps
+are short before its end is reached."""
+
+FIRST_STEP = 500.0
+"""Of the search for a minimum, over what it is found to."""
+
 FAILED = 1e12
 
 
@@ -81,7 +90,7 @@ class Fitted:
         """The flux [kg/m^2/s] of the (first test's) burn at which the rate is known best and does not depend on n."""
         first = self.evidence[0]
         burnt = first.burnt(self.law)
-        flux = burnt.output("oxidizer_flow") / (pi * burnt.state("port_radius") ** 2)
+        flux = oxidizer_flux(burnt.output("oxidizer_flow"), burnt.state("port_radius"))
         burn = flux[burnt.time > 0.1]
         covariance = self.surface.covariance
         best = self.flux * exp(-covariance[0, 1] / covariance[1, 1])
@@ -104,6 +113,7 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
         evidence = [e.with_regression(law) for e in evidence]
         weights = [_weighed(e, law) for e in evidence]
         best = _least(evidence, weights, flux, best)
+    best = _minimum(evidence, weights, flux, best, EXACT)
     return _surveyed(evidence, weights, flux, best)
 
 
@@ -124,9 +134,8 @@ def middle_flux(evidence: Evidence) -> float:
     engine = evidence.engine
     drop = float(engine.saturation.pressure(engine.temperature)) - float(evidence.chamber.mean())
     density = float(engine.saturation.liquid_density(engine.temperature))
-    flow = np.sqrt(density * max(drop, 1e5) / (engine.feed.loss_factor + 0.5 / engine.feed.area**2))
-    radius = 0.5 * (engine.port_radius + engine.outer_radius)
-    return float(flow) / (pi * radius**2)
+    flow = mass_flow_with_feed(engine.feed.area, engine.feed.loss_factor, density, max(drop, 1e5))
+    return float(oxidizer_flux(flow, 0.5 * (engine.port_radius + engine.outer_radius)))
 
 
 def _scan(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float) -> Array:
@@ -140,8 +149,13 @@ def _scan(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float)
     return points[int(np.argmin(misfits))]
 
 
-def _minimum(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, start: Array) -> Array:
-    """The least misfit from ``start``, by BOBYQA; a start beyond the range of n is moved to its border."""
+def _minimum(
+    evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, start: Array, within: float = NEAR
+) -> Array:
+    """The least misfit from ``start``, by BOBYQA; a start beyond the range of n is moved to its border.
+
+    ``within``: to what ln r and n are found.
+    """
     import nlopt
 
     objective = _objective(evidence, weights, flux)
@@ -150,8 +164,8 @@ def _minimum(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: flo
     solver.set_min_objective(lambda x, _gradient: objective(np.array(x)))
     solver.set_lower_bounds([start[0] - 2.0, RANGE_N[0]])
     solver.set_upper_bounds([start[0] + 2.0, RANGE_N[1]])
-    solver.set_initial_step([0.05, 0.05])
-    solver.set_xtol_abs([1e-4, 1e-4])
+    solver.set_initial_step([FIRST_STEP * within] * 2)
+    solver.set_xtol_abs([within, within])
     solver.set_maxeval(200)
     return np.asarray(solver.optimize(start), dtype=np.float64)
 
@@ -297,7 +311,7 @@ def _about_test(evidence: Evidence, weights: Weights, law: Regression) -> Regres
 def flux_range(evidence: Evidence, burnt: Burn) -> tuple[float, float]:
     """Least and largest oxidizer flux [kg/m^2/s] over the compared window."""
     part = (burnt.time >= evidence.time[0]) & (burnt.time <= evidence.time[-1])
-    flux = burnt.output("oxidizer_flow")[part] / (pi * burnt.state("port_radius")[part] ** 2)
+    flux = oxidizer_flux(burnt.output("oxidizer_flow")[part], burnt.state("port_radius")[part])
     return float(flux.min()), float(flux.max())
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.tank import mass_along_blowdown, split
+from hfanalysis.engine.tank import internal_energy, mass_along_blowdown, split
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.saturation import Property, Saturation
 
@@ -60,9 +60,7 @@ def liquid_phase_heat(saturation: Saturation, volume: float, mass: float, bulk: 
     ``mass`` [kg] at ``bulk`` [K] leaves as saturated liquid until only vapour at ``t_end`` [K] is left; how its
     temperature falls with the mass that has gone is taken from the adiabatic tank.
     """
-    parts = split(saturation, volume, mass, bulk)
-    u_l, u_v = (float(saturation.energy(p, bulk)[0]) for p in (Property.LIQUID_ENERGY, Property.VAPOR_ENERGY))
-    start = parts.liquid * u_l + parts.vapor * u_v
+    start = float(internal_energy(saturation, volume, mass, bulk))
     vapor = volume * float(saturation.vapor_density(t_end))
     end = vapor * float(saturation.energy(Property.VAPOR_ENERGY, t_end)[0])
     temperatures = np.linspace(t_end, bulk, 101)

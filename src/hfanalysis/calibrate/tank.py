@@ -7,15 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, reduce
+from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
 from hfanalysis.calibrate.measured_pressures import Histories, Reading, read_at_break
 from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
-from hfanalysis.calibrate.with_effects import VaporPhase, acting
+from hfanalysis.calibrate.with_effects import acting
 from hfanalysis.engine.effect import Active
+from hfanalysis.engine.injector import mass_flows
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankConstants, TankHistory
 from hfanalysis.products.segments import Segments
@@ -35,6 +36,9 @@ SPAN_SHARE = 0.25
 
 LONGEST_GAP = 0.1
 """Part of the liquid phase that one channel may miss in one piece; good samples around it are joined linearly."""
+
+PEAK_OVER = 0.1
+"""Seconds over which the peak flow is a mean."""
 
 FULLEST = 1.05
 """Loaded mass over what the tank holds as liquid at the bulk's temperature, from which on the input is refused."""
@@ -98,7 +102,7 @@ class _Work:
         self._check_fit(inputs)
         tables = Tables.of(self.histories, self.saturation)
         inputs, vapor = self._acting(tables, inputs)
-        nominal = reduce(tables, self.saturation, inputs, vapor_phase=vapor)
+        nominal = reduce(tables, self.saturation, inputs, phase=vapor)
         draws = draw(tables, self.saturation, inputs, self._spread(mass), samples, vapor)
         self.notes.append(f"loaded mass: {mass.source}")
         left = self._mass_left(nominal, inputs)
@@ -212,18 +216,19 @@ class _Work:
         """Mass that has left through the injector at the histories' times [kg]."""
         h = self.histories
         density = self.saturation.liquid_density(h.tank_temperature(self.saturation))
-        flow = r.C_i * inputs.area * np.sqrt(2.0 * density * np.maximum(h.run - h.chamber, 0.0))
+        flow = mass_flows(r.C_i * inputs.area, density, h.run - h.chamber)
         steps = 0.5 * (flow[1:] + flow[:-1]) * np.diff(h.time)
         return np.concatenate(([0.0], np.cumsum(steps)))
 
     def _flow_peak(self, left: Array) -> float | None:
-        h = self.histories
-        liquid = h.time < self.t_v
-        n = max(int(0.1 / max(float(np.median(np.diff(h.time))), 1e-6)), 1)
-        if liquid.sum() <= n + 1:
+        """Highest mean flow over PEAK_OVER of the liquid phase, from the opening on [kg/s]."""
+        liquid = self.histories.time < self.t_v
+        t, x = self.histories.time[liquid], left[liquid]
+        if t.size < 2 or t[-1] <= PEAK_OVER:
             return None
-        t, x = h.time[liquid], left[liquid]
-        return float(((x[n:] - x[:-n]) / (t[n:] - t[:-n])).max())
+        t, x = np.append(0.0, t), np.append(x[0] - (x[1] - x[0]) / (t[1] - t[0]) * t[0], x)
+        starts = t[t <= t[-1] - PEAK_OVER]
+        return float((np.interp(starts + PEAK_OVER, t, x) - np.interp(starts, t, x)).max()) / PEAK_OVER
 
     def _read(self, instant: float, before: float, after: float) -> Reading:
         tank = self.histories.signals["p_tank"]

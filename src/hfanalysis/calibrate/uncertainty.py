@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.calibrate.blowdown import Inputs, Reduction, Shift, Tables, Vapor, reduce
+from hfanalysis.calibrate.blowdown import Inputs, Reduction, Shift, Tables, VaporPhase, reduce
 from hfanalysis.thermo.saturation import Saturation
 
 Array = NDArray[np.float64]
@@ -71,13 +71,14 @@ class Draws:
 
 def draw(
     tables: Tables, saturation: Saturation, inputs: Inputs, spread: Spread, samples: int,
-    vapor_phase: Vapor | None = None,
+    vapor_phase: VaporPhase | None = None,
 ) -> Draws:  # fmt: skip
     """Repeat the reduction ``samples`` times with inputs drawn from normal distributions (same seed each time)."""
     generator = np.random.default_rng(SEED)
     z = generator.standard_normal((samples, 11))
     drawn = [_drawn(inputs, spread, row) for row in z]
-    results = [reduce(tables, saturation, *row, vapor_phase) for row in drawn]
+    phase = vapor_phase or VaporPhase.plain(saturation, inputs)
+    results = [reduce(tables, saturation, *row, phase) for row in drawn]
     values = {n: np.array([getattr(r, n) for r in results]) for n in Reduction.__dataclass_fields__}
     return Draws(values, _what_was_drawn(drawn))
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from hfanalysis.calibrate.blowdown import EXPONENTS, Inputs, Reduction
 from hfanalysis.calibrate.uncertainty import Draws
-from hfanalysis.engine.blowdown import implied_heat
+from hfanalysis.engine.closure import implied_heat
 from hfanalysis.quantity import IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.saturation import Saturation

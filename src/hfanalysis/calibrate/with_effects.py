@@ -9,20 +9,17 @@ shot along it with the effects in.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from hfanalysis.assembly.calibrated import tank_of_test
-from hfanalysis.calibrate.blowdown import EXPONENTS, Inputs, Reduction, Shift, Tables, reduce
+from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
 from hfanalysis.calibrate.measured_pressures import Histories
-from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.blowdown import TankAlone, TankRun, tank_alone
 from hfanalysis.engine.effect import Active
-from hfanalysis.engine.model import NITROGEN, STATES, TANK
-from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT
-from hfanalysis.engine.tank_alone import TankAlone, TankRun
+from hfanalysis.engine.equations import NITROGEN, STATES
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.thermo.saturation import Saturation
 
@@ -31,71 +28,8 @@ Array = NDArray[np.float64]
 ROUNDS = 6
 """C_i, K_loss and the flow that the effects leave them are found in turns."""
 
-LIQUID_STEPS, VAPOR_STEPS = 400, 100
-"""Steps of the tank alone over a phase: seconds of smooth course."""
-
-
-@dataclass(frozen=True)
-class VaporPhase:
-    """Where the vapour phase starts with the effects in, and how m is shot from there.
-
-    ``beside`` [Pa]: the tank's pressure less that of saturation at t_v; ``nitrogen`` [kg] and ``own`` states at t_v.
-    """
-
-    tank: TankAlone
-    saturation: Saturation
-    tables: Tables
-    beside: float
-    nitrogen: float
-    own: Array
-
-    def shoot(self, inputs: Inputs, shift: Shift, area: float) -> tuple[float, float]:
-        """m at which the model reaches p_end at t_end, and the tank's nitrous oxide there [kg]; NaN: there is none."""
-        if not (inputs.t_end > inputs.t_v and area > 0.0 and self.start_mass(inputs, shift) > 0.0):
-            return np.nan, np.nan
-        tables, time = self.tables, np.linspace(inputs.t_v, inputs.t_end, VAPOR_STEPS + 1)
-        loss = np.interp(time, tables.time, tables.loss) + shift.tank - shift.run
-        chamber = np.interp(time, tables.time, tables.chamber) + shift.chamber
-
-        def end(m: float) -> TankRun:
-            return self._at(inputs, shift, area, m).run(time, chamber, loss, vapor=True)
-
-        def miss(m: float) -> float:
-            return float(end(m).pressure[-1]) - inputs.p_end - shift.tank
-
-        low, high = self._bracket(miss)
-        if not np.isfinite(low):
-            return np.nan, np.nan
-        m = float(brentq(miss, low, high, xtol=1e-8))
-        return m, float(end(m).states[-1, TANK])
-
-    def _bracket(self, miss: object) -> tuple[float, float]:
-        """Neighbours on the grid between which the pressure at the end falls below the measured one."""
-        assert callable(miss)
-        low, high = 0, EXPONENTS.size - 1
-        if not miss(EXPONENTS[low]) > 0.0 >= miss(EXPONENTS[high]):
-            return np.nan, np.nan
-        while high - low > 1:
-            middle = (low + high) // 2
-            low, high = (middle, high) if miss(EXPONENTS[middle]) > 0.0 else (low, middle)
-        return float(EXPONENTS[low]), float(EXPONENTS[high])
-
-    def start_mass(self, inputs: Inputs, shift: Shift) -> float:
-        """Vapour at t_v [kg]: saturated, at the pressure that is the nitrous oxide's own."""
-        return inputs.volume * float(self.saturation.vapor_density(self._temperature(inputs, shift)))
-
-    def _temperature(self, inputs: Inputs, shift: Shift) -> float:
-        return float(self.saturation.temperature(inputs.p_v + shift.tank - self.beside))
-
-    def _at(self, inputs: Inputs, shift: Shift, area: float, m: float) -> TankAlone:
-        mass, temperature = self.start_mass(inputs, shift), self._temperature(inputs, shift)
-        pressure = inputs.p_v + shift.tank - self.beside
-        z = pressure * inputs.volume / (mass * SPECIFIC_GAS_CONSTANT * temperature)
-        tank = self.tank.with_feed(inputs.volume, area)
-        return tank.at(
-            tank_mass=mass, tank_temperature=temperature, tank_nitrogen=self.nitrogen, vapor_compressibility=z,
-            vapor_exponent=m, own=self.own,
-        )  # fmt: skip
+LIQUID_STEPS = 400
+"""Steps of the tank alone over the liquid phase: seconds of smooth course."""
 
 
 def acting(
@@ -118,7 +52,7 @@ def acting(
         share = share * _loss_share(run, saturation, found.K_loss)
         factor, leak = _flow_beside(run, saturation, tank.engine.feed.area)
         balance = replace(inputs, mass=inputs.mass - leak, area=inputs.area * factor)
-        phase = _vapor_phase(run, tank, saturation, tables)
+        phase = _vapor_phase(run, tank, saturation)
     return balance, phase
 
 
@@ -131,7 +65,8 @@ def _liquid_phase(
     temperature = float(saturation.temperature(np.clip(start, *saturation.pressure_range)))
     feed = FeedSystem(inputs.volume, found.C_i * inputs.area, max(found.K_loss, 0.0))
     m = found.m if np.isfinite(found.m) else 1.15
-    tank = tank_of_test(definition, feed, inputs.mass, temperature, m, effects)
+    ambient = definition.ambient_pressure.value
+    tank = tank_alone(saturation, feed, inputs.mass, temperature, m, ambient, effects)
     time = np.linspace(0.0, inputs.t_v, LIQUID_STEPS + 1)
     run = tank.run(time, np.interp(time, histories.time, histories.chamber))
     if not np.isfinite(run.pressure).all():
@@ -155,7 +90,7 @@ def _flow_beside(run: TankRun, saturation: Saturation, area: float) -> tuple[flo
     return float(np.trapezoid(run.flow, run.time)) / plain, float(np.trapezoid(run.leak, run.time))
 
 
-def _vapor_phase(run: TankRun, tank: TankAlone, saturation: Saturation, tables: Tables) -> VaporPhase:
+def _vapor_phase(run: TankRun, tank: TankAlone, saturation: Saturation) -> VaporPhase:
     beside = float(run.pressure[-1]) - float(saturation.pressure(run.temperature[-1]))
     last = run.states[-1]
-    return VaporPhase(tank, saturation, tables, beside, float(last[NITROGEN]), last[len(STATES) :].copy())
+    return VaporPhase(tank, beside, float(last[NITROGEN]), last[len(STATES) :].copy())

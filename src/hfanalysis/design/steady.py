@@ -11,33 +11,18 @@ from math import pi, sqrt
 
 from scipy.optimize import brentq
 
-from hfanalysis.engine.nozzle import area_ratio, choked_flow_factor, mach_at_area, mach_at_pressure, pressure_ratio
+from hfanalysis.engine.grain import Grain
+from hfanalysis.engine.nozzle import (
+    SUPERSONIC,
+    area_ratio,
+    choked_flow,
+    ejected,
+    mach_at_area,
+    mach_at_pressure,
+    pressure_ratio,
+)
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, apogee, gravity
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, Gas, equilibrium
-
-
-@dataclass(frozen=True)
-class Grain:
-    """Cylindrical port: length, outer radius [m], density [kg/m^3], regression a [m/s (kg/m^2/s)^-n] and n."""
-
-    length: float
-    outer_radius: float
-    density: float
-    a: float
-    n: float
-
-    def port_radius(self, mass: float) -> float:
-        """Initial port radius [m] of a grain of that mass [kg]; raises ValueError where it does not fit."""
-        square = self.outer_radius**2 - mass / (pi * self.density * self.length)
-        if square <= 0.0:
-            raise ValueError(f"a grain of {mass:.3f} kg does not fit {self.length} m by {self.outer_radius} m radius")
-        return sqrt(square)
-
-    def burn_time(self, oxidizer_flow: float, mass: float) -> float:
-        """t = (R^N - r_0^N) / (a N) (pi / mdot_o)^n [s] (report, eq. 2.3)."""
-        power = 2.0 * self.n + 1.0
-        opened = self.outer_radius**power - self.port_radius(mass) ** power
-        return float(opened / (self.a * power) * (pi / oxidizer_flow) ** self.n)
 
 
 @dataclass(frozen=True)
@@ -87,9 +72,7 @@ def design(requirement: Requirement, grain: Grain, fuel_mass: float) -> SteadyEn
     of_ratio = requirement.oxidizer_flow / fuel_flow
     gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy)
     flow = requirement.oxidizer_flow + fuel_flow
-    throat = (
-        flow * sqrt(gas.gas_constant * gas.temperature) / (choked_flow_factor(gas.gamma) * requirement.chamber_pressure)
-    )
+    throat = flow / choked_flow(gas.gamma, _heat(gas), requirement.chamber_pressure, 1.0)
     thrust, exit_area = _thrust(gas, requirement, throat)
     return SteadyEngine(
         burn_time=time,
@@ -115,11 +98,14 @@ def _thrust(gas: Gas, requirement: Requirement, throat: float) -> tuple[float, f
         if exit_area < throat:
             raise ValueError(f"the exit radius of {requirement.exit_radius} m is smaller than the throat's")
         mach = mach_at_area(exit_area / throat, gas.gamma, True)
-    heat = gas.gas_constant * gas.temperature
-    velocity = mach * sqrt(gas.gamma * heat / (1.0 + 0.5 * (gas.gamma - 1.0) * mach**2))
-    exit_pressure = requirement.chamber_pressure * pressure_ratio(mach, gas.gamma)
-    flow = choked_flow_factor(gas.gamma) * throat * requirement.chamber_pressure / sqrt(heat)
-    return flow * velocity + (exit_pressure - requirement.ambient) * exit_area, exit_area
+    pressure = requirement.chamber_pressure * pressure_ratio(mach, gas.gamma)
+    chamber = gas.gamma, _heat(gas), requirement.chamber_pressure, requirement.ambient
+    return ejected(*chamber, exit_area, mach, pressure, SUPERSONIC)[1], exit_area
+
+
+def _heat(gas: Gas) -> float:
+    """R T [J/kg]."""
+    return gas.gas_constant * gas.temperature
 
 
 def fuel_for_apogee(requirement: Requirement, grain: Grain, vehicle: Vehicle, target: float) -> float:
@@ -127,7 +113,7 @@ def fuel_for_apogee(requirement: Requirement, grain: Grain, vehicle: Vehicle, ta
 
     Raises ValueError where no grain in this casing does.
     """
-    full = 0.999 * pi * grain.outer_radius**2 * grain.length * grain.density
+    full = 0.999 * grain.fuel(0.0)
 
     def miss(mass: float) -> float:
         engine = design(requirement, grain, mass)
@@ -150,8 +136,8 @@ def ideal_specific_impulse(requirement: Requirement, of_ratio: float) -> float:
     """Specific impulse [s] of the ideally expanded nozzle at a mixture."""
     gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy)
     thrust, _ = _thrust(gas, replace(requirement, exit_radius=None), 1.0)
-    flow = choked_flow_factor(gas.gamma) * requirement.chamber_pressure / sqrt(gas.gas_constant * gas.temperature)
-    return thrust / (flow * STANDARD_GRAVITY)
+    flow = choked_flow(gas.gamma, _heat(gas), requirement.chamber_pressure, 1.0)
+    return float(thrust / (flow * STANDARD_GRAVITY))
 
 
 def optimum(requirement: Requirement) -> Optimum:

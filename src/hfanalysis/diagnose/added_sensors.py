@@ -7,12 +7,11 @@ half of it (in variance) an offset that stays and half coherent over a second.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.model import OUTPUTS, RADIUS, STATES
+from hfanalysis.engine.equations import OUTPUTS, RADIUS, STATES
 from hfanalysis.engine.observe import true_channels
 from hfanalysis.engine.phases import LIQUID_OUT
 from hfanalysis.engine.sensitivity import Tangents
@@ -73,8 +72,7 @@ class Sensor:
         # a mass: of the fuel when the comparison ends, as if the firing were cut short there
         at = np.array([min(observed.end, found.burn.steps.times[-1, 1])])
         radius = float(found.burn.steps.at(at)[0][0, RADIUS])
-        engine = found.burn.steps.engine
-        ring = 2.0 * pi * engine.fuel_density * engine.grain_length * radius
+        ring = found.burn.steps.engine.grain.ring(radius)
         return np.asarray(ring * found.output("port_radius", at) / self.accuracy)
 
     def _alone(self, values: Array, points: Integers, observed: Observed) -> Observed:

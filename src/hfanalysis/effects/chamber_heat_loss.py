@@ -6,8 +6,8 @@ from math import erfc, exp, pi, sqrt
 
 from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Believable, Effect, Parameter
-from hfanalysis.engine.model import THROAT_AREA
-from hfanalysis.engine.nozzle import choked_flow_factor
+from hfanalysis.engine.equations import THROAT_AREA
+from hfanalysis.engine.nozzle import choked_flow
 from hfanalysis.engine.sites import (
     AT_CHAMBER,
     GAMMA_CHAMBER,
@@ -44,8 +44,8 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     if hook != AT_CHAMBER:
         return
     gamma, rt, pressure = env[GAMMA_CHAMBER], env[RT_CHAMBER], env[P_CHAMBER]
-    # the choked nozzle carries mdot c_p T = p A_t (mdot sqrt(RT) / (A_t p)) sqrt(R T) gamma / (gamma - 1)
-    carried = pressure * c[THROAT_AREA] * choked_flow_factor(gamma) * sqrt(rt) * gamma / (gamma - 1.0)
+    # the choked nozzle carries mdot c_p T
+    carried = choked_flow(gamma, rt, pressure, c[THROAT_AREA]) * rt * gamma / (gamma - 1.0)
     cold = cold_share(sqrt(max(t, 0.0) / p[WARMING]))
     share = p[LOSS] * cold * (pressure / REFERENCE_PRESSURE) ** p[EXPONENT] / carried
     site[TEMPERATURE_FACTOR] *= 1.0 - env[HOT_SHARE] * share / (1.0 + share)

@@ -14,7 +14,9 @@ from math import sqrt
 
 from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
-from hfanalysis.engine.model import AREA, LIQUID_LOSS, LOSS_FACTOR, VAPOR_LOSS
+from hfanalysis.engine.equations import AREA, LIQUID_LOSS, LOSS_FACTOR, VAPOR_LOSS
+from hfanalysis.engine.feed_line import line_loss
+from hfanalysis.engine.injector import flow_resistance
 from hfanalysis.engine.sites import (
     AT_FLOW,
     FEED_FACTOR,
@@ -102,7 +104,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     # the line's loss is stated, one for each phase, or grows with the square of the flow
     stated = c[LIQUID_LOSS] >= 0.0
     lost = c[LIQUID_LOSS] if env[IS_LIQUID] > 0.0 else c[VAPOR_LOSS]
-    orifice, line = 0.5 / (c[AREA] * c[AREA]), c[LOSS_FACTOR] * site[FEED_FACTOR]
+    orifice, line = flow_resistance(c[AREA], 0.0), c[LOSS_FACTOR] * site[FEED_FACTOR]
     if hook == AT_FLOW:
         # the drop over line and injector at which what is between them is at the boiling line's own pressure
         drop = x[PRESSURE] - env[P_CHAMBER]
@@ -120,7 +122,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
         over_both = max(env[P_TANK] - env[P_CHAMBER] - (lost if stated else 0.0), LEAST_PRESSURE)
         filling = inrush + p[THROTTLED] * (held_back(onward, lacking / over_both, rigid) - inrush)
         # what boils holds as much as its pressure says
-        loss = lost if stated else line * onward * onward / env[RHO_FEED]
+        loss = lost if stated else line_loss(line, onward, env[RHO_FEED])
         into = grown(onward, (env[P_TANK] - loss - x[PRESSURE]) * per_drop)
         dx[PRESSURE] = (into - onward) / (HELD_PER_PASCAL * room)
         stored = rigid * filling + boiling * dx[PRESSURE] * HELD_PER_PASCAL

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from hfanalysis.engine.effect import Believable, Effect, Parameter
-from hfanalysis.engine.model import OUTER_RADIUS
+from hfanalysis.engine.equations import OUTER_RADIUS
 from hfanalysis.engine.sites import PORT_RADIUS, RATES, REGRESSION_FACTOR, term
 
 DEPTH, WIDTH, TAIL = range(3)

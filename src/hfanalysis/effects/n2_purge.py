@@ -9,12 +9,14 @@ from math import sqrt
 import numpy as np
 
 from hfanalysis.engine.effect import Array, Believable, Channels, Effect, Parameter
-from hfanalysis.engine.model import NITROGEN_CV, SPECIFIC_NITROGEN
+from hfanalysis.engine.injector import bent_root
+from hfanalysis.engine.nozzle import choked_flow_factor
 from hfanalysis.engine.sites import NITROGEN_INFLOW, P_TANK, RATES, T_TANK, TANK_HEAT, switch, term
+from hfanalysis.engine.tank import NITROGEN_CV, SPECIFIC_NITROGEN
 
 AREA, SUPPLY, CRACKING, TEMPERATURE, LINE_TO_VALVE, CRITICAL = range(6)
 GAMMA = 1.4
-CHOKED = sqrt(GAMMA) * (2.0 / (GAMMA + 1.0)) ** (0.5 * (GAMMA + 1.0) / (GAMMA - 1.0))
+CHOKED = float(choked_flow_factor(GAMMA))
 SMALL_SHARE = 1e-3
 """Share of the choked flow squared below which the flow falls linearly."""
 
@@ -39,9 +41,8 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     # choked below the critical ratio, an ellipse above it (ISO 6358), bent to a finite slope where the valve closes
     beyond = max((ratio - p[CRITICAL]) / (1.0 - p[CRITICAL]), 0.0)
     share = 1.0 - beyond * beyond
-    x = min(share / SMALL_SHARE, 1.0)
-    bent = sqrt(share) * 0.5 * sqrt(x) * (3.0 - x)
-    flow = p[AREA] * CHOKED * p[SUPPLY] / sqrt(SPECIFIC_NITROGEN * p[TEMPERATURE]) * bent
+    choked = p[AREA] * CHOKED * p[SUPPLY] / sqrt(SPECIFIC_NITROGEN * p[TEMPERATURE])
+    flow = choked * bent_root(share, SMALL_SHARE)
     site[NITROGEN_INFLOW] += flow
     site[TANK_HEAT] += flow * (CP * p[TEMPERATURE] - NITROGEN_CV * env[T_TANK])
 

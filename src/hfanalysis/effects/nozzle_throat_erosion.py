@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi, sqrt
 
 from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
-from hfanalysis.engine.model import THROAT_AREA
+from hfanalysis.engine.equations import THROAT_AREA
 from hfanalysis.engine.sites import HOT_SHARE, IS_BURNING, P_CHAMBER, RATES, THROAT_FACTOR, term
 
 RATE, EXPONENT, HEATING = range(3)

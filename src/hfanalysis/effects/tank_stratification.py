@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
-from hfanalysis.engine.model import VOLUME
+from hfanalysis.engine.equations import VOLUME
 from hfanalysis.engine.sites import AT_TANK, OXIDIZER_FLOW, RATES, RHO_FEED, TANK_PRESSURE, term
 
 if TYPE_CHECKING:

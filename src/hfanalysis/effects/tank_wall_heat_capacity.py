@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hfanalysis.engine.effect import Believable, Effect, OwnState, Parameter
-from hfanalysis.engine.model import VOLUME
+from hfanalysis.engine.equations import VOLUME
 from hfanalysis.engine.sites import IS_LIQUID, M_LIQUID, RATES, RHO_FEED, T_TANK, TANK_HEAT, term
 
 CAPACITY, TIME, EXCESS, VAPOR_SHARE = range(4)

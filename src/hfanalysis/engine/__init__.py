@@ -1,1 +1,1 @@
-"""The engine's governing equations: so far the self-pressurising oxidizer tank with its feed line and injector."""
+"""The engine: a module per component (tank, line, injector, grain, chamber, nozzle), and the model composed of them."""

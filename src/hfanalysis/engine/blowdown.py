@@ -1,210 +1,257 @@
 """The tank alone, emptied through feed line and injector against a given chamber pressure.
 
-Fixed steps of the classical Runge-Kutta method: the tank's time scales are seconds, a step is milliseconds, and the end
-of the liquid is located inside its step by the secant rule, so that no step straddles the change of equations.
+The engine's own equations from the tank to the injector, with every site that effects have there; the chamber's
+pressure, and the feed loss where that is given too, take the place of what is modelled behind. Fixed steps of the
+classical Runge-Kutta method: the tank's time scales are seconds, a step is milliseconds, and the end of the liquid is
+located inside its step by the secant rule, so that no step straddles the change of equations.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import exprel
 
-from hfanalysis.compiled import compiled
-from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
-from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, liquid_mass, temperature_rate
-from hfanalysis.thermo.saturation import LIQUID_VOLUME, LN_PRESSURE, Array, Saturation, evaluate
+from hfanalysis.compiled import compiled, inlined, separate
+from hfanalysis.engine import equations as eq
+from hfanalysis.engine import sites as at
+from hfanalysis.engine.effect import Active, Composition, compose
+from hfanalysis.engine.equations import (
+    EVALUATION,
+    OUTPUTS,
+    STATES,
+    Array,
+    Equations,
+    Integers,
+    address_of,
+    equations_at,
+    rates_at,
+)
+from hfanalysis.engine.feed_line import FeedSystem, feed
+from hfanalysis.engine.injector import flow_resistance, mass_flows
+from hfanalysis.engine.model import act, report, upstream
+from hfanalysis.engine.tank import liquid_mass, run_dry, tank_rates
+from hfanalysis.engine.unsteady import Engine, constants
+from hfanalysis.thermo.combustion_table import CombustionTable
+from hfanalysis.thermo.saturation import Saturation
 
-Table = tuple[Array, float, float, float]
+NO_GAS = CombustionTable((np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 1, 1, 1))))
+"""A tank alone burns nothing."""
+
+GIVEN = ("since", "pressure", "pressure_slope", "loss", "loss_slope", "heat")
+SINCE, PRESSURE, PRESSURE_SLOPE, LOSS, LOSS_SLOPE, HEAT = range(len(GIVEN))
+"""What is given from ``since`` on [s, SI], the last of the constants: the chamber's pressure, the feed loss (NaN: the
+engine's own) and heat into the saturated tank."""
+
+
+@separate(EVALUATION)
+def rates_alone(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array, out: Array) -> None:
+    """As :func:`hfanalysis.engine.model.rates`, from the tank to the injector."""
+    m = equations_at(model)
+    given = m.c[m.c.size - len(GIVEN) :]
+    upstream(t, y, liquid, burning, m, dy)
+    m.env[at.P_CHAMBER] = given[PRESSURE] + given[PRESSURE_SLOPE] * (t - given[SINCE])
+    act(at.AT_FLOW, t, y, m, dy)
+    if not np.isnan(given[LOSS]):
+        m.site[at.FEED_LOSS] = lacking_loss(given[LOSS] + given[LOSS_SLOPE] * (t - given[SINCE]), m)
+    feed(liquid, m)
+    act(at.RATES, t, y, m, dy)
+    if liquid:
+        m.site[at.TANK_HEAT] += given[HEAT]
+    tank_rates(y, liquid, m, dy)
+    report(0.0, 0.0, dy, m, out)
+
+
+@inlined
+def lacking_loss(whole: float, m: Equations) -> float:
+    """Pressure [Pa] that has to be lost beside the line's own loss, which effects may ask for, to make a whole one."""
+    c, env, site = m.c, m.env, m.site
+    if c[eq.LIQUID_LOSS] >= 0.0:
+        return float(whole - (c[eq.LIQUID_LOSS] if env[at.IS_LIQUID] > 0.0 else c[eq.VAPOR_LOSS]))
+    factor = c[eq.LOSS_FACTOR] * site[at.FEED_FACTOR]
+    share = factor / flow_resistance(c[eq.AREA], factor) * site[at.INJECTOR_FACTOR] * site[at.INJECTOR_FACTOR]
+    return float((whole - share * (env[at.P_TANK] - env[at.P_CHAMBER])) / (1.0 - share))
 
 
 @dataclass(frozen=True)
-class FeedSystem:
-    """Tank volume [m^3], effective injector area C_i N_i A_i [m^2], and the feed loss.
-
-    The loss is K_loss mdot^2 / rho with ``loss_factor`` [1/m^4], or, where ``constant_losses`` is given, the report's
-    constant pressure losses (liquid phase, vapour phase) [Pa].
-    """
-
-    volume: float
-    area: float
-    loss_factor: float = 0.0
-    constant_losses: tuple[float, float] | None = None
-
-    @property
-    def kernel_arguments(self) -> tuple[float, float, float, float, float, bool]:
-        """What the compiled right-hand side reads."""
-        liquid, vapor = self.constant_losses or (0.0, 0.0)
-        return (self.volume, self.area, self.loss_factor, liquid, vapor, self.constant_losses is not None)
-
-
-@dataclass(frozen=True)
-class Blowdown:
-    """Histories on the requested times: pressure [Pa], total mass [kg], temperature [K], flow [kg/s].
-
-    ``t_v`` is when the liquid ran out (NaN: not within the times).
-    """
+class TankRun:
+    """Histories at ``time`` [s]: ``states`` and ``outputs`` as the engine has them; ``t_v``: liquid gone (NaN: not)."""
 
     time: Array
-    pressure: Array
-    mass: Array
-    temperature: Array
-    flow: Array
+    states: Array
+    outputs: Array
     t_v: float
+
+    @property
+    def pressure(self) -> Array:
+        """In the tank [Pa]."""
+        return self.outputs[:, eq.O_TANK_PRESSURE]
+
+    @property
+    def run_pressure(self) -> Array:
+        """Before the injector [Pa]."""
+        return self.outputs[:, eq.O_RUN_PRESSURE]
+
+    @property
+    def flow(self) -> Array:
+        """Through the injector [kg/s]."""
+        return self.outputs[:, eq.O_OXIDIZER_FLOW]
+
+    @property
+    def nitrogen_share(self) -> Array:
+        """Of nitrogen in the flow, by mass."""
+        return self.outputs[:, eq.O_SHARE]
+
+    @property
+    def leak(self) -> Array:
+        """Out of the tank by another way [kg/s]."""
+        return np.asarray(self.outputs[:, eq.O_OUTFLOW] - self.outputs[:, eq.O_OXIDIZER_FLOW])
+
+    @property
+    def mass(self) -> Array:
+        """Of nitrous oxide and nitrogen in the tank [kg]."""
+        return np.asarray(self.states[:, eq.TANK] + self.states[:, eq.NITROGEN])
+
+    @property
+    def temperature(self) -> Array:
+        """Of the tank [K]."""
+        return self.states[:, eq.TEMPERATURE]
+
+    def injector_factor(self, area: float, density: Array) -> Array:
+        """Flow over A sqrt(2 rho (p_run - p_c)), ``density`` [kg/m^3] of what flows; 1 where nothing does."""
+        plain = mass_flows(area, density, self.run_pressure - self.outputs[:, eq.O_CHAMBER_PRESSURE])
+        return np.where(plain > 0.0, self.flow / np.where(plain > 0.0, plain, 1.0), 1.0)
+
+
+@dataclass(frozen=True)
+class TankAlone:
+    """An engine's tank, ready to be run; ``state`` is where its runs start."""
+
+    engine: Engine
+    composition: Composition
+    equations: Equations
+    state: Array
+
+    @classmethod
+    def of(cls, engine: Engine) -> TankAlone:
+        """The tank of an engine as its temperature and load have it."""
+        composition = compose(engine.effects, constants(engine), len(STATES))
+        c = np.concatenate([composition.constants, np.zeros(len(GIVEN))])
+        state = np.zeros(len(STATES))
+        state[[eq.TANK, eq.TEMPERATURE, eq.RADIUS]] = engine.oxidizer_mass, engine.temperature, engine.port_radius
+        state = np.concatenate([state, composition.initial(engine)])
+        equations = engine.equations(composition)._replace(rates=rates_alone.address, c=c)
+        return cls(engine, composition, equations, state)
+
+    def at(self, own: Array | None = None, **changes: float) -> TankAlone:
+        """The same tank in another state: STATES by their names, and ``own``, those that effects bring along."""
+        state = self.state.copy()
+        for name, value in changes.items():
+            state[STATES.index(name)] = value
+        if own is not None:
+            state[len(STATES) :] = own
+        return replace(self, state=state)
+
+    def with_feed(self, volume: float, area: float) -> TankAlone:
+        """The same tank of another volume [m^3], behind another effective injector area [m^2]."""
+        equations = self.equations._replace(c=self.equations.c.copy())
+        equations.c[eq.VOLUME], equations.c[eq.AREA] = volume, area
+        return replace(self, equations=equations)
+
+    def run(
+        self, time: Array, chamber: Array, loss: Array | None = None, vapor: bool = False, heat: float = 0.0
+    ) -> TankRun:
+        """Empty the tank against ``chamber`` [Pa], given at increasing ``time`` [s] and linear between.
+
+        ``loss`` [Pa]: a given feed loss in place of the engine's own; ``heat`` [W]: into the saturated tank, beside
+        that of effects. ``vapor``: there is no liquid, and ``vapor_compressibility`` and ``vapor_exponent`` are in the
+        state.
+        """
+        self.equations.c[HEAT - len(GIVEN)] = heat
+        columns = (time, chamber, np.full(np.size(time), np.nan) if loss is None else loss)
+        t, p, given = (np.ascontiguousarray(column, dtype=np.float64) for column in columns)
+        moving = np.array([eq.TANK, eq.TEMPERATURE, eq.NITROGEN, *range(len(STATES), self.state.size)], dtype=np.int64)
+        return TankRun(t, *_march(self.equations, moving, self.state, t, p, given, vapor))
+
+
+def tank_alone(
+    saturation: Saturation, feed: FeedSystem, mass: float, temperature: float, polytropic_exponent: float,
+    ambient: float = 101325.0, effects: Sequence[Active] = (),
+) -> TankAlone:  # fmt: skip
+    """A tank with ``mass`` [kg] at ``temperature`` [K], of which the engine behind the injector is not known.
+
+    ``ambient``: pressure [Pa] around it.
+    """
+    engine = Engine(
+        saturation, NO_GAS, feed, mass, temperature, polytropic_exponent, fuel_mass=1.0, grain_length=0.5,
+        outer_radius=0.04, fuel_density=900.0, a=1e-4, n=0.5, dead_volume=1e-3, throat_area=1e-3, exit_area=3e-3,
+        ambient_pressure=ambient, oxidizer_enthalpy=0.0, effects=tuple(effects),
+    )  # fmt: skip
+    return TankAlone.of(engine)
 
 
 def blow_down(
-    saturation: Saturation,
-    feed: FeedSystem,
-    mass: float,
-    temperature: float,
-    time: Array,
-    chamber_pressure: Array,
-    polytropic_exponent: float,
-    heat: float = 0.0,
-) -> Blowdown:
+    saturation: Saturation, feed: FeedSystem, mass: float, temperature: float, time: Array, chamber_pressure: Array,
+    polytropic_exponent: float, heat: float = 0.0,
+) -> TankRun:  # fmt: skip
     """Empty a saturated tank (report, eq. 3.1 to 3.17) from ``mass`` [kg] and ``temperature`` [K].
 
     ``time`` [s] is increasing, ``chamber_pressure`` [Pa] is given at these times and taken linear between them. After
     the liquid is gone p = p_v (M/M_v)^m with Z held. ``heat`` [W] goes into the saturated tank.
     """
-    t = np.ascontiguousarray(time, dtype=np.float64)
-    p_c = np.ascontiguousarray(chamber_pressure, dtype=np.float64)
-    out, t_v = _blow_down(
-        saturation.kernel_table, feed.kernel_arguments, mass, temperature, t, p_c, polytropic_exponent, heat
-    )
-    return Blowdown(t, out[0], out[1], out[2], out[3], t_v)
+    alone = tank_alone(saturation, feed, mass, temperature, polytropic_exponent)
+    return alone.run(time, chamber_pressure, heat=heat)
 
 
 @compiled
-def _liquid_flow(table: Table, feed: tuple[float, float, float, float, float, bool], t_k: float, p_c: float) -> float:
-    _, area, factor, loss, _, constant = feed
-    pressure = np.exp(evaluate(*table, LN_PRESSURE, t_k)[0])
-    density = 1.0 / evaluate(*table, LIQUID_VOLUME, t_k)[0]
-    if constant:
-        return mass_flow(area, density, pressure - loss - p_c)
-    return mass_flow_with_feed(area, factor, density, pressure - p_c)
+def _step(
+    m: Equations, moving: Integers, y: Array, t: float, h: float, liquid: bool, rates: Array, out: Array, trial: Array
+) -> Array:
+    """The state after one Runge-Kutta step; ``rates`` (4, states) hold those of its start, ``trial`` is scratch."""
+    for k in range(1, 4):
+        trial[:] = y
+        ahead = h if k == 3 else 0.5 * h
+        for i in moving:
+            trial[i] += ahead * rates[k - 1, i]
+        rates_at(t + ahead, trial, liquid, True, address_of(m), rates[k], out)
+    after = y.copy()
+    for i in moving:
+        after[i] += h * (rates[0, i] + 2.0 * rates[1, i] + 2.0 * rates[2, i] + rates[3, i]) / 6.0
+    return after
 
 
 @compiled
-def _vapor_flow(
-    feed: tuple[float, float, float, float, float, bool], mass: float, pressure: float, p_c: float
-) -> float:
-    volume, area, factor, _, loss, constant = feed
-    if constant:
-        return mass_flow(area, mass / volume, pressure - loss - p_c)
-    return mass_flow_with_feed(area, factor, mass / volume, pressure - p_c)
-
-
-@compiled
-def _liquid_step(
-    table: Table,
-    feed: tuple[float, float, float, float, float, bool],
-    mass: float,
-    t_k: float,
-    h: float,
-    p0: float,
-    p1: float,
-    heat: float,
-) -> tuple[float, float]:
-    """One Runge-Kutta step of (M, T); p0 and p1 are the chamber pressures at its ends."""
-    middle = 0.5 * (p0 + p1)
-    w1 = _liquid_flow(table, feed, t_k, p0)
-    r1 = temperature_rate(table, feed[0], mass, t_k, w1, heat)
-    w2 = _liquid_flow(table, feed, t_k + 0.5 * h * r1, middle)
-    r2 = temperature_rate(table, feed[0], mass - 0.5 * h * w1, t_k + 0.5 * h * r1, w2, heat)
-    w3 = _liquid_flow(table, feed, t_k + 0.5 * h * r2, middle)
-    r3 = temperature_rate(table, feed[0], mass - 0.5 * h * w2, t_k + 0.5 * h * r2, w3, heat)
-    w4 = _liquid_flow(table, feed, t_k + h * r3, p1)
-    r4 = temperature_rate(table, feed[0], mass - h * w3, t_k + h * r3, w4, heat)
-    mass -= h * (w1 + 2.0 * w2 + 2.0 * w3 + w4) / 6.0
-    return mass, t_k + h * (r1 + 2.0 * r2 + 2.0 * r3 + r4) / 6.0
-
-
-@compiled
-def _vapor_step(
-    feed: tuple[float, float, float, float, float, bool],
-    mass: float,
-    m_v: float,
-    p_v: float,
-    exponent: float,
-    h: float,
-    p0: float,
-    p1: float,
-) -> float:
-    """One Runge-Kutta step of the vapour's mass along p = p_v (M/M_v)^m."""
-    middle = 0.5 * (p0 + p1)
-    w1 = _vapor_flow(feed, mass, p_v * (mass / m_v) ** exponent, p0)
-    m2 = mass - 0.5 * h * w1
-    w2 = _vapor_flow(feed, m2, p_v * (m2 / m_v) ** exponent, middle)
-    m3 = mass - 0.5 * h * w2
-    w3 = _vapor_flow(feed, m3, p_v * (m3 / m_v) ** exponent, middle)
-    m4 = mass - h * w3
-    w4 = _vapor_flow(feed, m4, p_v * (m4 / m_v) ** exponent, p1)
-    return mass - h * (w1 + 2.0 * w2 + 2.0 * w3 + w4) / 6.0
-
-
-@compiled
-def _blow_down(
-    table: Table,
-    feed: tuple[float, float, float, float, float, bool],
-    mass: float,
-    t_k: float,
-    time: Array,
-    p_c: Array,
-    exponent: float,
-    heat: float,
-) -> tuple[Array, float]:
-    volume = feed[0]
-    out = np.full((4, time.size), np.nan)
-    t_v = np.nan
-    m_v = p_v = t_empty = 0.0
-    liquid = liquid_mass(table, volume, mass, t_k)
-    if liquid <= 0.0:
-        t_v, m_v, t_empty = time[0], mass, t_k
-        p_v = np.exp(evaluate(*table, LN_PRESSURE, t_k)[0])
+def _march(
+    m: Equations, moving: Integers, start: Array, time: Array, chamber: Array, loss: Array, vapor: bool
+) -> tuple[Array, Array, float]:
+    """States and outputs at every time, and when the liquid was gone."""
+    given, y, t_v = m.c[m.c.size - len(GIVEN) :], start.copy(), np.nan
+    states, outputs = np.empty((time.size, y.size)), np.empty((time.size, len(OUTPUTS)))
+    rates, trial, out = np.zeros((4, y.size)), np.empty(y.size), np.zeros(len(OUTPUTS))
+    left = 0.0 if vapor else liquid_mass(m.saturation, m.c[eq.VOLUME], y[eq.TANK], y[eq.TEMPERATURE])
+    if not vapor and left <= 0.0:
+        t_v = time[0]
+        run_dry(m, y)
     for i in range(time.size):
         if i > 0:
-            h, p0, p1 = time[i] - time[i - 1], p_c[i - 1], p_c[i]
-            if liquid > 0.0:
-                new_mass, new_t = _liquid_step(table, feed, mass, t_k, h, p0, p1, heat)
-                new_liquid = liquid_mass(table, volume, new_mass, new_t)
-                if new_liquid <= 0.0:
-                    part = liquid / (liquid - new_liquid)
-                    middle = p0 + part * (p1 - p0)
-                    mass, t_k = _liquid_step(table, feed, mass, t_k, part * h, p0, middle, heat)
-                    t_v, m_v, t_empty = time[i - 1] + part * h, mass, t_k
-                    p_v = np.exp(evaluate(*table, LN_PRESSURE, t_k)[0])
-                    mass = _vapor_step(feed, mass, m_v, p_v, exponent, (1.0 - part) * h, middle, p1)
-                else:
-                    mass, t_k = new_mass, new_t
-                liquid = new_liquid
-            else:
-                mass = _vapor_step(feed, mass, m_v, p_v, exponent, h, p0, p1)
-        if liquid > 0.0:
-            out[0, i] = np.exp(evaluate(*table, LN_PRESSURE, t_k)[0])
-            out[2, i] = t_k
-            out[3, i] = _liquid_flow(table, feed, t_k, p_c[i])
-        else:
-            out[0, i] = p_v * (mass / m_v) ** exponent
-            out[2, i] = t_empty * (mass / m_v) ** (exponent - 1.0)
-            out[3, i] = _vapor_flow(feed, mass, out[0, i], p_c[i])
-        out[1, i] = mass
-    return out, t_v
-
-
-def implied_heat(
-    saturation: Saturation, exponent: float, mass_start: float, mass_end: float, temperature: float, z: float
-) -> float:
-    """Heat [J] that a polytropic vapour blowdown needs from outside (negative: must give away).
-
-    From ``mass_start`` to ``mass_end`` [kg], beginning with saturated vapour at ``temperature`` [K]: the integral of
-    (m_s - m) p V/G over -d ln M, p V = Z R T_v M_v (M/M_v)^m, with that vapour's isentropic exponent m_s and
-    Grueneisen's G (as :mod:`hfanalysis.engine.closure`). The polytropic law itself does not conserve energy.
-    """
-    held = z * SPECIFIC_GAS_CONSTANT * temperature * mass_start
-    too_small = float(saturation.isentropic_exponent(temperature)) - exponent
-    less = float(np.log(mass_end / mass_start))
-    leaves = -less * float(exprel(exponent * less))
-    return float(held * too_small / float(saturation.grueneisen(temperature)) * leaves)
+            h = time[i] - time[i - 1]
+            given[SINCE], given[PRESSURE], given[LOSS] = time[i - 1], chamber[i - 1], loss[i - 1]
+            given[PRESSURE_SLOPE], given[LOSS_SLOPE] = (chamber[i] - chamber[i - 1]) / h, (loss[i] - loss[i - 1]) / h
+            after = _step(m, moving, y, time[i - 1], h, left > 0.0, rates, out, trial)
+            if left > 0.0:
+                remaining = liquid_mass(m.saturation, m.c[eq.VOLUME], after[eq.TANK], after[eq.TEMPERATURE])
+                if remaining <= 0.0:
+                    part = left / (left - remaining)
+                    after = _step(m, moving, y, time[i - 1], part * h, True, rates, out, trial)
+                    t_v = time[i - 1] + part * h
+                    run_dry(m, after)
+                    rates_at(t_v, after, False, True, address_of(m), rates[0], out)
+                    after = _step(m, moving, after, t_v, (1.0 - part) * h, False, rates, out, trial)
+                left = remaining
+            y = after
+        given[SINCE], given[PRESSURE], given[LOSS] = time[i], chamber[i], loss[i]
+        given[PRESSURE_SLOPE] = given[LOSS_SLOPE] = 0.0
+        rates_at(time[i], y, left > 0.0, True, address_of(m), rates[0], out)
+        states[i], outputs[i] = y, out
+    return states, outputs, t_v

@@ -12,14 +12,14 @@ any pressure, and dU/dt = sum mdot h + Qdot leaves Qdot = -d(p V)/dt: over a run
 
 from __future__ import annotations
 
-from math import pi
-
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import exprel
 
-from hfanalysis.engine.model import COLDEST_VAPOR, NITROGEN_CV, SPECIFIC_NITROGEN, WARMEST_VAPOR
-from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT
+from hfanalysis.engine.chamber import chamber_volume
+from hfanalysis.engine.tank import COLDEST_VAPOR, NITROGEN_CV, SPECIFIC_GAS_CONSTANT, SPECIFIC_NITROGEN, WARMEST_VAPOR
 from hfanalysis.engine.unsteady import Burn
+from hfanalysis.thermo.saturation import Saturation
 
 Array = NDArray[np.float64]
 
@@ -53,5 +53,21 @@ def vapor_heat_total(burn: Burn) -> float:
 def chamber_energy(burn: Burn) -> Array:
     """p V of the chamber [J] over ``burn.time``; its fall is the heat flow that the quasi-steady chamber implies."""
     engine = burn.steps.engine
-    volume = engine.dead_volume + pi * burn.state("port_radius") ** 2 * engine.grain_length
+    volume = chamber_volume(engine.dead_volume, burn.state("port_radius"), engine.grain_length)
     return np.asarray(burn.output("chamber_pressure") * volume)
+
+
+def implied_heat(
+    saturation: Saturation, exponent: float, mass_start: float, mass_end: float, temperature: float, z: float
+) -> float:
+    """Heat [J] that a polytropic vapour blowdown needs from outside (negative: must give away).
+
+    From ``mass_start`` to ``mass_end`` [kg], beginning with saturated vapour at ``temperature`` [K]: the integral of
+    (m_s - m) p V/G over -d ln M, p V = Z R T_v M_v (M/M_v)^m, with that vapour's isentropic exponent m_s and
+    Grueneisen's G. The polytropic law itself does not conserve energy.
+    """
+    held = z * SPECIFIC_GAS_CONSTANT * temperature * mass_start
+    too_small = float(saturation.isentropic_exponent(temperature)) - exponent
+    less = float(np.log(mass_end / mass_start))
+    leaves = -less * float(exprel(exponent * less))
+    return float(held * too_small / float(saturation.grueneisen(temperature)) * leaves)

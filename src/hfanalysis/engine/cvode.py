@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.engine.effect import Composition, compose
-from hfanalysis.engine.model import OUTPUTS, STATES, evaluate_rates
+from hfanalysis.engine.equations import OUTPUTS, STATES, evaluate_rates
 from hfanalysis.engine.phases import FUEL_OUT, GROUND, LIQUID_OUT, OWN_EVENTS, SCALES, change, evaluate_events
 from hfanalysis.engine.unsteady import Engine, check, constants, initial
 

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from math import sqrt
 
-from hfanalysis.compiled import compiled
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hfanalysis.compiled import Real, compiled, law
+
+Array = NDArray[np.float64]
 
 SMALL_DROP = 1000.0
 """Pressure drop [Pa] below which the square root is bent to a finite slope, at which no solver stalls."""
 
 
 @compiled
-def root(pressure_drop: float) -> float:
-    """sqrt(dp) [Pa^0.5], zero for dp <= 0; below SMALL_DROP the parabola that joins it smoothly."""
-    if pressure_drop >= SMALL_DROP:
-        return sqrt(pressure_drop)
-    x = max(pressure_drop, 0.0) / SMALL_DROP
-    return sqrt(SMALL_DROP) * 0.5 * x * (3.0 - x)
+def bent_root(value: float, small: float) -> float:
+    """sqrt(x), zero for x <= 0; below ``small`` the parabola that joins it smoothly and ends with a finite slope."""
+    if value >= small:
+        return sqrt(value)
+    x = max(value, 0.0) / small
+    return sqrt(small) * 0.5 * x * (3.0 - x)
 
 
 @compiled
@@ -28,7 +33,21 @@ def mass_flow(area: float, density: float, pressure_drop: float) -> float:
     >>> round(mass_flow(3.786e-5, 742.5, 57.29e5 - 0.345e5 - 27.579e5), 3)
     2.5
     """
-    return area * sqrt(2.0 * density) * root(pressure_drop)
+    return area * sqrt(2.0 * density) * bent_root(pressure_drop, SMALL_DROP)
+
+
+def mass_flows(area: ArrayLike, density: ArrayLike, pressure_drop: ArrayLike) -> Array:
+    """:func:`mass_flow` of arrays of one shape, or of numbers and arrays."""
+    given = (np.asarray(x, dtype=np.float64) for x in np.broadcast_arrays(area, density, pressure_drop))
+    return _mass_flows(*(np.ascontiguousarray(x) for x in given))
+
+
+@compiled
+def _mass_flows(area: Array, density: Array, pressure_drop: Array) -> Array:
+    out = np.empty_like(pressure_drop)
+    for i in range(out.size):
+        out[i] = mass_flow(area[i], density[i], pressure_drop[i])
+    return out
 
 
 @compiled
@@ -38,4 +57,10 @@ def mass_flow_with_feed(area: float, feed_loss_factor: float, density: float, pr
     ``pressure_drop`` is p_T - p_c [Pa], ``feed_loss_factor`` K_loss [1/m^4]. Both losses are quadratic in mdot, so that
     the two resistances add: mdot^2 = rho dp / (K_loss + 1 / (2 (C_i N_i A_i)^2)).
     """
-    return sqrt(density / (feed_loss_factor + 0.5 / (area * area))) * root(pressure_drop)
+    return sqrt(density / flow_resistance(area, feed_loss_factor)) * bent_root(pressure_drop, SMALL_DROP)
+
+
+@law
+def flow_resistance(area: Real, feed_loss_factor: Real) -> Real:
+    """rho dp / mdot^2 [1/m^4] of line and injector in a row."""
+    return feed_loss_factor + 0.5 / (area * area)

@@ -10,9 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from hfanalysis.compiled import compiled
+from hfanalysis.compiled import Real, compiled, inlined, law
+from hfanalysis.engine.equations import EXIT_AREA, KEPT_NOZZLE, THROAT_AREA, Array, Equations, asked, keep
+from hfanalysis.engine.sites import GAMMA_CHAMBER, P_AMBIENT, P_CHAMBER, RT_CHAMBER, THROAT_FACTOR, THRUST_FACTOR
 from hfanalysis.thermo.combustion import Gas
+from hfanalysis.thermo.combustion_table import Grid, gas_at
 
 SUBSONIC, SHOCK, SUPERSONIC = 0, 1, 2
 SMALL_EXCESS = 1e-4
@@ -118,10 +122,22 @@ def stagnation_after_shock(mach: float, gamma: float) -> float:
     return float(first ** (-1.0 / (gamma - 1.0)) * second ** (gamma / (gamma - 1.0)))
 
 
-@compiled
-def choked_flow_factor(gamma: float) -> float:
+@law
+def choked_flow_factor(gamma: Real) -> Real:
     """mdot sqrt(R T) / (A p_0) of a choked throat."""
-    return float(np.sqrt(gamma) * (0.5 * (gamma + 1.0)) ** (-0.5 * (gamma + 1.0) / (gamma - 1.0)))
+    return np.sqrt(gamma) * (0.5 * (gamma + 1.0)) ** (-0.5 * (gamma + 1.0) / (gamma - 1.0))
+
+
+@law
+def choked_flow(gamma: Real, specific_temperature: Real, pressure: Real, throat_area: Real) -> Real:
+    """mdot [kg/s] of a choked throat; ``specific_temperature`` R T [J/kg]."""
+    return choked_flow_factor(gamma) * throat_area * pressure / np.sqrt(specific_temperature)
+
+
+@law
+def characteristic_velocity(specific_temperature: Real, gamma: Real) -> Real:
+    """c* = p_0 A / mdot [m/s] of a choked throat; ``specific_temperature`` R T [J/kg]."""
+    return np.sqrt(specific_temperature) / choked_flow_factor(gamma)
 
 
 @compiled
@@ -149,19 +165,19 @@ def expand(
             # flow grows as the root of the excess pressure: bent to a finite slope where solvers would stall
             x = min((pressure / ambient - 1.0) / SMALL_EXCESS, 1.0)
             mach *= 0.5 * np.sqrt(x) * (3.0 - x)
-            return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, mach, ambient, SUBSONIC)
+            return ejected(gamma, specific_temperature, pressure, ambient, exit_area, mach, ambient, SUBSONIC)
     full = mach_at_area(ratio, gamma, True)
     exit_pressure = pressure * pressure_ratio(full, gamma)
     if ambient < exit_pressure * pressure_after_shock(full, gamma):
-        return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, full, exit_pressure, SUPERSONIC)
+        return ejected(gamma, specific_temperature, pressure, ambient, exit_area, full, exit_pressure, SUPERSONIC)
     # behind a shock p_e M_e sqrt(1 + (g-1)/2 M_e^2) A_e carries the choked flow: p_e = p_a gives M_e in closed form
     choked = choked_flow_factor(gamma) * throat_area * pressure / (exit_area * ambient)
     square = (np.sqrt(1.0 + 2.0 * (gamma - 1.0) * choked * choked / gamma) - 1.0) / (gamma - 1.0)
-    return _ejected(gamma, specific_temperature, pressure, ambient, exit_area, np.sqrt(square), ambient, SHOCK)
+    return ejected(gamma, specific_temperature, pressure, ambient, exit_area, np.sqrt(square), ambient, SHOCK)
 
 
 @compiled
-def _ejected(
+def ejected(
     gamma: float,
     specific_temperature: float,
     pressure: float,
@@ -176,3 +192,49 @@ def _ejected(
     velocity = mach * np.sqrt(gamma * exit_temperature)
     flow = exit_pressure / exit_temperature * velocity * exit_area
     return flow, flow * velocity + (exit_pressure - ambient) * exit_area, mach, exit_pressure, regime
+
+
+def expand_along(
+    gas: Grid, pressure: Array, of_ratio: Array, enthalpy: ArrayLike, throat_area: ArrayLike, exit_area: float,
+    ambient: float,
+) -> Array:  # fmt: skip
+    """Flow [kg/s], thrust [N], R T [J/kg] and gamma of burnt gas at each instant, (4, n); NaN where there is none.
+
+    ``pressure`` [Pa] and ``of_ratio`` (n,), ``enthalpy`` of the oxidizer [J/kg] and ``throat_area`` [m^2] (n,) or one.
+    """
+    given = np.broadcast_arrays(pressure, of_ratio, enthalpy, throat_area)
+    return _expand_along(gas, exit_area, ambient, *(np.ascontiguousarray(x) for x in given))
+
+
+@compiled
+def _expand_along(
+    gas: Grid, exit_area: float, ambient: float, pressure: Array, ratio: Array, enthalpy: Array, throat: Array
+) -> Array:
+    out = np.full((4, pressure.size), np.nan)
+    for i in range(pressure.size):
+        if ratio[i] > 0.0 and pressure[i] > 0.0:
+            rt, gamma = gas_at(gas, np.log(pressure[i]), np.log(ratio[i]), enthalpy[i], 0.0)
+            flow, thrust, _, _, _ = expand(gamma, rt, pressure[i], ambient, throat[i], exit_area)
+            out[0, i], out[1, i], out[2, i], out[3, i] = flow, thrust, rt, gamma
+    return out
+
+
+@inlined
+def nozzle(m: Equations) -> tuple[float, float]:
+    """Mass flow [kg/s] and thrust [N]."""
+    env, throat = m.env, m.c[THROAT_AREA] * m.site[THROAT_FACTOR]
+    flow, thrust = expanded(
+        m, env[GAMMA_CHAMBER], env[RT_CHAMBER], env[P_CHAMBER], env[P_AMBIENT], throat, m.c[EXIT_AREA]
+    )
+    return flow, thrust * m.site[THRUST_FACTOR]
+
+
+@inlined
+def expanded(m: Equations, *question: float) -> tuple[float, float]:
+    """Flow and thrust of :func:`expand`, or what is kept of them."""
+    kept, at = m.kept, KEPT_NOZZLE + 6
+    if asked(kept, KEPT_NOZZLE, question):
+        return kept[at], kept[at + 1]
+    answer = expand(*question)[:2]
+    keep(kept, KEPT_NOZZLE, question, answer)
+    return answer

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hfanalysis.engine.effect import Active
-from hfanalysis.engine.model import OUTPUTS, STATES
+from hfanalysis.engine.equations import OUTPUTS, STATES
 from hfanalysis.engine.sensitivity import SHIFT, Tangents
 from hfanalysis.engine.unsteady import Burn
 

@@ -13,44 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.compiled import compiled, inlined, inner, separate
-from hfanalysis.engine.model import (
-    ALTITUDE,
-    CHAMBER_NITROGEN,
-    COLD,
-    COLD_ENERGY,
-    COMPRESSIBILITY,
-    ENTHALPY,
-    EVALUATION,
-    EXIT_AREA,
-    EXPONENT,
-    FLIES,
-    FUEL_END,
-    IMPULSE,
-    KEEPS,
-    LAUNCH_ALTITUDE,
-    NITROGEN,
-    O_AMBIENT,
-    O_CHAMBER_PRESSURE,
-    O_GAMMA,
-    O_TANK_PRESSURE,
-    OUTER_RADIUS,
-    OUTPUTS,
-    OXIDIZER_ENTHALPY,
-    PAD,
-    POLYTROPIC_EXPONENT,
-    RADIUS,
-    SPARE_WEB,
-    SPEED,
-    TANK,
-    TEMPERATURE,
-    THROAT_AREA,
-    VOLUME,
-    Equations,
-    address_of,
-    call,
-    equations_at,
-    rates_at,
-)
+from hfanalysis.engine import equations as eq
+from hfanalysis.engine import sites as at
+from hfanalysis.engine.equations import EVALUATION, OUTPUTS, Equations, address_of, call, equations_at, rates_at
+from hfanalysis.engine.model import PAD
 from hfanalysis.engine.nozzle import mach_at_area, pressure_after_shock, pressure_ratio
 from hfanalysis.engine.rosenbrock import (
     DENSE,
@@ -65,9 +31,8 @@ from hfanalysis.engine.rosenbrock import (
     interpolate,
     substitute,
 )
-from hfanalysis.engine.sites import PARAMETERS_AT, STATES_AT, SWITCH_ADDRESS, THROAT_FACTOR, call_switch
-from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, liquid_mass
-from hfanalysis.thermo.saturation import LN_PRESSURE, LN_VAPOR_CP, LN_VAPOR_CV, evaluate
+from hfanalysis.engine.sites import call_switch
+from hfanalysis.engine.tank import liquid_mass, run_dry
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -103,21 +68,28 @@ TICK = 1e-6
 INCREMENT = 1e-7
 """Relative to a state, or to its scale: the difference with which Jacobians are formed."""
 
+PARTS_OF_OCTAVE = 8
+"""Of which the steps' factors are whole numbers. What a Jacobian of differences rounds off is in every error, and by
+steps that follow it a run's last digit would grow to its tolerance."""
+
+ROUNDED_OFF = 1e-6
+"""Part of the tolerance below which an error is what was rounded off."""
+
 
 @inner
 def moves(i: int, burning: bool, c: Array, terms: int) -> bool:
     """Whether a state changes in a phase."""
-    if i == RADIUS:
+    if i == eq.RADIUS:
         return burning
-    if i in (ALTITUDE, SPEED):
-        return bool(c[FLIES] > 0.0)
-    if i in (NITROGEN, CHAMBER_NITROGEN):
+    if i in (eq.ALTITUDE, eq.SPEED):
+        return bool(c[eq.FLIES] > 0.0)
+    if i in (eq.NITROGEN, eq.CHAMBER_NITROGEN):
         return terms > 0
-    if i == ENTHALPY:
-        return bool(np.isnan(c[OXIDIZER_ENTHALPY]))
-    if i in (COLD, COLD_ENERGY):
+    if i == eq.ENTHALPY:
+        return bool(np.isnan(c[eq.OXIDIZER_ENTHALPY]))
+    if i in (eq.COLD, eq.COLD_ENERGY):
         return not burning
-    return i not in (COMPRESSIBILITY, EXPONENT)
+    return i not in (eq.COMPRESSIBILITY, eq.EXPONENT)
 
 
 @inner
@@ -175,20 +147,20 @@ def event_values(t: float, y: Array, liquid: bool, burning: bool, model: int, ou
     m, dry = equations_at(model), 1.0
     c = m.c
     if liquid:
-        dry = liquid_mass(m.saturation, c[VOLUME], y[TANK], y[TEMPERATURE])
+        dry = liquid_mass(m.saturation, c[eq.VOLUME], y[eq.TANK], y[eq.TEMPERATURE])
     values[LIQUID_OUT] = dry
-    values[FUEL_OUT] = min(c[OUTER_RADIUS] + c[SPARE_WEB] - y[RADIUS], c[FUEL_END] - t) if burning else 1.0
-    values[GROUND] = y[ALTITUDE] - c[LAUNCH_ALTITUDE] + PAD if c[FLIES] > 0.0 else 1.0
-    ratio, gamma = c[EXIT_AREA] / (c[THROAT_AREA] * m.site[THROAT_FACTOR]), out[O_GAMMA]
+    values[FUEL_OUT] = min(c[eq.OUTER_RADIUS] + c[eq.SPARE_WEB] - y[eq.RADIUS], c[eq.FUEL_END] - t) if burning else 1.0
+    values[GROUND] = y[eq.ALTITUDE] - c[eq.LAUNCH_ALTITUDE] + PAD if c[eq.FLIES] > 0.0 else 1.0
+    ratio, gamma = c[eq.EXIT_AREA] / (c[eq.THROAT_AREA] * m.site[at.THROAT_FACTOR]), out[eq.O_GAMMA]
     subsonic, supersonic = mach_at_area(ratio, gamma, False), mach_at_area(ratio, gamma, True)
     behind = pressure_ratio(supersonic, gamma) * pressure_after_shock(supersonic, gamma)
-    values[CHOKING] = out[O_CHAMBER_PRESSURE] * pressure_ratio(subsonic, gamma) - out[O_AMBIENT]
-    values[SHOCK] = out[O_CHAMBER_PRESSURE] * behind - out[O_AMBIENT]
+    values[CHOKING] = out[eq.O_CHAMBER_PRESSURE] * pressure_ratio(subsonic, gamma) - out[eq.O_AMBIENT]
+    values[SHOCK] = out[eq.O_CHAMBER_PRESSURE] * behind - out[eq.O_AMBIENT]
     for k in range(m.terms.shape[0]):
-        address = m.terms[k, SWITCH_ADDRESS]
+        address = m.terms[k, at.SWITCH_ADDRESS]
         value = 1.0
         if address != 0:
-            value = call_switch(address, t, m.env, c, m.terms[k, PARAMETERS_AT], y, m.terms[k, STATES_AT])  # type: ignore[call-arg]
+            value = call_switch(address, t, m.env, c, m.terms[k, at.PARAMETERS_AT], y, m.terms[k, at.STATES_AT])  # type: ignore[call-arg]
         values[OWN_EVENTS + k] = value
 
 
@@ -208,21 +180,9 @@ def evaluate_events(t: float, y: Array, liquid: bool, burning: bool, m: Equation
 def change(event: int, m: Equations, y: Array) -> None:
     """What an event does to the state."""
     if event == LIQUID_OUT:
-        p = np.exp(at_saturation(m, LN_PRESSURE, y[TEMPERATURE]))
-        y[COMPRESSIBILITY] = p * m.c[VOLUME] / (y[TANK] * SPECIFIC_GAS_CONSTANT * y[TEMPERATURE])
-        y[EXPONENT] = m.c[POLYTROPIC_EXPONENT]
-        if np.isnan(y[EXPONENT]):
-            cp, cv = at_saturation(m, LN_VAPOR_CP, y[TEMPERATURE]), at_saturation(m, LN_VAPOR_CV, y[TEMPERATURE])
-            y[EXPONENT] = np.exp(cp - cv)
+        run_dry(m, y)
     elif event == GROUND:
-        y[ALTITUDE], y[SPEED] = m.c[LAUNCH_ALTITUDE], 0.0
-
-
-@inner
-def at_saturation(m: Equations, row: int, temperature: float) -> float:
-    """A row of the table of saturated nitrous oxide."""
-    table, start, step, critical = m.saturation
-    return float(evaluate(table, start, step, critical, row, temperature)[0])
+        y[eq.ALTITUDE], y[eq.SPEED] = m.c[eq.LAUNCH_ALTITUDE], 0.0
 
 
 @inner
@@ -249,10 +209,10 @@ def linearize(t: float, y: Array, liquid: bool, burning: bool, scales: Array, mo
     What the evaluation at ``y`` itself found, which comes before, is kept throughout.
     """
     kept_parts = equations_at(model).kept
-    kept_parts[KEEPS] = 0.0
+    kept_parts[eq.KEEPS] = 0.0
     for column in range(s.active.size):
         j = s.active[column]
-        if j != IMPULSE:
+        if j != eq.IMPULSE:
             kept = y[j]
             y[j] = kept + INCREMENT * max(abs(kept), scales[j])
             step = y[j] - kept
@@ -264,7 +224,7 @@ def linearize(t: float, y: Array, liquid: bool, burning: bool, scales: Array, mo
         rates_at(t + TICK, y, liquid, burning, model, s.moved, s.out)
         for i in range(y.size):
             s.slope[i] = (s.moved[i] - s.f[i]) / TICK
-    kept_parts[KEEPS] = 1.0
+    kept_parts[eq.KEEPS] = 1.0
 
 
 @inner
@@ -423,16 +383,25 @@ def record(
 
 
 @inner
+def in_whole_parts(factor: float) -> float:
+    """A step's factor as a whole number of parts of an octave: the last digits of an error change no step."""
+    return float(2.0 ** (np.floor(PARTS_OF_OCTAVE * np.log2(factor) + 0.5) / PARTS_OF_OCTAVE))
+
+
+@inner
 def shortened(h: float, error: float) -> float:
     """The step to try after one whose error was too large."""
-    return h * float(max(0.2, 0.9 * error**-0.2)) if np.isfinite(error) else 0.1 * h
+    return h * in_whole_parts(max(0.2, 0.9 * error**-0.2)) if np.isfinite(error) else 0.1 * h
 
 
 @inner
 def next_step(h: float, error: float, old_error: float, rejected: bool) -> float:
     """The step after an accepted one (PI control)."""
-    factor = 0.9 * max(error, 1e-10) ** -0.14 * old_error**0.08
-    return h * float(min(max(factor, 0.2), 1.0 if rejected else 6.0))
+    most = 1.0 if rejected else 6.0
+    if error < ROUNDED_OFF:
+        return h * most
+    factor = 0.9 * error**-0.14 * old_error**0.08
+    return h * in_whole_parts(min(max(factor, 0.2), most))
 
 
 @inner
@@ -484,20 +453,20 @@ def integrate(
             attempt(t, y, h, liquid, burning, model, s)
             arrive(t + h, liquid, burning, model, s, steps.dense[n])
         if event == GROUND:
-            s.trial[ALTITUDE] = m.c[LAUNCH_ALTITUDE] - PAD  # by definition; the shortened step only comes near
+            s.trial[eq.ALTITUDE] = m.c[eq.LAUNCH_ALTITUDE] - PAD  # by definition; the shortened step only comes near
         record(steps, n, t, y, h, liquid, burning, event, s)
         n, t, falling = n + 1, t + h, event >= 0 and s.before[event] > 0.0
         advance(y, s)
         if event < 0:
             h = next_step(h, error, old_error, rejected)
             old_error, rejected = max(error, 1e-4), False
-            if not (run_on or liquid) and s.out[O_TANK_PRESSURE] < (1.0 + SPENT) * s.out[O_AMBIENT]:
+            if not (run_on or liquid) and s.out[eq.O_TANK_PRESSURE] < (1.0 + SPENT) * s.out[eq.O_AMBIENT]:
                 ending = BLOWN_DOWN
             continue
         happened[event] = t
         liquid = liquid and event != LIQUID_OUT
         change(event, m, y)
-        if burning and (event == FUEL_OUT or y[RADIUS] >= m.c[OUTER_RADIUS] + m.c[SPARE_WEB]):
+        if burning and (event == FUEL_OUT or y[eq.RADIUS] >= m.c[eq.OUTER_RADIUS] + m.c[eq.SPARE_WEB]):
             burning, happened[FUEL_OUT] = False, t
             ending = REACHED_END if run_on else BURNT_OUT
         s = enter(t, y, liquid, burning, model)

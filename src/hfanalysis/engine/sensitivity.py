@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hfanalysis.engine import tangents
 from hfanalysis.engine.effect import Active, compose
-from hfanalysis.engine.model import OUTPUTS, STATES
+from hfanalysis.engine.equations import OUTPUTS, STATES
 from hfanalysis.engine.phases import SCALES
 from hfanalysis.engine.unsteady import ACCURACY, Burn, Engine, burn, constants, initial
 

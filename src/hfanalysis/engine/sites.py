@@ -10,7 +10,7 @@ used::
             site[TANK_HEAT] += p[0]
 
 ``t`` is the time since ignition [s]; ``env`` what the model found so far (ENVIRONMENT), ``c`` the engine's constants
-(:mod:`hfanalysis.engine.model`), ``p`` the effect's parameters, ``x`` its own states, ``dx`` their rates. Terms run
+(:mod:`hfanalysis.engine.equations`), ``p`` the effect's parameters, ``x`` its own states, ``dx`` their rates. Terms run
 through raw pointers, so that one compiled model serves every combination of effects.
 """
 

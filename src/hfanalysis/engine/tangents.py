@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.compiled import compiled, inner
-from hfanalysis.engine.model import IMPULSE, KEEPS, OUTPUTS, Equations, address_of, rates_at
+from hfanalysis.engine.equations import IMPULSE, KEEPS, OUTPUTS, Equations, address_of, rates_at
 from hfanalysis.engine.phases import INCREMENT, LIQUID_OUT, OWN_EVENTS, TICK, History, change, events_at
 from hfanalysis.engine.rosenbrock import copy, factorize, interpolate, substitute
 

@@ -9,29 +9,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import inf, pi, sqrt
+from math import inf
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hfanalysis.engine import phases as course
-from hfanalysis.engine.blowdown import FeedSystem
+from hfanalysis.engine.chamber import LEAST_GAS, chamber_volume
 from hfanalysis.engine.effect import Active, Composition, compose
-from hfanalysis.engine.injector import mass_flow, mass_flow_with_feed
-from hfanalysis.engine.model import (
+from hfanalysis.engine.equations import (
     COMPRESSIBILITY,
     CONSTANTS,
-    LEAST_GAS,
     O_AMBIENT,
     O_CHAMBER_PRESSURE,
     OUTPUTS,
-    PAD,
     STATES,
     Equations,
-    flux_power,
     nothing_kept,
-    rates,
 )
+from hfanalysis.engine.feed_line import NO_STATED_LOSSES, FeedSystem, line_flow
+from hfanalysis.engine.grain import Grain, flux_power, oxidizer_flux
+from hfanalysis.engine.model import PAD, rates
 from hfanalysis.engine.phases import History
 from hfanalysis.engine.sites import ENVIRONMENT, SITES
 from hfanalysis.rocket.vehicle import Vehicle
@@ -87,9 +85,14 @@ class Engine:
     effects: tuple[Active, ...] = field(default=())
 
     @property
+    def grain(self) -> Grain:
+        """The fuel grain."""
+        return Grain(self.grain_length, self.outer_radius, self.fuel_density, self.a, self.n)
+
+    @property
     def port_radius(self) -> float:
         """Initial port radius [m]."""
-        return sqrt(self.outer_radius**2 - self.fuel_mass / (pi * self.fuel_density * self.grain_length))
+        return self.grain.port_radius(self.fuel_mass)
 
     @property
     def ambient(self) -> float:
@@ -202,7 +205,7 @@ class Burn:
 
 def constants(e: Engine) -> Array:
     """The engine's numbers in the order of CONSTANTS."""
-    liquid_loss, vapor_loss = e.feed.constant_losses or (-1.0, -1.0)
+    liquid_loss, vapor_loss = e.feed.constant_losses or NO_STATED_LOSSES
     v = e.vehicle
     exponent = np.nan if e.polytropic_exponent is None else e.polytropic_exponent
     enthalpy = np.nan if e.oxidizer_enthalpy is None else e.oxidizer_enthalpy
@@ -225,18 +228,15 @@ def initial(e: Engine, composition: Composition) -> Array:
     ambient = e.ambient
     p_t = float(e.saturation.pressure(e.temperature))
     density = float(e.saturation.liquid_density(e.temperature))
-    if e.feed.constant_losses is not None:
-        flow = mass_flow(e.feed.area, density, p_t - e.feed.constant_losses[0] - ambient)
-    else:
-        flow = mass_flow_with_feed(e.feed.area, e.feed.loss_factor, density, p_t - ambient)
+    stated = (e.feed.constant_losses or NO_STATED_LOSSES)[0]
+    flow = line_flow(e.feed.area, e.feed.loss_factor, stated, density, p_t - ambient)
     r = e.port_radius
-    fuel = e.fuel_density * 2.0 * pi * r * e.grain_length * e.a * (flow / (pi * r * r)) ** e.n
-    ratio = flow / fuel
+    ratio = flow / (e.grain.ring(r) * e.a * oxidizer_flux(flow, r) ** e.n)
     enthalpy = e.oxidizer_enthalpy
     if enthalpy is None:
         enthalpy = FORMATION_OFFSET + float(e.saturation.energy(Property.LIQUID_ENTHALPY, e.temperature)[0])
     rt, _ = gas_at(e.combustion.kernel, np.log(ambient), np.log(ratio), enthalpy, 0.0)
-    mass = ambient * (e.dead_volume + pi * r * r * e.grain_length) / rt
+    mass = ambient * chamber_volume(e.dead_volume, r, e.grain_length) / rt
     oxidizer, burnt = mass * ratio / (1.0 + ratio), mass / (1.0 + ratio)
     altitude = 0.0 if e.vehicle is None else e.vehicle.launch_altitude
     own = [0.0, 0.0, oxidizer * enthalpy, 0.0, 0.0, 1.0, 1.0]
@@ -273,7 +273,7 @@ def check(engine: Engine) -> None:
         raise ValueError(
             f"a saturated tank holds {least:.3f} to {most:.3f} kg at {e.temperature} K, not {e.oxidizer_mass:.3f} kg"
         )
-    full = pi * e.outer_radius**2 * e.grain_length * e.fuel_density
+    full = e.grain.fuel(0.0)
     if e.fuel_mass >= full:
         raise ValueError(f"{e.fuel_mass:.3f} kg of fuel do not fit a grain that is full at {full:.3f} kg")
     loss = e.feed.constant_losses[0] if e.feed.constant_losses is not None else 0.0

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.inference.fitting.fit import Fit, fit, fit_on, promised
+from hfanalysis.inference.fitting.fit import ENDED, Fit, brought_to_end, fit, fit_on, promised
 from hfanalysis.inference.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.threads import each
@@ -40,8 +40,9 @@ sets of effects, which are near the data, and by the rest. In HF4, HF5 and five 
 something had promised to lose more than 30, but for free sources; of those of sets that gained nothing three in four
 had."""
 
-SHORT, LONG = 12, 25
-"""Steps of a fit that looks around, and of one that is to converge."""
+SHORT, LONG, LONGEST = 12, 25, 60
+"""Steps of a fit that looks around, of one that is to converge, and of one whose numbers are told: a valley may be long
+and bent."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ class Bench:
         None where it cannot be run.
         """
         coarse = attempted(hypothesis, self.at(COARSEST), np.zeros(hypothesis.size), SHORT)
-        return None if coarse is None else self.converged(self.judged(candidate((), coarse, COARSEST)))
+        return None if coarse is None else self.told(candidate((), coarse, COARSEST))
 
     def judged(self, found: Candidate) -> Candidate:
         """A candidate at the form that makes the data most probable: finer or coarser as long as that helps.
@@ -163,13 +164,29 @@ class Bench:
         again = self._gone_on(found, form, SHORT)
         return None if again is None else candidate(found.names, again, form, found.source)
 
+    def told(self, found: Candidate) -> Candidate:
+        """A candidate whose numbers are told: at its form, its fit brought to its end."""
+        return self.converged(self.judged(found))
+
     def converged(self, found: Candidate) -> Candidate:
-        """The candidate, its fit brought to its end."""
-        if found.fit.converged:
+        """The candidate, its fit brought to its end: where it is stopped on its way its numbers are no answer."""
+        if found.fit.within <= ENDED:
             return found
-        again = self._gone_on(found, found.form, LONG)
-        better = None if again is None else candidate(found.names, again, found.form, found.source)
-        return better if better is not None and more_probable(better, found) else found
+        again = self._ended(found)
+        return found if again is None else candidate(found.names, again, found.form, found.source)
+
+    def _ended(self, found: Candidate) -> Fit | None:
+        """The candidate's fit at its end; None where it cannot be run."""
+        near = found.fit if found.fit.converged else self._gone_on(found, found.form, LONGEST)
+        if near is None:
+            return None
+        try:
+            ended = brought_to_end(near, self.at(found.form))
+            if ended.within <= ENDED:
+                return ended
+            return fit_on(near, self.at(found.form), self.at(found.form), LONGEST, ENDED)  # at a knee slopes do not end
+        except (ValueError, ArithmeticError):
+            return near
 
     def _gone_on(self, found: Candidate, form: Form, most: int) -> Fit | None:
         """The candidate's fit, gone on with at a form; None where that cannot be run."""

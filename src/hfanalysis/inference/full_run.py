@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.assembly.calibrated import Regression, engine_of_test, starting_for
 from hfanalysis.engine.effect import Active
-from hfanalysis.engine.model import OUTPUTS, evaluate_rates
+from hfanalysis.engine.equations import OUTPUTS, evaluate_rates
 from hfanalysis.engine.sites import SITES
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.products.calibration import Calibration
@@ -69,20 +69,8 @@ class FullRun:
 
     @property
     def run_pressure(self) -> Array:
-        """Modelled pressure before the injector: p_c + mdot^2 / (2 rho (C_i N_i A_i)^2) [Pa]."""
-        if self.engine.effects:  # which may act on the feed line and the injector
-            return self.burnt.output("run_pressure")
-        flow, area = self.burnt.output("oxidizer_flow"), self.engine.feed.area
-        return self.burnt.output("chamber_pressure") + 0.5 * flow**2 / (self._density * area**2)
-
-    @property
-    def _density(self) -> Array:
-        """Of what leaves the tank [kg/m^3]."""
-        gone = self.burnt.liquid_out
-        wet = self.burnt.time <= (gone if gone is not None else np.inf)
-        temperature = np.where(wet, self.burnt.state("tank_temperature"), self.engine.temperature)
-        vapor = self.burnt.state("tank_mass") / self.engine.feed.volume
-        return np.where(wet, self.engine.saturation.liquid_density(temperature), vapor)
+        """Modelled pressure before the injector [Pa]."""
+        return self.burnt.output("run_pressure")
 
 
 def run_full(

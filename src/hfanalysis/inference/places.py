@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.engine.model import OUTPUTS
+from hfanalysis.engine.equations import OUTPUTS
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.predict import aligned
 from hfanalysis.inference.observations.observed import Observed

@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.calibrate.loaded_mass import load_cell_mass
 from hfanalysis.calibrate.measured_pressures import Histories
+from hfanalysis.engine.grain import Grain, opened, pace_between
+from hfanalysis.engine.injector import mass_flow, mass_flows
+from hfanalysis.engine.tank import SPECIFIC_NITROGEN, liquid_of
 from hfanalysis.errors import AbsentError
 from hfanalysis.flight.curve import accumulated
 from hfanalysis.measured_flight.thrust import MeasuredThrust
@@ -24,7 +26,6 @@ from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.thermo.constants import GAS_CONSTANT
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.units import Value
 
@@ -32,9 +33,6 @@ Array = NDArray[np.float64]
 
 PARAFFIN_EXPONENT = 0.5
 """Of the regression where neither test.toml nor a calibration has one; published values for paraffin lie about it."""
-
-NITROGEN_MOLAR_MASS = 28.0134
-"""[kg/kmol]"""
 
 UNSTATED = 0.01
 """Relative standard deviation of a mass that is stated without one."""
@@ -167,7 +165,7 @@ def _through_injector(
     time: Array,
     loaded: float,
 ) -> Oxidizer:
-    """mdot = C_i A sqrt(2 rho (p_run - p_c)): of liquid until t_v, then of what is in the tank."""
+    """What the injector passes at the measured pressures: of liquid until t_v, then of what is in the tank."""
     assert definition.tank is not None
     assert definition.tank.volume is not None
     assert definition.injector is not None
@@ -180,15 +178,14 @@ def _through_injector(
     t_v = segments.time("t_v") or float(time[-1])
     temperature = np.interp(time, histories.time, histories.tank_temperature(source))
     drop = np.interp(time, histories.time, np.maximum(histories.run - histories.chamber, 0.0))
-    velocity = area * np.sqrt(2.0 * drop)
     wet = time < t_v
-    liquid_flow = np.where(wet, velocity * np.sqrt(source.liquid_density(temperature)), 0.0)
+    liquid_flow = np.where(wet, mass_flows(area, source.liquid_density(temperature), drop), 0.0)
     mass = np.maximum(loaded - accumulated(time, liquid_flow), 0.0)
     last = int(wet.sum()) - 1
     nitrogen = _nitrogen_density(np.interp(time, histories.time, histories.tank), mass[last], volume, last, temperature)
-    mass[last:] = _gas(time[last:], mass[last], volume, velocity[last:], nitrogen[last:])
+    mass[last:] = _gas(time[last:], mass[last], volume, area, drop[last:], nitrogen[last:])
     v_l, v_v = source.liquid_volume(temperature)[0], source.vapor_volume(temperature)[0]
-    liquid = np.where(wet, np.clip((mass * v_v - volume) / (v_v - v_l), 0.0, mass), 0.0)
+    liquid = np.where(wet, np.clip(liquid_of(volume, mass, v_l, v_v), 0.0, mass), 0.0)
     how = "the injector's equation on the measured pressures with the calibrated C_i, from the loaded mass down"
     return Oxidizer(mass, liquid, np.where(wet, temperature, temperature[last]), how)
 
@@ -197,16 +194,16 @@ def _nitrogen_density(tank: Array, left: float, volume: float, last: int, temper
     """Of the purge gas in the tank [kg/m^3]: the pressure that the emptying vapour, held at t_v's, does not explain."""
     share = tank / tank[last]
     excess = np.maximum(share - np.minimum.accumulate(share), 0.0) * tank[last]
-    return np.asarray(excess * NITROGEN_MOLAR_MASS / (GAS_CONSTANT * temperature[last]))
+    return np.asarray(excess / (SPECIFIC_NITROGEN * temperature[last]))
 
 
-def _gas(time: Array, start: float, volume: float, velocity: Array, nitrogen: Array) -> Array:
+def _gas(time: Array, start: float, volume: float, area: float, drop: Array, nitrogen: Array) -> Array:
     """Oxidizer [kg] while the tank holds gas: its share of what the injector passes."""
     mass = np.empty_like(time)
     mass[0] = start
     for i in range(1, time.size):
         density = mass[i - 1] / volume + nitrogen[i]
-        flow = velocity[i] * np.sqrt(density) * (mass[i - 1] / volume) / density if density > 0.0 else 0.0
+        flow = mass_flow(area, density, drop[i]) * (mass[i - 1] / volume) / density if density > 0.0 else 0.0
         mass[i] = max(mass[i - 1] - flow * (time[i] - time[i - 1]), 0.0)
     return mass
 
@@ -224,11 +221,10 @@ def _fuel(definition: TestDefinition, calibration: Calibration | None, time: Arr
     words = f"burnt as G^{n:.3g} ({of}), " + (f"{end:.3f} kg left as seen" if rest is not None else "all of it")
     if grain.length is None or grain.density is None or grain.outer_radius is None:
         return grain.mass.value - (grain.mass.value - end) * share, f"{words}; the port's growth is not known"
-    per_area = pi * grain.density.value * grain.length.value
-    power, outer = 2.0 * n + 1.0, grain.outer_radius.value
-    first, last = (np.sqrt(outer**2 - mass / per_area) for mass in (grain.mass.value, end))
-    radius = (first**power + share * (last**power - first**power)) ** (1.0 / power)
-    return np.maximum(per_area * (outer**2 - radius**2), 0.0), words
+    body = Grain(grain.length.value, grain.outer_radius.value, grain.density.value, 1.0, n)
+    first, last = body.port_radius(grain.mass.value), body.port_radius(end)
+    radius = opened(first, body.a, n, share * pace_between(first, last, body.a, n))
+    return np.maximum(body.fuel(radius), 0.0), words
 
 
 def _exponent(definition: TestDefinition, calibration: Calibration | None) -> tuple[float, str]:

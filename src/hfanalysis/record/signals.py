@@ -15,6 +15,9 @@ Array = NDArray[np.float64]
 SMOOTHING = 0.2
 """Seconds through which a straight line gives the pressure at the full line."""
 MAD_TO_STD = 1.4826
+ON_EDGE = 1e-3
+"""Of the time between samples, within which one counts as on the edge of a stretch."""
+
 BRIDGE = 0.1
 """[s] on either side of a hole over which a signal's mean is taken."""
 
@@ -49,8 +52,8 @@ class Signal:
         return self.time.size < 8 or float(np.ptp(self.value)) == 0.0
 
     def between(self, start: float, end: float) -> Signal:
-        """The samples with start <= time < end."""
-        a, b = np.searchsorted(self.time, (start, end))
+        """The samples with start <= time < end, whatever the time of one on an edge was rounded to."""
+        a, b = np.searchsorted(self.time, np.array([start, end]) - self._edge)
         return replace(self, time=self.time[a:b], value=self.value[a:b])
 
     def holes(self, start: float = -np.inf, end: float = np.inf) -> Array:
@@ -78,10 +81,12 @@ class Signal:
         return replace(self, time=self.time - origin)
 
     def smooth(self, width: float) -> Array:
-        """Running mean over ``width`` seconds, centred on each sample; narrower at the ends."""
+        """Running mean over ``width`` seconds, centred on each sample and with those on its edges; narrower at the
+        ends."""
         total = np.concatenate(([0.0], np.cumsum(self.value - self._level)))
-        a = np.searchsorted(self.time, self.time - 0.5 * width, side="left")
-        b = np.searchsorted(self.time, self.time + 0.5 * width, side="right")
+        half = 0.5 * width + self._edge
+        a = np.searchsorted(self.time, self.time - half, side="left")
+        b = np.searchsorted(self.time, self.time + half, side="right")
         return np.asarray((total[b] - total[a]) / (b - a) + self._level)
 
     def at(self, times: Array) -> Array:
@@ -97,12 +102,17 @@ class Signal:
         """Block means over ``width`` seconds (the signal itself where its samples are no closer than that)."""
         if self.time.size < 2 or self.step >= width:
             return self
-        block = np.floor((self.time - self.time[0]) / width).astype(np.int64)
+        block = np.floor((self.time - self.time[0] + self._edge) / width).astype(np.int64)
         start = np.flatnonzero(np.r_[True, np.diff(block) > 0])
         count = np.diff(np.r_[start, self.time.size])
         value = np.add.reduceat(self.value, start) / count
         time = np.add.reduceat(self.time, start) / count
         return Signal(self.name, time, value, sample_noise(value), width)
+
+    @property
+    def _edge(self) -> float:
+        """How near to an edge a sample counts as on it [s]: a time counted from another origin is rounded anew."""
+        return ON_EDGE * self.step if self.step > 0.0 else 0.0
 
     @property
     def _level(self) -> float:

@@ -131,7 +131,7 @@ def _response(signals: Mapping[str, Signal], ambient: float, end: float, width: 
     fire = (excess > CLEAR) & (drop > 0.2e5)
     if fire.sum() < 20:
         return None
-    stop = min(int(np.flatnonzero(fire)[-1]) + int(WINDOW / step), grid.size)
+    stop = min(int(np.flatnonzero(fire)[-1]) + round(WINDOW / step), grid.size)
     drop = np.maximum(drop[:stop], 0.2e5)
     value = excess[:stop] * np.sqrt(np.median(drop) / drop)
     return _Response(grid[:stop], value, sample_noise(value))

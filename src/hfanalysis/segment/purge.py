@@ -62,7 +62,7 @@ def _before_knee(purge: Signal, found: Break, knee: float, window: float, reach:
 
 def _start_of_sag(coarse: Signal, level: float, drop: float) -> float | None:
     low = coarse.value < level - drop
-    lasting = max(int(LASTING / coarse.step), 2)
+    lasting = max(round(LASTING / coarse.step), 2)
     for i in np.flatnonzero(low & (coarse.time > 0.0)):
         if low[i : i + lasting].mean() > 0.9:
             return _traced_back(coarse, int(i), level, drop)
@@ -71,7 +71,7 @@ def _start_of_sag(coarse: Signal, level: float, drop: float) -> float | None:
 
 def _traced_back(coarse: Signal, index: int, level: float, drop: float) -> float:
     """The line through the first part of the sag, back to the quiet level."""
-    ahead = slice(index, index + max(int(0.2 / coarse.step), 3))
+    ahead = slice(index, index + max(round(0.2 / coarse.step), 3))
     slope = _line(coarse.time[ahead], coarse.value[ahead])
     back = drop / max(-slope, 1e-9)
     return float(coarse.time[index] - min(back, 0.5))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import pi
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,7 +34,7 @@ def flying(engine: Engine) -> Vehicle:
 
 def mass(engine: Engine, burnt: Burn) -> Array:
     """Of the rocket over the burn [kg]: dry mass, tank, grain, and the gas in the chamber."""
-    grain = pi * engine.fuel_density * engine.grain_length * (engine.outer_radius**2 - burnt.state("port_radius") ** 2)
+    grain = engine.grain.fuel(burnt.state("port_radius"))
     stored = burnt.state("chamber_oxidizer") + burnt.state("chamber_fuel")
     return np.asarray(flying(engine).dry_mass + burnt.state("tank_mass") + grain + stored)
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from hfanalysis.assembly import engine as build
 from hfanalysis.design import steady
-from hfanalysis.design.steady import Grain, Requirement, SteadyEngine
+from hfanalysis.design.steady import Requirement, SteadyEngine
+from hfanalysis.engine.grain import Grain
 from hfanalysis.errors import InputError
 from hfanalysis.flight import constant_thrust
 from hfanalysis.products.engines import Designed, Optimum

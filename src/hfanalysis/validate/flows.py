@@ -1,8 +1,7 @@
 """What flowed, as far as the log and the calibration tell: oxidizer, fuel, mixture, and the gas that they make.
 
 Until the liquid is gone the oxidizer's flow is the injector equation on the measured pressures; after that it is the
-tank alone, without nitrogen. The fuel's flow is r = a G^n on that, which for a given flow has the closed form
-r^(2 n + 1) = r_0^(2 n + 1) + (2 n + 1) a pi^-n integral of mdot^n dt.
+tank alone, without nitrogen. The fuel's flow is r = a G^n on that, which for a given flow has a closed form.
 """
 
 from __future__ import annotations
@@ -14,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.assembly.calibrated import Regression, effective_area
-from hfanalysis.compiled import compiled
-from hfanalysis.engine.nozzle import expand
+from hfanalysis.engine.grain import opened, oxidizer_flux
+from hfanalysis.engine.injector import mass_flows
+from hfanalysis.engine.nozzle import expand_along
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.products.calibration import TankConstants
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.thermo.combustion_table import Grid, gas_at
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.validate.tank_free import TankAlone
 
@@ -72,7 +71,7 @@ def oxidizer_flow(
         chamber = Signal.of(log["p_chamber"]).shifted(origin).reduced(STEP).at(time)
     source = saturation_of(definition.model.properties)
     density = source.liquid_density(source.temperature(np.clip(tank, *source.pressure_range)))
-    flow = effective_area(definition, calibration) * np.sqrt(2.0 * density * np.maximum(run - chamber, 0.0))
+    flow = mass_flows(effective_area(definition, calibration), density, run - chamber)
     flow = flow * np.interp(time, alone.measured.time, alone.factor)
     later = np.interp(time, alone.measured.time, alone.flow, right=0.0)
     t_v = segments.time("t_v")
@@ -82,17 +81,14 @@ def oxidizer_flow(
 
 def burn_fuel(engine: Engine, law: Regression, time: Array, oxidizer: Array, factor: Array | float = 1.0) -> Flows:
     """The fuel that this oxidizer flow [kg/s] burns, at ``factor`` times the rate of the law."""
-    power = 2.0 * law.n + 1.0
     steps = np.diff(time, prepend=time[0])
     flowing = oxidizer > 0.0
     summed = np.cumsum(factor * steps * np.where(flowing, oxidizer, 1.0) ** law.n * flowing)
-    opened = engine.port_radius**power + power * law.a * pi**-law.n * summed
-    port = np.minimum(opened ** (1.0 / power), engine.outer_radius)
+    port = np.minimum(opened(engine.port_radius, law.a, law.n, pi**-law.n * summed), engine.outer_radius)
     burning = (port < engine.outer_radius) & (oxidizer > 0.0)
-    flux = np.maximum(oxidizer, 0.0) / (pi * port**2)
+    flux = oxidizer_flux(np.maximum(oxidizer, 0.0), port)
     rate = np.where(burning, factor * law.a * np.where(burning, flux, 1.0) ** law.n, 0.0)
-    fuel = engine.fuel_density * 2.0 * pi * port * engine.grain_length * rate
-    return Flows(time, oxidizer, fuel, rate, port)
+    return Flows(time, oxidizer, engine.grain.ring(port) * rate, rate, port)
 
 
 @dataclass(frozen=True)
@@ -114,29 +110,8 @@ def nozzle_along(
     """
     enthalpy = engine.oxidizer_enthalpy
     assert enthalpy is not None
-    throat = engine.throat_area * np.broadcast_to(throat_factor, pressure.shape)
-    found = _nozzle_along(
-        engine.combustion.kernel, np.ascontiguousarray(pressure), np.ascontiguousarray(of_ratio), ambient,
-        throat, engine.exit_area, enthalpy,
+    found = expand_along(
+        engine.combustion.kernel, pressure, of_ratio, enthalpy, engine.throat_area * np.asarray(throat_factor),
+        engine.exit_area, ambient,
     )  # fmt: skip
     return Nozzle(*found)
-
-
-@compiled
-def _nozzle_along(
-    gas: Grid, pressure: Array, ratio: Array, ambient: float, throat: Array, exit_area: float, enthalpy: float
-) -> Array:
-    out = np.full((4, pressure.size), np.nan)
-    for i in range(pressure.size):
-        if not (ratio[i] > 0.0 and pressure[i] > 0.0):
-            continue
-        heat, gamma = gas_at(gas, np.log(pressure[i]), np.log(ratio[i]), enthalpy, 0.0)
-        flow, thrust, _, _, _ = expand(gamma, heat, pressure[i], ambient, throat[i], exit_area)
-        out[0, i], out[1, i], out[2, i], out[3, i] = flow, thrust, heat, gamma
-    return out
-
-
-def ideal_characteristic_velocity(heat: Array, gamma: Array) -> Array:
-    """c* = sqrt(R T / gamma) ((gamma + 1)/2)^((gamma + 1)/(2 (gamma - 1))) [m/s]; R T [J/kg]."""
-    power = 0.5 * (gamma + 1.0) / (gamma - 1.0)
-    return np.asarray(np.sqrt(heat / gamma) * (0.5 * (gamma + 1.0)) ** power)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.engine.nozzle import characteristic_velocity
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
@@ -18,7 +19,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO
-from hfanalysis.validate.flows import STEP, Flows, ideal_characteristic_velocity, nozzle_along
+from hfanalysis.validate.flows import STEP, Flows, nozzle_along
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import FORMAT
 from hfanalysis.validate.thrust import thrust_of
@@ -124,7 +125,7 @@ def efficiencies(
     ideal = nozzle_along(engine, pressure, ratio, ambient)
     counted = burning if purge is None else burning & (flows.time < purge)
     c_star = np.where(counted, pressure * engine.throat_area / np.where(counted, oxidizer + fuel, 1.0), np.nan)
-    out = {"c_star": c_star, "c_star_efficiency": c_star / ideal_characteristic_velocity(ideal.heat, ideal.gamma)}
+    out = {"c_star": c_star, "c_star_efficiency": c_star / characteristic_velocity(ideal.heat, ideal.gamma)}
     if "thrust_corrected" in measured:
         thrust = _smooth(measured["thrust_corrected"], width)
         force = np.where(burning, pressure * engine.throat_area, np.nan)

@@ -6,7 +6,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from hfanalysis.engine.nozzle import choked_flow_factor, expand
+from hfanalysis.engine.nozzle import area_ratio, expand, mach_at_pressure
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
@@ -139,6 +139,5 @@ def _possible(definition: TestDefinition, pressure: float, ambient: float, throa
 
 def _fully_expanded(gamma: float, pressure: float, ambient: float) -> float:
     """Thrust coefficient with the exit at ambient pressure."""
-    power = (gamma - 1.0) / gamma
-    velocity = sqrt(2.0 / power * (1.0 - (ambient / pressure) ** power))
-    return float(choked_flow_factor(gamma) * velocity)
+    ratio = area_ratio(mach_at_pressure(ambient / pressure, gamma), gamma)
+    return float(expand(gamma, 1e6, pressure, ambient, 1.0, ratio)[1] / pressure)

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.assembly.calibrated import effective_area, exponent, loaded_mass, loss_factor, tank_of_test
-from hfanalysis.engine.blowdown import FeedSystem, blow_down
+from hfanalysis.assembly.calibrated import effective_area, exponent, loaded_mass, loss_factor
+from hfanalysis.engine.blowdown import TankAlone as Tank
+from hfanalysis.engine.blowdown import tank_alone
 from hfanalysis.engine.effect import Active
-from hfanalysis.engine.model import NITROGEN, STATES
+from hfanalysis.engine.equations import NITROGEN, STATES
+from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.observe import read_as
 from hfanalysis.engine.tank import split
-from hfanalysis.engine.tank_alone import TankAlone as WithEffects
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.products.calibration import TankConstants
@@ -85,33 +86,25 @@ def run_tank_alone(
     mass, temperature = _start(saturation, tank, feed, calibration, segments, start)
     m = calibration.m.value
     acting = [active for active in effects if active.effect.term is not None]
+    ambient = definition.ambient_pressure.value
+    alone = tank_alone(saturation, feed, mass, temperature, exponent(calibration)[0], ambient, acting)
     if acting:
-        alone = tank_of_test(definition, feed, mass, temperature, exponent(calibration)[0], acting)
-        loaded = loaded_mass(definition, calibration)
-        return _with_effects(alone, loaded, log, segments, definition, part, chamber, m)
-    run = blow_down(saturation, feed, mass, temperature, part.time, chamber, exponent(calibration)[0])
+        alone = _filled(alone, loaded_mass(definition, calibration), log, segments, definition, part)
+    run = alone.run(part.time, chamber)
     wet = ~(part.time >= run.t_v)
-    density = np.where(
-        wet, saturation.liquid_density(np.where(wet, run.temperature, temperature)), run.mass / feed.volume
-    )
-    run_pressure = chamber + 0.5 * run.flow**2 / (density * feed.area**2)  # report, eq. 3.2
-    factor = np.ones(part.time.size)
-    pure = np.zeros(part.time.size)
-    return TankAlone(part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run_pressure, factor, pure)
+    liquid = saturation.liquid_density(np.where(wet, run.temperature, temperature))
+    factor = run.injector_factor(feed.area, np.where(wet, liquid, run.mass / feed.volume))
+    return TankAlone(
+        part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run.run_pressure, factor,
+        run.nitrogen_share,
+    )  # fmt: skip
 
 
-def _with_effects(
-    tank: WithEffects,
-    loaded: float,
-    log: TestLog,
-    segments: Segments,
-    definition: TestDefinition,
-    part: Signal,
-    chamber: Array,
-    m: float | None,
-) -> TankAlone:
-    """The same with effects; their own states at t_feed are those of a run from the opening."""
-    start, saturation, feed = float(part.time[0]), tank.engine.saturation, tank.engine.feed
+def _filled(
+    tank: Tank, loaded: float, log: TestLog, segments: Segments, definition: TestDefinition, part: Signal
+) -> Tank:
+    """The tank with the states that effects have at t_feed: those of a run from the opening."""
+    start, saturation = float(part.time[0]), tank.engine.saturation
     temperature, pressure = tank.engine.temperature, line_at(part, float(part.time[0]))
     ready = tank
     before = np.linspace(0.0, start, FILLING_STEPS + 1)
@@ -122,14 +115,7 @@ def _with_effects(
         temperature = float(saturation.temperature(min(pressure - beside, 0.9999 * saturation.pressure_range[1])))
         last = filled.states[-1]
         ready = tank.at(tank_temperature=temperature, tank_nitrogen=last[NITROGEN], own=last[len(STATES) :])
-    run = ready.run(part.time, chamber)
-    wet = ~(part.time >= run.t_v)
-    liquid = saturation.liquid_density(np.where(wet, run.temperature, temperature))
-    factor = run.injector_factor(feed.area, np.where(wet, liquid, run.mass / feed.volume))
-    return TankAlone(
-        part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run.run_pressure, factor,
-        run.nitrogen_share,
-    )  # fmt: skip
+    return ready
 
 
 def run_tank_free(

@@ -13,7 +13,7 @@ from hfanalysis.diagnose.naming import fading
 from hfanalysis.diagnose.naming.fading import FROM_SHAPES, STRENGTH, fades_unseen, unseen_fits
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.variants import Settings
-from hfanalysis.engine.model import RADIUS
+from hfanalysis.engine.equations import RADIUS
 from hfanalysis.inference.candidate import Bench
 from hfanalysis.inference.fitting.fit import Fit, fit
 

@@ -31,7 +31,7 @@ from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import UNITS, weak_residuals
 from hfanalysis.diagnose.weak_form.weak_product import Z90, significance, weak_product
 from hfanalysis.effects import effect
-from hfanalysis.engine.model import NITROGEN, O_CHAMBER_PRESSURE, O_TANK_PRESSURE, STATES, TEMPERATURE
+from hfanalysis.engine.equations import NITROGEN, O_CHAMBER_PRESSURE, O_TANK_PRESSURE, STATES, TEMPERATURE
 from hfanalysis.inference.fitting.hypothesis import base_hypothesis
 from hfanalysis.quantity import Quantity
 

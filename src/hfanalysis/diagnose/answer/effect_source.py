@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
 from hfanalysis.engine.effect import Active, Effect, compose
-from hfanalysis.engine.model import OUTPUTS, STATES, evaluate_rates
+from hfanalysis.engine.equations import OUTPUTS, STATES, evaluate_rates
 from hfanalysis.engine.sites import SITES
 from hfanalysis.engine.unsteady import burn, constants
 from hfanalysis.inference.fitting.fit import Fit

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.engine.model import RADIUS
+from hfanalysis.engine.equations import RADIUS
 from hfanalysis.inference.candidate import followed
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Hypothesis

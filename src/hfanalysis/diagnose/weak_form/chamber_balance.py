@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from hfanalysis.compiled import compiled
 from hfanalysis.diagnose.weak_form.cells import Cells, Piece, by_phase
 from hfanalysis.diagnose.weak_form.linear import History, integral, through, through_all
-from hfanalysis.engine.model import flux_power
-from hfanalysis.engine.nozzle import expand
+from hfanalysis.engine.chamber import chamber_volume
+from hfanalysis.engine.grain import flux_power, opened, oxidizer_flux
+from hfanalysis.engine.nozzle import expand_along
 from hfanalysis.engine.unsteady import Engine
-from hfanalysis.thermo.combustion_table import Grid, gas_at
 
 Array = NDArray[np.float64]
 
@@ -51,19 +51,14 @@ class ChamberBalance:
 
     @cached_property
     def _regression(self) -> tuple[History, History]:
-        """Port radius [m] and fuel flow [kg/s]: r^(2n+1) = r_0^(2n+1) + (2n+1) a int (mdot/pi)^n dt."""
+        """Port radius [m] and fuel flow [kg/s]."""
         e, n = self.engine, self._constant("n")
         pace = integral(through(lambda m, n: _powers(m / pi, n), self.flow, n), self.cells.width)
-        start, dense = e.port_radius, 2.0 * pi * e.grain_length * e.fuel_density
-
-        def port(a: Array, n: Array, x: Array) -> Array:
-            power = 2.0 * n + 1.0
-            return np.asarray((start**power + power * a * x) ** (1.0 / power))
-
-        radius = through(port, self._constant("a"), n, pace)
+        radius = through(lambda a, n, x: opened(e.port_radius, a, n, x), self._constant("a"), n, pace)
         fuel = through(
-            lambda a, n, m, r: dense * r * a * _powers(m / (pi * r * r), n), self._constant("a"), n, self.flow, radius
-        )
+            lambda a, n, m, r: e.grain.ring(r) * a * _powers(oxidizer_flux(m, r), n),
+            self._constant("a"), n, self.flow, radius,
+        )  # fmt: skip
         return radius, fuel
 
     @cached_property
@@ -72,9 +67,12 @@ class ChamberBalance:
         e, enthalpy, (radius, fuel) = self.engine, self.enthalpy, self._regression
 
         def expanded(p: Array, oxidizer: Array, fuel: Array, r: Array, throat: Array) -> tuple[Array, ...]:
-            volume = e.dead_volume + pi * r * r * e.grain_length
+            volume = chamber_volume(e.dead_volume, r, e.grain_length)
             ratio = np.maximum(oxidizer, LEAST_FLOW) / np.maximum(fuel, LEAST_FLOW)
-            return _expand(e.combustion.kernel, p, ratio, enthalpy, volume, throat, e.exit_area, e.ambient)
+            p = np.maximum(p, LEAST_PRESSURE)
+            gas = e.combustion.kernel
+            flow, thrust, rt, _ = expand_along(gas, p, ratio, enthalpy, throat, e.exit_area, e.ambient)
+            return p * volume / rt, flow, thrust
 
         stored, flow, thrust = through_all(
             expanded, self.channels["p_chamber"], self.flow, fuel, radius, self._constant("throat_area")
@@ -97,23 +95,3 @@ def _powers(flux: Array, n: Array) -> Array:
     for i in range(flux.size):
         out[i] = flux_power(flux[i], n[i])
     return out
-
-
-@compiled
-def _expand(
-    table: Grid,
-    pressure: Array,
-    ratio: Array,
-    enthalpy: Array,
-    volume: Array,
-    throat: Array,
-    exit_area: float,
-    ambient: float,
-) -> tuple[Array, Array, Array]:
-    stored, flow, thrust = np.empty_like(pressure), np.empty_like(pressure), np.empty_like(pressure)
-    for i in range(pressure.size):
-        p = max(pressure[i], LEAST_PRESSURE)
-        rt, gamma = gas_at(table, np.log(p), np.log(ratio[i]), enthalpy[i], 0.0)
-        stored[i] = p * volume[i] / rt
-        flow[i], thrust[i], _, _, _ = expand(gamma, rt, p, ambient, throat[i], exit_area)
-    return stored, flow, thrust

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.compiled import compiled
 from hfanalysis.diagnose.weak_form.cells import Piece, by_phase
 from hfanalysis.diagnose.weak_form.linear import History, integral, through
 from hfanalysis.diagnose.weak_form.tank_flow import TankFlow
-from hfanalysis.engine.model import COLDEST_VAPOR, WARMEST_VAPOR
-from hfanalysis.engine.tank import energy_derivatives
+from hfanalysis.engine.feed_line import line_loss
+from hfanalysis.engine.injector import mass_flows
+from hfanalysis.engine.tank import COLDEST_VAPOR, WARMEST_VAPOR, internal_energy, mass_along, polytropic
 from hfanalysis.thermo.saturation import Property
 
 Array = NDArray[np.float64]
@@ -68,9 +68,7 @@ class TankBalance(TankFlow):
 
     def _energy(self, volume: Array, mass: Array, temperature: Array) -> Array:
         """Internal energy [J] of a saturated tank."""
-        v_l, v_v, u_l, u_v = self._phases(temperature)
-        liquid = (mass * v_v - volume) / (v_v - v_l)
-        return liquid * u_l + (mass - liquid) * u_v
+        return internal_energy(self.engine.saturation, volume, mass, temperature)
 
     def _phases(self, temperature: Array) -> tuple[Array, Array, Array, Array]:
         """v_l, v_v [m^3/kg], u_l, u_v [J/kg]."""
@@ -103,7 +101,7 @@ class TankBalance(TankFlow):
         if self.dry is not None:
             start_mass = self.vapor_start[0].spread(self.dry_mass.value.size)
             empty = through(
-                lambda v, k, p, p0, m, m0: v * (1.0 - p0 / p * (m / m0) ** k) / LITRE,
+                lambda v, k, p, p0, m, m0: v * (1.0 - polytropic(p0, m0, k, m) / p) / LITRE,
                 self.constant("volume", self.dry), self.exponent,
                 self.channels["p_tank"][self.dry], self.dry_edge, self.dry_mass, start_mass,
             )  # fmt: skip
@@ -115,7 +113,7 @@ class TankBalance(TankFlow):
         table = self.engine.saturation.kernel_table
 
         def held(volume: Array, start: Array, warm: Array, t: Array) -> Array:
-            return _mass_at(table, volume[0], start[0], warm[0], t)
+            return mass_along(table, volume[0], start[0], warm[0], t)
 
         names = ("volume", "oxidizer_mass", "temperature")
         mass = through(held, *(self.constant(name, self.wet) for name in names), self.temperature)
@@ -131,44 +129,16 @@ class TankBalance(TankFlow):
         return pieces
 
     def feed(self) -> list[Piece]:
-        """p_tank - p_run less the line's loss K mdot^2 / rho = 2 K (C_i N_i A_i)^2 (p_run - p_c) [bar]."""
+        """p_tank - p_run less the line's loss K mdot^2 / rho [bar]."""
         constant = self.constant_loss
 
         def unexplained(tank: Array, run: Array, chamber: Array, area: Array, factor: Array) -> Array:
-            loss = 2.0 * factor * area**2 * np.maximum(run - chamber, 0.0)
+            loss = line_loss(factor, mass_flows(area, 1.0, run - chamber), 1.0)  # of the flow of any density
             if self.engine.feed.constant_losses is not None:
                 return (tank - run - constant) / BAR
-            return (tank - run - loss) / BAR
+            return np.asarray((tank - run - loss) / BAR)
 
         pressures = (self.channels[name] for name in ("p_tank", "p_run", "p_chamber"))
         return by_phase(
             self.cells, through(unexplained, *pressures, self.constant("area"), self.constant("loss_factor"))
         )
-
-
-@compiled
-def _mass_at(
-    table: tuple[Array, float, float, float], volume: float, start: float, warm: float, temperatures: Array
-) -> Array:
-    """Mass [kg] of an adiabatic saturated tank at temperatures [K], from ``start`` at ``warm``: dM/dT = U_T/(h_l-U_M)
-    does not ask how fast it cools."""
-    out = np.empty_like(temperatures)
-    mass, t = start, warm
-    for i in range(temperatures.size):
-        steps = max(int(np.ceil(abs(temperatures[i] - t) / 0.5)), 1)
-        h = (temperatures[i] - t) / steps
-        for _ in range(steps):
-            k1 = _slope(table, volume, mass, t)
-            k2 = _slope(table, volume, mass + 0.5 * h * k1, t + 0.5 * h)
-            k3 = _slope(table, volume, mass + 0.5 * h * k2, t + 0.5 * h)
-            k4 = _slope(table, volume, mass + h * k3, t + h)
-            mass += h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
-            t += h
-        out[i] = mass
-    return out
-
-
-@compiled
-def _slope(table: tuple[Array, float, float, float], volume: float, mass: float, temperature: float) -> float:
-    by_mass, by_temperature, h_l = energy_derivatives(table, volume, mass, temperature)
-    return by_temperature / (h_l - by_mass)

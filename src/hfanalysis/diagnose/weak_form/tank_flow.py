@@ -1,8 +1,8 @@
 """What the tank holds and what passes the injector, from measured pressures and the injector's constants.
 
-The flow (report, eq. 3.2) is C_i N_i A_i sqrt(2 rho (p_run - p_c)); without p_run the feed line's quadratic loss is
+The flow is the injector's (report, eq. 3.2); without p_run the feed line's quadratic loss is
 added to the injector's. The tank's mass is not measured: it is integrated from the flow. With the vapour's density M/V
-that gives sqrt(M) = sqrt(M_v) - C_i N_i A_i / sqrt(2 V) int sqrt(dp) dt.
+that gives sqrt(M) = sqrt(M_v) - int mdot / (2 sqrt(M)) dt, in which mdot / sqrt(M) does not depend on M.
 """
 
 from __future__ import annotations
@@ -14,11 +14,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from hfanalysis.compiled import compiled
 from hfanalysis.diagnose.weak_form.cells import Cells
 from hfanalysis.diagnose.weak_form.linear import History, integral, joined, through, total
-from hfanalysis.engine.injector import root
-from hfanalysis.engine.model import COLDEST_VAPOR, WARMEST_VAPOR
+from hfanalysis.engine.injector import flow_resistance, mass_flows
+from hfanalysis.engine.tank import COLDEST_VAPOR, WARMEST_VAPOR
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
 from hfanalysis.thermo.saturation import Property
@@ -61,14 +60,16 @@ class TankFlow:
         feed = self.engine.feed
         if "p_run" in self.channels or feed.constant_losses is not None:
             return self.constants["area"]
-        return through(lambda a, k: (2.0 * k + a**-2.0) ** -0.5, self.constants["area"], self.constants["loss_factor"])
+        return through(
+            lambda a, k: (2.0 * flow_resistance(a, k)) ** -0.5, self.constants["area"], self.constants["loss_factor"]
+        )
 
     @cached_property
-    def _root_drop(self) -> History:
-        """sqrt of the pressure drop across it [Pa^0.5]."""
+    def _drop(self) -> History:
+        """Pressure drop across it [Pa]."""
         upstream = self.channels.get("p_run", self.channels["p_tank"])
         lost = self.constant_loss if "p_run" not in self.channels else 0.0
-        return through(lambda p, c: _roots(p - c - lost), upstream, self.channels["p_chamber"])
+        return through(lambda p, c: p - c - lost, upstream, self.channels["p_chamber"])
 
     @property
     def constant_loss(self) -> Array | float:
@@ -88,9 +89,7 @@ class TankFlow:
         """Oxidizer flow [kg/s] while there is liquid."""
         area = self._resistance.spread(self.cells.wet)
         density = self.engine.saturation.liquid_density
-        return through(
-            lambda a, t, x: a * np.sqrt(2.0 * density(t)) * x, area, self.temperature, self._root_drop[self.wet]
-        )
+        return through(lambda a, t, x: mass_flows(a, density(t), x), area, self.temperature, self._drop[self.wet])
 
     @cached_property
     def wet_mass(self) -> History:
@@ -110,13 +109,14 @@ class TankFlow:
         """What the tank holds [kg] after the end of the liquid."""
         assert self.dry is not None
         count = self.dry.stop - self.dry.start
-        passed = integral(self._root_drop[self.dry], self.cells.width[self.dry])
+        area, volume = self._resistance.spread(count), self.constant("volume", self.dry)
+        # the flow at the density M/V is sqrt(M) times that at 1/V
+        pace = through(lambda a, v, x: 0.5 * mass_flows(a, 1.0 / v, x), area, volume, self._drop[self.dry])
 
-        def left(start: Array, area: Array, volume: Array, x: Array) -> Array:
-            return np.asarray(np.maximum(np.sqrt(start) - area * x / np.sqrt(2.0 * volume), 1e-3) ** 2)
+        def left(start: Array, x: Array) -> Array:
+            return np.asarray(np.maximum(np.sqrt(start) - x, 1e-3) ** 2)
 
-        start, area = self.vapor_start[0].spread(count), self._resistance.spread(count)
-        return through(left, start, area, self.constant("volume", self.dry), passed)
+        return through(left, self.vapor_start[0].spread(count), integral(pace, self.cells.width[self.dry]))
 
     @cached_property
     def exponent(self) -> History:
@@ -137,11 +137,11 @@ class TankFlow:
         assert self.dry is not None
         area = self._resistance.spread(self.dry_mass.value.size)
         return through(
-            lambda a, m, v, x: a * np.sqrt(2.0 * m / v) * x,
+            lambda a, m, v, x: mass_flows(a, m / v, x),
             area,
             self.dry_mass,
             self.constant("volume", self.dry),
-            self._root_drop[self.dry],
+            self._drop[self.dry],
         )
 
     @cached_property
@@ -189,11 +189,3 @@ class TankFlow:
         inside = np.clip(self.dry_temperature.value, COLDEST_VAPOR, WARMEST_VAPOR)
         vapor = e.saturation.energy(Property.VAPOR_ENTHALPY, inside)[0]
         return FORMATION_OFFSET + np.concatenate([liquid, vapor])
-
-
-@compiled
-def _roots(drop: Array) -> Array:
-    out = np.empty_like(drop)
-    for i in range(drop.size):
-        out[i] = root(drop[i])
-    return out

@@ -32,7 +32,7 @@ from hfanalysis.diagnose.weak_form.chamber_balance import ChamberBalance
 from hfanalysis.diagnose.weak_form.linear import History
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.tank_balance import TankBalance
-from hfanalysis.engine.model import O_ENTHALPY, O_OXIDIZER_FLOW
+from hfanalysis.engine.equations import O_ENTHALPY, O_OXIDIZER_FLOW
 from hfanalysis.engine.observe import observe
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 

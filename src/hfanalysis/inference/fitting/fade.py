@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import log, pi
+from math import log
 
 import numpy as np
 
+from hfanalysis.engine.chamber import chamber_volume
 from hfanalysis.engine.observe import true_channels
 from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.inference.observations.burn_out import AFTER, about, fall_of
@@ -62,8 +63,8 @@ def abrupt(observed: Observed, engine: Engine) -> float:
 
 def abrupt_end(engine: Engine) -> float:
     """Seconds in which a chamber without fuel empties through its throat: V / (A c*), Sutton and Biblarz, chapter 6."""
-    volume = engine.dead_volume + pi * engine.outer_radius**2 * engine.grain_length
-    return FALL * volume / (engine.throat_area * CHOKED_FLOW * CHARACTERISTIC_VELOCITY)
+    volume = chamber_volume(engine.dead_volume, engine.outer_radius, engine.grain_length)
+    return FALL * float(volume) / (engine.throat_area * CHOKED_FLOW * CHARACTERISTIC_VELOCITY)
 
 
 def fade_misfit(seconds: float, abrupt: float, engine: Engine, speed: float) -> float:

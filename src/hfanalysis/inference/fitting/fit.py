@@ -21,8 +21,13 @@ from hfanalysis.inference.observations.observed import Observed
 Array = NDArray[np.float64]
 
 ITERATIONS = 25
-CONVERGED = 0.02
-"""Change of the objective below which a fit is done, in units of log probability."""
+CONVERGED, ENDED = 0.02, 1e-5
+"""Change of the objective below which a fit that looks around is done, and one whose numbers are told, in units of log
+probability: within 0.02 of its most probable value a parameter may be a fifth of its deviation away, within 1e-5 by
+half a percent of it."""
+
+LAST_STEPS = 8
+"""Steps by slopes alone in which a fit comes to its end, if it does."""
 
 STEEPEST = 1e8
 """Standard deviations of an observation per one of a parameter beyond which a slope is none."""
@@ -38,8 +43,9 @@ TRIALS = 12
 class Fit:
     """The most probable ``x`` of a hypothesis, its covariance, the whitened residual there and the log evidence.
 
-    The evidence is a density, in units that do not depend on the hypothesis or on the model-form error. ``converged``:
-    going on would bring nothing, for the slopes promise nothing or no step along them that was tried is better.
+    The evidence is a density, in units that do not depend on the hypothesis or on the model-form error. ``within``: the
+    change of the objective below which going on would bring nothing, for the slopes promise no more or no step along
+    them that was tried is better; infinite where the fit was stopped on its way.
     """
 
     hypothesis: Hypothesis
@@ -49,7 +55,12 @@ class Fit:
     slopes: Array
     burnt: Burn
     log_evidence: float
-    converged: bool
+    within: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether it is done, if only by what is enough to look around."""
+        return self.within <= CONVERGED
 
     @property
     def values(self) -> dict[str, float]:
@@ -69,17 +80,24 @@ class Fit:
         return 0.5 * float(self.residual @ self.residual + self.x @ self.x)
 
 
-def fit(hypothesis: Hypothesis, observed: Observed, start: Array | None = None, most: int = ITERATIONS) -> Fit:
+def fit(
+    hypothesis: Hypothesis,
+    observed: Observed,
+    start: Array | None = None,
+    most: int = ITERATIONS,
+    within: float = CONVERGED,
+) -> Fit:
     """The most probable parameters: Gauss-Newton steps, damped where one does not lower the objective.
 
-    Raises ValueError or ArithmeticError where the start cannot be run.
+    At ``most`` so many steps, and no more once one changes the objective by less than ``within``. Raises ValueError or
+    ArithmeticError where the start cannot be run.
     """
     least, highest = hypothesis.bounds
     x = np.clip(np.zeros(hypothesis.size) if start is None else np.asarray(start, dtype=np.float64), least, highest)
-    return _fitted(hypothesis, observed, x, predict(hypothesis, observed, x, tangents=True), most)
+    return _fitted(hypothesis, observed, x, predict(hypothesis, observed, x, tangents=True), most, within)
 
 
-def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATIONS) -> Fit:
+def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATIONS, within: float = CONVERGED) -> Fit:
     """A fit to ``before`` gone on with, to the same data with another model-form error if that is asked for.
 
     Where it ended its slopes are known: no run is needed to begin with. Raises as :func:`fit`.
@@ -87,10 +105,10 @@ def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATI
     residual, slopes = found.residual, found.slopes
     if observed is not before:
         residual, slopes = (observed.rewhitened(rows, before) for rows in (residual, slopes))
-    return _fitted(found.hypothesis, observed, found.x, Prediction(residual, slopes, found.burnt), most)
+    return _fitted(found.hypothesis, observed, found.x, Prediction(residual, slopes, found.burnt), most, within)
 
 
-def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Prediction, most: int) -> Fit:
+def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Prediction, most: int, within: float) -> Fit:
     """From ``x``, where the prediction is ``here``."""
     if not usable(here):
         raise ArithmeticError("the model has no slopes where its fit starts")
@@ -109,13 +127,13 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
             if trial is not None and part > TRUST:
                 moved, radius = trial, grown(radius, length, part)
                 break
-            if expected < CONVERGED:
+            if expected < within:
                 break  # a shorter step brings less
             radius = shrunk(length, part)
         if moved is None:
             done = True
             break
-        if before - _objective(moved, x + step) < CONVERGED:
+        if before - _objective(moved, x + step) < within:
             x, here, done = x + step, replace(moved, slopes=here.slopes), True  # so near by, slopes are the same
             break
         there = with_slopes(hypothesis, observed, x + step, moved)
@@ -123,10 +141,43 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
             radius = shrunk(length, np.nan)  # a point without slopes leads nowhere: a shorter step
             continue
         x, here = x + step, there
+    return _fit_at(hypothesis, observed, x, here, within if done else np.inf)
+
+
+def _fit_at(hypothesis: Hypothesis, observed: Observed, x: Array, here: Prediction, within: float) -> Fit:
+    """The fit that ends at ``x``, where the prediction is ``here``."""
     assert here.slopes is not None
     evidence = log_evidence(here.residual, here.slopes, x, observed, hypothesis)
     covariance = np.asarray(np.linalg.inv(here.slopes.T @ here.slopes + np.eye(x.size)))
-    return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, done)
+    return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, within)
+
+
+def brought_to_end(found: Fit, observed: Observed) -> Fit:
+    """A fit that is near its end, taken there by slopes alone; one that does not get there is as it was.
+
+    What a run errs by moves the objective by some hundredths, which is the square of what it moves the most probable
+    parameters by: so near by, whether a step is better the slopes tell, not the objective. Raises as :func:`fit`.
+    """
+    hypothesis, x = found.hypothesis, found.x
+    here = with_slopes(hypothesis, observed, x, Prediction(found.residual, None, found.burnt))  # its own may lag behind
+    for _ in range(LAST_STEPS):
+        if not usable(here):
+            break
+        step = _whole_step(hypothesis, here, x)
+        expected = _expected(here, x, step)
+        if expected < ENDED:
+            return _fit_at(hypothesis, observed, x, here, ENDED)
+        if expected > CONVERGED:
+            break
+        here, x = predict(hypothesis, observed, x + step, tangents=True), x + step
+    return found
+
+
+def _whole_step(hypothesis: Hypothesis, here: Prediction, x: Array) -> Array:
+    """The step to the lowest point by the slopes, within bounds."""
+    assert here.slopes is not None
+    gradient, curvature = here.slopes.T @ here.residual + x, here.slopes.T @ here.slopes + np.eye(x.size)
+    return step_within(np.inf, gradient, curvature, box_about(x, *hypothesis.bounds))
 
 
 def log_evidence(residual: Array, slopes: Array, x: Array, observed: Observed, hypothesis: Hypothesis) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import asinh, cosh, exp, log, pi, sinh
+from math import asinh, cosh, exp, log, sinh
 from typing import Any, Literal
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.assembly.calibrated import ASSUMED_EXPONENT
 from hfanalysis.engine.effect import Active, Effect
+from hfanalysis.engine.grain import oxidizer_flux
 from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.inference.splines import Splines
@@ -253,7 +254,7 @@ def mid_flux(engine: Engine) -> float:
     pressure = float(engine.saturation.pressure(engine.temperature))
     density = float(engine.saturation.liquid_density(engine.temperature))
     flow = mass_flow_with_feed(engine.feed.area, engine.feed.loss_factor, density, pressure / 1.5)
-    return float(flow / (pi * (0.5 * (engine.port_radius + engine.outer_radius)) ** 2))
+    return float(oxidizer_flux(flow, 0.5 * (engine.port_radius + engine.outer_radius)))
 
 
 def _moved(effects: tuple[Active, ...], values: Mapping[str, float]) -> tuple[Active, ...]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.engine.effect import Parameter
-from hfanalysis.engine.model import O_OXIDIZER_FLOW
+from hfanalysis.engine.equations import O_OXIDIZER_FLOW
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, M_LIQUID, switch, term
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis

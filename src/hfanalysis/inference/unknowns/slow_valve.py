@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from hfanalysis.engine.effect import Parameter
-from hfanalysis.engine.model import O_TANK_PRESSURE, OUTPUTS
+from hfanalysis.engine.equations import O_TANK_PRESSURE, OUTPUTS
 from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, switch, term
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis

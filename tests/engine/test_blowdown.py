@@ -1,6 +1,8 @@
-"""The tank alone on the engine's equations: the base model's blowdown, and the engine's own course with effects."""
+"""The tank alone on the engine's equations: whatever stands behind it, and the engine's own course with effects."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,15 +10,14 @@ from tests.effects.runs import typical
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect
-from hfanalysis.engine.blowdown import blow_down
-from hfanalysis.engine.model import STATES
-from hfanalysis.engine.tank_alone import TankAlone
+from hfanalysis.engine.blowdown import TankAlone, blow_down
+from hfanalysis.engine.equations import STATES
 from hfanalysis.engine.unsteady import burn
 
 TIME = np.linspace(0.0, 9.0, 1801)
 
 
-def test_with_next_to_no_heat_it_is_the_blowdown() -> None:
+def test_what_stands_behind_the_injector_and_next_to_no_heat_change_nothing() -> None:
     engine = engine_on_stand(effects=(effect("tank_heat").at(power=1e-9),))
     chamber = 14e5 - 5e4 * TIME
     run = TankAlone.of(engine).run(TIME, chamber)
@@ -25,6 +26,17 @@ def test_with_next_to_no_heat_it_is_the_blowdown() -> None:
     assert run.pressure == pytest.approx(plain.pressure, rel=1e-9)
     assert run.flow == pytest.approx(plain.flow, rel=1e-8)
     assert run.mass == pytest.approx(plain.mass, rel=1e-9)
+
+
+def test_an_exponent_that_the_engine_does_not_state_is_the_vapours_own() -> None:
+    """c_p/c_v as the liquid ends, as in the engine's own course."""
+    engine = engine_on_stand(polytropic_exponent=None)
+    run = TankAlone.of(engine).run(TIME, np.full(TIME.size, 14e5))
+    cv, cp = engine.saturation.heat_capacities(float(run.temperature[run.t_v > TIME][-1]))
+    dry = run.t_v < TIME
+    assert run.states[dry, STATES.index("vapor_exponent")] == pytest.approx(float(cp / cv), rel=1e-3)
+    stated = TankAlone.of(replace(engine, polytropic_exponent=float(run.states[-1, STATES.index("vapor_exponent")])))
+    assert run.pressure == pytest.approx(stated.run(TIME, np.full(TIME.size, 14e5)).pressure, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,95 @@
+"""What stands in for what nobody states of a firing, and where drawn flights say nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.segment.heated_cell import EMPTY, heated, quenched
+from tests.segment.stand import Trial, definition, segments_of
+
+from hfanalysis.flight.ascent import RESULTS
+from hfanalysis.flight.summary import ASCENT
+from hfanalysis.measured_flight.propellant import _exponent, propellant
+from hfanalysis.measured_flight.thrust import MeasuredThrust, _drift_taken, measured_thrust
+from hfanalysis.measured_flight.uncertainty import Dispersion
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.log import TestLog
+from hfanalysis.record.sections import Grain
+from hfanalysis.record.signals import Signal
+from hfanalysis.units import Value
+from hfanalysis.validate.thrust import Thrust
+
+
+@pytest.fixture(scope="module")
+def burn() -> Trial:
+    return quenched()
+
+
+def flown(test: Trial, log: TestLog) -> MeasuredThrust:
+    return measured_thrust(log, segments_of(test, t_end=Quantity(EMPTY, "s", 0.01)), definition(test.stand))
+
+
+def test_how_far_a_drift_has_come_is_anything_from_nothing_to_all(burn: Trial) -> None:
+    """At any moment: the standard deviation of even odds between 0 and its size."""
+    drawn = 300.0 * np.random.default_rng(6).uniform(size=20_000)
+    assert flown(burn, heated(burn, 300.0)).drift_std == pytest.approx(np.std(drawn), rel=0.15)
+
+
+def test_a_drift_that_nothing_shows_is_a_hundredth_of_the_peak(burn: Trial) -> None:
+    log = heated(burn, 0.0)
+    blind = replace(log, channels={**log.channels, "p_chamber": replace(log["p_chamber"], zero_std=None)})
+    peak = float(burn.values["thrust"].max())
+    assert flown(burn, blind).drift_std == pytest.approx(0.01 * peak, rel=0.02)
+
+
+def test_a_cell_of_which_nothing_is_said_is_off_by_a_hundredth(burn: Trial) -> None:
+    log = heated(burn, 0.0)
+    unknown = replace(log["thrust"], accuracy_stated=False)
+    assert flown(burn, replace(log, channels={**log.channels, "thrust": unknown})).gain_std == 0.01
+
+
+@pytest.mark.parametrize(("size", "told"), [(200.0, True), (0.0, False)])
+def test_a_drift_is_told_where_it_is_taken_off(burn: Trial, size: float, told: bool) -> None:
+    assert any("drift taken off" in note for note in flown(burn, heated(burn, size)).notes) is told
+
+
+def test_masses_without_a_deviation_are_known_to_a_hundredth(burn: Trial) -> None:
+    grain = Grain(mass=Value(1.6), length=Value(0.6), density=Value(900.0), outer_radius=Value(40e-3))
+    stated = definition(burn.stand, mass=Value(10.0), grain=grain)
+    log = heated(burn, 0.0)
+    found = propellant(log, segments_of(burn), None, stated, flown(burn, log))
+    assert found.loaded_std == pytest.approx(np.hypot(0.1, 0.016))
+    assert not found.stated_std
+
+
+@pytest.mark.parametrize(("n", "used"), [(0.45, 0.45), (1.5, 1.5), (-0.1, 0.5), (2.4, 0.5), (None, 0.5)])
+def test_a_calibrated_exponent_is_taken_where_fuels_may_have_it(n: float | None, used: float) -> None:
+    calibration: dict[str, Any] = {"n": {"value": n}}
+    assert _exponent(definition(), calibration)[0] == used
+
+
+def results(reached: int) -> Dispersion:
+    """A thousand flights of which so many leave the rail."""
+    values = np.random.default_rng(7).normal(1000.0, 50.0, (1000, RESULTS))
+    values[reached:, ASCENT["rail_departure_velocity"][0]] = np.nan
+    return Dispersion(values, np.zeros(1), {})
+
+
+def test_a_quantity_that_one_flight_in_five_lacks_has_no_spread() -> None:
+    """Of those that have it the spread would be too small."""
+    assert "rail_departure_velocity" in results(950).spreads()
+    assert "rail_departure_velocity" not in results(800).spreads()
+    found = results(1000).spreads()["apogee"]
+    assert found.std == pytest.approx(50.0, rel=0.1)
+    assert found.ci95 == pytest.approx((1000.0 - 98.0, 1000.0 + 98.0), abs=15.0)
+
+
+@pytest.mark.parametrize(
+    ("drift", "told"), [(0.3, ()), (0.7, ("1 N of the load cell's drift taken off over the burn",))]
+)
+def test_a_drift_is_told_that_does_not_round_to_nothing(burn: Trial, drift: float, told: tuple[str, ...]) -> None:
+    signal = Signal.of(heated(burn, 0.0)["thrust"])
+    assert _drift_taken(Thrust(signal, drift, np.nan)) == told

@@ -1,0 +1,69 @@
+"""Efficiencies and balances of a burn that is the model's own: whole, and those of textbooks."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from tests.engine.stand import engine_on_stand
+
+from hfanalysis.engine.unsteady import Burn, burn
+from hfanalysis.thermo.combustion import equilibrium
+from hfanalysis.validate.flows import STEP, Flows
+from hfanalysis.validate.histories import closure, efficiencies
+from hfanalysis.validate.performance import Fire
+
+AMBIENT = 101_325.0
+FIRE = Fire(4.5, 0.01, "video")
+
+
+@cache
+def run() -> Burn:
+    return burn(engine_on_stand(oxidizer_enthalpy=engine_on_stand().oxidizer_enthalpy), 10.0)
+
+
+def histories() -> tuple[dict[str, np.ndarray], Flows]:
+    """Chamber pressure, thrust and flows of the liquid phase on an even clock."""
+    time = np.arange(0.0, 5.0, STEP)
+    found = {n: np.interp(time, run().time, run().output(n)) for n in
+             ("chamber_pressure", "thrust", "oxidizer_flow", "fuel_flow")}  # fmt: skip
+    flows = Flows(time, found["oxidizer_flow"], found["fuel_flow"], np.zeros(time.size), np.zeros(time.size))
+    return {"p_chamber": found["chamber_pressure"], "thrust_corrected": found["thrust"]}, flows
+
+
+@pytest.fixture(scope="module")
+def engine():  # type: ignore[no-untyped-def]
+    """With the enthalpy that its oxidizer enters with."""
+    enters = float(np.median(run().output("oxidizer_enthalpy")))
+    return engine_on_stand(oxidizer_enthalpy=enters)
+
+
+def test_the_models_own_burn_is_whole(engine) -> None:  # type: ignore[no-untyped-def]
+    """It burns in equilibrium and has the ideal nozzle."""
+    measured, flows = histories()
+    found = efficiencies(measured, flows, engine, AMBIENT, FIRE, None)
+    steady = (flows.time > 0.5) & (flows.time < 4.3)
+    for name in ("c_star_efficiency", "thrust_coefficient_efficiency"):
+        assert found[name][steady] == pytest.approx(1.0, abs=0.015), name
+
+
+def test_c_star_is_that_of_the_gas_and_the_thrust_is_its_coefficient_times_p_c_a_t(engine) -> None:  # type: ignore[no-untyped-def]
+    measured, flows = histories()
+    found = efficiencies(measured, flows, engine, AMBIENT, FIRE, None)
+    for i in np.flatnonzero((flows.time > 0.5) & (flows.time < 4.3))[::40]:
+        gas = equilibrium(float(measured["p_chamber"][i]), float(flows.of_ratio[i]), engine.oxidizer_enthalpy)
+        assert found["c_star"][i] == pytest.approx(gas.characteristic_velocity, rel=0.015)
+        by_hand = measured["thrust_corrected"][i] / (measured["p_chamber"][i] * engine.throat_area)
+        assert found["thrust_coefficient"][i] == pytest.approx(by_hand, rel=0.01)
+        assert 1.2 < by_hand < 1.6
+
+
+def test_what_went_through_the_injector_and_off_the_grain_went_through_the_nozzle(engine) -> None:  # type: ignore[no-untyped-def]
+    measured, flows = histories()
+    found = {n: q.value for n, q in closure(flows, measured, engine, AMBIENT, FIRE, None).items()}
+    burnt = flows.time <= FIRE.end
+    assert found["oxidizer_through_injector"] == pytest.approx(np.trapezoid(flows.oxidizer[burnt], flows.time[burnt]))
+    assert found["fuel_burned"] == pytest.approx(np.trapezoid(flows.fuel[burnt], flows.time[burnt]))
+    entered = found["oxidizer_through_injector"] + found["fuel_burned"]
+    assert found["propellant_through_nozzle"] == pytest.approx(entered, rel=0.02)
