@@ -90,6 +90,7 @@ def main() -> int:
         "--each", type=int, default=12, help="errors by rule in each room, beside those that were tried before"
     )
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--known", action="store_true", help="try none: the page of what is known")
     parser.add_argument("--again", action="store_true", help="also what is known")
     parser.add_argument("--write", type=Path)
     parser.add_argument("--found", type=Path, default=FOUND)
@@ -99,9 +100,10 @@ def main() -> int:
     if asked.list:
         print("\n".join(f"{m.name} ({m.kind}, {m.edit.file}:{m.edit.line})" for m in mutants))
         return 0
-    tried(mutants, asked.found, asked.scratch, asked.again)
+    if not asked.known:
+        tried(mutants, asked.found, asked.scratch, asked.again)
     rows = read(asked.found)
-    results = [rows[m.name] for m in mutants if known(rows.get(m.name), m)]
+    results = [{**rows[m.name], "file": m.edit.file.as_posix()} for m in mutants if known(rows.get(m.name), m)]
     if asked.write:
         asked.write.write_text(page(results), encoding="utf-8")
     return int(any(r["verdict"] != "killed" and r["kind"] == "by hand" for r in results))
