@@ -24,7 +24,7 @@ PACKAGE = Path(__file__).resolve().parent
 
 _BEFORE = f"{PACKAGE}{os.sep}"
 _TEXTS = ("'" * 3, '"' * 3)
-_TYPING = re.compile(r"\nif TYPE_CHECKING:\n(?:[ \t].*\n|\n)*")
+_TYPING = re.compile(r"\nif TYPE_CHECKING:.*\n(?:[ \t].*\n|\n)*")
 _STATEMENT = re.compile(r"\n([ \t]*)(?:from ([\w.]+) import (\([^)]*\)|.*)|import (.*))")
 _NAMED = re.compile(rf'"({PACKAGE.name}(?:\.\w+)+)"')
 _WALKS = ("(__path__)", 'import_module(f"{__name__}.')

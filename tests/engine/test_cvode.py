@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from benchmarks.cvode import burn_by_cvode
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect
-from hfanalysis.engine.cvode import burn_by_cvode
 from hfanalysis.engine.equations import IMPULSE, TANK
 from hfanalysis.engine.phases import FUEL_OUT, LIQUID_OUT
 from hfanalysis.engine.unsteady import Engine, burn

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.blowdown import TankRun, blow_down
 from hfanalysis.engine.closure import implied_heat
 from hfanalysis.engine.feed_line import FeedSystem
@@ -22,7 +23,7 @@ from hfanalysis.engine.tank import (
     split,
 )
 from hfanalysis.thermo.nitrous import SOURCES, saturation
-from hfanalysis.thermo.saturation import Array, Property, Saturation
+from hfanalysis.thermo.saturation import Property, Saturation
 
 VOLUME = 16.5e-3
 MASS = 10.0

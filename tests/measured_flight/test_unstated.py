@@ -68,8 +68,8 @@ def test_masses_without_a_deviation_are_known_to_a_hundredth(burn: Trial) -> Non
 
 @pytest.mark.parametrize(("n", "used"), [(0.45, 0.45), (1.5, 1.5), (-0.1, 0.5), (2.4, 0.5), (None, 0.5)])
 def test_a_calibrated_exponent_is_taken_where_fuels_may_have_it(n: float | None, used: float) -> None:
-    found = {} if n is None else {"n": Quantity(n)}
-    assert _exponent(definition(), filled(Calibration, found))[0] == used
+    calibration = filled(Calibration, {"n": Quantity.absent("not known") if n is None else Quantity(n)})
+    assert _exponent(definition(), calibration)[0] == used
 
 
 def results(reached: int) -> Dispersion:

@@ -7,8 +7,9 @@ import pytest
 from simulated.stand import noise
 from tests.segment.stand import signal
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise, pool
-from hfanalysis.record.signals import Array, sample_noise
+from hfanalysis.record.signals import sample_noise
 
 RATE, WHITE, FLICKER = 200.0, 1500.0, 4.0e5
 TRIALS = 600

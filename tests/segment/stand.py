@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from simulated.stand import noise
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.blowdown import blow_down
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.products.segments import EVENTS, Segments
@@ -20,7 +21,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import FileSpec, LogSpec, Test, TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.sections import Injector, Model, Nozzle, Purge, Site, Tank
-from hfanalysis.record.signals import Array, Signal, sample_noise
+from hfanalysis.record.signals import Signal, sample_noise
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
 

@@ -9,8 +9,8 @@ import pytest
 from simulated.stand import noise
 from tests.segment.stand import signal
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
-from hfanalysis.record.signals import Array
 from hfanalysis.segment.breaks import Break, combine, find_break, kink, memory_length
 from hfanalysis.segment.refine import refine_kink, refine_knee, refine_step
 

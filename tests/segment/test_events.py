@@ -9,8 +9,9 @@ import pytest
 from simulated.stand import noise
 from tests.segment.stand import AMBIENT, Stand, Trial, fire, signal
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.tank import mass_along_blowdown
-from hfanalysis.record.signals import Array, Signal
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_unchoking
 from hfanalysis.segment.falls import abrupt_falls
 from hfanalysis.segment.feed import find_line_full

@@ -9,9 +9,10 @@ import pytest
 from simulated.stand import noise
 from tests.segment.stand import AMBIENT, definition, fire, log_of, signal
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.record.log import TestLog
-from hfanalysis.record.signals import Array, Signal
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.opening import find_opening
 from hfanalysis.segment.phases import find_phases
 

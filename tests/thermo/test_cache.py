@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hfanalysis.arrays import Array
 from hfanalysis.thermo import cache, coolprop_nitrous
 from hfanalysis.thermo.cache import cache_directory
-from hfanalysis.thermo.saturation import Array, Property
+from hfanalysis.thermo.saturation import Property
 
 
 class Source:

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hfanalysis.arrays import Array
 from hfanalysis.design.steady import Requirement, ideal_specific_impulse, optimum
 from hfanalysis.thermo.combustion import (
     FORMATION_OFFSET,
@@ -33,7 +34,7 @@ from hfanalysis.thermo.combustion_table import (
 )
 from hfanalysis.thermo.constants import GAS_CONSTANT, OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.nitrous import saturation
-from hfanalysis.thermo.saturation import Array, Property
+from hfanalysis.thermo.saturation import Property
 
 DESIGN = Requirement(2.5, 27.579e5, 0.84623 * 101325.0, None)
 

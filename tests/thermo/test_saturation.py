@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hfanalysis.arrays import Array
 from hfanalysis.thermo import coolprop_nitrous
 from hfanalysis.thermo.nitrous import SOURCES, saturation
-from hfanalysis.thermo.saturation import Array, Property, Saturation
+from hfanalysis.thermo.saturation import Property, Saturation
 
 Curve = Callable[[Saturation, float], tuple[Array, Array]]
 

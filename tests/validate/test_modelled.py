@@ -35,7 +35,7 @@ def calibration(**std: float) -> Calibration:
         "C_i": 0.3, "m": engine.polytropic_exponent, "K_loss": engine.feed.loss_factor, "n": engine.n,
         "regression_rate_reference": engine.a * FLUX**engine.n, "oxidizer_mass": engine.oxidizer_mass,
     }  # fmt: skip
-    found = {name: Quantity(value, "", std.get(name, 0.0)) for name, value in values.items()}
+    found = {n: Quantity(v, std=std.get(n, 0.0)) for n, v in values.items()}
     return filled(Calibration, {**found, "regression": {"reference_flux": Quantity(FLUX)}})
 
 
@@ -101,7 +101,7 @@ def test_its_deviations_are_those_of_the_constants_carried_through_the_engine(
     name: str, share: float, moved: Any
 ) -> None:
     """Against burns drawn with them, as Gauss and Hermite would draw three."""
-    std = share * calibration().quantities[name].value
+    std = share * getattr(calibration(), name).value
     found = modelled(run(), calibration(**{name: std}))
     burns = [burn(moved(run().engine, z * std), longest=60.0) for z in np.sqrt(3.0) * np.array([-1.0, 0.0, 1.0])]
     for told, of, least in (

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.optimize import brentq
 
+from hfanalysis.arrays import Array
 from hfanalysis.calibrate.measured_pressures import Histories
 from hfanalysis.compiled import compiled
 from hfanalysis.engine.blowdown import TankAlone, TankRun, tank_alone
@@ -27,8 +27,6 @@ from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.injector import mass_flow
 from hfanalysis.engine.tank import compressibility
 from hfanalysis.thermo.saturation import Saturation
-
-Array = NDArray[np.float64]
 
 EXPONENTS = (0.05, 6.0)
 """Between which m is looked for; no gas expands outside."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction
 from hfanalysis.calibrate.loaded_mass import LoadedMass, load_cell_mass
 from hfanalysis.calibrate.measured_pressures import Histories
@@ -27,9 +27,6 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.saturation import Saturation
-
-Array = NDArray[np.float64]
-
 
 HISTORY_POINTS = 200
 """Points of a stored history: block means over the liquid phase."""

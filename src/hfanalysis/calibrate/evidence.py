@@ -11,14 +11,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, starting_for
 from hfanalysis.engine.equations import RADIUS
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
-
-Array = NDArray[np.float64]
 
 NUISANCES = ("oxidizer_mass", "area", "loss_factor", "exponent", "volume", "tank_pressure", "chamber_pressure",
              "fuel_mass", "throat_area")  # fmt: skip

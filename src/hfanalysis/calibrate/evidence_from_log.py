@@ -7,8 +7,8 @@ from dataclasses import replace
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, engine_of_test, exponent, starting_for
 from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar
 from hfanalysis.calibrate.measured_pressures import quiet_noises
@@ -22,8 +22,6 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, line_at
 from hfanalysis.units import Value
-
-Array = NDArray[np.float64]
 
 BLOCKS = 120
 """Block means of the chamber pressure that are compared; they are no shorter than FINEST."""

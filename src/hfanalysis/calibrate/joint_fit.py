@@ -17,8 +17,8 @@ from math import exp, log
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.calibrate.evidence import burn_time_of
 from hfanalysis.calibrate.regression import judge_regression, rate_at
 from hfanalysis.calibrate.tank import PEAK_OVER
@@ -35,8 +35,6 @@ from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.subject import Subject
 from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, Calibration, RegressionBasis, RegressionTest
 from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
-
-Array = NDArray[np.float64]
 
 TOLD = 0.8
 """Standard deviation of m, over what is known of it before, from which on the channels do not tell it."""

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from hfanalysis.arrays import Array
 from hfanalysis.quantity import NORMAL_95
 
-Array = NDArray[np.float64]
 Misfit = Callable[[Array], float]
 
 FEWEST = 3.0

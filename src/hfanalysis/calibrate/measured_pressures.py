@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
@@ -16,8 +16,6 @@ from hfanalysis.record.noise import LONG, Noise, pool
 from hfanalysis.record.signals import Signal, live_signals
 from hfanalysis.segment.breaks import kink
 from hfanalysis.thermo.saturation import Saturation
-
-Array = NDArray[np.float64]
 
 BREAK = 3.0
 """Standard deviations by which the slopes on both sides of an instant must differ to count as a break."""

@@ -14,9 +14,9 @@ from math import exp, log
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import chdtrc
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.evidence import Evidence, burn_time_of
 from hfanalysis.calibrate.likelihood import Surface, Weights, first_guess, surface, weights_from
@@ -26,8 +26,6 @@ from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, FuelLaw, RegressionBasis, RegressionTest
 from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
-
-Array = NDArray[np.float64]
 
 WIDEST_N = 0.1
 """Standard deviation of n from which on a test does not tell a and n apart."""

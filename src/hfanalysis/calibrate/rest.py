@@ -11,13 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.tank import internal_energy, mass_along_blowdown, split
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.saturation import Property, Saturation
-
-Array = NDArray[np.float64]
 
 STRATIFIED = 2.0
 """Difference [K] between the gauge's and the bulk's saturation temperature that is worth a word."""

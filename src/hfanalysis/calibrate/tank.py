@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
@@ -25,8 +25,6 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
-
-Array = NDArray[np.float64]
 
 VAPOR_PRESSURE_SHARE = 0.6
 """Without nitrogen the vapour phase is followed until the tank has this share of its pressure at t_v."""

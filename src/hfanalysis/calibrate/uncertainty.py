@@ -10,12 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Shift, Tables, VaporPhase, reduce
 from hfanalysis.thermo.saturation import Saturation
 
-Array = NDArray[np.float64]
 SEED = 20230101
 
 

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
 from hfanalysis.calibrate.measured_pressures import Histories
@@ -22,8 +21,6 @@ from hfanalysis.engine.equations import NITROGEN, STATES
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.thermo.saturation import Saturation
-
-Array = NDArray[np.float64]
 
 ROUNDS = 6
 """C_i, K_loss and the flow that the effects leave them are found in turns."""

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from markupsafe import Markup
 
-from hfanalysis.charts.envelope import Envelope, Floats, envelope
+from hfanalysis.arrays import Array
+from hfanalysis.charts.envelope import Envelope, envelope
 from hfanalysis.charts.svg import Event, Phase
 from hfanalysis.wording.scales import Scale, scale
 
@@ -26,10 +27,10 @@ class Series:
 
     label: str
     style: str
-    time: Floats
-    values: Floats
+    time: Array
+    values: Array
     kind: str = "line"
-    upper: Floats | None = None
+    upper: Array | None = None
     dashed: bool = False
 
     def reduced(self, start: float, end: float, bins: int) -> Envelope:
@@ -78,7 +79,7 @@ class Chart:
         return [series for series in self.series if series.kind == "line"]
 
 
-def around(times: Sequence[Floats]) -> tuple[float, float]:
+def around(times: Sequence[Array]) -> tuple[float, float]:
     """A little more than the stretch that the times cover."""
     first = min(float(time[0]) for time in times if time.size)
     last = max(float(time[-1]) for time in times if time.size)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from hfanalysis.arrays import Array
 
 BINS = 600
 """Across a chart: more would be finer than the screen; three values each stay below 2000."""
@@ -17,10 +16,10 @@ BINS = 600
 class Envelope:
     """Per bin of time: the mean and the extremes of the samples in it; NaN in bins that hold none, so lines break."""
 
-    time: Floats
-    mean: Floats
-    low: Floats
-    high: Floats
+    time: Array
+    mean: Array
+    low: Array
+    high: Array
 
     @property
     def empty(self) -> bool:
@@ -28,7 +27,7 @@ class Envelope:
         return not bool(np.isfinite(self.mean).any())
 
 
-def envelope(time: Floats, values: Floats, start: float, end: float, bins: int = BINS) -> Envelope:
+def envelope(time: Array, values: Array, start: float, end: float, bins: int = BINS) -> Envelope:
     """Reduce a channel to ``bins`` bins between ``start`` and ``end``.
 
     A log slower than the bins keeps its own points, and lines break only where samples are missing for longer than
@@ -57,7 +56,7 @@ def envelope(time: Floats, values: Floats, start: float, end: float, bins: int =
     return Envelope(0.5 * (edges[1:] + edges[:-1]), out[0], out[1], out[2])
 
 
-def _as_is(time: Floats, values: Floats) -> Envelope:
+def _as_is(time: Array, values: Array) -> Envelope:
     if time.size > 2:
         steps = np.diff(time)
         gaps = np.flatnonzero(steps > 5.0 * np.median(steps)) + 1

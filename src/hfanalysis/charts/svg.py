@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from markupsafe import Markup, escape
 
-from hfanalysis.charts.envelope import Envelope, Floats
+from hfanalysis.arrays import Array
+from hfanalysis.charts.envelope import Envelope
 from hfanalysis.wording.numbers import fixed
 
 WIDTH = 960.0
@@ -35,7 +36,7 @@ class Axis:
     def __call__(self, value: float) -> float:
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
-    def all(self, values: Floats) -> Floats:
+    def all(self, values: Array) -> Array:
         """The same for an array."""
         return self.start + (values - self.low) * ((self.end - self.start) / (self.high - self.low))
 
@@ -77,7 +78,7 @@ def new_plot(times: tuple[float, float], values: tuple[float, float], height: fl
     return Plot(Axis(*times, LEFT, WIDTH - RIGHT), Axis(low, high, height - BOTTOM, TOP), height)
 
 
-def value_range(arrays: Iterable[Floats], with_zero: bool = True) -> tuple[float, float]:
+def value_range(arrays: Iterable[Array], with_zero: bool = True) -> tuple[float, float]:
     """A range with a little air around the finite values; a few wild ones (under 1 %) may be left outside.
 
     Args:
@@ -93,7 +94,7 @@ def value_range(arrays: Iterable[Floats], with_zero: bool = True) -> tuple[float
     return (low - air if low < 0.0 or not with_zero else low, high + air)
 
 
-def _without_wild(values: Floats) -> tuple[float, float]:
+def _without_wild(values: Array) -> tuple[float, float]:
     """The extremes, but no further than the width of the inner 98 % beyond it on either side."""
     low, high = (float(value) for value in np.percentile(values, [1.0, 99.0]))
     width = high - low
@@ -206,7 +207,7 @@ def line(plot: Plot, data: Envelope, style: str, name: str) -> None:
     plot.ends.append((plot.y(float(last)), name, style))
 
 
-def band(plot: Plot, time: Floats, low: Floats, high: Floats, style: str) -> None:
+def band(plot: Plot, time: Array, low: Array, high: Array, style: str) -> None:
     """An interval over time."""
     plot.parts.append(f'<path class="band {style}" d="{band_path(plot, time, low, high)}"/>')
 
@@ -216,12 +217,12 @@ def level(plot: Plot, value: float, style: str) -> None:
     plot.parts.append(f'<path class="level {style}" d="M{LEFT:.1f} {plot.y(value):.1f}H{WIDTH - RIGHT:.1f}"/>')
 
 
-def line_path(plot: Plot, time: Floats, values: Floats) -> str:
+def line_path(plot: Plot, time: Array, values: Array) -> str:
     """An SVG path through the finite points; it breaks where there are none."""
     return "".join("M" + "L".join(_points(plot, time[part], values[part])) for part in _runs(values))
 
 
-def band_path(plot: Plot, time: Floats, low: Floats, high: Floats) -> str:
+def band_path(plot: Plot, time: Array, low: Array, high: Array) -> str:
     """An SVG path around the band between two curves."""
     out = []
     for part in _runs(low + high):
@@ -231,13 +232,13 @@ def band_path(plot: Plot, time: Floats, low: Floats, high: Floats) -> str:
     return "".join(out)
 
 
-def _points(plot: Plot, time: Floats, values: Floats) -> list[str]:
+def _points(plot: Plot, time: Array, values: Array) -> list[str]:
     xs = plot.x.all(time)
     ys = np.clip(plot.y.all(values), TOP, plot.height - BOTTOM)
     return [f"{x:.1f} {y:.1f}" for x, y in zip(xs, ys, strict=True)]
 
 
-def _runs(values: Floats) -> list[slice]:
+def _runs(values: Array) -> list[slice]:
     """The stretches of finite values."""
     finite = np.concatenate([[False], np.isfinite(values), [False]])
     edges = np.flatnonzero(finite[1:] != finite[:-1])

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array, Integers
 from hfanalysis.engine.equations import OUTPUTS, RADIUS, STATES
 from hfanalysis.engine.observe import true_channels
 from hfanalysis.engine.phases import LIQUID_OUT
@@ -23,9 +23,6 @@ from hfanalysis.inference.observations.channel import Channel, averaged
 from hfanalysis.inference.observations.covariance import FILLING_ERROR, FILLING_TIME
 from hfanalysis.inference.observations.frame import AROUND_CHANGE, FIRST
 from hfanalysis.inference.observations.observed import Observed
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 STEP = 5
 """Points of the common grid that a virtual sensor's block holds."""

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
@@ -21,8 +21,6 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import capitalised, joined, said, text
 from hfanalysis.validate.performance import fire_of
 from hfanalysis.validate.sensor_faults import findings
-
-Array = NDArray[np.float64]
 
 BAR = 1e5
 

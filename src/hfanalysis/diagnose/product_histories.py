@@ -8,13 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.diagnosis import Diagnosed
 from hfanalysis.inference.gap import residuals_of
 from hfanalysis.record.channels import unit_of
-
-Array = NDArray[np.float64]
 
 
 def write_histories(path: Path, found: Diagnosed, provenance: Mapping[str, Any]) -> None:

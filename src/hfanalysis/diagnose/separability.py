@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.added_sensors import Sensor, missing_sensors
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.engine.effect import Effect
@@ -24,8 +25,6 @@ from hfanalysis.engine.sensitivity import run_with_tangents
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import ACCURACY, AFTER, all_slopes, slopes_of, with_spare_fuel
 from hfanalysis.inference.observations.observed import Observed
-
-Array = NDArray[np.float64]
 
 NOMINAL = 10.0
 """d' of the test at which effects are told apart."""

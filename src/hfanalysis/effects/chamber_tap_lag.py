@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
-from hfanalysis.engine.effect import Array, Believable, Channels, Effect, Parameter
+from hfanalysis.engine.effect import Believable, Channels, Effect, Parameter
 
 REFERENCE = 10e5
 """Pressure [Pa] at which the lag is stated."""

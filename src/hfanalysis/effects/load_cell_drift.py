@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hfanalysis.engine.effect import Array, Believable, Channels, Effect, Parameter
+from hfanalysis.arrays import Array
+from hfanalysis.engine.effect import Believable, Channels, Effect, Parameter
 
 REFERENCE = 10e5
 """Pressure [Pa] of a chamber at which the warming time is stated."""

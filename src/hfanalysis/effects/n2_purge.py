@@ -8,7 +8,8 @@ from math import sqrt
 
 import numpy as np
 
-from hfanalysis.engine.effect import Array, Believable, Channels, Effect, Parameter
+from hfanalysis.arrays import Array
+from hfanalysis.engine.effect import Believable, Channels, Effect, Parameter
 from hfanalysis.engine.injector import bent_root
 from hfanalysis.engine.nozzle import choked_flow_factor
 from hfanalysis.engine.sites import NITROGEN_INFLOW, P_TANK, RATES, T_TANK, TANK_HEAT, switch, term

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hfanalysis.engine.effect import Array, Believable, Channels, Effect, Parameter
+from hfanalysis.arrays import Array
+from hfanalysis.engine.effect import Believable, Channels, Effect, Parameter
 
 CHANNELS = ("p_tank", "p_run", "p_chamber")
 

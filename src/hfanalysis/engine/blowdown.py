@@ -13,21 +13,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hfanalysis.arrays import Array, Integers
 from hfanalysis.compiled import compiled, inlined, separate
 from hfanalysis.engine import equations as eq
 from hfanalysis.engine import sites as at
 from hfanalysis.engine.effect import Active, Composition, compose
-from hfanalysis.engine.equations import (
-    EVALUATION,
-    OUTPUTS,
-    STATES,
-    Array,
-    Equations,
-    Integers,
-    address_of,
-    equations_at,
-    rates_at,
-)
+from hfanalysis.engine.equations import EVALUATION, OUTPUTS, STATES, Equations, address_of, equations_at, rates_at
 from hfanalysis.engine.feed_line import FeedSystem, feed
 from hfanalysis.engine.injector import flow_resistance, mass_flows
 from hfanalysis.engine.model import act, report, upstream

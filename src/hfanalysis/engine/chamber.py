@@ -6,10 +6,11 @@ from math import pi
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import Real, inlined, law
 from hfanalysis.engine import equations as eq
 from hfanalysis.engine import sites as at
-from hfanalysis.engine.equations import Array, Equations, asked, keep
+from hfanalysis.engine.equations import Equations, asked, keep
 from hfanalysis.engine.tank import SPECIFIC_GAS_CONSTANT, SPECIFIC_NITROGEN
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
 from hfanalysis.thermo.combustion_table import Grid, chamber_pressure

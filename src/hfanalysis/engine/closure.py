@@ -13,15 +13,13 @@ any pressure, and dU/dt = sum mdot h + Qdot leaves Qdot = -d(p V)/dt: over a run
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import exprel
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.chamber import chamber_volume
 from hfanalysis.engine.tank import COLDEST_VAPOR, NITROGEN_CV, SPECIFIC_GAS_CONSTANT, SPECIFIC_NITROGEN, WARMEST_VAPOR
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.thermo.saturation import Saturation
-
-Array = NDArray[np.float64]
 
 
 def vapor_heat(burn: Burn) -> Array:

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.sentences import Text, said
 
 if TYPE_CHECKING:
     from hfanalysis.engine.unsteady import Engine
 
-Array = NDArray[np.float64]
 Channels = Mapping[str, Array]
 Distortion = Callable[[Array, Channels, Mapping[str, float]], dict[str, Array]]
 FadingWeb = Callable[[Mapping[str, float]], float]

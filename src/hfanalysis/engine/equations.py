@@ -6,14 +6,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import types
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array, Integers
 from hfanalysis.compiled import by_address, caller, compiled, inlined
 from hfanalysis.thermo.combustion_table import Grid
 from hfanalysis.thermo.saturation import evaluate
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Table = tuple[Array, float, float, float]
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi, sqrt
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import Real, compiled, inlined, law
-from hfanalysis.engine.equations import FUEL_DENSITY, GRAIN_LENGTH, RADIUS, REGRESSION_A, REGRESSION_N, Array, Equations
+from hfanalysis.engine.equations import FUEL_DENSITY, GRAIN_LENGTH, RADIUS, REGRESSION_A, REGRESSION_N, Equations
 from hfanalysis.engine.sites import FUEL_FLOW, OXIDIZER_FLOW
 
 SMALL_FLUX = 0.01

@@ -5,11 +5,10 @@ from __future__ import annotations
 from math import sqrt
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import Real, compiled, law
-
-Array = NDArray[np.float64]
 
 SMALL_DROP = 1000.0
 """Pressure drop [Pa] below which the square root is bent to a finite slope, at which no solver stalls."""

@@ -10,11 +10,12 @@ the chamber, and, after burn-out, gas that enters unburnt and cold.
 
 from __future__ import annotations
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled, inlined, separate
 from hfanalysis.engine import equations as eq
 from hfanalysis.engine import sites as at
 from hfanalysis.engine.chamber import chamber, chamber_rates
-from hfanalysis.engine.equations import EVALUATION, Array, Equations, equations_at
+from hfanalysis.engine.equations import EVALUATION, Equations, equations_at
 from hfanalysis.engine.feed_line import feed
 from hfanalysis.engine.grain import fuel_around, grain
 from hfanalysis.engine.nozzle import nozzle

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import Real, compiled, inlined, law
-from hfanalysis.engine.equations import EXIT_AREA, KEPT_NOZZLE, THROAT_AREA, Array, Equations, asked, keep
+from hfanalysis.engine.equations import EXIT_AREA, KEPT_NOZZLE, THROAT_AREA, Equations, asked, keep
 from hfanalysis.engine.sites import GAMMA_CHAMBER, P_AMBIENT, P_CHAMBER, RT_CHAMBER, THROAT_FACTOR, THRUST_FACTOR
 from hfanalysis.thermo.combustion import Gas
 from hfanalysis.thermo.combustion_table import Grid, gas_at

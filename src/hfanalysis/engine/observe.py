@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.equations import OUTPUTS, STATES
 from hfanalysis.engine.sensitivity import SHIFT, Tangents
 from hfanalysis.engine.unsteady import Burn
-
-Array = NDArray[np.float64]
 
 CHANNELS = {
     "p_tank": ("tank_pressure",),

@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array, Integers
 from hfanalysis.compiled import compiled, inlined, inner, separate
 from hfanalysis.engine import equations as eq
 from hfanalysis.engine import sites as at
@@ -33,9 +33,6 @@ from hfanalysis.engine.rosenbrock import (
 )
 from hfanalysis.engine.sites import call_switch
 from hfanalysis.engine.tank import liquid_mass, run_dry
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 SCALES = np.array([1e-2, 1e-1, 1e-4, 1e-5, 1e-5, 1e-1, 1e-2, 1.0, 1e-3, 1e-5, 10.0, 1e-5, 1.0, 1e-3, 1e-3])
 """What counts as small of each state [SI]: absolute tolerances are the relative one times this."""

@@ -12,9 +12,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import inner
-
-Array = NDArray[np.float64]
 
 STAGES = 8
 GAMMA = 0.21193756319429014

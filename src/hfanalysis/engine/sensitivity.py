@@ -6,15 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine import tangents
 from hfanalysis.engine.effect import Active, compose
 from hfanalysis.engine.equations import OUTPUTS, STATES
 from hfanalysis.engine.phases import SCALES
 from hfanalysis.engine.unsteady import ACCURACY, Burn, Engine, burn, constants, initial
-
-Array = NDArray[np.float64]
 
 ENGINE_PARAMETERS = {
     "volume": 1e-2,

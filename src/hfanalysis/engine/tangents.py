@@ -14,15 +14,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array, Integers
 from hfanalysis.compiled import compiled, inner
 from hfanalysis.engine.equations import IMPULSE, KEEPS, OUTPUTS, Equations, address_of, rates_at
 from hfanalysis.engine.phases import INCREMENT, LIQUID_OUT, OWN_EVENTS, TICK, History, change, events_at
 from hfanalysis.engine.rosenbrock import copy, factorize, interpolate, substitute
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 NUDGE = 1e-6
 """Relative to a state, or to its scale: the difference with which an event's change of the state is followed."""

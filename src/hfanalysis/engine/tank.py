@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import Real, compiled, inlined, inner, law
 from hfanalysis.engine import equations as eq
 from hfanalysis.engine import sites as at
@@ -28,7 +29,6 @@ from hfanalysis.thermo.saturation import (
     VAPOR_ENERGY,
     VAPOR_ENTHALPY,
     VAPOR_GRUENEISEN,
-    Array,
     Property,
     Saturation,
     evaluate,

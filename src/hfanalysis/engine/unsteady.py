@@ -14,6 +14,7 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine import phases as course
 from hfanalysis.engine.chamber import LEAST_GAS, chamber_volume
 from hfanalysis.engine.effect import Active, Composition, compose
@@ -37,8 +38,6 @@ from hfanalysis.thermo.air import air
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
 from hfanalysis.thermo.combustion_table import CombustionTable, gas_at, temperatures
 from hfanalysis.thermo.saturation import Property, Saturation
-
-Array = NDArray[np.float64]
 
 __all__ = ["OUTPUTS", "PAD", "STATES", "Burn", "Engine", "burn", "check", "flux_power", "vapor_compressibility"]
 

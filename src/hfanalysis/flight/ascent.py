@@ -10,15 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 from hfanalysis.flight.curve import Curve
 from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle, drag_coefficient
 from hfanalysis.thermo.air import air
 from hfanalysis.thermo.atmosphere import HIGHEST
-
-Array = NDArray[np.float64]
 
 COAST_STEP = 0.05
 """[s] of the coast; Runge-Kutta of fourth order follows what is left, drag and gravity, to 1e-8."""

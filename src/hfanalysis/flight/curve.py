@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 from hfanalysis.engine.nozzle import SUBSONIC, expand
-
-Array = NDArray[np.float64]
 
 STEPS = 1000
 """Steps of a burn: 17 ms of a long one, 3 ms of a short one; impulse is kept whatever their number."""

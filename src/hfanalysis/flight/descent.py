@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from hfanalysis.arrays import Array
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, drag, gravity
 from hfanalysis.thermo.atmosphere import density
 
-Array = NDArray[np.float64]
 Rates = Callable[[float, Array], list[float]]
 LONGEST = 3600.0
 

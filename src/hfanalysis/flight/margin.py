@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.flight.pitch import ATTACK, HEIGHT, HIGH, LOW, MARGIN, SPEED, STEP, Flights
 from hfanalysis.products.flight import Mean, WindMargin
-
-Array = NDArray[np.float64]
 
 EVERY = 5
 """Steps between the times that are kept."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from hfanalysis.arrays import Array
 
 RAMP = 1e-3
 """[s] in which a thrust that is there from the start rises, and one that is there to the end falls."""

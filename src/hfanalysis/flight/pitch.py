@@ -12,13 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 from hfanalysis.flight.ascent import Arguments
 from hfanalysis.rocket.aerodynamics import BODY_LIFT, Shape, center_of_pressure, components, planform
 from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, drag_coefficient
 from hfanalysis.thermo.air import air
-
-Array = NDArray[np.float64]
 
 STEP = 0.01
 """[s]; a rocket of a few calibers' margin swings in a second or so."""

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hfanalysis.flight.ascent import ACCELERATION, APOGEE, MACH, RAIL, SPEED, TIME, Ascent
 from hfanalysis.flight.descent import Descent, descend, fall
 from hfanalysis.quantity import Quantity
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle
-
-Array = NDArray[np.float64]
 
 ASCENT = {
     "apogee": (APOGEE, "m"),

@@ -11,16 +11,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.fitting.fit import ENDED, Fit, brought_to_end, fit, fit_on, promised
 from hfanalysis.inference.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import History, Unknown
-
-Array = NDArray[np.float64]
 
 FIRST_STEP, STEP = 1.0, 5.0
 """Log of the odds against the first step of the model-form error, on either side, and against each further one.

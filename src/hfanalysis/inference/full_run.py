@@ -12,8 +12,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, engine_of_test, starting_for
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.equations import OUTPUTS, evaluate_rates
@@ -25,8 +25,6 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, line_at
 from hfanalysis.thermo.nitrous import saturation
-
-Array = NDArray[np.float64]
 
 LONGEST = 60.0
 """Seconds after which a burn that does not end is cut off."""

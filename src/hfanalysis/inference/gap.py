@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.candidate import SHORT, attempted
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
@@ -21,8 +22,6 @@ from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.channel import Channel
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import has_name
-
-Array = NDArray[np.float64]
 
 FOLDS, FOLD_TIME = 2, 0.5
 """Interleaved parts of the data that are held out in turn, and the seconds that each stretch of them lasts."""

@@ -7,16 +7,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.sensitivity import run_with_tangents
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import PLACES, Place
 from hfanalysis.inference.splines import Splines, probe
-
-Array = NDArray[np.float64]
 
 SCALES = np.geomspace(0.02, 4.0, 9)
 """Sizes of a source that are tried, in units of what is typical of its place."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.equations import OUTPUTS
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.predict import aligned
 from hfanalysis.inference.observations.observed import Observed
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

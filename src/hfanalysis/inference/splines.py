@@ -7,13 +7,11 @@ from functools import lru_cache
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.sites import HOOK_OF_SITE, IS_LIQUID, RATES, SITES, term
 from hfanalysis.inference.unknown import nameless_effect
-
-Array = NDArray[np.float64]
 
 GIVEN = ("site", "hook", "first", "spacing", "count", "wet")
 SITE, HOOK, FIRST, SPACING, COUNT, WET = range(6)

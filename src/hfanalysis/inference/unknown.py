@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from hfanalysis.products.segments import Segments
     from hfanalysis.record.signals import Signal
 
-Array = NDArray[np.float64]
 
 POINTS = 200
 """Instants at which a history is given."""

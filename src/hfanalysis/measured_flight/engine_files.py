@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hfanalysis.assembly.shape import shape
 from hfanalysis.flight import rasp, rocksim
@@ -16,8 +15,6 @@ from hfanalysis.measured_flight.stability import Stability
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.rocket.aerodynamics import Shape
 from hfanalysis.rocket.vehicle import Vehicle
-
-Array = NDArray[np.float64]
 
 SLENDER = 25.0
 """Length over diameter of a rocket whose geometry is not known; only RocketPy's inertia follows it."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly import rocket
 from hfanalysis.errors import AbsentError
 from hfanalysis.flight.curve import STEPS, Curve, accumulated, altitude_gain, even_curve
@@ -21,8 +21,6 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo import atmosphere, combustion
-
-Array = NDArray[np.float64]
 
 RAW, CORRECTED = "as measured on the stand", "from the stand's ambient pressure to the altitude's"
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.rocket import drag_from
 from hfanalysis.errors import AbsentError
 from hfanalysis.flight import summary
@@ -25,7 +25,6 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.rocket.vehicle import gravity
 
-Array = NDArray[np.float64]
 Progress = Callable[[str, float | None], None]
 
 LEAST_RAIL_DEPARTURE = 30.48

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.calibrate.loaded_mass import load_cell_mass
 from hfanalysis.calibrate.measured_pressures import Histories
 from hfanalysis.engine.grain import Grain, opened, pace_between
@@ -28,8 +28,6 @@ from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.units import Value
-
-Array = NDArray[np.float64]
 
 PARAFFIN_EXPONENT = 0.5
 """Of the regression where neither test.toml nor a calibration has one; published values for paraffin lie about it."""

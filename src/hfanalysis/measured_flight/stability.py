@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.shape import Masses, masses, shape
 from hfanalysis.flight import summary
 from hfanalysis.flight.ascent import arguments
@@ -21,7 +21,6 @@ from hfanalysis.rocket.aerodynamics import Shape, center_of_pressure, components
 from hfanalysis.rocket.balance import Balance, Part, balance, oxidizer
 from hfanalysis.thermo.nitrous import saturation
 
-Array = NDArray[np.float64]
 Progress = Callable[[str, float | None], None]
 
 SLOW = 0.3

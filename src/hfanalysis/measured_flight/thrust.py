@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
@@ -14,8 +14,6 @@ from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
-
-Array = NDArray[np.float64]
 
 SPAN_SHARE = 0.25
 """Part of the cell's accuracy that a tare does not take away: its error of span, as for the pressures."""

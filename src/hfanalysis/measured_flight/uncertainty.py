@@ -7,8 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.flight.ascent import (
     ANGLE,
     APOGEE,
@@ -32,7 +32,6 @@ from hfanalysis.processors import processors
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.units import Value
 
-Array = NDArray[np.float64]
 Progress = Callable[[str, float | None], None]
 
 DRAG_UNSTATED = 0.10

@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array, Mask
 from hfanalysis.compiled import compiled
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import TimeSpec
 from hfanalysis.record.spool import Spool
 from hfanalysis.units import unit_factor
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -26,7 +23,7 @@ class Clock:
     first; where time steps back, whichever side of the step leaves fewer samples out.
     """
 
-    time: Floats
+    time: Array
     keep: Mask | None
     stale: Mask
     warnings: tuple[str, ...] = ()
@@ -64,7 +61,7 @@ def _no_stamps(spool: Spool, column: int, where: str) -> str:
     return f"{where}, time: not one stamp can be read: {found}; expected numbers, dates or times of day"
 
 
-def stale_stamps(time: Floats) -> Mask:
+def stale_stamps(time: Array) -> Mask:
     """Samples to leave out for the rest to increase strictly in time, as few as can be.
 
     >>> stale_stamps(np.array([0.0, 1.0, 1.0, 2.0, 99.0, 3.0, 4.0]))
@@ -75,12 +72,12 @@ def stale_stamps(time: Floats) -> Mask:
     return _outside_longest_rise(np.ascontiguousarray(time))
 
 
-def _increases(time: Floats) -> bool:
+def _increases(time: Array) -> bool:
     return bool(np.all(time[1:] > time[:-1]))
 
 
 @compiled
-def _outside_longest_rise(time: Floats) -> Mask:
+def _outside_longest_rise(time: Array) -> Mask:
     """Complement of a longest strictly increasing subsequence; among equal stamps the first is kept."""
     n = len(time)
     ends = np.empty(n, np.int64)
@@ -107,7 +104,7 @@ def _outside_longest_rise(time: Floats) -> Mask:
     return out
 
 
-def _noted(time: Floats, stale: Mask, where: str) -> list[str]:
+def _noted(time: Array, stale: Mask, where: str) -> list[str]:
     """What to say about stamps that do not run."""
     if not stale.any():
         return []
@@ -120,7 +117,7 @@ def _noted(time: Floats, stale: Mask, where: str) -> list[str]:
     return notes
 
 
-def _spread(time: Floats, where: str) -> tuple[Floats, list[str]]:
+def _spread(time: Array, where: str) -> tuple[Array, list[str]]:
     """Samples that share a stamp spread evenly up to the next stamp, as the engineer asked."""
     starts = np.flatnonzero(np.diff(time, prepend=-np.inf) != 0.0)
     counts = np.diff(np.append(starts, len(time)))

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 
-Floats = NDArray[np.float64]
 Flags = NDArray[np.uint8]
 
 DROPOUT, STUCK, SATURATED, SPIKE = np.uint8(1), np.uint8(2), np.uint8(4), np.uint8(8)
@@ -35,7 +35,7 @@ COMMON = 0.02
 
 
 @compiled(nogil=True)
-def nearest(readings: Floats, level: float, flags: Flags) -> float:
+def nearest(readings: Array, level: float, flags: Flags) -> float:
     """The distance from ``level`` to the nearest other value without a flag."""
     least = np.inf
     for i in range(len(readings)):
@@ -51,7 +51,7 @@ def _mark(flags: Flags, start: int, end: int, flag: np.uint8) -> None:
 
 
 @compiled(nogil=True)
-def _insert(value: float, ordered: Floats, count: int) -> None:
+def _insert(value: float, ordered: Array, count: int) -> None:
     """Puts a value into its place among the first ``count``, which are in order."""
     k = count
     while k > 0 and ordered[k - 1] > value:
@@ -61,12 +61,12 @@ def _insert(value: float, ordered: Floats, count: int) -> None:
 
 
 @compiled(nogil=True)
-def _median(ordered: Floats, count: int) -> float:
+def _median(ordered: Array, count: int) -> float:
     return float(0.5 * (ordered[(count - 1) // 2] + ordered[count // 2]))
 
 
 @compiled(nogil=True)
-def detached(readings: Floats, level: float, gap: float, edges: bool, flags: Flags) -> int:
+def detached(readings: Array, level: float, gap: float, edges: bool, flags: Flags) -> int:
     """Flags runs of exactly ``level`` entered and left by jumps of more than ``gap``; returns how many samples.
 
     Runs at the log's ends have one neighbour only and count where ``edges``.
@@ -92,7 +92,7 @@ def detached(readings: Floats, level: float, gap: float, edges: bool, flags: Fla
 
 
 @compiled(nogil=True)
-def _runs(values: Floats) -> NDArray[np.int64]:
+def _runs(values: Array) -> NDArray[np.int64]:
     """Where runs of exactly equal values start, and the end of the last."""
     n = len(values)
     count = 1
@@ -110,7 +110,7 @@ def _runs(values: Floats) -> NDArray[np.int64]:
 
 
 @compiled(nogil=True)
-def _repeats_at_length(values: Floats, low: float, high: float) -> bool:
+def _repeats_at_length(values: Array, low: float, high: float) -> bool:
     """Whether any run is long enough to be looked at."""
     length = 1
     for i in range(1, len(values)):
@@ -124,7 +124,7 @@ def _repeats_at_length(values: Floats, low: float, high: float) -> bool:
 
 
 @compiled(nogil=True)
-def _usual_run(starts: NDArray[np.int64], first: int, last: int, ordered: Floats) -> float:
+def _usual_run(starts: NDArray[np.int64], first: int, last: int, ordered: Array) -> float:
     """The length that nine in ten of the runs first..last-1 do not exceed; ``ordered`` is overwritten."""
     for k in range(first, last):
         _insert(float(starts[k + 1] - starts[k]), ordered, k - first)
@@ -132,13 +132,13 @@ def _usual_run(starts: NDArray[np.int64], first: int, last: int, ordered: Floats
 
 
 @compiled(nogil=True)
-def _step(values: Floats, starts: NDArray[np.int64], k: int) -> float:
+def _step(values: Array, starts: NDArray[np.int64], k: int) -> float:
     """From the level of run ``k`` to the next one's."""
     return float(abs(values[starts[k + 1]] - values[starts[k]]))
 
 
 @compiled(nogil=True)
-def _usual_step(values: Floats, starts: NDArray[np.int64], first: int, last: int, ordered: Floats) -> float:
+def _usual_step(values: Array, starts: NDArray[np.int64], first: int, last: int, ordered: Array) -> float:
     """The median of the steps after the runs first..last-1; ``ordered`` is overwritten."""
     for k in range(first, last):
         _insert(_step(values, starts, k), ordered, k - first)
@@ -146,7 +146,7 @@ def _usual_step(values: Floats, starts: NDArray[np.int64], first: int, last: int
 
 
 @compiled(nogil=True)
-def repeats(values: Floats, low: float, high: float, flags: Flags) -> None:
+def repeats(values: Array, low: float, high: float, flags: Flags) -> None:
     """Flags stuck runs, and clipped ones at the channel's exact extremes, against the runs around them.
 
     A run needs enough others on both sides to be compared with: an idle channel before and after a firing is not
@@ -181,7 +181,7 @@ def repeats(values: Floats, low: float, high: float, flags: Flags) -> None:
                 flags[i] |= SATURATED
 
 
-def local_noise(values: Floats) -> Floats:
+def local_noise(values: Array) -> Array:
     """Standard deviation of the noise, by blocks, from every fourth difference of neighbours.
 
     The median of a block is that of sorted numbers, which NumPy sorts faster than any code here picks it out.
@@ -197,7 +197,7 @@ def local_noise(values: Floats) -> Floats:
 
 
 @compiled(nogil=True)
-def _middle(values: Floats, start: int, end: int, ordered: Floats) -> tuple[float, float]:
+def _middle(values: Array, start: int, end: int, ordered: Array) -> tuple[float, float]:
     """Median, and standard deviation from the median absolute deviation; ``ordered`` is overwritten."""
     for i in range(start, end):
         _insert(values[i], ordered, i - start)
@@ -208,7 +208,7 @@ def _middle(values: Floats, start: int, end: int, ordered: Floats) -> tuple[floa
 
 
 @compiled(nogil=True)
-def _spike_length(values: Floats, i: int, noise: float, ordered: Floats) -> int:
+def _spike_length(values: Array, i: int, noise: float, ordered: Array) -> int:
     """How many samples from ``i`` on stand out alone; 0 where they do not, or the level changes with them."""
     n = len(values)
     left, left_noise = _middle(values, max(0, i - WINDOW), i, ordered)
@@ -229,7 +229,7 @@ def _spike_length(values: Floats, i: int, noise: float, ordered: Floats) -> int:
 
 
 @compiled(nogil=True)
-def spikes(values: Floats, noise: Floats, quantum: float, flags: Flags) -> None:
+def spikes(values: Array, noise: Array, quantum: float, flags: Flags) -> None:
     """Flags groups of up to three samples that stand out of the level they return to, unless they are many."""
     n = len(values)
     places = np.empty(64, np.int64)

@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.record import flag_kernels
 from hfanalysis.record.log import Flag, Flags
-
-Floats = NDArray[np.float64]
 
 SENTINELS = (999.0, 9999.0, 999.9, 99999.0, -999.0, -9999.0, -99999.0, 32767.0, -32768.0, 65535.0)
 """Readings that loggers write where there is none."""
@@ -24,7 +22,7 @@ IMPOSSIBLE = {"temperature": (1.0, 6000.0), "pressure": (-5e5, 1e9)}
 """[SI] outside of which no sensor reads, however badly zeroed."""
 
 
-def flag_readings(readings: Floats, dimension: str, missing: Sequence[float] = ()) -> Flags:
+def flag_readings(readings: Array, dimension: str, missing: Sequence[float] = ()) -> Flags:
     """The flags of a channel's readings as logged (before unit, zero and tare)."""
     flags = np.zeros(len(readings), dtype=np.uint8)
     if len(readings) and not np.isfinite(readings.min() + readings.max()):
@@ -38,7 +36,7 @@ def flag_readings(readings: Floats, dimension: str, missing: Sequence[float] = (
     return flags
 
 
-def flag_impossible(values: Floats, dimension: str, flags: Flags) -> None:
+def flag_impossible(values: Array, dimension: str, flags: Flags) -> None:
     """Flags samples [SI] that no sensor of this dimension can read."""
     if dimension in IMPOSSIBLE and len(values):
         low, high = IMPOSSIBLE[dimension]
@@ -46,7 +44,7 @@ def flag_impossible(values: Floats, dimension: str, flags: Flags) -> None:
             flags[(values < low) | (values > high)] |= np.uint8(Flag.DROPOUT)
 
 
-def _flag_unread(readings: Floats, flags: Flags) -> None:
+def _flag_unread(readings: Array, flags: Flags) -> None:
     """Flags exact levels that stand for no reading: sentinels, zeros and extremes apart from all else.
 
     Once one is found the next extreme is looked at, which may be another.
@@ -67,12 +65,12 @@ def _flag_unread(readings: Floats, flags: Flags) -> None:
             return
 
 
-def _may_be_none(level: float, live: Floats) -> bool:
+def _may_be_none(level: float, live: Array) -> bool:
     count = int(np.count_nonzero(live == level))
     return count >= 3 or (count > 0 and (level == 0.0 or level in SENTINELS))
 
 
-def _flag_detached(readings: Floats, level: float, gap: float, flags: Flags) -> int:
+def _flag_detached(readings: Array, level: float, gap: float, flags: Flags) -> int:
     """Flags runs of ``level``; a mere extreme must stand apart from every other reading, not only from those next."""
     sentinel = level in SENTINELS
     if not sentinel and level != 0.0 and flag_kernels.nearest(readings, level, flags) <= gap:
@@ -80,7 +78,7 @@ def _flag_detached(readings: Floats, level: float, gap: float, flags: Flags) -> 
     return int(flag_kernels.detached(readings, level, gap, sentinel, flags))
 
 
-def _gap(readings: Floats, flags: Flags) -> float:
+def _gap(readings: Array, flags: Flags) -> float:
     """The jump that sets a level apart: a good part of the channel's usual range, and many of its usual steps."""
     every = max(1, len(readings) // 20_000)
     sample = readings[::every][flags[::every] == 0]
@@ -91,7 +89,7 @@ def _gap(readings: Floats, flags: Flags) -> float:
     return float(max(DETACHED * (high - low), 10.0 * np.median(steps) if len(steps) else 0.0, 1e-300))
 
 
-def _flag_live(readings: Floats, flags: Flags) -> None:
+def _flag_live(readings: Array, flags: Flags) -> None:
     """Stuck, saturated and spiking samples among those that are readings."""
     whole = not flags.any()
     live = slice(None) if whole else flags == 0
@@ -104,7 +102,7 @@ def _flag_live(readings: Floats, flags: Flags) -> None:
     flags[live] |= found
 
 
-def _quantum(values: Floats) -> float:
+def _quantum(values: Array) -> float:
     """The usual size of a change of reading, which for a quantised channel is its resolution."""
     steps = np.abs(np.diff(values[:20_000]))
     steps = steps[steps > 0]

@@ -6,11 +6,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.log import Channel, Flag
-
-Floats = NDArray[np.float64]
 
 LEAST = 0.1
 """[s] that a hole lasts at least."""
@@ -22,7 +20,7 @@ TOLD = 3
 """Holes that a warning places; of more it gives the number."""
 
 
-def holes(time: Floats) -> Floats:
+def holes(time: Array) -> Array:
     """From when to when [s] the instants ``time``, which increase, leave a hole: (holes, 2).
 
     >>> holes(np.array([0.0, 0.1, 0.2, 3.0, 3.1])).tolist()
@@ -35,7 +33,7 @@ def holes(time: Floats) -> Floats:
     return np.column_stack([time[places], time[places + 1]])
 
 
-def unasked(channel: Channel) -> Floats:
+def unasked(channel: Channel) -> Array:
     """The holes of a channel that are not stretches which the engineer excluded."""
     found = holes(channel.time[channel.good])
     left_out = channel.time[(channel.flags & Flag.EXCLUDED) != 0]
@@ -43,7 +41,7 @@ def unasked(channel: Channel) -> Floats:
     return found[~np.array(asked, dtype=bool)] if asked else found
 
 
-def told(found: Iterable[tuple[str, str, Floats]], channels: dict[str, int]) -> Iterator[str]:
+def told(found: Iterable[tuple[str, str, Array]], channels: dict[str, int]) -> Iterator[str]:
     """One line for every set of holes.
 
     Args:

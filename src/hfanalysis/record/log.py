@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis import sentences
+from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.units import near
 
-Floats = NDArray[np.float64]
 Flags = NDArray[np.uint8]
 
 
@@ -50,8 +50,8 @@ class Channel:
 
     name: str
     unit: str
-    time: Floats
-    values: Floats
+    time: Array
+    values: Array
     flags: Flags
     accuracy: float
     accuracy_stated: bool
@@ -59,7 +59,7 @@ class Channel:
     zero: float = 0.0
     zero_std: float | None = None
     drift: float = 0.0
-    raw: Floats | None = None
+    raw: Array | None = None
     history: tuple[str, ...] = ()
 
     @property

@@ -11,11 +11,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.signals import Signal, sample_noise
-
-Array = NDArray[np.float64]
 
 REFERENCE_TIME = 20.0
 """Wander slower than this [s] counts as the sensor's bias, which the stated accuracy covers."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from hfanalysis.arrays import Array
 
 BLOCK = 0.02
 """[s] over which samples are averaged to look for the firing."""
@@ -35,8 +35,8 @@ REFERENCES = ("p_chamber", "thrust", "p_run", "p_tank")
 class Trace:
     """A channel's good samples: time [s], values [SI]."""
 
-    time: Floats
-    values: Floats
+    time: Array
+    values: Array
 
     def between(self, start: float, end: float) -> Trace:
         """The samples in a window."""
@@ -122,15 +122,15 @@ def in_blocks(trace: Trace, width: float) -> Trace:
     return Trace(trace.time[: count * per].reshape(shape).mean(1), trace.values[: count * per].reshape(shape).mean(1))
 
 
-def _smoothed(values: Floats) -> Floats:
+def _smoothed(values: Array) -> Array:
     """Running median of five."""
     if len(values) < 5:
         return values
-    smooth: Floats = np.median(np.lib.stride_tricks.sliding_window_view(values, 5), axis=1)
+    smooth: Array = np.median(np.lib.stride_tricks.sliding_window_view(values, 5), axis=1)
     return smooth
 
 
-def spread(values: Floats) -> float:
+def spread(values: Array) -> float:
     """Robust standard deviation: 1.4826 times the median absolute deviation."""
     return float(1.4826 * np.median(np.abs(values - np.median(values)))) if len(values) else 0.0
 
@@ -150,7 +150,7 @@ def level(trace: Trace) -> Level | None:
     return Level(float(kept.mean()), std, float(trace.time[near].mean()))
 
 
-def _std_of_mean(values: Floats) -> float:
+def _std_of_mean(values: Array) -> float:
     return float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else 0.0
 
 

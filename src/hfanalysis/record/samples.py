@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.record.channels import default_accuracy
 from hfanalysis.record.clocks import Clock
 from hfanalysis.record.definition import ChannelSpec, Exclusion, TestDefinition
 from hfanalysis.record.flags import flag_impossible, flag_readings
-from hfanalysis.record.log import Channel, Flag, Flags, Floats
+from hfanalysis.record.log import Channel, Flag, Flags
 from hfanalysis.record.plan import Plan
 from hfanalysis.record.quiet import Firing, Trace
 from hfanalysis.record.spool import Spool
@@ -24,8 +25,8 @@ from hfanalysis.units import si_unit
 class Samples:
     """Time [s, log time], values [SI] without zero and tare (NaN: no number), and flags of a channel."""
 
-    time: Floats
-    values: Floats
+    time: Array
+    values: Array
     flags: Flags
 
     @property
@@ -101,7 +102,7 @@ def _no_numbers(plan: Plan, spool: Spool, definition: TestDefinition) -> str:
     return f"{where}: not one number: {found}; expected numbers"
 
 
-def _exclude(flags: Flags, time: Floats, name: str, exclusions: tuple[Exclusion, ...]) -> None:
+def _exclude(flags: Flags, time: Array, name: str, exclusions: tuple[Exclusion, ...]) -> None:
     for stretch in exclusions:
         if not stretch.channels or name in stretch.channels:
             flags[(time >= stretch.start.value) & (time <= stretch.end.value)] |= np.uint8(Flag.EXCLUDED)

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.holes import holes
 from hfanalysis.record.log import Channel, TestLog
-
-Array = NDArray[np.float64]
 
 SMOOTHING = 0.2
 """Seconds through which a straight line gives the pressure at the full line."""

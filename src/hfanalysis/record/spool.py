@@ -16,9 +16,9 @@ from typing import IO
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.readers import Source, Text
 
-Floats = NDArray[np.float64]
 IN_MEMORY = 1 << 30
 """Bytes of one log file's columns that may stay in memory."""
 WORKERS = 2
@@ -31,10 +31,10 @@ BLOCK = 1 << 23
 class Growing:
     """A column in memory: a short log's as it came, else in blocks so large that most columns are in one piece."""
 
-    blocks: list[Floats] = field(default_factory=list)
+    blocks: list[Array] = field(default_factory=list)
     size: int = 0
 
-    def append(self, part: Floats) -> None:
+    def append(self, part: Array) -> None:
         """Add numbers at the end."""
         if not self.blocks:
             self.blocks, self.size = [part], len(part)
@@ -44,7 +44,7 @@ class Growing:
             self._fill(first)
         self._fill(part)
 
-    def _fill(self, part: Floats) -> None:
+    def _fill(self, part: Array) -> None:
         while len(part):
             start = self.size % BLOCK
             if not start:
@@ -53,7 +53,7 @@ class Growing:
             self.blocks[-1][start : start + count] = part[:count]
             part, self.size = part[count:], self.size + count
 
-    def parts(self) -> list[Floats]:
+    def parts(self) -> list[Array]:
         """The numbers, in order."""
         return [*self.blocks[:-1], self.blocks[-1][: self.size - BLOCK * (len(self.blocks) - 1)]]
 
@@ -90,7 +90,7 @@ class Spool:
                 self.written |= chunk.written
         self.idle = _telling(np.concatenate(idle)) if idle and len(columns) > 1 else None
 
-    def _append(self, numbers: Sequence[tuple[int, Floats]]) -> int:
+    def _append(self, numbers: Sequence[tuple[int, Array]]) -> int:
         """Keep the numbers of some columns; returns their bytes."""
         for column, part in numbers:
             self._columns[column].append(part)
@@ -114,14 +114,14 @@ class Spool:
         on_disk = self._files[column].seek(0, 2) // 8 if column in self._files else 0
         return on_disk + (self._columns[column].size if column in self._columns else 0)
 
-    def look(self, column: int) -> Floats:
+    def look(self, column: int) -> Array:
         """The numbers of a column, not to be changed."""
         if column in self._files:
             return self._gathered(column)
         parts = self._columns[column].parts() if column in self._columns else []
         return parts[0] if len(parts) == 1 else np.concatenate([np.empty(0), *parts])
 
-    def _gathered(self, column: int) -> Floats:
+    def _gathered(self, column: int) -> Array:
         """A column part of which is on disk."""
         numbers = np.empty(self.rows(column))
         self._files[column].seek(0)
@@ -131,7 +131,7 @@ class Spool:
             start += len(part)
         return numbers
 
-    def take(self, column: int) -> Floats:
+    def take(self, column: int) -> Array:
         """The numbers of a column, which are the caller's from now on."""
         numbers = np.require(self.look(column), requirements="W")
         self._drop(column)
@@ -148,7 +148,7 @@ class Spool:
             self._drop(column)
 
 
-def _all_zero(columns: Sequence[Floats]) -> NDArray[np.bool_]:
+def _all_zero(columns: Sequence[Array]) -> NDArray[np.bool_]:
     if len({len(column) for column in columns}) != 1:
         return np.zeros(0, dtype=bool)
     idle: NDArray[np.bool_] = columns[0] == 0.0

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.products.ingest import ChannelSummary, Ingest
-from hfanalysis.record.log import Channel, Flag, Floats, TestLog
+from hfanalysis.record.log import Channel, Flag, TestLog
 
 
 def summary(log: TestLog) -> Ingest:
@@ -39,7 +40,7 @@ def channel_summary(channel: Channel) -> ChannelSummary:
     )
 
 
-def rate(time: Floats) -> float | None:
+def rate(time: Array) -> float | None:
     """Samples per second: the inverse of the median step between increasing stamps; None where there is none."""
     steps = np.diff(time)
     steps = steps[steps > 0.0]
@@ -52,6 +53,6 @@ def flag_counts(channel: Channel) -> dict[str, int]:
     return {name: count for name, count in counts.items() if count}
 
 
-def _number(values: Floats, of: Any) -> float | None:
+def _number(values: Array, of: Any) -> float | None:
     found = float(of(values)) if values.size else np.nan
     return found if np.isfinite(found) else None

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.logspec import ChannelSpec
 from hfanalysis.record.quiet import Firing, Level, Trace, after, before, level
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value, si_unit
-
-Floats = NDArray[np.float64]
 
 FAR = 50e3
 """[Pa] from ambient at which a quiet reading is no longer the open air, whatever the sensor's accuracy."""
@@ -32,11 +30,11 @@ class Zero:
     history: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
-    def at(self, time: Floats) -> Floats | float:
+    def at(self, time: Array) -> Array | float:
         """What is subtracted at these times [s]."""
         if len(self.times) < 2:
             return self.value
-        curve: Floats = np.interp(time, self.times, (self.value, self.value + self.drift))
+        curve: Array = np.interp(time, self.times, (self.value, self.value + self.drift))
         return curve
 
 

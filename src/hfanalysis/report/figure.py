@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 from markupsafe import Markup
 
+from hfanalysis.arrays import Array
 from hfanalysis.charts import draw
 from hfanalysis.charts.chart import Chart, Series
-from hfanalysis.charts.envelope import Floats
 from hfanalysis.report import html
 from hfanalysis.wording.numbers import fixed, tidy
 from hfanalysis.wording.scales import SYSTEMS
@@ -80,7 +80,7 @@ def _reading(chart: Chart, one: Series, t: float) -> Markup:
     return html.both(si, team)
 
 
-def near(time: Floats, values: Floats, t: float) -> float | None:
+def near(time: Array, values: Array, t: float) -> float | None:
     """The value of the sample nearest to ``t``; None outside the series and where there is no number."""
     if not time.size or not time[0] <= t <= time[-1]:
         return None

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from hfanalysis.charts.envelope import Floats
+from hfanalysis.arrays import Array
 from hfanalysis.charts.svg import Event, Phase
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import Calibration
@@ -31,7 +31,7 @@ _BEFORE, _AFTER = 2.0, 3.0
 class Column:
     """A variable of an HDF5 product, with its SI unit."""
 
-    values: Floats
+    values: Array
     unit: str = ""
     long_name: str = ""
 
@@ -169,7 +169,7 @@ def _column(item: Any) -> Column:
     return Column(np.atleast_1d(np.asarray(item[()], dtype=float)), unit, long_name)
 
 
-def required(table: Table, *names: str) -> list[Floats]:
+def required(table: Table, *names: str) -> list[Array]:
     """Variables of one table; raises :class:`AbsentError` naming one that it has not."""
     for name in names:
         if name not in table or not np.isfinite(table[name].values).any():

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from hfanalysis.arrays import Array
 from hfanalysis.charts import draw
 from hfanalysis.charts.chart import Chart, Series
-from hfanalysis.charts.envelope import Envelope, Floats
+from hfanalysis.charts.envelope import Envelope
 from hfanalysis.wording.scales import SYSTEMS
 
 MOST, LEAST = 24_000, 1_500
@@ -99,13 +100,13 @@ def _series(chart: Chart, one: Series, most: int, clocks: list[str]) -> dict[str
     return out
 
 
-def _kept(chart: Chart, time: Floats, values: Floats, most: int) -> Envelope:
+def _kept(chart: Chart, time: Array, values: Array, most: int) -> Envelope:
     """All samples where there are few, else an envelope of a third as many bins, each with three numbers."""
     start, end = chart.span
     inside = int(np.count_nonzero((time >= start) & (time <= end)))
     return Series("", "", time, values).reduced(start, end, most if inside <= most else most // 3)
 
 
-def _packed(values: Floats) -> str:
+def _packed(values: Array) -> str:
     """Numbers as base64 of little-endian 32-bit floats."""
     return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode("ascii")

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.charts import draw
 from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.charts.colours import COLOURS
-from hfanalysis.charts.envelope import Floats
 from hfanalysis.products.disk import atomic
 
 _BINS = 2000
@@ -48,7 +48,7 @@ def csv(chart: Chart) -> str:
     return "\n".join([head, *rows, ""])
 
 
-def _columns(chart: Chart) -> Iterator[tuple[str, Floats, Floats]]:
+def _columns(chart: Chart) -> Iterator[tuple[str, Array, Array]]:
     unit = chart.unit.partition(",")[0] or "-"
     for one in chart.series:
         if one.kind == "line":

@@ -12,12 +12,10 @@ from math import asin, log, pi, sqrt
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hfanalysis.thermo.air import air
 from hfanalysis.thermo.atmosphere import temperature
 
-Array = NDArray[np.float64]
 NoseKind = Literal["cone", "ogive", "von_karman", "ellipsoid"]
 
 REGULAR_PAINT = 60e-6

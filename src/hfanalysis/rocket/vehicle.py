@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 from hfanalysis.thermo.air import air
-
-Array = NDArray[np.float64]
 
 EARTH_RADIUS = 6_371_000.0
 STANDARD_GRAVITY = 9.80665

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from hfanalysis.record.signals import Array, Signal
+from hfanalysis.arrays import Array
+from hfanalysis.record.signals import Signal
 
 WINDOW = 0.03
 """Seconds over which the level is taken before and after a fall."""

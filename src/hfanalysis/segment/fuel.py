@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hfanalysis.record.signals import Array, Signal, sample_noise
+from hfanalysis.arrays import Array
+from hfanalysis.record.signals import Signal, sample_noise
 from hfanalysis.segment.falls import RELAXATION, abrupt_falls
 from hfanalysis.segment.refine import refine_step
 

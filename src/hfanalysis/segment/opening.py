@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hfanalysis.record.signals import Array, Signal
+from hfanalysis.arrays import Array
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.refine import refine_step
 
 COARSE_STEP = 0.02

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
-from hfanalysis.record.signals import Array, Signal
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.breaks import Break
 from hfanalysis.segment.refine import refine_kink
 from hfanalysis.sentences import said, text

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
-from hfanalysis.record.signals import Array, Signal
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.breaks import RELAXATIONS, Break, Design, combine, find_break, kink, relaxation, rounded_kink
 
 COARSE, FINE = 41, 61

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.flight import summary
 from hfanalysis.flight.ascent import Ascent
@@ -13,8 +13,6 @@ from hfanalysis.flight.curve import Curve, even_curve
 from hfanalysis.quantity import Quantity
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
-
-Array = NDArray[np.float64]
 
 
 def curve_of(engine: Engine, burnt: Burn) -> Curve:

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from itertools import cycle
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.charts import svg
 from hfanalysis.charts.colours import STYLES
 from hfanalysis.charts.envelope import Envelope
 from hfanalysis.charts.style import sheet
 from hfanalysis.design.steady import SteadyEngine
 from hfanalysis.simulate.study import FlowPoint, MixturePoint
-
-Array = NDArray[np.float64]
 
 _ALONE = "svg { font-family: system-ui, sans-serif; background: var(--paper); }"
 

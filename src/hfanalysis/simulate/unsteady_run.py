@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hfanalysis.arrays import Array
 from hfanalysis.assembly import engine as build
 from hfanalysis.engine import closure, unsteady
 from hfanalysis.engine.unsteady import Burn, Engine
@@ -17,8 +15,6 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, gravity
 from hfanalysis.simulate import flown, heading, propellant
-
-Array = NDArray[np.float64]
 
 COMMAND = "hfa simulate"
 

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.design.steady import SteadyEngine
 from hfanalysis.flight import rasp
 from hfanalysis.products.disk import atomic, write_json
@@ -18,8 +18,6 @@ from hfanalysis.simulate import plots, study
 from hfanalysis.simulate.steady_run import Design
 from hfanalysis.simulate.study import FlowPoint, MixturePoint
 from hfanalysis.simulate.unsteady_run import Simulation
-
-Array = NDArray[np.float64]
 
 STATES = {
     "tank_mass": "kg",

@@ -9,11 +9,9 @@ from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.sources import closure, digest
-
-Array = NDArray[np.float64]
 
 
 def cache_directory() -> Path:

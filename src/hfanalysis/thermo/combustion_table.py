@@ -27,15 +27,14 @@ from dataclasses import dataclass
 from importlib.metadata import version
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled, inlined
 from hfanalysis.thermo import combustion
 from hfanalysis.thermo.cache import cached
 from hfanalysis.thermo.combustion import FUEL_MOLAR_MASS, PROPEP_OXIDIZER_ENTHALPY, equilibrium
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 
-Array = NDArray[np.float64]
 Four = tuple[float, float, float, float]
 Shares = tuple[int, int, Four]
 Place = tuple[int, Four, Four, Four, Four, float]

@@ -10,8 +10,9 @@ from importlib.metadata import version
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.thermo.cache import cached
-from hfanalysis.thermo.saturation import NODES, Array, Property, Saturation
+from hfanalysis.thermo.saturation import NODES, Property, Saturation
 
 CRITICAL_TEMPERATURE = 309.5207
 T_MIN = 182.34

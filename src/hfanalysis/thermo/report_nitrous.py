@@ -11,8 +11,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from hfanalysis.arrays import Array
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
-from hfanalysis.thermo.saturation import NODES, Array, Property, Saturation
+from hfanalysis.thermo.saturation import NODES, Property, Saturation
 
 CRITICAL_TEMPERATURE = 309.57
 """T_c of the liquid volume correlation [K]; the table ends at 309.52 K, where both phases meet."""

@@ -12,12 +12,11 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
-
-Array = NDArray[np.float64]
 
 NODES = 512
 """Table nodes; at this number the spline errors are below 1e-7 relative (tests/thermo)."""

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, effective_area
 from hfanalysis.engine.grain import opened, oxidizer_flux
 from hfanalysis.engine.injector import mass_flows
@@ -24,8 +24,6 @@ from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.validate.tank_free import TankAlone
-
-Array = NDArray[np.float64]
 
 STEP = 0.02
 """[s] of the histories: block means over this time."""

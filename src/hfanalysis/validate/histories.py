@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.nozzle import characteristic_velocity
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.products.segments import Segments
@@ -23,8 +24,6 @@ from hfanalysis.validate.flows import STEP, Flows, nozzle_along
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import FORMAT
 from hfanalysis.validate.thrust import thrust_of
-
-Array = NDArray[np.float64]
 
 BEFORE, AFTER = 2.0, 3.0
 """[s] shown before the opening and after the burn."""

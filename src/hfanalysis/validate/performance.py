@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.calibrate.evidence_from_log import VIDEO
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.engine.unsteady import Burn
@@ -21,8 +21,6 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
 from hfanalysis.validate.thrust import Thrust, thrust_of
-
-Array = NDArray[np.float64]
 
 NAMES = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust", "average_thrust",
          "oxidizer_mass", "fuel_mass")  # fmt: skip

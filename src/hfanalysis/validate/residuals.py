@@ -11,12 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import PhaseGap
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-
-Array = NDArray[np.float64]
 
 FORMAT = ("v108", "v110")
 """HDF5 versions that MATLAB and older tools read."""

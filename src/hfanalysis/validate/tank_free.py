@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import effective_area, exponent, loaded_mass, loss_factor
 from hfanalysis.engine.blowdown import TankAlone as Tank
 from hfanalysis.engine.blowdown import tank_alone
@@ -27,8 +27,6 @@ from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 from hfanalysis.validate.residuals import Residual, compared
-
-Array = NDArray[np.float64]
 
 LONGEST = 60.0
 """Seconds after the opening up to which the model is compared."""

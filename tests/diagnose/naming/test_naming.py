@@ -13,6 +13,7 @@ import pytest
 from tests.engine.stand import engine_on_stand
 from tests.inference import made
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.answer.limits import inserted, limits
 from hfanalysis.diagnose.answer.verdict import of_unknown, places, verdict_of
 from hfanalysis.diagnose.answer.words import place_sentence
@@ -26,7 +27,7 @@ from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
-from hfanalysis.diagnose.naming.singles import Array, _first_children, _promising, singles_of
+from hfanalysis.diagnose.naming.singles import _first_children, _promising, singles_of
 from hfanalysis.diagnose.naming.slack import slack_gain
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active

@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Active, Effect, compose
 from hfanalysis.engine.equations import OUTPUTS, STATES, evaluate_rates
 from hfanalysis.engine.sites import SITES
@@ -20,8 +20,6 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.predict import aligned, last_regression, misread, with_spare_fuel
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.record.channels import unit_of
-
-Array = NDArray[np.float64]
 
 POINTS = 120
 """Instants at which a source is given."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.score import FIRST_STEP
 from hfanalysis.inference.candidate import Bench, Candidate
@@ -15,8 +15,6 @@ from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import predict
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
-
-Array = NDArray[np.float64]
 
 Z95 = 1.645
 """One-sided 95 % of a normal distribution, in standard deviations."""

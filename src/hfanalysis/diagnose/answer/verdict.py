@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.answer.effect_source import Acting, acting
 from hfanalysis.diagnose.answer.limits import limits
 from hfanalysis.diagnose.answer.plausible import judged, lost
@@ -30,8 +30,6 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.unknown import History, has_name
 from hfanalysis.products.diagnosis import NamedEffect, Place, SourceHistory
 from hfanalysis.quantity import NORMAL_95, Quantity
-
-Array = NDArray[np.float64]
 
 CLAIM = 0.15
 """Probability of none from which on nothing is claimed: a wrong alarm costs more than an effect left unnamed."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.engine.equations import RADIUS
 from hfanalysis.inference.candidate import followed
@@ -18,8 +18,6 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import faded
 from hfanalysis.inference.observations.observed import FADE, Observed
-
-Array = NDArray[np.float64]
 
 STRENGTH, SHAPES = 1.2, np.linspace(-4.0, 2.0, 25)
 """Strength and first shape (as x) of the surfaces of which the one is taken that fades as long as measured."""

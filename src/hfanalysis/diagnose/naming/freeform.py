@@ -6,8 +6,8 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.naming.dropping import dropped
 from hfanalysis.diagnose.naming.plain import plain_sources
 from hfanalysis.inference.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
@@ -19,8 +19,6 @@ from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import LinearUnknown
 from hfanalysis.inference.unknowns import in_slopes
-
-Array = NDArray[np.float64]
 
 REFITTED = 3
 """Sites whose source is fitted with the full model, by their linear evidence."""

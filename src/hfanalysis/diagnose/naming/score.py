@@ -9,16 +9,14 @@ from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.inference.fitting.fit import Fit, usable
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import predict
 from hfanalysis.inference.observations.observed import Observed
-
-Array = NDArray[np.float64]
 
 STARTS = (-2.0, -1.0, 0.0, 1.0, 2.0)
 """Standard deviations from its prior's center at which the parameter of an effect's shape may start, if it has one."""

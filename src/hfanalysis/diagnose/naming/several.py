@@ -6,8 +6,8 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.naming.dropping import dropped, without
 from hfanalysis.diagnose.naming.fading import fades, fading_fit
 from hfanalysis.diagnose.naming.score import score_tests
@@ -18,8 +18,6 @@ from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import predict
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
-
-Array = NDArray[np.float64]
 
 PLAIN = 5.0
 """Log evidence of a single effect from which on others are tried beside it."""

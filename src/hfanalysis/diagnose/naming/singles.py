@@ -13,8 +13,8 @@ from functools import partial
 from itertools import count
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.naming.base_model import FAR_BEHIND
 from hfanalysis.diagnose.naming.fading import fades, fades_unseen, fading_fit, unseen_fits
 from hfanalysis.diagnose.naming.score import Test, score_tests
@@ -38,8 +38,6 @@ from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
-
-Array = NDArray[np.float64]
 
 SEEN = 0.7
 """Gain in log probability below which a score test has seen nothing."""

@@ -10,15 +10,13 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.candidate import Bench, Candidate, price
 from hfanalysis.inference.fitting.fit import promised
 from hfanalysis.inference.fitting.form import STEPS, Form
 from hfanalysis.inference.fitting.predict import signatures
 from hfanalysis.inference.observations.observed import Observed
-
-Array = NDArray[np.float64]
 
 SHAPE_ERROR = 0.2
 """By how much, relative to itself, an effect may be larger or smaller than its closure says."""

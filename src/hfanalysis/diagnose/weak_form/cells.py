@@ -11,14 +11,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from scipy.sparse import csr_array
 
+from hfanalysis.arrays import Array, Mask
 from hfanalysis.diagnose.weak_form.linear import History
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 SHORTEST_CELL, MOST_CELLS = 0.03, 200
 """Seconds, and how many cells there are at most."""

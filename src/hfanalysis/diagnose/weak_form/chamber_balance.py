@@ -13,8 +13,8 @@ from functools import cached_property
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 from hfanalysis.diagnose.weak_form.cells import Cells, Piece, by_phase
 from hfanalysis.diagnose.weak_form.linear import History, integral, through, through_all
@@ -22,8 +22,6 @@ from hfanalysis.engine.chamber import chamber_volume
 from hfanalysis.engine.grain import flux_power, opened, oxidizer_flux
 from hfanalysis.engine.nozzle import expand_along
 from hfanalysis.engine.unsteady import Engine
-
-Array = NDArray[np.float64]
 
 LEAST_PRESSURE = 1e3
 """Chamber pressure [Pa] below which the gas is that at this one."""

@@ -11,9 +11,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from hfanalysis.arrays import Array
 
 STEP = 1e-5
 """Relative to the largest value of a history: by how much it is moved to find a derivative."""

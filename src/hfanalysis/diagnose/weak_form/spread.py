@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.weak_form.linear import History
 from hfanalysis.engine.unsteady import Engine
 
 if TYPE_CHECKING:
     from hfanalysis.inference.fitting.fit import Fit
 
-Array = NDArray[np.float64]
 
 KNOWN = (
     "volume", "area", "loss_factor", "oxidizer_mass", "temperature", "polytropic_exponent", "a", "n", "throat_area",

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.weak_form.cells import Piece, by_phase
 from hfanalysis.diagnose.weak_form.linear import History, integral, through
 from hfanalysis.diagnose.weak_form.tank_flow import TankFlow
@@ -17,8 +17,6 @@ from hfanalysis.engine.feed_line import line_loss
 from hfanalysis.engine.injector import mass_flows
 from hfanalysis.engine.tank import COLDEST_VAPOR, WARMEST_VAPOR, internal_energy, mass_along, polytropic
 from hfanalysis.thermo.saturation import Property
-
-Array = NDArray[np.float64]
 
 BAR, LITRE = 1e5, 1e-3
 

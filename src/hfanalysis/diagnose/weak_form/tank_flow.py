@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.weak_form.cells import Cells
 from hfanalysis.diagnose.weak_form.linear import History, integral, joined, through, total
 from hfanalysis.engine.injector import flow_resistance, mass_flows
@@ -21,8 +21,6 @@ from hfanalysis.engine.tank import COLDEST_VAPOR, WARMEST_VAPOR
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.thermo.combustion import FORMATION_OFFSET
 from hfanalysis.thermo.saturation import Property
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.diagnose.weak_form.cells import (
     Cells,
     Piece,
@@ -35,8 +35,6 @@ from hfanalysis.diagnose.weak_form.tank_balance import TankBalance
 from hfanalysis.engine.equations import O_ENTHALPY, O_OXIDIZER_FLOW
 from hfanalysis.engine.observe import observe
 from hfanalysis.engine.unsteady import Burn, Engine, burn
-
-Array = NDArray[np.float64]
 
 WINDOW = 0.8
 """Length of a test function [s]."""

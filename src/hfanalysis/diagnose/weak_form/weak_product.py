@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hfanalysis.diagnose.weak_form.weak import WeakResidual
 from hfanalysis.products.diagnosis import ChiSquare, Lacking
 from hfanalysis.quantity import Quantity
-
-Array = NDArray[np.float64]
 
 Z90 = 1.6449
 """Half-width of the 90 % interval of a normal distribution."""

@@ -12,8 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Active
-from hfanalysis.engine.observe import CHANNELS, Array, distorted
+from hfanalysis.engine.observe import CHANNELS, distorted
 from hfanalysis.record.log import Channel, TestLog
 
 TURNS = 2

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.noise_level import louder_or_quieter
@@ -17,8 +17,6 @@ from hfanalysis.inference.fitting.predict import Prediction, predict, with_slope
 from hfanalysis.inference.fitting.size import of_any_size
 from hfanalysis.inference.fitting.trust import box_about, grown, length_of, shrunk, step_within
 from hfanalysis.inference.observations.observed import Observed
-
-Array = NDArray[np.float64]
 
 ITERATIONS = 25
 CONVERGED, ENDED = 0.02, 1e-5

@@ -15,6 +15,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import ASSUMED_EXPONENT
 from hfanalysis.engine.effect import Active, Effect
 from hfanalysis.engine.grain import oxidizer_flux
@@ -22,9 +23,6 @@ from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.inference.splines import Splines
 from hfanalysis.products.calibration import Calibration
-
-Array = NDArray[np.float64]
-
 
 M_RANGE = 2.0
 """Standard deviations that the polytropic exponent may be off: 0.95 to 1.35 bounds what nitrous oxide can do near

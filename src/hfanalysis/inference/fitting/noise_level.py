@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.noise import SlowNoise
-
-Array = NDArray[np.float64]
 
 FARTHEST = 1.2
 """Log of a factor beyond which none is thought of."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from math import inf, pi, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.equations import RADIUS, STATES
 from hfanalysis.engine.observe import distorted, distorted_tangents, true_channels, true_tangents
 from hfanalysis.engine.phases import LIQUID_OUT
@@ -22,8 +22,6 @@ from hfanalysis.inference.observations.channel import Channel
 from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.observations.recorded import ALIKE
 from hfanalysis.inference.splines import Splines
-
-Array = NDArray[np.float64]
 
 AFTER = 1.0
 """Seconds that a run goes on after the last observation, for its liquid may end later than the measured."""

@@ -15,10 +15,8 @@ from functools import lru_cache
 from itertools import combinations, product
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
+from hfanalysis.arrays import Array
 
 SIZES = (2.0, 1.0, 0.3, 0.1, 0.03, 0.01)
 """Deviations of a strength (as x), each as probable as the others: 1 is about the typical size, 2 some four times as

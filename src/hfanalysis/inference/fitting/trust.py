@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from hfanalysis.arrays import Array
 
 LONGEST_STRIDE = 2.0
 """Standard deviations of its prior that a parameter moves at a time."""

@@ -8,9 +8,8 @@ of the fuel, where what follows it is compared, is the measured one in both.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from hfanalysis.arrays import Array
 
 MOST_MOVED = 0.5
 """Part of the time between the ends of liquid and fuel by which the one may be off and the other still stay."""

@@ -8,14 +8,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array, Integers
 from hfanalysis.inference.observations.channel import averaged
 from hfanalysis.inference.observations.frame import AROUND_CHANGE, BLOCK, Frame
 from hfanalysis.inference.observations.recorded import LONGEST
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 MERGED, NEAR = 5, 0.4
 """Blocks that are merged into one farther than NEAR [s] from any change: the noise there is coherent anyway."""

@@ -10,13 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hfanalysis.inference.observations.recorded import LONGEST, TOGETHER
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.signals import Signal
-
-Array = NDArray[np.float64]
 
 BEFORE, AFTER, CLEAR = 0.3, 0.5, 0.05
 """Seconds looked at before and after the end of the fuel, and kept clear of the end of the liquid."""

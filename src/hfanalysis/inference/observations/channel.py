@@ -7,10 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array, Integers
 from hfanalysis.inference.observations.recorded import TOGETHER
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 FORM_ERROR, FORM_TIME = 7e-5, 1.0
 """The finest model-form error: part of a channel's range, and the time [s] over which it is coherent."""

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.alignment import share
 from hfanalysis.inference.observations.blocks import TANK_AT_REST, Blocks
 from hfanalysis.inference.observations.channel import SHARE, Channel, averaged, range_of
@@ -22,8 +23,6 @@ from hfanalysis.inference.observations.recorded import LONGEST, TOGETHER, accura
 from hfanalysis.inference.observations.wander import Wander, roughness, wander_of
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.signals import sample_noise
-
-Array = NDArray[np.float64]
 
 FILLING_ERROR, FILLING_TIME = 0.1, 0.1
 """Model-form error while the line fills, as part of a channel's range, and the seconds over which it is coherent."""

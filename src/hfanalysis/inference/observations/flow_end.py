@@ -9,13 +9,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.recorded import LONGEST, accuracy_of, signal_of
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-
-Array = NDArray[np.float64]
 
 AROUND_END = 0.3
 """Seconds before the end of the flow that was noted at the stand from which on nothing is compared."""

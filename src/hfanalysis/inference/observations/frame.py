@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.flow_end import AROUND_END, flow_end_without_fuel, noted_flow_end
 from hfanalysis.inference.observations.recorded import LONGEST, log_end, log_start
 from hfanalysis.products.segments import Segments
@@ -15,8 +16,6 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
-
-Array = NDArray[np.float64]
 
 BLOCK = 0.02
 """Seconds over which samples are averaged near the opening and the changes of phase."""

@@ -6,13 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, cholesky, lapack
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.channel import Channel, form_covariance
 from hfanalysis.inference.observations.recorded import ALIKE, TOGETHER
-
-Array = NDArray[np.float64]
 
 LEAST_SHARE, MOST_SHARE = 0.05, 0.95
 """Of the noise in a pattern that is slow, from which on it counts, and at most: a covariance of the oscillation that is

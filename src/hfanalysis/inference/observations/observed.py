@@ -17,13 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.channel import CHAMBER_FORM, FORM_ERROR, Channel
 from hfanalysis.inference.observations.flow_end import WITHOUT_FIRE
 from hfanalysis.inference.observations.noise import Group, SlowNoise, groups_of, slow_noise
 from hfanalysis.inference.observations.recorded import ALIKE, TOGETHER
 from hfanalysis.inference.unknown import Unknown
-
-Array = NDArray[np.float64]
 
 FADE = "fuel_fade"
 """Among what was stated: the seconds in which the fire went out, with the deviation of their log."""

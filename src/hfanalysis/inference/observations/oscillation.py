@@ -15,7 +15,7 @@ from scipy.linalg import toeplitz
 from scipy.signal import savgol_coeffs, savgol_filter
 from scipy.signal.windows import parzen
 
-Array = NDArray[np.float64]
+from hfanalysis.arrays import Array
 
 SMOOTHED, ORDER = 25, 3
 """Blocks over which the smooth course is a polynomial, and its order."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.channel import SHARE
 from hfanalysis.inference.observations.frame import BLOCK
 from hfanalysis.inference.observations.recorded import ALIKE, accuracy_of, signal_of
@@ -19,8 +19,6 @@ from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-
-Array = NDArray[np.float64]
 
 SETTLED = 0.2
 """Seconds after nitrogen could first enter from which on the line is compared."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel as LogChannel
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-
-Array = NDArray[np.float64]
 
 CHANNELS = ("p_tank", "p_run", "p_chamber", "thrust", "m_tank")
 """Canonical channels that are compared."""

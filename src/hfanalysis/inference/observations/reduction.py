@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.observations.blocks import Blocks, blocks_of
 from hfanalysis.inference.observations.burn_out import fade_of
@@ -29,8 +27,6 @@ from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-
-Array = NDArray[np.float64]
 
 
 def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -> Observed:

@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
-
-Array = NDArray[np.float64]
 
 TIMES = np.array([0.02, 0.06, 0.18, 0.54, 1.6, 4.9, 15.0])
 """Time constants [s] of the processes."""

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Parameter
 from hfanalysis.engine.equations import O_OXIDIZER_FLOW
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, M_LIQUID, switch, term
@@ -26,8 +26,6 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import text
 from hfanalysis.wording.numbers import said_of
-
-Array = NDArray[np.float64]
 
 COURSE, LOOKED_AT = 1.5, 0.3
 """Seconds before the end of the liquid over which the course is a straight line, up to where it may begin to fail."""

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Channels, Parameter
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
@@ -25,8 +25,6 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.channels import unit_of
 from hfanalysis.sentences import capitalised, text
 from hfanalysis.wording.numbers import said_of
-
-Array = NDArray[np.float64]
 
 CHANNEL = "thrust"
 """The channel that may be late."""

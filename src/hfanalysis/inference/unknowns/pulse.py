@@ -8,8 +8,8 @@ from math import tanh
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Effect, Parameter
 from hfanalysis.engine.sites import HOOK_OF_SITE, RATES, SITES, switch, term
 from hfanalysis.inference.fitting.fit import Fit
@@ -18,8 +18,6 @@ from hfanalysis.inference.linear import SCALES, Linearized, Projected
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import PLACES, Place
 from hfanalysis.inference.unknown import POINTS, PREFIX, History, LinearUnknown, nameless_effect, spread_of
-
-Array = NDArray[np.float64]
 
 SIZE, START, DURATION, EDGE, SITE, HOOK = range(6)
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Parameter
 from hfanalysis.engine.equations import O_TANK_PRESSURE, OUTPUTS
 from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, switch, term
@@ -24,8 +24,6 @@ from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
 from hfanalysis.sentences import text
 from hfanalysis.wording.numbers import said_of
-
-Array = NDArray[np.float64]
 
 BEFORE, AFTER = 0.15, 0.6
 """Seconds before and after the opening between which the run line's pressure is looked at."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Block, Hypothesis
 from hfanalysis.inference.linear import SCALES, SPACING, Linearized, Projected
@@ -15,8 +15,6 @@ from hfanalysis.inference.places import PLACES, Place
 from hfanalysis.inference.splines import Splines, probe
 from hfanalysis.inference.unknown import POINTS, PREFIX, History, LinearUnknown, spread_of
 from hfanalysis.record.channels import unit_of
-
-Array = NDArray[np.float64]
 
 OFFSET = "offset of "
 """How the names of places begin that are sensors."""

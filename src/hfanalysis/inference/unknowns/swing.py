@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, median_filter
 from scipy.signal.windows import hann
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Parameter
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, switch, term
 from hfanalysis.inference.fitting.fit import Fit
@@ -28,8 +29,6 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import text
 from hfanalysis.wording.numbers import said_of
-
-Array = NDArray[np.float64]
 
 STEP = 5e-3
 """Seconds over which samples are averaged first."""

@@ -6,13 +6,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.units import near
 
-Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 """Called now and then with the share of the file that has been read, 0 to 1."""
 
@@ -30,7 +27,7 @@ class Text:
 class Chunk:
     """A stretch of some columns: column (from 0) -> numbers, NaN where there is none; and the text met there."""
 
-    columns: dict[int, Floats]
+    columns: dict[int, Array]
     text: dict[int, Text] = field(default_factory=dict)
     written: frozenset[int] = frozenset()
     """Columns of stamps that are dates or times of day, given here in seconds."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hfanalysis.record.readers.base import Chunk, Floats, Text
+from hfanalysis.arrays import Array
+from hfanalysis.record.readers.base import Chunk, Text
 from hfanalysis.record.readers.dialect import WHITESPACE, Dialect
 from hfanalysis.record.readers.stamps import StampParser
 
@@ -38,7 +39,7 @@ def read(file: Any, about: Dialect, wanted: Sequence[int], **how: Any) -> Any:
 
 def chunk(frame: pd.DataFrame, parsers: Mapping[int, StampParser], decimal: str, line: int) -> Chunk:
     """The frame's numbers; stamps in words become seconds; ``line`` is the first row's in the file."""
-    columns: dict[int, Floats] = {}
+    columns: dict[int, Array] = {}
     text: dict[int, Text] = {}
     written: set[int] = set()
     for column, cells in ((int(str(name)), cells) for name, cells in frame.items()):
@@ -55,11 +56,11 @@ def chunk(frame: pd.DataFrame, parsers: Mapping[int, StampParser], decimal: str,
     return Chunk(columns, text, frozenset(written))
 
 
-def _mostly_text(numbers: Floats, cells: pd.Series[Any]) -> bool:
+def _mostly_text(numbers: Array, cells: pd.Series[Any]) -> bool:
     return bool(np.isnan(numbers).sum() * 2 > cells.notna().sum())
 
 
-def _numbers(cells: pd.Series[Any], decimal: str) -> Floats:
+def _numbers(cells: pd.Series[Any], decimal: str) -> Array:
     """The numbers among cells some of which are text, NaN for the others."""
     import pandas as pd
 

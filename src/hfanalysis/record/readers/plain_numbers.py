@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 
 Bytes = NDArray[np.uint8]
-Floats = NDArray[np.float64]
 Unsigned = Any
 """numpy.uint64: a place in the text, or what is counted from it."""
 
@@ -32,7 +32,7 @@ POWERS = 10.0 ** np.arange(23)
 
 def parse(
     text: bytes | memoryview, delimiter: str, decimal: str, slots: NDArray[np.int64], wanted: int
-) -> Floats | None:
+) -> Array | None:
     """The wanted columns, shape (wanted, rows), NaN where a cell is empty; None where a cell is not a plain number.
 
     ``slots``: for each column of the text the row of the result, -1 where it is not wanted.
@@ -52,7 +52,7 @@ def _count(data: Bytes, byte: int) -> int:
 
 
 @compiled(nogil=True)
-def _parse(data: Bytes, delimiter: int, decimal: int, slots: NDArray[np.int64], out: Floats) -> Any:
+def _parse(data: Bytes, delimiter: int, decimal: int, slots: NDArray[np.int64], out: Array) -> Any:
     """Number of rows filled from lines that all end; DECLINED for a cell that is no plain number.
 
     Places are counted without a sign, so that none is taken as from the end: this alone makes it thrice as fast.
@@ -86,7 +86,7 @@ def _parse(data: Bytes, delimiter: int, decimal: int, slots: NDArray[np.int64], 
 
 
 @compiled(nogil=True)
-def _leave_empty(slots: NDArray[np.int64], row: Unsigned, out: Floats) -> None:
+def _leave_empty(slots: NDArray[np.int64], row: Unsigned, out: Array) -> None:
     """NaN in the columns that a short line does not have."""
     for slot in slots:
         if slot >= 0:

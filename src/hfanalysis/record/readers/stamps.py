@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hfanalysis.record.readers.base import Floats
+from hfanalysis.arrays import Array
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,7 +30,7 @@ class StampParser:
     last: float = field(default=np.nan)
     days: float = 0.0
 
-    def seconds(self, cells: pd.Series[Any]) -> Floats:
+    def seconds(self, cells: pd.Series[Any]) -> Array:
         """Seconds, NaN where a cell is no stamp."""
         text = cells.astype("string")
         clock = text.str.extract(_CLOCK)
@@ -38,12 +38,12 @@ class StampParser:
             return self._clock(clock)
         return self._dates(text)
 
-    def _clock(self, parts: pd.DataFrame) -> Floats:
+    def _clock(self, parts: pd.DataFrame) -> Array:
         hours, minutes = (_numbers(parts[i]) for i in (0, 1))
         rest = np.nan_to_num(_numbers(parts[2].str.replace(",", ".")))
         return self._unwrapped(3600.0 * hours + 60.0 * minutes + rest)
 
-    def _unwrapped(self, seconds: Floats) -> Floats:
+    def _unwrapped(self, seconds: Array) -> Array:
         known = np.flatnonzero(np.isfinite(seconds))
         if not len(known):
             return seconds
@@ -53,14 +53,14 @@ class StampParser:
         seconds[known] += DAY * days
         return seconds
 
-    def _dates(self, text: pd.Series[Any]) -> Floats:
+    def _dates(self, text: pd.Series[Any]) -> Array:
         stamps = _parsed(text)
         known = stamps[stamps.notna()]
         if self.midnight is None and len(known):
             self.midnight = known.iloc[0].normalize()
         if self.midnight is None:
             return np.full(len(text), np.nan)
-        elapsed: Floats = (stamps - self.midnight).dt.total_seconds().to_numpy(dtype=np.float64)
+        elapsed: Array = (stamps - self.midnight).dt.total_seconds().to_numpy(dtype=np.float64)
         return elapsed
 
 
@@ -76,7 +76,7 @@ def _parsed(text: pd.Series[Any]) -> pd.Series[Any]:
     return best
 
 
-def _numbers(cells: pd.Series[Any]) -> Floats:
+def _numbers(cells: pd.Series[Any]) -> Array:
     import pandas as pd
 
     return np.array(pd.to_numeric(cells, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
-from hfanalysis.record.readers.base import Chunk, Floats, Progress
+from hfanalysis.record.readers.base import Chunk, Progress
 
 
 @dataclass(frozen=True)
@@ -17,9 +18,9 @@ class Series:
     """Numbers under a name; ``time`` [s] where the format says when each was read."""
 
     name: str
-    numbers: Floats
+    numbers: Array
     unit: str = ""
-    time: Floats | None = None
+    time: Array | None = None
 
 
 class Table:

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
-from hfanalysis.record.readers.base import Floats
 from hfanalysis.record.readers.table import Series, Table
 
 _UNITS = ("unit_string", "NI_UnitDescription", "Unit")
@@ -44,12 +44,12 @@ def _unit(channel: Any) -> str:
     return next((str(unit) for key in _UNITS if (unit := channel.properties.get(key))), "")
 
 
-def _time(channel: Any, first: Any) -> Floats | None:
+def _time(channel: Any, first: Any) -> Array | None:
     """Seconds since the first waveform of the file began; None where the channel is no waveform."""
     step = channel.properties.get("wf_increment")
     if not step:
         return None
     start = channel.properties.get("wf_start_time")
     late = 0.0 if start is None or first is None else float((start - first) / np.timedelta64(1, "s"))
-    time: Floats = late + channel.properties.get("wf_start_offset", 0.0) + step * np.arange(len(channel))
+    time: Array = late + channel.properties.get("wf_start_offset", 0.0) + step * np.arange(len(channel))
     return time

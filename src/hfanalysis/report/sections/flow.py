@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.charts.chart import Chart, Series, around
-from hfanalysis.charts.envelope import Floats
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.report.material import Material
@@ -27,7 +27,7 @@ def render(material: Material) -> Iterator[Block]:
     yield from drawn
 
 
-def _history(material: Material, *names: str) -> list[Floats] | None:
+def _history(material: Material, *names: str) -> list[Array] | None:
     """Columns of the calibrated tank's history: time first."""
     calibration = material.get(Calibration)
     history = calibration.tank_history if calibration is not None else None

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 from markupsafe import Markup
 
+from hfanalysis.arrays import Array
 from hfanalysis.charts import svg
 from hfanalysis.charts.chart import Chart, Series, around
-from hfanalysis.charts.envelope import Floats
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
@@ -63,7 +63,7 @@ def _coefficient(material: Material) -> Chart | None:
     )
 
 
-def _series(time: Floats, value: Floats, std: Floats, quantity: Quantity) -> Iterator[Series]:
+def _series(time: Array, value: Array, std: Array, quantity: Quantity) -> Iterator[Series]:
     yield Series("95 % interval", "C_i", time, value - 1.96 * std, "band", value + 1.96 * std)
     yield Series("C_i(t)", "C_i", time, value)
     if quantity.value is not None:
@@ -78,7 +78,7 @@ def _caption(quantity: Quantity) -> Markup:
     return words + Markup(" A coefficient that drifts says that the model lacks something.")
 
 
-def _range(time: Floats, value: Floats) -> tuple[float, float]:
+def _range(time: Array, value: Array) -> tuple[float, float]:
     settled = np.isfinite(value) & (time > time[0] + _FIRST * (time[-1] - time[0]))
     limits = np.nanpercentile(value[settled] if settled.any() else value, [1, 99])
     low, high = svg.value_range([np.asarray(limits)], with_zero=False)

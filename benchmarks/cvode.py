@@ -9,14 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Composition, compose
 from hfanalysis.engine.equations import OUTPUTS, STATES, evaluate_rates
 from hfanalysis.engine.phases import FUEL_OUT, GROUND, LIQUID_OUT, OWN_EVENTS, SCALES, change, evaluate_events
 from hfanalysis.engine.unsteady import Engine, check, constants, initial
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
