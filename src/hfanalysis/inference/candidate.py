@@ -97,7 +97,7 @@ class Bench:
         None where it cannot be run.
         """
         coarse = attempted(hypothesis, self.at(COARSEST), np.zeros(hypothesis.size), SHORT)
-        return None if coarse is None else self.told(candidate((), coarse, COARSEST))
+        return None if coarse is None else self.told(self.judged(candidate((), coarse, COARSEST)))
 
     def judged(self, found: Candidate) -> Candidate:
         """A candidate at the form that makes the data most probable: finer or coarser as long as that helps.
@@ -162,27 +162,18 @@ class Bench:
         again = self._gone_on(found, form, SHORT)
         return None if again is None else candidate(found.names, again, form, found.source)
 
-    def told(self, found: Candidate) -> Candidate:
-        """A candidate whose numbers are told: at its form, its fit brought to its end."""
-        return self.converged(self.judged(found))
-
     def converged(self, found: Candidate) -> Candidate:
-        """The candidate, its fit brought to its end: where it is stopped on its way its numbers are no answer."""
-        if found.fit.within <= ENDED:
-            return found
-        again = self._ended(found)
-        return found if again is None else candidate(found.names, again, found.form, found.source)
+        """The candidate, its fit gone on with until it has converged, or as far as LONGEST steps lead."""
+        again = None if found.fit.converged else self._gone_on(found, found.form, LONGEST)
+        return found if again is None else _with_fit(found, again)
 
-    def _ended(self, found: Candidate) -> Fit | None:
-        """The candidate's fit at its end; None where it cannot be run."""
-        near = found.fit if found.fit.converged else self._gone_on(found, found.form, LONGEST)
-        if near is None:
-            return None
+    def told(self, found: Candidate) -> Candidate:
+        """A candidate whose numbers are told, its fit brought to its end: stopped on its way they are no answer."""
+        near = self.converged(found)
+        if near.fit.within <= ENDED or not near.fit.converged:
+            return near
         try:
-            ended = brought_to_end(near, self.at(found.form))
-            if ended.within <= ENDED:
-                return ended
-            return fit_on(near, self.at(found.form), self.at(found.form), LONGEST, ENDED)  # at a knee slopes do not end
+            return _with_fit(near, brought_to_end(near.fit, self.at(near.form)))
         except (ValueError, ArithmeticError):
             return near
 
@@ -203,6 +194,11 @@ def candidate(names: tuple[str, ...], found: Fit, form: Form, source: Unknown | 
     """A fit at a form as a candidate, at the price of the form and of effects beyond the first."""
     further = max(len(names) - (source is not None) - 1, 0)
     return Candidate(names, found, found.log_evidence - price(form) - FURTHER * further, form, source)
+
+
+def _with_fit(found: Candidate, fit: Fit) -> Candidate:
+    """The candidate with another fit at its form; what its evidence holds besides stays."""
+    return replace(found, fit=fit, log_evidence=found.log_evidence + fit.log_evidence - found.fit.log_evidence)
 
 
 def more_probable(one: Candidate, other: Candidate) -> bool:

@@ -46,7 +46,7 @@ def base_model(hypothesis: Hypothesis, bench: Bench) -> tuple[Candidate, list[Ca
             continue
         found = candidate((), other, first.form)
         if found.log_evidence > first.log_evidence - NEARLY:
-            found = bench.told(found)
+            found = bench.told(bench.judged(found))
         seen.append(found)
         best = max(best, found, key=lambda c: c.log_evidence)
     return best, _elsewhere(best, seen, bench)

@@ -79,7 +79,7 @@ def _shown_the_way(pairs: list[Candidate], singles: list[Candidate], bench: Benc
 
     def alone(pair: Candidate) -> Candidate | None:
         again = without(pair, pair.names[1], bench.at(pair.form))
-        return None if again is None else bench.told(candidate(pair.names[:1], again, pair.form))
+        return None if again is None else bench.judged(candidate(pair.names[:1], again, pair.form))
 
     known = {c.names: c.log_evidence for c in singles}
     return [c for c in each(alone, pairs) if c is not None and c.log_evidence > known[c.names] + FAR]
@@ -133,7 +133,7 @@ def _partners(front: list[Candidate], search: Search, tried: set[frozenset[str]]
             found = attempted(asked_from[0], observed, asked_from[1])
         return None if found is None else candidate((*parent.names, name), found, parent.form)
 
-    return each(bench.told, _in_the_running([c for c in each(grown, jobs) if c is not None]))
+    return each(bench.judged, _in_the_running([c for c in each(grown, jobs) if c is not None]))
 
 
 def _in_the_running(grown: list[Candidate]) -> list[Candidate]:
@@ -191,4 +191,4 @@ def _in_place(found: Candidate, pair: tuple[str, str], search: Search) -> Candid
     again = attempted(made, observed, tests[0][1]) if tests else None
     if again is None:
         return None
-    return search.bench.told(candidate(tuple(twin if n == name else n for n in found.names), again, found.form))
+    return search.bench.judged(candidate(tuple(twin if n == name else n for n in found.names), again, found.form))

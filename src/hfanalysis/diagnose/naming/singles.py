@@ -87,7 +87,7 @@ def _no_worse(child: Candidate, parent: Candidate, bench: Bench) -> Candidate:
     again = attempted(child.fit.hypothesis, bench.at(parent.form), start)
     if again is None:
         return child
-    return max(child, bench.converged(candidate(child.names, again, child.form)), key=lambda c: c.log_evidence)
+    return max(child, candidate(child.names, again, child.form), key=lambda c: c.log_evidence)
 
 
 def _first_children(base: Candidate, valleys: list[Candidate], search: Search, names: list[str]) -> list[Candidate]:

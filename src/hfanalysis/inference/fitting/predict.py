@@ -29,8 +29,9 @@ AFTER = 1.0
 TICK = 1e-5
 """Seconds over which a channel's speed is a difference: a chamber that empties halves in some milliseconds."""
 
-ACCURACY = 3e-5
-"""Relative tolerance of the runs."""
+ACCURACY, FINE = 3e-5, 1e-7
+"""Relative tolerances of the runs of a search, and of those that a fit ends by: what the former err by moves the most
+probable parameters by up to a tenth of their deviation."""
 
 THROAT_GROWTH = "throat_growth"
 """The own state that a throat's radius after the test tells of."""
@@ -50,14 +51,19 @@ class Prediction:
 
 
 def predict(
-    hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool, only: slice | None = None
+    hypothesis: Hypothesis,
+    observed: Observed,
+    x: Array,
+    tangents: bool,
+    only: slice | None = None,
+    accuracy: float = ACCURACY,
 ) -> Prediction:
     """Run a hypothesis; ``only``: slopes with these of its free parameters, which costs the less the fewer they are.
 
     Raises ValueError or ArithmeticError for an engine that cannot be run.
     """
     engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
-    burnt = burn(engine, observed.longest + AFTER, ACCURACY, run_on=True, keep_idle=True)
+    burnt = burn(engine, observed.longest + AFTER, accuracy, run_on=True, keep_idle=True)
     true = true_readings(observed, burnt)
     there = Prediction(residuals(hypothesis, observed, x, burnt, true), None, burnt, true)
     return with_slopes(hypothesis, observed, x, there, only) if tangents else there

@@ -108,6 +108,17 @@ def _drawn_back(
     return back if inward[back] > AT_REST * float(np.abs(gradient / units).max()) else None
 
 
+def learnt(curvature: Array, step: Array, change: Array) -> Array:
+    """The curvature (parameters, parameters) by which a ``step`` changes the gradient as it did, else nearly as it was.
+
+    The BFGS update (Nocedal and Wright, Numerical Optimization, 2006, eq. 6.19); as it was where the gradient fell off.
+    """
+    along, pull = float(step @ change), curvature @ step
+    if along <= LEAST_DAMPING * float(step @ pull):
+        return curvature
+    return curvature + np.outer(change, change) / along - np.outer(pull, pull) / float(step @ pull)
+
+
 def length_of(step: Array, curvature: Array) -> float:
     """A step's length in deviations of every parameter alone."""
     return float(np.linalg.norm(np.sqrt(curvature.diagonal()) * step))

@@ -156,8 +156,8 @@ class FailingFlow(Unknown):
         return text(
             "In the last {within} of the liquid the injector's flow fails, by {lost} on average: chamber pressure and "
             "thrust fall before the tank's shows the end of the liquid, as where gas comes in with it.",
-            within=said_of(known, "ms", ".2g", ".1g"),
-            lost=said_of(row.source, unit, ".2g", ".1g", -1.0),
+            within=said_of(known, "ms", ".0f", ".0f"),
+            lost=said_of(row.source, unit, ".3g", ".2g", -1.0),
         )
 
 
