@@ -111,7 +111,6 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
         evidence = [e.with_regression(law) for e in evidence]
         weights = [_weighed(e, law) for e in evidence]
         best = _least(evidence, weights, flux, best)
-    best = _minimum(evidence, weights, flux, best, EXACT)
     return _surveyed(evidence, weights, flux, best)
 
 
@@ -119,6 +118,7 @@ def _surveyed(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: fl
     """The fit with its likelihood's surface."""
     objective, threshold = _objective(evidence, weights, flux), max(w.threshold for w in weights)
     for _ in range(RESURVEYS):
+        best = _minimum(evidence, weights, flux, best, EXACT)
         found = surface(objective, best, _covariance(evidence, weights, flux, best), threshold)
         lower = _minimum(evidence, weights, flux, found.lowest)
         if objective(lower) > objective(best) - NEGLIGIBLE:
