@@ -26,7 +26,7 @@ from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
 
 ASSUMED_EXPONENT = (1.15, 0.1)
-"""Polytropic exponent of the vapour and its standard deviation where a test does not tell: the middle of 1.0 to 1.3."""
+"""Polytropic exponent of the vapor and its standard deviation where a test does not tell: the middle of 1.0 to 1.3."""
 
 
 COLDER = 15.0
@@ -131,7 +131,7 @@ def loaded_mass(definition: TestDefinition, calibration: TankConstants) -> float
 
 
 def exponent(calibration: TankConstants) -> tuple[float, float]:
-    """The vapour's polytropic exponent with its standard deviation: as calibrated, else ASSUMED_EXPONENT."""
+    """The vapor's polytropic exponent with its standard deviation: as calibrated, else ASSUMED_EXPONENT."""
     found = calibration.m
     return ASSUMED_EXPONENT if found.value is None else (found.value, found.std or 0.0)
 
@@ -169,7 +169,7 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
 
 
 def pressure_at(engine: Engine, instant: float) -> float:
-    """Modelled tank pressure [Pa] at an instant [s after ignition]."""
+    """Modeled tank pressure [Pa] at an instant [s after ignition]."""
     if instant <= 0.0 and not engine.effects:
         return float(engine.saturation.pressure(engine.temperature))
     try:
@@ -180,7 +180,7 @@ def pressure_at(engine: Engine, instant: float) -> float:
 
 
 def _possible(engine: Engine, coldest: float) -> tuple[float, float]:
-    """Temperatures [K] from ``coldest`` up at which the load is liquid and vapour; equal where there are none."""
+    """Temperatures [K] from ``coldest`` up at which the load is liquid and vapor; equal where there are none."""
     source, density = engine.saturation, engine.oxidizer_mass / engine.feed.volume
     grid = np.linspace(coldest, source.t_max - 0.05, 400)
     fits = (source.vapor_density(grid) < density) & (density < source.liquid_density(grid))

@@ -90,7 +90,7 @@ def site_altitude(file: EngineFile) -> float:
 
 
 def tank(needs: Needs) -> TankBuilt:
-    """The tank from its volume, length or ullage, holding the file's oxidizer as saturated liquid and vapour."""
+    """The tank from its volume, length or ullage, holding the file's oxidizer as saturated liquid and vapor."""
     t, source, stated = temperature(needs), properties(needs.file), needs.file.tank
     mass = needs.value(stated.oxidizer_mass, "tank", "oxidizer_mass").value
     try:
@@ -238,7 +238,7 @@ def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
 
 
 def _exponent(needs: Needs) -> float | None:
-    """The polytropic exponent; None for c_p/c_v of the vapour when the liquid runs out."""
+    """The polytropic exponent; None for c_p/c_v of the vapor when the liquid runs out."""
     found = needs.file.tank.polytropic_exponent
     needs.value(found, "tank", "polytropic_exponent")
     return None if isinstance(found, str) else found

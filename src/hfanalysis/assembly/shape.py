@@ -54,7 +54,7 @@ class Masses:
     """Parts that stay as they are, where the tank is, and the middles of grain and chamber [m from the nose tip].
 
     ``front``: the engine's front, from which engine files count; ``length``: of the engine [m]; ``dry``: mass [kg] and
-    centre of gravity of the empty engine, None where the structure holds it.
+    center of gravity of the empty engine, None where the structure holds it.
     """
 
     fixed: tuple[Part, ...]

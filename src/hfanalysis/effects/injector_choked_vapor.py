@@ -1,4 +1,4 @@
-"""Vapour that expands, and chokes, on its way through the injector."""
+"""Vapor that expands, and chokes, on its way through the injector."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Liquid that flashes on its way through the injector, so that its flow hardly asks for the chamber's pressure.
 
-The vapour that follows expands on the same way: saturated vapour is where homogeneous equilibrium flow ends as the
+The vapor that follows expands on the same way: saturated vapor is where homogeneous equilibrium flow ends as the
 share of liquid goes to nothing.
 """
 
@@ -15,7 +15,7 @@ from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, INJECTOR_FACTOR, IS_LI
 
 WEIGHT, OMEGA, LINE, VAPOR = range(4)
 GAMMA = 1.2
-"""Isentropic exponent of the vapour."""
+"""Isentropic exponent of the vapor."""
 
 OMEGA_AT, OMEGA_SLOPE, LEAST_OMEGA = 285.0, -0.032, 1.0
 """Temperature [K] at which omega is stated, its slope [1/K] for saturated nitrous oxide, and the least of it."""

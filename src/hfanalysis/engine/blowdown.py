@@ -1,7 +1,7 @@
 """The tank alone, emptied through feed line and injector against a given chamber pressure.
 
 The engine's own equations from the tank to the injector, with every site that effects have there; the chamber's
-pressure, and the feed loss where that is given too, take the place of what is modelled behind. Fixed steps of the
+pressure, and the feed loss where that is given too, take the place of what is modeled behind. Fixed steps of the
 classical Runge-Kutta method: the tank's time scales are seconds, a step is milliseconds, and the end of the liquid is
 located inside its step by the secant rule, so that no step straddles the change of equations.
 """

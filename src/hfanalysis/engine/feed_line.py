@@ -24,7 +24,7 @@ class FeedSystem:
     """Tank volume [m^3], effective injector area C_i N_i A_i [m^2], and the feed loss.
 
     The loss is K_loss mdot^2 / rho with ``loss_factor`` [1/m^4], or, where ``constant_losses`` is given, the report's
-    constant pressure losses (liquid phase, vapour phase) [Pa].
+    constant pressure losses (liquid phase, vapor phase) [Pa].
     """
 
     volume: float

@@ -31,7 +31,7 @@ def oxidizer_flux(flow: Real, radius: Real) -> Real:
 
 @law
 def ring(radius: Real, length: Real, density: Real) -> Real:
-    """Fuel 2 pi r L rho that a port frees as it opens [kg per metre of radius]."""
+    """Fuel 2 pi r L rho that a port frees as it opens [kg per meter of radius]."""
     return 2.0 * pi * radius * length * density
 
 
@@ -91,7 +91,7 @@ class Grain:
 
 @inlined
 def grain(y: Array, burning: bool, m: Equations) -> tuple[float, float]:
-    """Regression rate [m/s], and fuel that it frees per metre [kg/m]."""
+    """Regression rate [m/s], and fuel that it frees per meter [kg/m]."""
     port = y[RADIUS]
     flux = oxidizer_flux(m.env[OXIDIZER_FLOW], port)
     opening = m.c[REGRESSION_A] * flux_power(flux, m.c[REGRESSION_N]) if burning else 0.0

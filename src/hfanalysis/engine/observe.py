@@ -58,7 +58,7 @@ def distorted(channels: Mapping[str, Array], times: Array, effects: Sequence[Act
 def read_as(
     models: Mapping[str, Array], times: Array, effects: Sequence[Active], beside: Mapping[str, Array] | None = None
 ) -> dict[str, Array]:
-    """Modelled channels, not all of them, as distorting effects let sensors read them; ``beside``: known others."""
+    """Modeled channels, not all of them, as distorting effects let sensors read them; ``beside``: known others."""
     full = {**{name: np.zeros(times.size) for name in CHANNELS}, **(beside or {}), **models}
     found = distorted(full, times, effects)
     return {name: found[name] for name in models}

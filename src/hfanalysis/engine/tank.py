@@ -1,4 +1,4 @@
-"""The self-pressurising oxidizer tank: liquid and vapour in equilibrium, then vapour alone.
+"""The self-pressurizing oxidizer tank: liquid and vapor in equilibrium, then vapor alone.
 
 Report, section 3.1.2 ("Self-Pressurizing Oxidizer Tank"). The saturated tank is written in its total mass M and its
 temperature T; with M and T given, the volume fixes how much of it is liquid (eq. 3.5). The report's three linear
@@ -49,7 +49,7 @@ LEAST_ULLAGE = 1e-9
 """Volume [m^3] that nitrogen in a full tank has at least."""
 
 COLDEST_VAPOR, WARMEST_VAPOR = 185.0, 305.0
-"""Temperatures [K] between which the vapour's heat capacity and enthalpy are read from the saturation line."""
+"""Temperatures [K] between which the vapor's heat capacity and enthalpy are read from the saturation line."""
 
 
 @dataclass(frozen=True)
@@ -61,10 +61,10 @@ class TankSplit:
 
 
 def split(saturation: Saturation, volume: float, mass: float, temperature: float) -> TankSplit:
-    """Liquid and vapour mass [kg] of a saturated tank: V = m_l v_l + m_v v_v (report, eq. 3.5).
+    """Liquid and vapor mass [kg] of a saturated tank: V = m_l v_l + m_v v_v (report, eq. 3.5).
 
-    ``volume`` [m^3], total ``mass`` [kg], ``temperature`` [K]. A negative liquid mass means superheated vapour, a
-    negative vapour mass a tank so full that the liquid is compressed.
+    ``volume`` [m^3], total ``mass`` [kg], ``temperature`` [K]. A negative liquid mass means superheated vapor, a
+    negative vapor mass a tank so full that the liquid is compressed.
     """
     liquid = liquid_mass(saturation.kernel_table, volume, mass, temperature)
     return TankSplit(liquid, mass - liquid)
@@ -72,14 +72,14 @@ def split(saturation: Saturation, volume: float, mass: float, temperature: float
 
 @law
 def compressibility(pressure: Real, volume: Real, mass: Real, temperature: Real) -> Real:
-    """Z = p V / (m R T) of the vapour at the end of the liquid (report, section 4.2.2); pressure [Pa], volume
+    """Z = p V / (m R T) of the vapor at the end of the liquid (report, section 4.2.2); pressure [Pa], volume
     [m^3]."""
     return pressure * volume / (mass * SPECIFIC_GAS_CONSTANT * temperature)
 
 
 @law
 def polytropic(pressure: Real, start: Real, exponent: Real, mass: Real) -> Real:
-    """p = p_v (M/M_v)^m of the vapour that is left (report, eq. 3.11), from ``pressure`` [Pa] and ``start`` [kg] on."""
+    """p = p_v (M/M_v)^m of the vapor that is left (report, eq. 3.11), from ``pressure`` [Pa] and ``start`` [kg] on."""
     return pressure * (mass / start) ** exponent
 
 
@@ -198,7 +198,7 @@ def tank_pressure(y: Array, liquid: bool, m: Equations) -> None:
 
 @inlined
 def saturated(y: Array, m: Equations) -> None:
-    """Liquid under its vapour, with nitrogen in the ullage."""
+    """Liquid under its vapor, with nitrogen in the ullage."""
     env, volume = m.env, m.c[eq.VOLUME]
     p, density, liquid, by_mass, by_temperature, h = tank_of(m, volume, y[eq.TANK], y[eq.TEMPERATURE])
     if y[eq.NITROGEN] > 0.0:
@@ -221,7 +221,7 @@ def tank_of(m: Equations, *question: float) -> tuple[float, float, float, float,
 
 @inlined
 def superheated(y: Array, m: Equations) -> None:
-    """Vapour and nitrogen, mixed."""
+    """Vapor and nitrogen, mixed."""
     env, volume, held = m.env, m.c[eq.VOLUME], y[eq.TANK] + y[eq.NITROGEN]
     env[at.P_TANK], env[at.RHO_FEED] = constant_held(y) * y[eq.TEMPERATURE] / volume, held / volume
     env[at.M_LIQUID] = 0.0
@@ -232,13 +232,13 @@ def superheated(y: Array, m: Equations) -> None:
 
 @inlined
 def constant_held(y: Array) -> float:
-    """p V / T of vapour and nitrogen [J/K]: masses times Z times their gas constants."""
+    """p V / T of vapor and nitrogen [J/K]: masses times Z times their gas constants."""
     return float(y[eq.COMPRESSIBILITY] * SPECIFIC_GAS_CONSTANT * y[eq.TANK] + SPECIFIC_NITROGEN * y[eq.NITROGEN])
 
 
 @inner
 def run_dry(m: Equations, y: Array) -> None:
-    """The vapour's compressibility and exponent, which hold from the end of the liquid on (report, section 4.2.2)."""
+    """The vapor's compressibility and exponent, which hold from the end of the liquid on (report, section 4.2.2)."""
     p = np.exp(at_saturation(m, LN_PRESSURE, y[eq.TEMPERATURE]))
     y[eq.COMPRESSIBILITY] = compressibility(p, m.c[eq.VOLUME], y[eq.TANK], y[eq.TEMPERATURE])
     y[eq.EXPONENT] = m.c[eq.POLYTROPIC_EXPONENT]
@@ -249,15 +249,15 @@ def run_dry(m: Equations, y: Array) -> None:
 
 @inlined
 def vapor(m: Equations, row: int, temperature: float) -> float:
-    """A row of the table at the vapour's temperature, inside the range where it is read."""
+    """A row of the table at the vapor's temperature, inside the range where it is read."""
     return at_saturation(m, row, min(max(temperature, COLDEST_VAPOR), WARMEST_VAPOR))
 
 
 @inlined
 def tank_rates(y: Array, liquid: bool, m: Equations, dy: Array) -> None:
-    """Masses and temperature of the tank (report, eq. 3.9 and the polytropic vapour).
+    """Masses and temperature of the tank (report, eq. 3.9 and the polytropic vapor).
 
-    The polytropic vapour is as warm as its pressure asks for at the compressibility with which it began. Heat Q raises
+    The polytropic vapor is as warm as its pressure asks for at the compressibility with which it began. Heat Q raises
     the pressure of a real one by G Q/V (Grueneisen's parameter G, about 0.3), which an ideal gas of its c_v would do by
     Z R Q/(c_v V): half as much near 275 K. So it warms by what that pressure asks for.
     """

@@ -55,7 +55,7 @@ class Engine:
     """An engine in SI units: what an engine file states.
 
     ``oxidizer_enthalpy`` on the formation scale [J/kg]: one number for the whole run (the report), or None for that of
-    the liquid or vapour leaving the tank. ``spare_web`` [m] of fuel behind the grain's wall burns on (for fits in which
+    the liquid or vapor leaving the tank. ``spare_web`` [m] of fuel behind the grain's wall burns on (for fits in which
     the end of the fuel is an observation of its own), and at ``fuel_end`` [s] the fire is out whatever web is left (for
     fits in which that instant is known). An engine without a ``vehicle`` stands at
     ``ambient_pressure`` [Pa].
@@ -327,7 +327,7 @@ def _refined(times: Array) -> Array:
 
 
 def vapor_compressibility(engine: Engine, burnt: Burn) -> float | None:
-    """Z of the vapour when the liquid runs out; None where it does not."""
+    """Z of the vapor when the liquid runs out; None where it does not."""
     if burnt.liquid_out is None:
         return None
     return float(burnt.steps.end[-1, COMPRESSIBILITY])

@@ -42,7 +42,7 @@ class Motor:
 
 @dataclass(frozen=True)
 class Points:
-    """A thrust curve: times [s] and thrust [N]; mass of propellant left [kg] and the motor's centre of gravity [m from
+    """A thrust curve: times [s] and thrust [N]; mass of propellant left [kg] and the motor's center of gravity [m from
     its front] where they are known."""
 
     time: Array
@@ -63,7 +63,7 @@ def word(name: str) -> str:
 
 
 def as_written(points: Points) -> Points:
-    """The curve to the digits that engine files carry: microseconds, 0.1 mN, milligrams, micrometres."""
+    """The curve to the digits that engine files carry: microseconds, 0.1 mN, milligrams, micrometers."""
     loads = (None if series is None else np.round(series, 6) for series in (points.mass, points.center))
     return Points(np.round(points.time, 6), np.round(points.thrust, 4), *loads)
 

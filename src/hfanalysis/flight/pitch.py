@@ -2,7 +2,7 @@
 
 Three degrees of freedom: place, height and attitude. On the rail the attitude is the rail's. Gusts are a first-order
 process of Dryden's form: an intensity in parts of the wind, and a length over which the air forgets them. The margin's
-centre of pressure moves with Mach number and, by the body's lift, with the angle of attack.
+center of pressure moves with Mach number and, by the body's lift, with the angle of attack.
 """
 
 from __future__ import annotations
@@ -161,7 +161,7 @@ def _rates(
     dy[2], dy[3] = ahead * s + sideways * c, ahead * c - sideways * s
     damping = 0.5 * rho * speed * body[0] * (second - 2.0 * cg * first + cg * cg * slope)
     dy[4] = 0.0 if rail else y[5]
-    # a force to the right behind the centre of gravity turns the nose to the left
+    # a force to the right behind the center of gravity turns the nose to the left
     dy[5] = 0.0 if rail else (-side * (cp - cg) - damping * y[5]) / turn
     seen[0], seen[1], seen[2], seen[3] = speed, (cp - cg) / body[1], attack, cp
 
@@ -170,7 +170,7 @@ def _rates(
 def _at(
     t: float, pressure: float, thrust: Array, mass: Array, gain: Array, fixed: Array, center: Array, inertia: Array
 ) -> tuple[float, float, float, float]:
-    """Thrust [N] at the ambient pressure, mass [kg], centre of gravity [m] and pitch inertia [kg m^2]."""
+    """Thrust [N] at the ambient pressure, mass [kg], center of gravity [m] and pitch inertia [kg m^2]."""
     last = thrust.size - 1
     x = t / fixed[0]
     if x >= last:

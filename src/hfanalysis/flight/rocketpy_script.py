@@ -113,7 +113,7 @@ if __name__ == "__main__":
 class Scripted:
     """What a script states: the rocket, motor and curve (with its masses), shape, canopies, rail [m].
 
-    Empty engine [kg], pitch inertia [kg m^2], centre of mass over the tail [m], radius of the nozzle's exit [m].
+    Empty engine [kg], pitch inertia [kg m^2], center of mass over the tail [m], radius of the nozzle's exit [m].
     """
 
     vehicle: Vehicle

@@ -72,7 +72,7 @@ def rocketpy(found: Launch, definition: TestDefinition, stable: Stability | str,
 def export(found: Launch, definition: TestDefinition, stable: Stability | str) -> Export:
     """The firing along its flight: thrust at the altitudes flown through, propellant that burns.
 
-    The engine's centre of gravity is that of ``stable``, where it is known.
+    The engine's center of gravity is that of ``stable``, where it is known.
     """
     center = None if isinstance(stable, str) else stable.engine_center
     curve, trace = found.firing.curve, found.ascent

@@ -189,7 +189,7 @@ def _through_injector(
 
 
 def _nitrogen_density(tank: Array, left: float, volume: float, last: int, temperature: Array) -> Array:
-    """Of the purge gas in the tank [kg/m^3]: the pressure that the emptying vapour, held at t_v's, does not explain."""
+    """Of the purge gas in the tank [kg/m^3]: the pressure that the emptying vapor, held at t_v's, does not explain."""
     share = tank / tank[last]
     excess = np.maximum(share - np.minimum.accumulate(share), 0.0) * tank[last]
     return np.asarray(excess / (SPECIFIC_NITROGEN * temperature[last]))

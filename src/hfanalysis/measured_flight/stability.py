@@ -29,7 +29,7 @@ SLOW = 0.3
 
 @dataclass(frozen=True)
 class Stability:
-    """Centre of gravity and inertia on the thrust curve's clock, the shape, the margins by wind, and remarks.
+    """Center of gravity and inertia on the thrust curve's clock, the shape, the margins by wind, and remarks.
 
     ``engine_center``: of the engine with its propellant [m from its front], None where it is not weighed apart.
     """

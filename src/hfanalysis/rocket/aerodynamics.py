@@ -1,4 +1,4 @@
-"""Normal force, centre of pressure and drag of a rocket from its geometry.
+"""Normal force, center of pressure and drag of a rocket from its geometry.
 
 Barrowman (1967) for the slopes of the normal force and where it acts, Galejs for the body's lift at an angle of attack,
 and the drag build-up of Niskanen (2009), who follows Hoerner: skin friction, pressure and base drag. Subsonic; between

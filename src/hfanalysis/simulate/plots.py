@@ -21,7 +21,7 @@ _ALONE = "svg { font-family: system-ui, sans-serif; background: var(--paper); }"
 
 @dataclass(frozen=True)
 class Curve:
-    """A named line; ``style`` picks its colour, else it takes the next one."""
+    """A named line; ``style`` picks its color, else it takes the next one."""
 
     x: Array
     y: Array

@@ -86,7 +86,7 @@ def _engine(engine: Engine, burnt: Burn, hot: Array) -> dict[str, Quantity]:
 
 
 def _implied(burnt: Burn) -> dict[str, Quantity]:
-    """Heat that the polytropic vapour and the quasi-steady chamber would need: what the model leaves open."""
+    """Heat that the polytropic vapor and the quasi-steady chamber would need: what the model leaves open."""
     power, stored = closure.vapor_heat(burnt), closure.chamber_energy(burnt)
     none = "there is no vapour phase within the burn"
     return {

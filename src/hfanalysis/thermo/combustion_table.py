@@ -13,7 +13,7 @@ and ln p, and along the nitrogen share in a stretched coordinate; their slopes a
 the kinks. The oxidizer's enthalpy enters by a cubic through four levels: away from the kinks' own motion, which E
 holds, its effect is nearly linear.
 
-Beyond the table the nearest mixture, pressure and share are held; mixtures richer than ``MIXTURES`` (cold fuel vapour,
+Beyond the table the nearest mixture, pressure and share are held; mixtures richer than ``MIXTURES`` (cold fuel vapor,
 hardly any oxidizer) have no equilibrium in CEA's range of temperatures.
 """
 

@@ -1,7 +1,7 @@
 """By how much another table of saturated nitrous oxide may differ from the one that is used.
 
 Two independent sources, Lemmon and Span's equation of state and the correlations of ESDU 91022, differ from 245 to
-300 K by 0.14 to 0.24 % in vapour pressure, 0.4 % to either side in the liquid's density, 0.4 to 1 % in the vapour's,
+300 K by 0.14 to 0.24 % in vapor pressure, 0.4 % to either side in the liquid's density, 0.4 to 1 % in the vapor's,
 and 0.2 to 0.9 % in the latent heat (docs/properties.md). The truth is taken to lie between them: half their difference,
 as a level and as what changes over 25 K, is one standard deviation here.
 """

@@ -1,7 +1,7 @@
 """Saturated nitrous oxide as the technical report has it (appendix A.1, after Green & Perry 2008).
 
 Two slips of the printed appendix are corrected: the sign of d(nu_l)/dT (liquid expands on heating) never enters because
-the derivative is that of the spline; c_v of the vapour at 250 K is 0.034798, not 0.043798 kJ/(mol K), as its neighbours
+the derivative is that of the spline; c_v of the vapor at 250 K is 0.034798, not 0.043798 kJ/(mol K), as its neighbours
 and every finite difference of them show. The pressure correlation and the table come from different sources: the
 correlation lies 1.4 % above the equation of state behind the table at 298 K.
 """
@@ -21,7 +21,7 @@ CRITICAL_TEMPERATURE = 309.57
 PRESSURE = (96.512, -4045.0, -12.277, 2.886e-5, 2.0)
 LIQUID_VOLUME = (2.781, 0.27244, 309.57, 0.2882)
 
-# T [K], nu_v [m^3/kmol], u_l, h_l, u_v, h_v [kJ/mol], c_v, c_p of the vapour [kJ/(mol K)]
+# T [K], nu_v [m^3/kmol], u_l, h_l, u_v, h_v [kJ/mol], c_v, c_p of the vapor [kJ/(mol K)]
 _TABLE = """
     182.33 16.823 -0.18142 -0.17830 14.931 16.411 0.025545 0.034993
     185 14.503 0.020258 0.023954 14.984 16.481 0.025844 0.035439
@@ -113,7 +113,7 @@ def build() -> Saturation:
 
 
 def _grueneisen(theta: Array, t: Array, samples: dict[Property, Array]) -> Array:
-    """G = (dp/dT)_v v / c_v of the vapour, from its energy along saturation: du = c_v dT + (T (dp/dT)_v - p) dv.
+    """G = (dp/dT)_v v / c_v of the vapor, from its energy along saturation: du = c_v dT + (T (dp/dT)_v - p) dv.
 
     With p v = h - u, which is the table's own.
     """

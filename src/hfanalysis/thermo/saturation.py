@@ -114,11 +114,11 @@ class Saturation:
         return self._evaluate(Property.LIQUID_VOLUME, temperature)
 
     def vapor_density(self, temperature: ArrayLike) -> Array:
-        """Density of the saturated vapour [kg/m^3]."""
+        """Density of the saturated vapor [kg/m^3]."""
         return np.asarray(np.exp(-self._evaluate(Property.LN_VAPOR_VOLUME, temperature)[0]))
 
     def vapor_volume(self, temperature: ArrayLike) -> tuple[Array, Array]:
-        """Specific volume of the saturated vapour [m^3/kg] and its slope [m^3/(kg K)]."""
+        """Specific volume of the saturated vapor [m^3/kg] and its slope [m^3/(kg K)]."""
         value, slope = self._evaluate(Property.LN_VAPOR_VOLUME, temperature)
         return np.exp(value), np.exp(value) * slope
 
@@ -127,17 +127,17 @@ class Saturation:
         return self._evaluate(prop, temperature)
 
     def heat_capacities(self, temperature: ArrayLike) -> tuple[Array, Array]:
-        """c_v and c_p of the saturated vapour [J/(kg K)]."""
+        """c_v and c_p of the saturated vapor [J/(kg K)]."""
         cv = self._evaluate(Property.LN_VAPOR_CV, temperature)[0]
         cp = self._evaluate(Property.LN_VAPOR_CP, temperature)[0]
         return np.exp(cv), np.exp(cp)
 
     def grueneisen(self, temperature: ArrayLike) -> Array:
-        """Grueneisen's parameter V (dp/dU)_V [-] of the saturated vapour: heat Q raises its pressure by this Q/V."""
+        """Grueneisen's parameter V (dp/dU)_V [-] of the saturated vapor: heat Q raises its pressure by this Q/V."""
         return self._evaluate(Property.VAPOR_GRUENEISEN, temperature)[0]
 
     def isentropic_exponent(self, temperature: ArrayLike) -> Array:
-        """(d ln p/d ln rho)_s of the saturated vapour [-]: c_p/c_v times (d ln p/d ln rho)_T, which follows from c_p -
+        """(d ln p/d ln rho)_s of the saturated vapor [-]: c_p/c_v times (d ln p/d ln rho)_T, which follows from c_p -
         c_v = -T (dp/dT)_v^2 / (dp/dv)_T with (dp/dT)_v = G c_v / v."""
         cv, cp = self.heat_capacities(temperature)
         by_heat = self.grueneisen(temperature) ** 2 * cv * np.asarray(temperature, dtype=np.float64)
