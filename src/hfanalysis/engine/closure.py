@@ -23,7 +23,7 @@ from hfanalysis.thermo.saturation import Saturation
 
 
 def vapor_heat(burn: Burn) -> Array:
-    """Heat flow into the tank's vapor [W] over ``burn.time``; 0 while there is liquid."""
+    """Heat flow into the tank's vapor [W], (n,) over ``burn.time``; 0 while there is liquid."""
     dry = burn.time > burn.liquid_out if burn.liquid_out is not None else np.zeros(burn.time.size, dtype=bool)
     if not dry.any():
         return np.zeros(burn.time.size)
@@ -49,7 +49,8 @@ def vapor_heat_total(burn: Burn) -> float:
 
 
 def chamber_energy(burn: Burn) -> Array:
-    """p V of the chamber [J] over ``burn.time``; its fall is the heat flow that the quasi-steady chamber implies."""
+    """p V of the chamber [J], (n,) over ``burn.time``; its fall is the heat flow that the quasi-steady chamber
+    implies."""
     engine = burn.steps.engine
     volume = chamber_volume(engine.dead_volume, burn.state("port_radius"), engine.grain_length)
     return np.asarray(burn.output("chamber_pressure") * volume)

@@ -56,7 +56,7 @@ def line_flow(area: float, factor: float, stated: float, density: float, drop: f
 
 @inlined
 def feed(liquid: bool, m: Equations) -> None:
-    """Flow through feed line and injector, and the pressure between them."""
+    """Flow [kg/s] through feed line and injector and the pressure [Pa] between them, into ENVIRONMENT."""
     c, env, site = m.c, m.env, m.site
     drop = env[P_TANK] - env[P_CHAMBER] - site[FEED_LOSS]
     factor, stated = c[LOSS_FACTOR] * site[FEED_FACTOR], c[LIQUID_LOSS] if liquid else c[VAPOR_LOSS]

@@ -16,7 +16,10 @@ from hfanalysis.arrays import Array
 from hfanalysis.compiled import inner
 
 STAGES = 8
+"""Of Rodas5P. Source: Steinebach 2023."""
+
 GAMMA = 0.21193756319429014
+"""Diagonal coefficient of Rodas5P [-]. Source: Steinebach 2023."""
 
 
 def _lower(rows: list[list[float]]) -> Array:
@@ -39,6 +42,8 @@ A = _lower(
         [*_LAST, 1.0, 1.0],
     ]
 )
+"""Coefficients a_ij [-]. Source: Steinebach 2023, transformed."""
+
 C = _lower(
     [
         [],
@@ -53,7 +58,11 @@ C = _lower(
          -54.66780262877968, -9.48861652309627],
     ]
 )  # fmt: skip
+"""Coefficients c_ij [-]. Source: Steinebach 2023, transformed."""
+
 TIME = np.array([0.0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664, 1.0, 1.0, 1.0])
+"""Where in a step its stages lie [-]. Source: Steinebach 2023."""
+
 TIME_SLOPE = np.array(
     [
         0.21193756319429014,
@@ -66,6 +75,8 @@ TIME_SLOPE = np.array(
         0.0,
     ]
 )
+"""Coefficients d_i of f_t [-]. Source: Steinebach 2023."""
+
 DENSE = np.array(
     [
         [25.948786856663858, -2.5579724845846235, 10.433815404888879, -2.3679251022685204, 0.524948541321073,
@@ -76,8 +87,8 @@ DENSE = np.array(
          -59.78993625266729, -0.15582684282751913, 4.883087185713722],
     ]
 )  # fmt: skip
-"""Interpolant: y(theta) = (1-theta) y_0 + theta (y_1 + (1-theta)(d_0 + theta (d_1 + theta d_2))), d_k = sum
-DENSE_ki u_i."""
+"""Interpolant: y(theta) = (1-theta) y_0 + theta (y_1 + (1-theta)(d_0 + theta (d_1 + theta d_2))), d_k = sum DENSE_ki
+u_i. Source: Steinebach 2023."""
 
 
 @inner

@@ -42,9 +42,10 @@ from hfanalysis.thermo.saturation import Property, Saturation
 __all__ = ["OUTPUTS", "PAD", "STATES", "Burn", "Engine", "burn", "check", "flux_power", "vapor_compressibility"]
 
 ACCURACY = 3e-5
-"""Default relative tolerance of a run."""
+"""Default relative tolerance of a run [-]."""
 
 NO_DRAG = np.zeros((2, 1))
+"""Drag table of an engine without a vehicle [-]."""
 
 POINTS_PER_STEP = 4
 """Points of the histories per step of the solver, where no times are asked for."""
@@ -103,7 +104,7 @@ class Engine:
         return self.ambient_pressure
 
     def equations(self, composition: Composition) -> Equations:
-        """What compiled code reads, with scratch of its own."""
+        """What compiled code reads [SI], with scratch of its own."""
         drag = NO_DRAG if self.vehicle is None else self.vehicle.drag_table
         return Equations(
             rates.address, course.event_values.address, self.saturation.kernel_table, self.combustion.kernel, drag,
@@ -131,21 +132,21 @@ class Steps:
 
     @property
     def begin(self) -> Array:
-        """States at the start of every step."""
+        """States [SI] at the start of every step, (n, states)."""
         return self.history.begin
 
     @property
     def end(self) -> Array:
-        """States at the end of every step, before an event changes them."""
+        """States [SI] at the end of every step, before an event changes them, (n, states)."""
         return self.history.end
 
     @property
     def events(self) -> NDArray[np.int64]:
-        """The event at the end of every step (-1: none)."""
+        """The event at the end of every step (-1: none), (n,)."""
         return self.history.events
 
     def at(self, times: ArrayLike) -> tuple[Array, Array]:
-        """States and outputs at increasing ``times`` [s]; the ends are held."""
+        """States (n, states) and outputs (n, outputs) [SI] at increasing ``times`` (n,) [s]; the ends are held."""
         where = np.ascontiguousarray(times, dtype=np.float64)
         for asked, states, outputs in self.last:
             if np.array_equal(asked, where):
@@ -173,12 +174,12 @@ class Burn:
 
     @property
     def states(self) -> Array:
-        """(n, 15 and those of effects) as STATES, found when they are first asked for."""
+        """As STATES [SI], (n, 15 and those of effects), found when they are first asked for."""
         return self._histories[0]
 
     @property
     def outputs(self) -> Array:
-        """(n, 16) as OUTPUTS, found when they are first asked for."""
+        """As OUTPUTS [SI], (n, 16), found when they are first asked for."""
         return self._histories[1]
 
     @cached_property
@@ -186,15 +187,15 @@ class Burn:
         return self.steps.at(self.time)
 
     def output(self, name: str) -> Array:
-        """One of OUTPUTS over time."""
+        """One of OUTPUTS over time [SI], (n,); raises ValueError for a name that is none."""
         return self.outputs[:, OUTPUTS.index(name)]
 
     def state(self, name: str) -> Array:
-        """One of STATES over time."""
+        """One of STATES over time [SI], (n,); raises ValueError for a name that is none."""
         return self.states[:, STATES.index(name)]
 
     def chamber_temperature(self) -> Array:
-        """Temperature of the burnt gas [K]."""
+        """Temperature of the burnt gas [K], (n,)."""
         nitrogen = self.state("chamber_nitrogen")
         share = nitrogen / np.maximum(self.state("chamber_oxidizer") + nitrogen, LEAST_GAS)
         ln_p, ln_r = np.log(self.output("chamber_pressure")), np.log(self.output("of_ratio"))
@@ -203,7 +204,7 @@ class Burn:
 
 
 def constants(e: Engine) -> Array:
-    """The engine's numbers in the order of CONSTANTS."""
+    """The engine's numbers [SI] in the order of CONSTANTS, (26,)."""
     liquid_loss, vapor_loss = e.feed.constant_losses or NO_STATED_LOSSES
     v = e.vehicle
     exponent = np.nan if e.polytropic_exponent is None else e.polytropic_exponent
@@ -223,7 +224,10 @@ def constants(e: Engine) -> Array:
 
 
 def initial(e: Engine, composition: Composition) -> Array:
-    """The chamber starts full of equilibrium gas at ambient pressure and at the O/F that enters (0/0 in the report)."""
+    """States at ignition [SI], (states,).
+
+    The chamber starts full of equilibrium gas at ambient pressure and at the O/F that enters (0/0 in the report).
+    """
     ambient = e.ambient
     p_t = float(e.saturation.pressure(e.temperature))
     density = float(e.saturation.liquid_density(e.temperature))
@@ -289,11 +293,11 @@ def burn(
     times: Sequence[float] | Array | None = None,
     keep_idle: bool = False,
 ) -> Burn:
-    """From ignition until fuel or pressure are gone, or if it is to ``run_on`` to ``longest`` seconds, cold gas too.
+    """From ignition until fuel or pressure are gone, or if it is to ``run_on`` to ``longest`` [s], cold gas too.
 
-    The histories are on POINTS_PER_STEP points of each of the solver's steps, or at increasing ``times`` [s] (then the
-    ends are held). Effects of strength 0 are left out unless ``keep_idle``. Raises ValueError for an engine that cannot
-    be, ArithmeticError where the solver gives up.
+    The histories are on POINTS_PER_STEP points of each of the solver's steps, or at increasing ``times`` (n,) [s] (then
+    the ends are held). Effects of strength 0 are left out unless ``keep_idle``. Raises ValueError for an engine that
+    cannot be, ArithmeticError where the solver gives up.
     """
     check(engine)
     composition = compose(engine.effects, constants(engine), len(STATES), keep_idle)
@@ -327,7 +331,7 @@ def _refined(times: Array) -> Array:
 
 
 def vapor_compressibility(engine: Engine, burnt: Burn) -> float | None:
-    """Z of the vapor when the liquid runs out; None where it does not."""
+    """Z of the vapor [-] when the liquid runs out; None where it does not."""
     if burnt.liquid_out is None:
         return None
     return float(burnt.steps.end[-1, COMPRESSIBILITY])

@@ -32,7 +32,10 @@ class Balance:
 
 
 def balance(parts: Iterable[Part]) -> Balance:
-    """Of parts taken as slender rods: CG = sum m x / sum m, I = sum m (L^2/12 + (x - CG)^2)."""
+    """Mass [kg], CG [m] and pitch inertia [kg m^2], (n,), of parts taken as slender rods (report, eq. 3.60).
+
+    CG = sum m x / sum m, I = sum m (L^2/12 + (x - CG)^2).
+    """
     known = list(parts)
     mass = sum((np.asarray(p.mass, dtype=np.float64) for p in known), np.zeros(1))
     center = sum((np.asarray(p.mass) * p.center for p in known), np.zeros(1)) / mass
@@ -50,7 +53,7 @@ class TankPlace:
 
 
 def oxidizer(place: TankPlace, liquid: Array, vapor: Array, liquid_volume: Array) -> list[Part]:
-    """The tank's content: ``liquid`` and ``vapor`` [kg] over time, the liquid's specific volume [m^3/kg].
+    """The tank's content: ``liquid`` and ``vapor`` [kg] over time, the liquid's specific volume [m^3/kg], (n,) each.
 
     The liquid fills the tank from below; each phase has its center in the middle of the length it takes.
     """
