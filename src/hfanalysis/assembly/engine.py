@@ -21,6 +21,7 @@ from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
 
 _STANDARD = 101_325.0
+"""Ambient pressure [Pa] where none is stated. Source: standard atmosphere."""
 
 
 @dataclass(frozen=True)
@@ -264,7 +265,8 @@ def _that_flows(needs: Needs, made: unsteady.Engine) -> unsteady.Engine:
 
 
 def scaled(needs: Needs, made: unsteady.Engine, oxidizer_mass: float, of_ratio: float) -> unsteady.Engine:
-    """The same engine with another load at a fixed O/F of loaded masses and the same ullage (tank volume per mass).
+    """The same engine with a load ``oxidizer_mass`` [kg] at an ``of_ratio`` [-] of loaded masses and the same ullage
+    (tank volume per mass).
 
     Raises ValueError where the fuel does not fit into the casing.
     """

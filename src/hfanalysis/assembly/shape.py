@@ -11,7 +11,7 @@ from hfanalysis.rocket.aerodynamics import REGULAR_PAINT, Fins, Nose, Shape, Tai
 from hfanalysis.rocket.balance import Part, TankPlace
 
 AGREE = 0.02
-"""Relative, within which the dry mass and the sum of structure and engine are the same rocket."""
+"""Relative difference [-] within which the dry mass and the sum of structure and engine are the same rocket."""
 
 
 def shape(rocket: Rocket | None) -> Shape | str:

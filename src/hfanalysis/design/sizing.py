@@ -30,10 +30,10 @@ class TankSize:
 def size_for_ullage(
     saturation: Saturation, mass: float, temperature: float, diameter: float, tube: DipTube, ullage: float
 ) -> TankSize:
-    """Tank for ``mass`` [kg] at ``temperature`` [K] with U = V_vapor / V_liquid (report, first method).
+    """Tank for ``mass`` [kg] at ``temperature`` [K] with U = V_vapor / V_liquid (report, eq. 3.51 to 3.57).
 
-    The dip tube ends at the liquid's surface, so that its length is that of the ullage. Raises ValueError for an ullage
-    that is not positive.
+    Inner ``diameter`` [m], ``ullage`` U [-]. The dip tube ends at the liquid's surface, so that its length is that of
+    the ullage. Raises ValueError for an ullage that is not positive.
     """
     if not ullage > 0.0:
         raise ValueError(f"an ullage has to be positive, not {ullage}")
@@ -47,7 +47,8 @@ def size_for_ullage(
 def size_for_length(
     saturation: Saturation, mass: float, temperature: float, diameter: float, tube: DipTube, length: float
 ) -> TankSize:
-    """The same tank with its length [m] given instead (report, second method).
+    """The same tank with its ``length`` [m] given instead (report, eq. 3.58); ``mass`` [kg], ``temperature`` [K],
+    ``diameter`` [m].
 
     Raises ValueError where the mass does not fit as saturated liquid and vapor.
     """

@@ -17,7 +17,7 @@ NOSES = {"cone": "conical", "ogive": "ogive", "von_karman": "von karman", "ellip
 """What RocketPy calls them."""
 
 RAIL_UNKNOWN = 5.0
-"""[m] of a rail that is not stated: RocketPy cannot do without one."""
+"""Length of a rail that is not stated [m]. Evidence: RocketPy cannot do without one."""
 
 HEAD = '''"""{title}
 

@@ -17,7 +17,7 @@ from hfanalysis.rocket.aerodynamics import Shape
 from hfanalysis.rocket.vehicle import Vehicle
 
 SLENDER = 25.0
-"""Length over diameter of a rocket whose geometry is not known; only RocketPy's inertia follows it."""
+"""Length over diameter [-] of a rocket whose geometry is not known; only RocketPy's inertia follows it."""
 
 NO_LENGTH = "length: not known; the diameter stands in for it"
 

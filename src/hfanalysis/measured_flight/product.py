@@ -28,7 +28,8 @@ from hfanalysis.rocket.vehicle import gravity
 Progress = Callable[[str, float | None], None]
 
 LEAST_RAIL_DEPARTURE = 30.48
-"""[m/s]: 100 ft/s, which competitions recommend at least (report, section 3.2.4)."""
+"""Least speed at the rail's end [m/s]. Source: 100 ft/s, which competitions recommend at least (report, section
+3.2.4)."""
 
 UNITS = dict(zip(TRACE, ("s", "m", "m/s", "m/s^2", "N", "N", "kg", "1"), strict=True))
 

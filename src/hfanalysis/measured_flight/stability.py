@@ -24,7 +24,7 @@ from hfanalysis.thermo.nitrous import saturation
 Progress = Callable[[str, float | None], None]
 
 SLOW = 0.3
-"""Mach number at which slopes and the drag's parts are listed."""
+"""Mach number [-] at which slopes and the drag's parts are listed."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Stability:
 def stability(
     firing: Firing, definition: TestDefinition, winds: Sequence[float], seeds: int, longest: float, progress: Progress
 ) -> Stability | str:
-    """Fly in every wind; or why there is no stability to tell."""
+    """Fly ``seeds`` times in every wind [m/s], ``longest`` [s] at most; or why there is no stability to tell."""
     rocket = definition.rocket
     outside = shape(rocket)
     if isinstance(outside, str) or rocket is None:

@@ -16,16 +16,17 @@ from hfanalysis.sentences import said, text
 from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
 
 SPAN_SHARE = 0.25
-"""Part of the cell's accuracy that a tare does not take away: its error of span, as for the pressures."""
+"""Part of the cell's accuracy that a tare does not take away [-]: its error of span, as for the pressures."""
 
 UNSEEN_DRIFT = 0.01
-"""Of the peak thrust: standard deviation of a drift that no settled level after the burn shows."""
+"""Standard deviation of a drift that no settled level after the burn shows, of the peak thrust [-]."""
 
 SHAPE_OF_DRIFT = 12.0**-0.5
-"""Of the drift: standard deviation of how far along it a moment is, where all courses are as likely."""
+"""Standard deviation of how far along its drift a cell is at a moment [-]. Source: that of a uniform distribution, for
+all courses are as likely."""
 
 UNSTATED_GAIN = 0.01
-"""Standard deviation of a load cell's gain where nothing is said of its calibration."""
+"""Relative standard deviation of a load cell's gain [-] where nothing is said of its calibration."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class MeasuredThrust:
 
     @property
     def burn_time(self) -> float:
-        """[s]"""
+        """From the opening to the burn's end [s]."""
         return float(self.time[-1])
 
 
@@ -81,8 +82,10 @@ def _drift_taken(found: Thrust) -> tuple[str, ...]:
 
 
 def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tuple[float, str]:
-    """When thrust ends [s after opening], and who says so: the engineer, else the later of chamber and fuel, else the
-    log."""
+    """When thrust ends [s after opening], and who says so; ``last``: where the log ends [s].
+
+    The engineer, else the later of chamber and fuel, else the log.
+    """
     observed = definition.observed.burn_time if definition.observed is not None else None
     if observed is not None and observed.value <= last:
         return observed.value, "[observed] burn_time"

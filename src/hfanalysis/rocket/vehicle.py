@@ -46,7 +46,7 @@ def drag_coefficient(mach: float, table: Array) -> float:
     """C_d [-] at a Mach number: linear between the columns of ``table`` (2, n) (Mach numbers, coefficients), its ends
     held.
 
-    >>> drag_coefficient(0.4, np.array([[0.3, 0.5], [0.40, 0.42]]))
+    >>> round(drag_coefficient(0.4, np.array([[0.3, 0.5], [0.40, 0.42]])), 6)
     0.41
     """
     last = table.shape[1] - 1

@@ -30,7 +30,8 @@ class Curve:
 
 
 def simulation(table: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
-    """File names and plots of a burn; ``table`` holds its histories by column."""
+    """File names and plots of a burn; ``table`` holds its histories (n,) by column, named with their units ("time
+    [s]")."""
     time = table["time [s]"]
 
     def curve(column: str, factor: float, name: str) -> Curve:

@@ -50,7 +50,7 @@ def simulation(out: Path, found: Simulation) -> None:
 
 
 def histories(found: Simulation) -> dict[str, Array]:
-    """Columns of the histories, named with their units."""
+    """Columns of the histories, (n,) each, named with their units ("time [s]")."""
     burnt = found.burnt
     return {
         "time [s]": burnt.time,

@@ -19,7 +19,7 @@ MIDDLE, OVER = 275.0, 25.0
 """Temperature [K] about which a departure grows, and the kelvins over which it does by its size. Source:
 docs/properties.md compares two tables from 245 to 300 K."""
 
-LEAST, MOST = -2.0, 1.4
+LOWEST, HIGHEST = -2.0, 1.4
 """Between these multiples of OVER: near the critical point nobody asks."""
 
 
@@ -51,7 +51,7 @@ def departed(saturation: Saturation, by: Departure) -> Saturation:
     """The same nitrous oxide by a table that differs by one standard deviation."""
     theta, values = saturation.samples()
     temperature = saturation.critical_temperature * (1.0 - theta**3)
-    relative = by.level + by.slope * np.clip((temperature - MIDDLE) / OVER, LEAST, MOST)
+    relative = by.level + by.slope * np.clip((temperature - MIDDLE) / OVER, LOWEST, HIGHEST)
     if by.of == "pressure":
         changed = {Property.LN_PRESSURE: values[Property.LN_PRESSURE] + np.log1p(relative)}
     elif by.of == "liquid":
