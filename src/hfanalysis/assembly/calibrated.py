@@ -26,8 +26,8 @@ from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
 
 ASSUMED_EXPONENT = (1.15, 0.1)
-"""Polytropic exponent of the vapor and its standard deviation [-] where a test does not tell: the middle of 1.0 to
-1.3."""
+"""Polytropic exponent of the vapor and its standard deviation [-] where a test does not tell. Evidence: the middle of
+what a calibration takes as physical, 1.0 to 1.3 (docs/calibration.md)."""
 
 
 COLDER = 15.0

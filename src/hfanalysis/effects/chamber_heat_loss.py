@@ -20,7 +20,7 @@ from hfanalysis.engine.sites import (
 
 LOSS, EXPONENT, WARMING = range(3)
 REFERENCE_PRESSURE = 10e5
-"""Chamber pressure [Pa] at which the loss is stated: about the mean of a firing."""
+"""Chamber pressure [Pa] at which the loss is stated: about the mean of a firing. Source: by definition of the loss."""
 
 
 LATE = 5.0

@@ -11,7 +11,7 @@ from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Believable, Channels, Effect, Parameter
 
 REFERENCE = 10e5
-"""Pressure [Pa] at which the lag is stated."""
+"""Pressure [Pa] at which the lag is stated. Source: by definition of the lag."""
 
 LEAST_TAP_PRESSURE = 0.5e5
 """Pressure [Pa] below which a tube fills no slower."""

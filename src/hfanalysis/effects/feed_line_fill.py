@@ -35,10 +35,12 @@ from hfanalysis.engine.sites import (
 VOLUME, STEEPNESS, BOILING, THROTTLED = range(4)
 CONTENT, EMPTY, PRESSURE = range(3)
 LIQUID_DENSITY = 880.0
-"""Of what fills the line [kg/m^3]. Source: saturated liquid nitrous oxide at 278 K (CoolProp: 882 kg/m^3)."""
+"""Of what fills the line [kg/m^3]. Source: saturated liquid nitrous oxide at 278 K (CoolProp: 881.5 kg/m^3)."""
 
 FULL_AT = 40e5
-"""Pressure [Pa] at which a line whose content boils holds as much as a full one."""
+"""Pressure [Pa] at which a line whose content boils holds as much as a full one: that of saturation at 283 K. Evidence:
+in HF4 and HF5 the run line's pressure stays level for a fifth of a second while the tank's falls by two bar as the
+liquid ends: what boils in the line holds it up."""
 
 HELD_PER_PASCAL = LIQUID_DENSITY / FULL_AT
 """By what a boiling line holds more for its pressure, per volume [kg/m^3/Pa]."""

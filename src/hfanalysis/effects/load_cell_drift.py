@@ -10,7 +10,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Believable, Channels, Effect, Parameter
 
 REFERENCE = 10e5
-"""Pressure [Pa] of a chamber at which the warming time is stated."""
+"""Pressure [Pa] of a chamber at which the warming time is stated. Source: by definition of that time."""
 
 
 LEAST_OVERPRESSURE = 1e-3

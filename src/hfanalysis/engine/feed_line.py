@@ -34,7 +34,8 @@ class FeedSystem:
 
 
 NO_STATED_LOSSES = (-1.0, -1.0)
-"""In their place where the loss is quadratic."""
+"""In their place where the loss is quadratic [Pa]. Source: by definition, a negative loss stands for the quadratic
+law."""
 
 
 @law

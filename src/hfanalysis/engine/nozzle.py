@@ -20,8 +20,10 @@ from hfanalysis.thermo.combustion import Gas
 from hfanalysis.thermo.combustion_table import Grid, gas_at
 
 SUBSONIC, SHOCK, SUPERSONIC = 0, 1, 2
+"""Indices of REGIMES."""
+
 SMALL_EXCESS = 1e-4
-"""Excess of the chamber's over the ambient pressure, relative, below which the exit velocity falls linearly."""
+"""Excess of the chamber's over the ambient pressure, relative [-], below which the exit velocity falls linearly."""
 
 REGIMES = ("subsonic", "shock in the diverging part", "supersonic")
 

@@ -30,6 +30,8 @@ def _lower(rows: list[list[float]]) -> Array:
 
 
 _LAST = [-7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.030198172008377946]
+"""Row of a_ij that the last three stages share [-]. Source: Steinebach 2023, transformed."""
+
 A = _lower(
     [
         [],

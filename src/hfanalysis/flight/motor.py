@@ -20,7 +20,8 @@ MOST_POINTS = 200
 """Points to which a curve is thinned first; more where the impulse asks for them."""
 
 IMPULSE_TOLERANCE = 5e-4
-"""Relative impulse that thinning may lose before it is put back [-]."""
+"""Relative impulse that thinning may lose before it is put back [-]. Evidence: a tenth of it takes more points and
+changes nothing else."""
 
 
 @dataclass(frozen=True)

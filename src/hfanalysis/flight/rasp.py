@@ -13,7 +13,8 @@ from hfanalysis.flight.motor import RAMP, Motor, Points
 __all__ = ["RAMP", "Motor", "constant_thrust", "of_points", "read", "text"]
 
 _HEADER = 7
-"""Name, diameter [mm], length [mm], delays, propellant [kg], total mass [kg], maker."""
+"""Fields of a header: name, diameter [mm], length [mm], delays, propellant [kg], total mass [kg], maker. Source: the
+RASP format."""
 
 
 def constant_thrust(thrust: float, burn_time: float) -> list[tuple[float, float]]:

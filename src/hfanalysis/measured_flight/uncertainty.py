@@ -35,8 +35,9 @@ from hfanalysis.units import Value
 Progress = Callable[[str, float | None], None]
 
 DRAG_UNSTATED = 0.10
-"""Relative standard deviation of a drag that is stated without one [-]: what separates drag build-ups from flights of
-rockets like these."""
+"""Relative standard deviation of a drag that is stated without one [-]. Evidence: it is what separates drag build-ups
+from flights of rockets like these: Halcyon flew 1.6 % lower than its team's drag says and 3.7 % lower than the built-up
+one (docs/flight.md)."""
 DRY_MASS_UNSTATED = 0.005
 """Relative standard deviation of a dry mass that is stated without one [-]: a rocket that was weighed, and then worked
 on."""

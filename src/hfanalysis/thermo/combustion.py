@@ -29,7 +29,9 @@ PROPEP_OXIDIZER_ENTHALPY = 82.05e6 / OXIDIZER_MOLAR_MASS
 gas at 298.15 K, 82.05 MJ/kmol."""
 
 FORMATION_OFFSET = 61.385e6 / OXIDIZER_MOLAR_MASS
-"""Formation scale less that of the saturation properties [J/kg], which is 0 for the liquid at its boiling point."""
+"""Formation scale less that of the saturation properties [J/kg], which is 0 for the liquid at its boiling point.
+Source: heat of formation of the ideal gas at 298.15 K, 82.05 MJ/kmol, less its enthalpy over that liquid (CoolProp:
+20.665 MJ/kmol)."""
 
 REFERENCE_TEMPERATURE = 298.15
 """Of the heats of formation [K]. Source: 25 degC, by convention."""

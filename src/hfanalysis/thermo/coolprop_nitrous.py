@@ -15,13 +15,13 @@ from hfanalysis.thermo.cache import cached
 from hfanalysis.thermo.saturation import NODES, Property, Saturation
 
 CRITICAL_TEMPERATURE = 309.5207
-"""T_c in theta [K]. Source: Lemmon and Span 2006 have 309.52 K."""
+"""T_c in theta [K]. Source: Lemmon and Span 2006, as CoolProp has it."""
 
 T_MIN = 182.34
-"""Lower end of the table [K]. Source: the triple point of nitrous oxide is at 182.33 K."""
+"""Lower end of the table [K]. Source: the triple point, 182.33 K (CoolProp)."""
 
 T_MAX = 309.50
-"""Upper end of the table [K], just below the critical point."""
+"""Upper end of the table [K]. Source: just below the critical point, 309.52 K, where both phases meet."""
 
 
 def build() -> Saturation:

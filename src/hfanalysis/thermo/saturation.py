@@ -38,8 +38,13 @@ class Property(IntEnum):
 
 
 LN_PRESSURE, LIQUID_VOLUME, LN_VAPOR_VOLUME = 0, 1, 2
+"""Rows of the table, as in :class:`Property`."""
+
 LIQUID_ENERGY, VAPOR_ENERGY, LIQUID_ENTHALPY, VAPOR_ENTHALPY = 3, 4, 5, 6
+"""Rows of the table, as in :class:`Property`."""
+
 LN_VAPOR_CV, LN_VAPOR_CP, VAPOR_GRUENEISEN = 7, 8, 9
+"""Rows of the table, as in :class:`Property`."""
 
 
 @dataclass(frozen=True)
