@@ -99,7 +99,7 @@ def nothing_kept() -> Array:
 
 @inlined
 def asked(kept: Array, at: int, question: tuple[float, ...]) -> bool:
-    """Whether the kept answer is to this very question, to the bit."""
+    """Whether the kept answer in ``kept`` (KEPT,) from ``at`` on is to this very question [SI], to the bit."""
     same = True
     for i in range(len(question)):
         same = same and kept[at + i] == question[i]
@@ -108,7 +108,7 @@ def asked(kept: Array, at: int, question: tuple[float, ...]) -> bool:
 
 @inlined
 def keep(kept: Array, at: int, question: tuple[float, ...], answer: tuple[float, ...]) -> None:
-    """Keep question and answer, if this evaluation is one to keep."""
+    """Keep question and answer [SI] in ``kept`` (KEPT,) from ``at`` on, if this evaluation is one to keep."""
     if kept[KEEPS] > 0.0:
         for i in range(len(question)):
             kept[at + i] = question[i]

@@ -27,7 +27,7 @@ CHANNELS = {
 """Canonical channels and the outputs or states whose sum they show [Pa, N, kg]; a tank's scale weighs its nitrogen."""
 
 SMALL = 1e-6
-"""Relative to a channel's span: by how much channels are moved to find a distortion's slope."""
+"""By how much channels are moved, relative to their span [-], to find a distortion's slope."""
 
 
 def observe(burn: Burn, times: ArrayLike, effects: Sequence[Active] | None = None) -> dict[str, Array]:

@@ -55,7 +55,7 @@ LEAST_STEP = 1e-13
 """Shortest step [s], or relative to the time where that is above a second."""
 
 SPENT = 1e-4
-"""Excess of a tank's over the ambient pressure, relative, at which nothing flows any more that could burn."""
+"""Excess of a tank's over the ambient pressure, relative [-], at which nothing flows any more that could burn."""
 
 ROOM = 256
 """Steps that there is room for at first."""
@@ -64,14 +64,14 @@ TICK = 1e-6
 """Difference in time [s] with which slopes are formed."""
 
 INCREMENT = 1e-7
-"""Relative to a state, or to its scale: the difference with which Jacobians are formed."""
+"""Difference with which Jacobians are formed, relative to a state or to its scale [-]."""
 
 PARTS_OF_OCTAVE = 8
 """Parts of an octave of which the steps' factors are whole numbers. Evidence: what a Jacobian of differences rounds off
 is in every error, and by steps that follow it a run's last digit would grow to its tolerance."""
 
 ROUNDED_OFF = 1e-6
-"""Part of the tolerance below which an error is what was rounded off."""
+"""Part of the tolerance [-] below which an error is what was rounded off."""
 
 
 @inner
@@ -92,7 +92,10 @@ def moves(i: int, burning: bool, c: Array, terms: int) -> bool:
 
 @inner
 def active_states(size: int, burning: bool, c: Array, terms: int) -> Integers:
-    """Indices of the states that change in a phase; the others stay, and the linear algebra is spared them."""
+    """Indices (k,) of the states that change in a phase; the others stay, and the linear algebra is spared them.
+
+    ``c`` (CONSTANTS and effects' parameters,) [SI].
+    """
     out, n = np.empty(size, dtype=np.int64), 0
     for i in range(size):
         if moves(i, burning, c, terms):
@@ -250,7 +253,10 @@ def attempt(t: float, y: Array, h: float, liquid: bool, burning: bool, model: in
 
 @inner
 def stage(k: int, t: float, y: Array, h: float, liquid: bool, burning: bool, model: int, s: Scratch) -> None:
-    """Stage ``k``, from those before it; leaves the state it was evaluated at in ``trial``."""
+    """Stage ``k``, from those before it; leaves the state it was evaluated at in ``trial``.
+
+    The step is that of ``h`` from ``t`` on [s], in ``y`` (states,) [SI].
+    """
     copy(y, s.trial, y.size)
     for j in range(k):
         if A[k, j] != 0.0:
@@ -416,7 +422,7 @@ def next_step(h: float, error: float, old_error: float, rejected: bool) -> float
 
 @inner
 def advance(y: Array, s: Scratch) -> None:
-    """The end of a step becomes the start of the next."""
+    """The end of a step becomes the start of the next: ``y`` (states,) [SI]."""
     copy(s.trial, y, y.size)
     copy(s.g, s.f, y.size)
     copy(s.after, s.before, s.before.size)

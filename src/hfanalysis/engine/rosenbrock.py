@@ -103,7 +103,8 @@ def copy(source: Array, target: Array, count: int) -> None:
 
 @inner
 def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
-    """LU factors with partial pivoting in place, ``pivots`` the row swaps; False for a singular matrix."""
+    """LU factors of ``a`` (n, n) with partial pivoting in place, ``pivots`` (n,) the row swaps; False for a singular
+    matrix."""
     n = a.shape[0]
     for k in range(n):
         best, row = abs(a[k, k]), k
@@ -128,7 +129,7 @@ def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
 
 @inner
 def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
-    """Solve with the factors of :func:`factorize`, in place."""
+    """Solve for ``b`` (n,) with the factors ``lu`` (n, n) of :func:`factorize`, in place."""
     n = lu.shape[0]
     for k in range(n):
         if pivots[k] != k:
@@ -147,7 +148,7 @@ def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
 
 @inner
 def interpolate(theta: float, y0: Array, y1: Array, dense: Array, y: Array) -> None:
-    """The state at a fraction ``theta`` of a step, into ``y``; ``dense`` has the shape (3, states)."""
+    """The state at a fraction ``theta`` of a step, into ``y`` (states,); ``dense`` has the shape (3, states)."""
     rest = 1.0 - theta
     for i in range(y.size):
         inner = y1[i] + rest * (dense[0, i] + theta * (dense[1, i] + theta * dense[2, i]))

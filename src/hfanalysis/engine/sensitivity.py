@@ -36,7 +36,7 @@ ENGINE_PARAMETERS = {
 """Numbers of an engine that can be a parameter, with what counts as large of each [SI]."""
 
 SHIFT = 1e-6
-"""Relative to what counts as large: by how much a parameter is moved for its difference quotient."""
+"""By how much a parameter is moved for its difference quotient, relative to what counts as large [-]."""
 
 
 @dataclass(frozen=True)

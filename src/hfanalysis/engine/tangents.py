@@ -22,7 +22,7 @@ from hfanalysis.engine.phases import INCREMENT, LIQUID_OUT, OWN_EVENTS, TICK, Hi
 from hfanalysis.engine.rosenbrock import copy, factorize, interpolate, substitute
 
 NUDGE = 1e-6
-"""Relative to a state, or to its scale: the difference with which an event's change of the state is followed."""
+"""Difference with which an event's change of the state is followed, relative to a state or to its scale [-]."""
 
 INSIDE = 1e-3
 """Part of a step by which slopes are formed beside an event, on the step's own side: differences of the state at the
@@ -80,7 +80,7 @@ def with_constants(m: Equations, c: Array) -> Equations:
 
 @inner
 def quotient(spare: Spare, step: float, f_column: Array, out_column: Array) -> None:
-    """Difference quotients of rates and outputs, into columns."""
+    """Difference quotients of rates and outputs by a ``step`` [SI], into columns (states,) and (outputs,)."""
     for i in range(f_column.size):
         f_column[i] = (spare.moved[i] - spare.f[i]) / step
     for i in range(out_column.size):
@@ -138,7 +138,7 @@ def not_zero(row: Array) -> bool:
 
 @inner
 def joined(moving: Integers, slopes: Slopes) -> Integers:
-    """``moving``, and the states that parameters or moving states begin to move at one of the nodes of a step."""
+    """``moving`` (k,), and the states that parameters or moving states begin to move at one of the nodes of a step."""
     size = slopes.f_y.shape[1]
     known = np.zeros(size, dtype=np.bool_)
     known[IMPULSE] = True
@@ -190,7 +190,8 @@ def radau_stages(
 
 @inner
 def spread(h: float, k: int, s: Array, slopes: Slopes, moving: Integers, u: Array, states: Array) -> None:
-    """The stages of parameter ``k`` into ``states`` (nodes, states, parameters); the impulse is a quadrature."""
+    """The stages of parameter ``k`` of a step ``h`` [s] into ``states`` (nodes, states, parameters); the impulse is a
+    quadrature."""
     m = moving.size
     for a in range(3):
         for i in range(s.shape[0]):
@@ -245,7 +246,8 @@ def copy_slopes(slopes: Slopes, source: int, target: int) -> None:
 def linearize_step(
     n: int, run: History, y: Array, m: Equations, p: Parameters, moving: Integers, slopes: Slopes, spare: Spare
 ) -> None:
-    """Slopes at the nodes of a step, and at its start where an event comes before it."""
+    """Slopes [SI] at the nodes of step ``n``, and at its start where an event comes before it; ``y`` (states,) is
+    scratch."""
     t, h = run.times[n, 0], run.times[n, 1] - run.times[n, 0]
     liquid, burning = run.phases[n, 0] == 1, run.phases[n, 1] == 1
     if n == 0 or run.events[n - 1] >= 0:
@@ -367,7 +369,8 @@ def through_event(n: int, run: History, m: Equations, p: Parameters, spare: Spar
 
 @inner
 def follow(event: int, m: Equations, p: Parameters, k: int, y: Array, s: Array, base: Array) -> None:
-    """Column ``k`` of ``s`` across the change of the state, from ``y`` to ``base``, that an event makes."""
+    """Column ``k`` of ``s`` (states, parameters) across the change of the state [SI], from ``y`` to ``base``, that an
+    event makes."""
     largest, changed = 1e-300, y.copy()
     for i in range(y.size):
         largest = max(largest, abs(s[i, k]) / max(abs(y[i]), p.scales[i]))

@@ -69,13 +69,13 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
     return MeasuredThrust(time, found.signal.at(time), *_spreads(channel, found, burn), notes)
 
 
-def _left(found: Thrust) -> float:
+def _left(thrust: Thrust) -> float:
     """What the corrected cell reads [N] with the chamber at ambient pressure; 0 where the log does not show it."""
-    return 0.0 if np.isnan(found.since) else found.signal.mean(found.since, found.since + FIRST)
+    return 0.0 if np.isnan(thrust.since) else thrust.signal.mean(thrust.since, thrust.since + FIRST)
 
 
-def _drift_taken(found: Thrust) -> tuple[str, ...]:
-    taken = found.error - _left(found)
+def _drift_taken(thrust: Thrust) -> tuple[str, ...]:
+    taken = thrust.error - _left(thrust)
     if abs(taken) < 0.5:
         return ()
     return (text("{taken} of the load cell's drift taken off over the burn", taken=said(taken, "N", ".0f")),)
@@ -97,11 +97,11 @@ def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tup
     return last, "the log's end"
 
 
-def _spreads(channel: Channel, found: Thrust, burn: Signal) -> tuple[float, float, float]:
+def _spreads(channel: Channel, thrust: Thrust, burn: Signal) -> tuple[float, float, float]:
     """Standard deviations of zero, drift [N] and gain; a drift that is seen but not taken off counts in full."""
     peak = float(np.max(np.abs(burn.value)))
     zero = channel.accuracy if channel.zero_std is None else channel.zero_std
-    seen = float(np.hypot(SHAPE_OF_DRIFT * found.error, _left(found)))
+    seen = float(np.hypot(SHAPE_OF_DRIFT * thrust.error, _left(thrust)))
     drift = UNSEEN_DRIFT * peak if seen == 0.0 else seen
     gain = SPAN_SHARE * channel.accuracy / peak if channel.accuracy_stated else UNSTATED_GAIN
     return float(zero), drift, max(float(gain), 1e-4)
