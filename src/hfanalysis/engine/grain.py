@@ -114,7 +114,7 @@ def grain(y: Array, burning: bool, m: Equations) -> tuple[float, float]:
     [SI]."""
     port = y[RADIUS]
     flux = oxidizer_flux(m.env[OXIDIZER_FLOW], port)
-    opening = m.c[REGRESSION_A] * flux_power(flux, m.c[REGRESSION_N]) if burning else 0.0
+    regression = m.c[REGRESSION_A] * flux_power(flux, m.c[REGRESSION_N]) if burning else 0.0
     surface = ring(port, m.c[GRAIN_LENGTH], m.c[FUEL_DENSITY])
-    m.env[FUEL_FLOW] = surface * opening
-    return opening, surface
+    m.env[FUEL_FLOW] = surface * regression
+    return regression, surface

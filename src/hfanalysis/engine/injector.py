@@ -16,7 +16,7 @@ SMALL_DROP = 1000.0
 
 @compiled
 def bent_root(value: float, small: float) -> float:
-    """sqrt(x) [root of the unit], zero for x <= 0; below ``small`` the parabola that joins it smoothly and ends with a
+    """sqrt(x), in the root of its unit, zero for x <= 0; below ``small`` the parabola that joins it smoothly and ends with a
     finite slope.
 
     >>> bent_root(4.0, 1.0), bent_root(-1.0, 1.0)

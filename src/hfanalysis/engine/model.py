@@ -59,11 +59,11 @@ def rates(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array
     m.env[at.RT_CHAMBER] *= m.site[at.TEMPERATURE_FACTOR]
     act(at.AT_FLOW, t, y, m, dy)
     feed(liquid, m)
-    opening, surface = grain(y, burning, m)
+    regression, surface = grain(y, burning, m)
     act(at.RATES, t, y, m, dy)
-    opening *= m.site[at.REGRESSION_FACTOR]
-    m.env[at.FUEL_FLOW] = surface * opening + m.site[at.FUEL_SOURCE]
-    dy[eq.RADIUS] = opening
+    regression *= m.site[at.REGRESSION_FACTOR]
+    m.env[at.FUEL_FLOW] = surface * regression + m.site[at.FUEL_SOURCE]
+    dy[eq.RADIUS] = regression
     ejected, thrust = nozzle(m)
     dy[eq.IMPULSE] = thrust
     tank_rates(y, liquid, m, dy)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hfanalysis.arrays import Array
-from hfanalysis.engine import phases as course
+from hfanalysis.engine import phases
 from hfanalysis.engine.chamber import LEAST_GAS, chamber_volume
 from hfanalysis.engine.effect import Active, Composition, compose
 from hfanalysis.engine.equations import (
@@ -108,7 +108,7 @@ class Engine:
         """What compiled code reads [SI], with scratch of its own."""
         drag = NO_DRAG if self.vehicle is None else self.vehicle.drag_table
         return Equations(
-            rates.address, course.event_values.address, self.saturation.kernel_table, self.combustion.kernel, drag,
+            rates.address, phases.event_values.address, self.saturation.kernel_table, self.combustion.kernel, drag,
             composition.constants, composition.terms, np.zeros(len(ENVIRONMENT)), np.zeros(len(SITES)),
             nothing_kept(),
         )  # fmt: skip
@@ -152,7 +152,7 @@ class Steps:
         for asked, states, outputs in self.last:
             if np.array_equal(asked, where):
                 return states, outputs
-        states, outputs = course.sample(where, self.history, self.engine.equations(self.composition))
+        states, outputs = phases.sample(where, self.history, self.engine.equations(self.composition))
         states.flags.writeable = outputs.flags.writeable = False
         self.last[:] = [(where.copy(), states, outputs), *self.last[:1]]
         return states, outputs
@@ -303,18 +303,18 @@ def burn(
     check(engine)
     composition = compose(engine.effects, constants(engine), len(STATES), keep_idle)
     y = initial(engine, composition)
-    scales = np.concatenate([course.SCALES, composition.scales])
+    scales = np.concatenate([phases.SCALES, composition.scales])
     equations = engine.equations(composition)
-    ending, history, happened = course.integrate(y, float(longest), bool(run_on), rtol, scales, equations, True, True)
-    if ending == course.GIVEN_UP or not len(history.times):
+    ending, history, happened = phases.integrate(y, float(longest), bool(run_on), rtol, scales, equations, True, True)
+    if ending == phases.GIVEN_UP or not len(history.times):
         reached = history.times[-1, 1] if len(history.times) else 0.0
         raise ArithmeticError(f"the engine cannot be integrated beyond {reached:.4f} s: the solver hardly advances")
     steps = Steps(history, engine, composition)
     time = _refined(steps.times) if times is None else np.ascontiguousarray(times, dtype=np.float64)
     outputs = history.outputs[-1, 1]
-    out, fuel = happened[course.LIQUID_OUT], happened[course.FUEL_OUT]
+    out, fuel = happened[phases.LIQUID_OUT], happened[phases.FUEL_OUT]
     end = float(steps.times[-1, 1])
-    unchoked = happened[course.CHOKING] if outputs[O_CHAMBER_PRESSURE] < 2.0 * outputs[O_AMBIENT] else np.nan
+    unchoked = happened[phases.CHOKING] if outputs[O_CHAMBER_PRESSURE] < 2.0 * outputs[O_AMBIENT] else np.nan
     return Burn(
         time, _or_none(out), float(fuel) if np.isfinite(fuel) else end, steps,
         bool(np.isfinite(fuel)), _or_none(unchoked),

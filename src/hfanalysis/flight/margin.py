@@ -1,4 +1,4 @@
-"""Static margin along a flight: mean and two standard deviations over gusts, beside the limits (report, 3.2.5)."""
+"""Static margin along a flight: mean and two standard deviations over gusts, beside the limits (report, 3.2.4)."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ GUST_LENGTH = 70.0
 """Length of the gusts along the wind near the ground [m]. Source: MIL-F-8785C's Dryden form at 10 m."""
 
 LOW, HIGH = 1.5, 6.0
-"""Static margin [calibers] that a flight should keep within. Source: report, section 3.2.5."""
+"""Static margin [calibers] that a flight should keep within. Source: report, section 3.2.4."""
 
 MACHS = 33
 """Mach numbers, from 0 to 1.6, at which slope, place and damping of the normal force are tabulated."""

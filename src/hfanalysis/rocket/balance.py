@@ -1,4 +1,4 @@
-"""Center of gravity and pitch inertia of the rocket over the burn: CG_total(t) of the report (section 3.2.5).
+"""Center of gravity and pitch inertia of the rocket over the burn: CG_total(t) of the report (section 3.2.4).
 
 Liquid and vapor lie over each other in the tank; grain, chamber gas, empty engine and structure stay where they are.
 """
