@@ -138,7 +138,7 @@ def exponent(calibration: TankConstants) -> tuple[float, float]:
 
 
 def oxidizer_enthalpy(definition: TestDefinition, source: Saturation, temperature: float) -> float:
-    """Of the oxidizer entering the chamber [J/kg]: PROPEP's (report), or the saturated liquid's at a ``temperature``
+    """Of the oxidizer entering the chamber [J/kg]: PROPEP's (report), or the saturated liquid's at its ``temperature``
     [K]."""
     if definition.model.conventions == "report":
         return PROPEP_OXIDIZER_ENTHALPY
@@ -146,8 +146,8 @@ def oxidizer_enthalpy(definition: TestDefinition, source: Saturation, temperatur
 
 
 def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
-    """The engine with the tank temperature [K] from which its tank has ``pressure`` [Pa] at ``instant`` [s after
-    ignition].
+    """The engine with the tank temperature [K] from which its tank has ``pressure`` [Pa] at ``instant`` [s] after
+    ignition.
 
     The report's extrapolation of phase 2 to the opening (section 4.3.4). Raises AbsentError where no saturated tank
     with this load does.

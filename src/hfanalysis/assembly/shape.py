@@ -15,7 +15,7 @@ AGREE = 0.02
 
 
 def shape(rocket: Rocket | None) -> Shape | str:
-    """The rocket's outside, or what is not given of it."""
+    """The rocket's outside [m], or what is not given of it."""
     geometry = rocket.geometry if rocket is not None else None
     if rocket is None or geometry is None:
         return "no [rocket.geometry] is given"
@@ -71,7 +71,7 @@ class Masses:
 def masses(
     rocket: Rocket, outside: Shape, tank: Tank | None, grain: Grain | None, chamber: Chamber | None
 ) -> Masses | str:
-    """Where the masses are, or what is not given of it."""
+    """Where the masses [kg] are [m from the nose tip], or what is not given of it."""
     geometry = rocket.geometry
     if geometry is None:
         return "no [rocket.geometry] is given"

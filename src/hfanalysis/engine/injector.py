@@ -16,8 +16,9 @@ SMALL_DROP = 1000.0
 
 @compiled
 def bent_root(value: float, small: float) -> float:
-    """sqrt(x), in the root of its unit, zero for x <= 0; below ``small`` the parabola that joins it smoothly and ends with a
-    finite slope.
+    """sqrt(x), in the root of its unit, zero for x <= 0.
+
+    Below ``small`` it is the parabola that joins it smoothly and ends with a finite slope.
 
     >>> bent_root(4.0, 1.0), bent_root(-1.0, 1.0)
     (2.0, 0.0)
