@@ -149,7 +149,7 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
     """The engine with the tank temperature [K] from which its tank has ``pressure`` [Pa] at ``instant`` [s] after
     ignition.
 
-    The report's extrapolation of phase 2 to the opening (section 4.3.4). Raises AbsentError where no saturated tank
+    The report's extrapolation of phase 2 to the opening (section 4.4). Raises AbsentError where no saturated tank
     with this load does.
     """
     coldest = float(engine.saturation.temperature(pressure))
