@@ -36,7 +36,7 @@ SHORTEST = 0.15
 FINE = 200
 """Instants at which pulses are laid over the splines."""
 
-STEP = 1e-3
+SLOPE_STEP = 1e-3
 """Of x, for the slopes of its history."""
 
 
@@ -111,7 +111,9 @@ class Pulse(LinearUnknown):
             return np.asarray(0.5 * size * (np.tanh((time - start) / edge) - np.tanh((time - start - duration) / edge)))
 
         mean = pulse(fitted.x)
-        slopes = np.column_stack([(pulse(fitted.x + STEP * np.eye(fitted.x.size)[k]) - mean) / STEP for k in own])
+        slopes = np.column_stack(
+            [(pulse(fitted.x + SLOPE_STEP * np.eye(fitted.x.size)[k]) - mean) / SLOPE_STEP for k in own]
+        )
         std = spread_of(slopes, fitted.covariance[np.ix_(own, own)])
         whole = self.place.whole(fitted, time, observed)
         return History(self.place, time, mean, std, fitted.stds[names[START]], whole=whole)
