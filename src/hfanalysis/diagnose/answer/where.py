@@ -31,7 +31,7 @@ def _with_alike(equation: str, observed: Observed) -> set[str]:
 
 
 def by_equation(posterior: Mapping[str, float], found: Naming) -> dict[str, float]:
-    """Probability that the first of what is missing is in an equation; the most probable first.
+    """Probability [-] that the first of what is missing is in an equation; the most probable first.
 
     That of ``unknown`` goes to the equation of its likeliest source.
     """

@@ -22,8 +22,8 @@ NEARLY = 3.0
 """Log evidence behind the best valley, after a short fit, up to which another may yet turn out deeper."""
 
 FAR_BEHIND = 300.0
-"""Log evidence behind the base model from which on it is not looked there: not even an effect leads back. In a blind
-case n followed what a loss of thrust of 3 % does; from where the base model had 160 less it was found."""
+"""Log evidence behind the base model from which on it is not looked there: not even an effect leads back. Evidence: 100
+was too near, for n follows what a loss of thrust does."""
 
 SAME = 0.1
 """Standard deviations of a prior within which two fits are one."""

@@ -82,9 +82,11 @@ def score_tests(
 def score(
     slopes: Array, residual: Array, x: Array, own: slice, bounds: tuple[Array, Array], projection: bool = True
 ) -> tuple[float, Array]:
-    """Gain in log probability by strengths ``own``, with the parameters before them projected out, and the strengths.
+    """Gain in log probability [natural log] by strengths ``own``, with the parameters before them projected out, and
+    the strengths (strengths,) in prior standard deviations.
 
-    ``slopes`` (observations, parameters) of the residual at ``x``, whose prior is N(0, 1).
+    ``slopes`` (observations, parameters) of the whitened ``residual`` (observations,) at ``x`` (parameters,), whose
+    prior is N(0, 1); ``bounds``: least and most of x (parameters,).
     """
     a, b = slopes[:, : own.start], slopes[:, own]
     still = residual - b @ x[own]

@@ -32,6 +32,7 @@ PARTNERS = 4
 """Effects that are tried as a further one, by their score, on either side that can be finer."""
 
 MOST_EFFECTS = 4
+"""Effects that a set has at most."""
 
 
 def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[list[Candidate], list[Candidate]]:
@@ -88,7 +89,7 @@ def _shown_the_way(pairs: list[Candidate], singles: list[Candidate], bench: Benc
 def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
     """Candidates of one kind, all as much more probable as slack makes the first of them.
 
-    Among themselves they are compared without slack, which would make neighbours alike.
+    Among themselves they are compared without slack, which would make neighbors alike.
     """
     if not candidates:
         return []
