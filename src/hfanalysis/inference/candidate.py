@@ -27,10 +27,10 @@ right explanations of simulated tests ask for more `make blind-calibrate` prints
 as large and no step nearly free, a practice case without an effect was called unknown for 0.03 bar."""
 
 FURTHER = 5.0
-"""Log of the odds against each effect beyond the first: several at once are rarer than one."""
+"""Log of the odds against each effect beyond the first [natural log]: several at once are rarer than one."""
 
 HOPELESS = 30.0
-"""Log evidence behind the best at the same form from which on a candidate is not fitted any finer."""
+"""Log evidence [natural log] behind the best at the same form from which on a candidate is not fitted any finer."""
 
 DOUBT, FAR_DOUBT = 30.0, 100.0
 """Log evidence that a form may promise to lose, by the slopes of a fit, and still be tried, for nothing is linear: by

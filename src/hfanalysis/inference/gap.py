@@ -24,7 +24,7 @@ from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import has_name
 
 FOLDS, FOLD_TIME = 2, 0.5
-"""Interleaved parts of the data that are held out in turn, and the seconds that each stretch of them lasts."""
+"""Interleaved parts of the data that are held out in turn, and the time that each stretch of them lasts [s]."""
 
 CHANCE = 2.0
 """Standard deviations of the mean square of noise beyond which an excess is no chance. Source: were it normal, one in

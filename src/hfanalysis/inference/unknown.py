@@ -77,12 +77,13 @@ class History:
 
     @property
     def of_equation(self) -> Array:
-        """Its mean (n,) by the unit of its equation: a tenth of a large flow is more than a tenth of a small one."""
+        """Its mean (n,) [unit of its equation]: a tenth of a large flow is more than a tenth of a small one."""
         return self.mean if self.whole is None else self.mean / (1.0 + self.mean) * self.whole
 
 
 def spread_of(slopes: Array, covariance: Array) -> Array:
-    """Standard deviations (n,) of what has these slopes (n, m) with m numbers of a covariance (m, m), in its unit.
+    """Standard deviations (n,) [the slopes' unit] of what has these slopes (n, m) with m numbers of a covariance (m,
+    m).
 
     >>> spread_of(np.array([[3.0, 4.0]]), np.eye(2)).tolist()
     [5.0]
@@ -149,4 +150,4 @@ class LinearUnknown(Unknown):
 
     @abstractmethod
     def added_to(self, fitted: Fit, share: float = 1.0) -> tuple[Hypothesis, Array]:
-        """As :meth:`Unknown.added_to`, at a ``share`` of its size."""
+        """As :meth:`Unknown.added_to`, at a ``share`` [-] of its size."""

@@ -75,7 +75,7 @@ class Fit:
 
     @property
     def objective(self) -> float:
-        """Minus the log of posterior density, up to a constant."""
+        """Minus the log of posterior density [natural log], up to a constant."""
         return 0.5 * float(self.residual @ self.residual + self.x @ self.x)
 
 
@@ -100,7 +100,8 @@ def fit(
 def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATIONS, within: float = CONVERGED) -> Fit:
     """A fit to ``before`` gone on with, to the same data with another model-form error if that is asked for.
 
-    Where it ended its slopes are known: no run is needed to begin with. Raises as :func:`fit`.
+    Where it ended its slopes are known: no run is needed to begin with. Raises as :func:`fit`. ``within``: change of
+    the objective [natural log].
     """
     residual, slopes = found.residual, found.slopes
     if observed is not before:
@@ -205,10 +206,11 @@ def _of_any_size(curvature: Array, x: Array, hypothesis: Hypothesis) -> float:
 
 
 def promised(found: Fit, observed: Observed, other: Observed, slack: Array | None = None) -> float:
-    """The log evidence that a fit to ``observed`` has at the model-form error of ``other``, if its slopes hold.
+    """The log evidence [natural log] that a fit to ``observed`` has at the model-form error of ``other``, if its slopes
+    hold.
 
-    ``slack`` (blocks of all channels, columns): what may be added to what the sensors read besides, each column times
-    an N(0, 1) number.
+    ``slack`` (blocks of all channels, columns) [SI]: what may be added to what the sensors read besides, each column
+    times an N(0, 1) number.
     """
     residual, slopes = (other.rewhitened(rows, observed) for rows in (found.residual, found.slopes))
     x = found.x

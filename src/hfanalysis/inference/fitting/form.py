@@ -54,3 +54,5 @@ class Form(NamedTuple):
 
 
 FINEST, COARSEST = Form(0, 0), Form(STEPS - 1, STEPS - 1)
+"""The least and the largest model-form error on either side. Evidence: that fits begin at the coarsest was changed
+after a practice case was wrong (docs/diagnosis.md)."""

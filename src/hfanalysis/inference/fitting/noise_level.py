@@ -19,7 +19,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.noise import SlowNoise
 
 FARTHEST_FACTOR = 1.2
-"""Log of a factor beyond which none is thought of."""
+"""Log of a factor of the slow noise [natural log] beyond which none is thought of."""
 
 STEPS, STRIDE, CONVERGED = 12, 0.5, 1e-2
 """Of Fisher's scoring: its steps, the longest of them, and the shortest that is worth one, in logs of factors: what is

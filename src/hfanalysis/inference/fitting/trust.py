@@ -45,8 +45,9 @@ def step_within(radius: float, gradient: Array, curvature: Array, box: tuple[Arr
     """The step (parameters,) of least damping that is no longer than ``radius`` and stays in its ``box``.
 
     Of an objective's gradient (parameters,) and curvature (parameters, parameters), and of the least and the greatest
-    step of every parameter (parameters,). Damping is relative to the curvature's diagonal. It is the step in its box
-    that is measured: where some parameters come to rest at their bounds, the others may go the farther for it.
+    step of every parameter (parameters,); parameters in prior standard deviations, ``radius`` as :func:`length_of`.
+    Damping is relative to the curvature's diagonal. It is the step in its box that is measured: where some parameters
+    come to rest at their bounds, the others may go the farther for it.
     """
     step = bounded_step(gradient, curvature, box, LEAST_DAMPING)
     if length_of(step, curvature) <= radius:
@@ -112,8 +113,8 @@ def _drawn_back(
 
 
 def length_of(step: Array, curvature: Array) -> float:
-    """A step's length in deviations of every parameter alone; ``step`` (parameters,), ``curvature`` (parameters,
-    parameters).
+    """A step's length [standard deviations] in those of every parameter alone; ``step`` (parameters,), ``curvature``
+    (parameters, parameters).
 
     >>> length_of(np.array([3.0, 4.0]), np.eye(2))
     5.0
@@ -122,13 +123,15 @@ def length_of(step: Array, curvature: Array) -> float:
 
 
 def shrunk(length: float, part: float) -> float:
-    """The region after a step of that length that brought only a ``part`` of what its slopes promised (NaN: no run)."""
+    """The region [standard deviations] after a step of that length that brought only a ``part`` [-] of what its slopes
+    promised (NaN: no run)."""
     least, most = SHRINKAGE
     return length * (least if np.isnan(part) else min(max(1.0 / (2.0 - part), least), most))
 
 
 def grown(radius: float, length: float, part: float) -> float:
-    """The region after a step that was taken."""
+    """The region [standard deviations] after a step of that length that was taken and brought a ``part`` [-] of what
+    was promised."""
     if part > GOOD:
         return max(radius, GROWTH * length)
     return SHRINKAGE[1] * length if part < POOR else radius

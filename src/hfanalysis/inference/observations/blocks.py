@@ -19,7 +19,7 @@ MERGED, NEAR = 5, 0.4
 """Blocks that are merged into one farther than NEAR [s] from any change: the noise there is coherent anyway."""
 
 TANK_AT_REST, TANK_REST = ("p_tank", "m_tank"), 1.2
-"""Channels that show the tank at rest before the opening, and the seconds of it that are looked at: a tank is filled
+"""Channels that show the tank at rest before the opening, and the time of it that is looked at [s]: a tank is filled
 before, and warms."""
 
 STEADY, JUMP = 3.0, 4.5

@@ -19,7 +19,7 @@ BEFORE, AFTER, CLEAR = 0.3, 0.5, 0.05
 """Seconds looked at before and after the end of the fuel, and kept clear of the end of the liquid."""
 
 EARLIEST, LATEST, INSTANTS = -0.06, 0.14, 41
-"""Where a fall may begin [s after the fuel's end as it was segmented], and how many instants are tried."""
+"""Where a fall may begin, after the fuel's end as it was segmented [s], and how many instants are tried."""
 
 DURATIONS = np.geomspace(1e-3, 0.5, 28)
 """Seconds that a fall may take."""

@@ -52,7 +52,7 @@ class Channel:
     tables: Array | None = None
 
     def only(self, rows: Integers) -> Channel:
-        """The same with some of its blocks."""
+        """The same with some of its blocks; ``rows`` (kept,): their numbers."""
         picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
         slow = None if self.slow is None else self.slow[np.ix_(rows, rows)]
         tables = None if self.tables is None else self.tables[rows]
@@ -78,7 +78,7 @@ class Channel:
         return np.where(self.resting, 0.0, errors[self.name in TOGETHER] * span)
 
     def averaged(self, rows: Array) -> Array:
-        """Block means (blocks, ...) of rows (grid, ...) on the common grid, in their unit."""
+        """Block means (blocks, ...) of rows (grid, ...) on the common grid [the rows' unit]."""
         return averaged(rows, self.first, self.count)
 
 
@@ -103,7 +103,7 @@ def range_of(time: Array, value: Array) -> float:
 
 
 def averaged(rows: Array, first: Integers, count: Integers) -> Array:
-    """Means (blocks, ...) over ``count`` (blocks,) rows (grid, ...) from ``first`` (blocks,) on, in their unit.
+    """Means (blocks, ...) over ``count`` (blocks,) rows (grid, ...) from ``first`` (blocks,) on [the rows' unit].
 
     >>> averaged(np.array([1.0, 3.0, 5.0]), np.array([0, 2]), np.array([2, 1])).tolist()
     [2.0, 5.0]

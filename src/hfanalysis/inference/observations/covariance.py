@@ -25,7 +25,8 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.signals import sample_noise
 
 FILLING_ERROR, FILLING_TIME = 0.1, 0.1
-"""Model-form error while the line fills, as part of a channel's range, and the seconds over which it is coherent."""
+"""Model-form error while the line fills, as part of a channel's range [-], and the time over which it is coherent
+[s]."""
 
 UNSTEADY_ZERO = 0.03
 """Part of its accuracy by which the zero of a sensor may move within a test, beside the wander that its quiet time

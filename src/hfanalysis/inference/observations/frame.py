@@ -44,7 +44,8 @@ REST_BLOCKS = 4
 """Blocks that such a rest is cut into."""
 
 BEFORE_BLOCKS, BEFORE_BLOCK, BEFORE_END = 8, 0.5, 0.1
-"""The rest before the opening: at most so many blocks of so many seconds, the last of which ends so long before it."""
+"""The rest before the opening: at most so many blocks of such a length [s], the last of which ends so long before it
+[s]."""
 
 LEAST_BEFORE = 0.1
 """Seconds of a shorter block where a log begins shortly before the opening; a still shorter rest tells nothing."""

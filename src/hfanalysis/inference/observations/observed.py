@@ -64,7 +64,7 @@ class Observed:
     later: Array | None = None
 
     def with_errors(self, tank: float, chamber: float) -> Observed:
-        """The same with another model-form error: parts of the range of the tank's channels, and of chamber and
+        """The same with another model-form error: parts [-] of the range of the tank's channels, and of chamber and
         thrust."""
         made = replace(self, errors=(tank, chamber))
         vars(made)["_groups"] = self._groups  # the same channels: what is made once for an error serves all

@@ -41,7 +41,7 @@ SLOW = 0.15
 """Time constant [s] from which on a process is slow: a quiet time of seconds holds few of its swings."""
 
 FARTHEST_VARIANCE = 40.0
-"""By how much the log of a variance may differ from that of the whole reading's."""
+"""By how much the log of a variance [natural log] may differ from that of the whole reading's."""
 
 NARROW = 1e-3
 """Of a process's time constant: a narrower mean is its value."""

@@ -46,7 +46,7 @@ UNEVEN = 0.02
 """Part of itself by which a channel departs from a straight course and a straight fall at any instant."""
 
 LEAST_GAIN = 8.0
-"""Log evidence from which on a fall is plain."""
+"""Log evidence [natural log] from which on a fall is plain."""
 
 HIDDEN = 0.05
 """Seconds before the end of the liquid in which every sample has to be good."""
@@ -130,6 +130,7 @@ class FailingFlow(Unknown):
 
     @property
     def hides(self) -> float:
+        """The time [s] that the flow takes to fail."""
         return self.seconds
 
     def added_to(self, fitted: Fit) -> tuple[Hypothesis, Array]:

@@ -42,7 +42,8 @@ FEWEST = 40
 """Samples of that stretch from which on a delay shows."""
 
 CLEAR = 6.0
-"""Times that thrust lies closer to the delayed pressure than to the other: a slow rise, or a lag, stays below 6."""
+"""Times that thrust lies closer to the delayed pressure than to the other. Evidence: a slow rise, or a lag, stays below
+6 (tests/inference/unknowns/test_late_channel.py)."""
 
 BLOCK = 0.02
 """Seconds of samples that count as one observation: their noise goes together."""

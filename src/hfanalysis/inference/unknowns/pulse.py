@@ -101,6 +101,7 @@ class Pulse(LinearUnknown):
         return made, np.clip(start, [f.least for f in free], [f.most for f in free])
 
     def history(self, fitted: Fit, observed: Observed) -> History:
+        """The pulse over time [s after the opening], in the unit of its place; its deviation to first order."""
         time = np.linspace(0.0, observed.last, POINTS)
         names = [f"{PREFIX}{self.place.name}.{own}" for own in OWN]
         own = [fitted.hypothesis.names.index(name) for name in names]

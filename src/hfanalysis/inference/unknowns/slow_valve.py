@@ -35,7 +35,8 @@ GRADUAL = 3
 """Samples that the first part of the rise (EARLY) takes at least where it is gradual: a leap takes one or two."""
 
 EARLY = 0.05, 0.2
-"""Parts of the rise between which it tells a gradual opening: a line that fills begins with its steepest rise."""
+"""Parts of the rise between which it tells a gradual opening. Evidence: a line that fills begins with its steepest rise
+(tests/inference/unknowns/test_slow_valve.py)."""
 
 NEARLY = 0.95
 """Part of the rise at which the valve counts as open."""

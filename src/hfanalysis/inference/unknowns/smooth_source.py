@@ -83,6 +83,7 @@ class SmoothSource(LinearUnknown):
         return fitted.hypothesis.with_block(block, active), start
 
     def history(self, fitted: Fit, observed: Observed) -> History:
+        """The source over time [s after the opening], in the unit of its place."""
         time = np.linspace(0.0, observed.last, POINTS)
         block, own = next(it for it in fitted.hypothesis.places() if it[0].names == self._names)
         basis = block.splines.at(time) @ block.matrix

@@ -51,7 +51,9 @@ EACH = 6.0
 spectrum is exponentially distributed; exp(-6) is one in 400 by chance, and both at once are one in 160,000."""
 
 LOUD = 3.0
-"""Times the background that the chamber's power reaches half of the time where its combustion swings by itself."""
+"""Times the background that the chamber's power reaches half of the time where its combustion swings by itself.
+Evidence: without it, what the run line did for a moment at the combustion's frequency was a swing of the flow
+(tests/inference/unknowns/test_swing.py)."""
 
 TURNS = 4.0
 """That a swing takes at least; what comes and goes at once has a broad spectrum of its own."""
