@@ -30,7 +30,8 @@ COURSE = 0.5 * BAR
 
 LEAST_FALL, LEAST_DIP, LEAST_FLOW = 2.0 * BAR, 1.5 * BAR, 5.0 * BAR
 """What is called a fall at the opening, a dip below the bulk's pressure, and a valve that nitrogen passes [Pa].
-Evidence: twice of what 231 tests of the calibration split have at most that lack these."""
+Evidence: twice of what 231 tests of the calibration split have at most that lack these. Layers of a bar are none, and
+larger ones are seen with their size (tests/diagnose/test_model_free.py)."""
 
 SURE = 3.0
 """Standard deviations that a fall has to have besides."""

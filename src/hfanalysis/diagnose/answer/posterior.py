@@ -117,7 +117,8 @@ class Scale:
 
 
 def above_chance(evidences: Mapping[str, float]) -> bool:
-    """Whether any label has as much evidence as hardly a test shows that hides nothing, that of none being 0.
+    """Whether any label has as much evidence [natural log] as hardly a test shows that hides nothing, that of none
+    being 0.
 
     >>> above_chance({"none": 0.0, "tank_heat": 5.2, "unknown": 9.8})
     True
@@ -128,7 +129,7 @@ def above_chance(evidences: Mapping[str, float]) -> bool:
 
 
 def unclaimable(evidences: Mapping[str, float]) -> bool:
-    """Whether no label has the evidence that a claim needs (LEAST_EVIDENCE), that of none being 0."""
+    """Whether no label has the evidence [natural log] that a claim needs (LEAST_EVIDENCE), that of none being 0."""
     return all(e < LEAST_EVIDENCE for label, e in evidences.items() if label != "none")
 
 
@@ -154,7 +155,8 @@ def detailed_kinds(evidences: Mapping[str, float]) -> dict[str, str]:
 def beyond_closures(
     evidences: Mapping[str, float], unexplained: float, elsewhere: float | None = None
 ) -> dict[str, float]:
-    """The evidences, that of unknown without what closures leave ``unexplained``, by the root of the best name's.
+    """The evidences [natural log], that of unknown without what closures leave ``unexplained`` [-], by the root of the
+    best name's.
 
     A source ``elsewhere`` keeps all that it has.
 

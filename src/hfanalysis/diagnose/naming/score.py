@@ -44,11 +44,12 @@ def score_tests(
     settings: Settings,
     shape_starts: Sequence[float] = (),
 ) -> tuple[Hypothesis, list[list[Test]]]:
-    """The parent with an effect more, and for each form the starts with the gain that they promise, the best first.
+    """The parent with an effect more, and for each form the starts (parameters,), in prior standard deviations, with
+    the gain [natural log] that they promise, the best first.
 
-    ``slopes`` (observations, parameters) of the parent at each form, which hardly change by a small effect. The starts
-    are those of the shape (each of its parameters at ``shape_starts``, in standard deviations of its prior, where they
-    are given), the strengths as the score test sees them.
+    ``slopes`` (observations, parameters), whitened, of the parent at each form, which hardly change by a small effect.
+    The starts are those of the shape (each of its parameters at ``shape_starts``, in standard deviations of its prior,
+    where they are given), the strengths as the score test sees them.
     """
     made = catalogue.add(parent.hypothesis, name)
     least, most = made.bounds

@@ -26,7 +26,8 @@ ASKED = 2.5
 """Gain in log probability that a score test must promise for a further effect to be fitted."""
 
 FAR = 3.0
-"""Log evidence that a single effect gains from the constants of a pair before sets are tried anew."""
+"""Log evidence that a single effect gains from the constants of a pair before sets are tried anew. Evidence: a practice
+case was wrong while a single effect did not go on from where a pair led (docs/diagnosis.md)."""
 
 PARTNERS = 4
 """Effects that are tried as a further one, by their score, on either side that can be finer."""

@@ -45,11 +45,12 @@ class History:
         return History(self.value[part], self.slopes[part])
 
     def spread(self, count: int) -> History:
-        """A single value, held over ``count`` instants."""
+        """A single value, held over ``count`` instants: (count,) [its unit]."""
         return History(np.repeat(self.value, count), np.repeat(self.slopes, count, axis=0))
 
     def weighted(self, weights: Array) -> History:
-        """Weighted sums over the instants; ``weights`` (sums, n)."""
+        """Weighted sums (sums,) over the instants [the value's unit times that of the weights]; ``weights`` (sums,
+        n)."""
         return History(weights @ self.value, weights @ self.slopes)
 
     @property
@@ -59,7 +60,7 @@ class History:
 
 
 def joined(parts: Sequence[History]) -> History:
-    """One history after the other."""
+    """One history after the other, all in one unit [any]."""
     return History(np.concatenate([p.value for p in parts]), np.concatenate([p.slopes for p in parts]))
 
 
@@ -84,7 +85,8 @@ def total(rate: History, width: Array) -> History:
 
 
 def through_all(formula: Callable[..., tuple[Array, ...]], *inputs: History) -> tuple[History, ...]:
-    """What a formula that acts at each instant by itself makes of histories, of any units; it gives several, all (n,).
+    """What a formula that acts at each instant by itself makes of histories (n,) [any units]; it gives several, all
+    (n,).
 
     Slopes are by central differences, to first order.
     """
