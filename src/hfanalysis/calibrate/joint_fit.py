@@ -29,7 +29,7 @@ from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.candidate import Bench, Candidate
 from hfanalysis.inference.fitting.hypothesis import Free
-from hfanalysis.inference.full_run import LONGEST
+from hfanalysis.inference.full_run import LONGEST_BURN
 from hfanalysis.inference.gap import flowing, residuals_of
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.subject import Subject
@@ -92,7 +92,7 @@ class _Constants:
     @cached_property
     def burnt(self) -> Burn:
         """Its burn, to the end."""
-        return burn(self.engine, longest=LONGEST)
+        return burn(self.engine, longest=LONGEST_BURN)
 
     def _free(self, name: str) -> tuple[Free, float, float]:
         """What may move, where it is, and its standard deviation, both in those of its prior."""
@@ -156,7 +156,7 @@ class _Constants:
 
     def _followed(self, engine: Engine) -> Array:
         """DERIVED of an engine's burn [SI]; NaN where its liquid does not end."""
-        burnt = burn(engine, longest=LONGEST)
+        burnt = burn(engine, longest=LONGEST_BURN)
         if burnt.liquid_out is None:
             return np.full(len(DERIVED), np.nan)
         time, mass, flow = burnt.time, burnt.state("tank_mass"), burnt.output("oxidizer_flow")

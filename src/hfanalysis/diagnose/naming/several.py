@@ -26,12 +26,14 @@ ASKED = 2.5
 """Gain in log probability that a score test must promise for a further effect to be fitted."""
 
 FAR = 3.0
-"""Log evidence that a single effect gains from the constants of a pair before sets are tried anew."""
+"""Log evidence that a single effect gains from the constants of a pair before sets are tried anew. Evidence: a practice
+case was wrong while a single effect did not go on from where a pair led (docs/diagnosis.md)."""
 
 PARTNERS = 4
 """Effects that are tried as a further one, by their score, on either side that can be finer."""
 
 MOST_EFFECTS = 4
+"""Effects that a set has at most."""
 
 
 def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[list[Candidate], list[Candidate]]:
@@ -88,7 +90,7 @@ def _shown_the_way(pairs: list[Candidate], singles: list[Candidate], bench: Benc
 def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
     """Candidates of one kind, all as much more probable as slack makes the first of them.
 
-    Among themselves they are compared without slack, which would make neighbours alike.
+    Among themselves they are compared without slack, which would make neighbors alike.
     """
     if not candidates:
         return []

@@ -19,10 +19,11 @@ from hfanalysis.inference.fitting.trust import box_about, grown, learnt, length_
 from hfanalysis.inference.observations.observed import Observed
 
 ITERATIONS = 25
+"""Steps that a fit makes at most, unless it is asked for more."""
 CONVERGED, ENDED = 0.02, 1e-5
 """Change of the objective below which a fit that looks around is done, and one whose numbers are told, in units of log
 probability: within 0.02 of its most probable value a parameter may be a fifth of its deviation away, within 1e-5 by
-half a percent of it."""
+half a percent of it. Source: the log of a normal density falls by half the square of a deviation."""
 
 NEAR, LAST_STEPS = 0.5, 12
 """Log probability that steps by slopes alone may promise, and steps in which a fit comes to its end by them."""
@@ -62,19 +63,19 @@ class Fit:
 
     @property
     def values(self) -> dict[str, float]:
-        """Parameters by name [SI]."""
+        """Parameters by name, each in its SI unit."""
         return self.hypothesis.values(self.x)
 
     @property
     def stds(self) -> dict[str, float]:
-        """Standard deviations of :attr:`values`."""
+        """Standard deviations of :attr:`values`, each in its SI unit; linear about ``x``."""
         jacobian = self.hypothesis.jacobian(self.x)
         spread = np.sqrt(np.maximum(np.diag(jacobian @ self.covariance @ jacobian.T), 0.0))
         return dict(zip(self.hypothesis.names, spread.tolist(), strict=True))
 
     @property
     def objective(self) -> float:
-        """Minus the log of posterior density, up to a constant."""
+        """Minus the log of posterior density [natural log], up to a constant."""
         return 0.5 * float(self.residual @ self.residual + self.x @ self.x)
 
 
@@ -87,8 +88,9 @@ def fit(
 ) -> Fit:
     """The most probable parameters: Gauss-Newton steps, damped where one does not lower the objective.
 
-    At ``most`` so many steps, and no more once one changes the objective by less than ``within``. Raises ValueError or
-    ArithmeticError where the start cannot be run.
+    ``start`` (parameters,) in prior standard deviations; 0 by default. At ``most`` so many steps, and no more once one
+    changes the objective by less than ``within`` [natural log]. Raises ValueError or ArithmeticError where the start
+    cannot be run.
     """
     least, highest = hypothesis.bounds
     x = np.clip(np.zeros(hypothesis.size) if start is None else np.asarray(start, dtype=np.float64), least, highest)
@@ -98,7 +100,8 @@ def fit(
 def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATIONS, within: float = CONVERGED) -> Fit:
     """A fit to ``before`` gone on with, to the same data with another model-form error if that is asked for.
 
-    Where it ended its slopes are known: no run is needed to begin with. Raises as :func:`fit`.
+    Where it ended its slopes are known: no run is needed to begin with. Raises as :func:`fit`. ``within``: change of
+    the objective [natural log].
     """
     residual, slopes = found.residual, found.slopes
     if observed is not before:
@@ -201,9 +204,11 @@ def _by_slopes(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predi
 
 
 def log_evidence(residual: Array, slopes: Array, x: Array, observed: Observed, hypothesis: Hypothesis) -> float:
-    """Log of the probability of the data, by Laplace's approximation about the most probable ``x``.
+    """Log of the probability of the data [natural log], by Laplace's approximation about the most probable ``x``.
 
-    Strengths of effects are of any size there; ``x`` may go on beyond the parameters of the hypothesis.
+    ``residual`` (observations,) whitened; ``slopes`` (observations, parameters) of it with ``x`` (parameters,), in
+    prior standard deviations. Strengths of effects are of any size there; ``x`` may go on beyond the parameters of the
+    hypothesis.
     """
     curvature = slopes.T @ slopes + np.eye(x.size)
     objective = 0.5 * float(residual @ residual + x @ x)
@@ -223,10 +228,11 @@ def _of_any_size(curvature: Array, x: Array, hypothesis: Hypothesis) -> float:
 
 
 def promised(found: Fit, observed: Observed, other: Observed, slack: Array | None = None) -> float:
-    """The log evidence that a fit to ``observed`` has at the model-form error of ``other``, if its slopes hold.
+    """The log evidence [natural log] that a fit to ``observed`` has at the model-form error of ``other``, if its slopes
+    hold.
 
-    ``slack`` (blocks of all channels, columns): what may be added to what the sensors read besides, each column times
-    an N(0, 1) number.
+    ``slack`` (blocks of all channels, columns) [SI]: what may be added to what the sensors read besides, each column
+    times an N(0, 1) number.
     """
     residual, slopes = (other.rewhitened(rows, observed) for rows in (found.residual, found.slopes))
     x = found.x
