@@ -12,7 +12,7 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
-from hfanalysis.record.noise import LONG, Noise, pool
+from hfanalysis.record.noise import LONG_STRETCH, Noise, pool
 from hfanalysis.record.signals import Signal, live_signals
 from hfanalysis.segment.breaks import kink
 from hfanalysis.thermo.saturation import Saturation
@@ -24,7 +24,7 @@ PRESSURES = ("p_tank", "p_run", "p_chamber", "p_purge")
 READING_POINTS = 150
 """Block means over the window of a reading: few enough for a full covariance."""
 
-FINEST = 0.002
+FINEST_BLOCK = 0.002
 """Block means over this time [s]: fine against every phase, coarse enough for hundreds of repetitions."""
 
 BEFORE = 500
@@ -56,7 +56,7 @@ class Histories:
         for name in ("p_tank", "p_run", *(("p_chamber",) if burning else ())):
             if name not in signals:
                 raise AbsentError(f"test {definition.test.id}: the log has no {name} to calibrate with")
-        blocks = signals["p_tank"].between(0.0, end).reduced(FINEST)
+        blocks = signals["p_tank"].between(0.0, end).reduced(FINEST_BLOCK)
         if blocks.time.size < 8:
             raise AbsentError("too few good samples of p_tank after the opening")
         time = blocks.time
@@ -142,7 +142,8 @@ def _noises(signals: Mapping[str, Signal], segments: Segments) -> dict[str, Nois
         if name == "p_tank" and t_v is not None:
             start = 2.0 * (segments.time("t_feed") or 0.1)
             liquid = signal.between(start, t_v - 0.05)
-            stretches += [liquid] if liquid.time.size > LONG else []  # in a shorter one its fall passes for wander
+            # in a shorter one its fall passes for wander
+            stretches += [liquid] if liquid.time.size > LONG_STRETCH else []
         noises[name] = Noise.of(signal, *stretches)
     return pool(noises)
 
@@ -152,5 +153,5 @@ def _on(signal: Signal, time: Array) -> Array:
 
     Whole blocks before the opening: none is half of before it and half of after.
     """
-    reduced = signal.between(-BEFORE * FINEST, time[-1] + 1.0).reduced(FINEST)
+    reduced = signal.between(-BEFORE * FINEST_BLOCK, time[-1] + 1.0).reduced(FINEST_BLOCK)
     return reduced.at(time)

@@ -69,7 +69,8 @@ ACCURACY: dict[str, AccuracyClass] = {
     "temperature": AccuracyClass(2.5),
     "dimensionless": AccuracyClass(0.0),
 }
-"""Dimension -> default accuracy."""
+"""Dimension -> default accuracy [Pa, N, kg, K]. Source: ordinary hardware: pressure transducers of 0.5 % of what they
+read, S-beam cells, bare thermocouples of tolerance class 2 (IEC 60584-1: 2.5 K up to 333 degC)."""
 
 OTHER_ACCURACY = AccuracyClass(0.0, 0.01)
 """For every other dimension: 1 % of the largest reading."""

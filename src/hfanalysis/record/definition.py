@@ -25,7 +25,8 @@ __all__ = ["ChannelSpec", "Exclusion", "FileSpec", "LogSpec", "TestDefinition", 
 
 SCHEMA = 1
 STANDARD_PRESSURE = Value(101325.0, 2000.0)
-"""[Pa] where neither altitude nor ambient pressure is stated: sea level, give or take weather and terrain."""
+"""[Pa] where neither altitude nor ambient pressure is stated: sea level, give or take weather and terrain. Source:
+standard atmosphere (ISO 2533), 101325 Pa at sea level."""
 WEATHER = 1000.0
 """[Pa] standard deviation of the ambient pressure about the altitude's mean."""
 

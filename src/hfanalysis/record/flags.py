@@ -17,13 +17,17 @@ from hfanalysis.record.log import Flag, Flags
 SENTINELS = (999.0, 9999.0, 999.9, 99999.0, -999.0, -9999.0, -99999.0, 32767.0, -32768.0, 65535.0)
 """Readings that loggers write where there is none."""
 DETACHED = 0.2
-"""Share of a channel's range by which an exact level must stand apart from its neighbours to be no reading."""
+"""Share of a channel's range by which an exact level must stand apart from its neighbors to be no reading. Evidence:
+test_flags.py: an open thermocouple drops out, zeros of a quantized cell at rest are readings."""
 IMPOSSIBLE = {"temperature": (1.0, 6000.0), "pressure": (-5e5, 1e9)}
-"""[SI] outside of which no sensor reads, however badly zeroed."""
+"""[SI] outside of which no sensor reads, however badly zeroed: 1 to 6000 K, -5 bar to 10,000 bar."""
 
 
 def flag_readings(readings: Array, dimension: str, missing: Sequence[float] = ()) -> Flags:
-    """The flags of a channel's readings as logged (before unit, zero and tare)."""
+    """The flags (n,) of a channel's readings (n,) as logged (before unit, zero and tare).
+
+    ``dimension`` is that of the channel, ``missing`` the readings that stand for none, in the unit of the log.
+    """
     flags = np.zeros(len(readings), dtype=np.uint8)
     if len(readings) and not np.isfinite(readings.min() + readings.max()):
         flags[~np.isfinite(readings)] = Flag.DROPOUT
@@ -37,7 +41,7 @@ def flag_readings(readings: Array, dimension: str, missing: Sequence[float] = ()
 
 
 def flag_impossible(values: Array, dimension: str, flags: Flags) -> None:
-    """Flags samples [SI] that no sensor of this dimension can read."""
+    """Flags samples [SI] that no sensor of this dimension can read; ``values`` and ``flags`` have shape (n,)."""
     if dimension in IMPOSSIBLE and len(values):
         low, high = IMPOSSIBLE[dimension]
         if not low <= np.nanmin(values) <= np.nanmax(values) <= high:

@@ -33,7 +33,7 @@ from hfanalysis.version import __version__
 
 Progress = Callable[[str, float], None]
 """Called now and then with the file's name and the share of it that has been read."""
-SHORTEST = 0.5
+SHORTEST_LOG = 0.5
 """[s] of a log below which no firing fits into it."""
 WORKERS = 2
 """Channels converted at a time: bounds the memory."""
@@ -105,7 +105,7 @@ class _Ingest:
         clock = read_clock(spool, plan.stamps, plan.time, rows, str(path))
         self.warnings += clock.warnings
         span = float(np.ptp(clock.time))
-        if span < SHORTEST:
+        if span < SHORTEST_LOG:
             self.warnings.append(f"{path.name}: the whole log lasts {span:.3g} s: is the unit of its time right?")
         return clock
 

@@ -64,7 +64,9 @@ class Channel:
 
     @property
     def good(self) -> NDArray[np.bool_]:
-        """Samples that carry no flag and are finite; their times increase strictly."""
+        """Samples that carry no flag and are finite, (n,) as ``values`` [``unit``]; their ``time`` [s] increases
+        strictly.
+        """
         good: NDArray[np.bool_] = (self.flags == 0) & np.isfinite(self.values)
         return good
 

@@ -168,7 +168,9 @@ class ChannelSpec(Section):
 
     @property
     def factor(self) -> tuple[float, float]:
-        """(scale, offset) from the logged reading to SI (gauge pressures without the ambient pressure)."""
+        """(scale [SI per logged unit], offset [SI]): SI = scale x reading + offset (gauge pressures without the ambient
+        pressure).
+        """
         scale, offset = unit_factor(self.unit, self.dimension, self.name)
         return scale * self.scale, scale * self.offset + offset
 

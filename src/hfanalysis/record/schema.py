@@ -105,7 +105,7 @@ ANY = Range("", lambda x: True)
 
 
 def between(low: float, high: float, words: str) -> Range:
-    """A closed range in SI."""
+    """A closed range; ``low`` and ``high`` [SI]."""
     return Range(words, lambda x: low <= x <= high)
 
 

@@ -35,7 +35,7 @@ class Growing:
     size: int = 0
 
     def append(self, part: Array) -> None:
-        """Add numbers at the end."""
+        """Add numbers (n,) at the end, in the unit of the log."""
         if not self.blocks:
             self.blocks, self.size = [part], len(part)
             return
@@ -115,7 +115,7 @@ class Spool:
         return on_disk + (self._columns[column].size if column in self._columns else 0)
 
     def look(self, column: int) -> Array:
-        """The numbers of a column, not to be changed."""
+        """The numbers (n,) of a column, in the unit of the log, not to be changed."""
         if column in self._files:
             return self._gathered(column)
         parts = self._columns[column].parts() if column in self._columns else []
@@ -132,7 +132,7 @@ class Spool:
         return numbers
 
     def take(self, column: int) -> Array:
-        """The numbers of a column, which are the caller's from now on."""
+        """The numbers (n,) of a column, in the unit of the log, which are the caller's from now on."""
         numbers = np.require(self.look(column), requirements="W")
         self._drop(column)
         return numbers

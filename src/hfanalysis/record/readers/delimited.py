@@ -23,6 +23,7 @@ from hfanalysis.record.readers.stamps import StampParser
 SEGMENT = 1_000_000
 """Bytes of text parsed at a time: small enough for memory to be used again rather than asked for anew."""
 WORKERS = 2
+"""Segments parsed at a time: bounds the memory."""
 CHUNK = 20_000
 """Rows read at a time where text cannot be cut into segments."""
 
