@@ -7,7 +7,8 @@ import numpy as np
 from hfanalysis.record.signals import Signal
 
 FULL = 0.98
-SMOOTHING = 0.06
+"""Part of the run line's largest smoothed pressure [-] at which the line counts as full."""
+RUN_SMOOTHING = 0.06
 """Running mean [s] that takes the sensor noise out of the maximum."""
 
 
@@ -19,7 +20,7 @@ def find_line_full(run: Signal, t_v: float) -> tuple[float, float] | str:
     part = run.between(0.0, t_v)
     if part.time.size < 8:
         return "too few good samples of p_run before the liquid is gone"
-    width = max(SMOOTHING, 3.0 * run.step)
+    width = max(RUN_SMOOTHING, 3.0 * run.step)
     smooth = part.smooth(width)
     base = _ambient(run)
     top = float(smooth.max())

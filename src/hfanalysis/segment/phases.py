@@ -19,7 +19,7 @@ from hfanalysis.segment.kind import Kind, recognise
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
-from hfanalysis.segment.sanity import BESIDE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
+from hfanalysis.segment.sanity import BESIDE_HOLE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation
 
@@ -153,7 +153,7 @@ class _Search:
 
     def _seconds(self, name: str, time: float, std: float) -> Quantity:
         """An event's instant, no surer than the hole of its channel that it was found in or beside."""
-        for start, end in self._holes(name, time - BESIDE, time + BESIDE):
+        for start, end in self._holes(name, time - BESIDE_HOLE, time + BESIDE_HOLE):
             time, std = anywhere_in(time, std, start, end)
             self.warnings.append(lies_in_hole(name, SHOWN_BY[name], start, end))
         return Quantity(time, "s", float(np.hypot(std, self.opening_std)))
