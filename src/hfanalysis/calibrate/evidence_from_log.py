@@ -24,9 +24,9 @@ from hfanalysis.record.signals import Signal, line_at
 from hfanalysis.units import Value
 
 BLOCKS = 120
-"""Block means of the chamber pressure that are compared; they are no shorter than FINEST."""
+"""Block means of the chamber pressure that are compared; they are no shorter than FINEST_CHAMBER_BLOCK."""
 
-FINEST = 0.02
+FINEST_CHAMBER_BLOCK = 0.02
 """Seconds."""
 
 SETTLE = 0.15
@@ -64,7 +64,7 @@ def evidence_of(
     first = starting_for(replace(engine, a=web / end), start, pressure)
     stop, why = _window_end(segments, calibration, t_v, end, _has_nitrogen(engine.effects))
     burnt = burn(first, longest=end)
-    width = max((stop - start) / BLOCKS, FINEST)
+    width = max((stop - start) / BLOCKS, FINEST_CHAMBER_BLOCK)
     part = _compared(chamber, start, stop, (t_v, burnt.liquid_out or t_v), width)
     if part.time.size < 8:
         raise AbsentError("too few good samples of p_chamber after t_feed")

@@ -25,7 +25,7 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.validate.tank_free import TankAlone
 
-STEP = 0.02
+HISTORY_STEP = 0.02
 """[s] of the histories: block means over this time."""
 
 LEAST_FLOW = 1e-4
@@ -63,10 +63,10 @@ def oxidizer_flow(
 ) -> Array:  # fmt: skip
     """[kg/s] at given times: from the measured pressures while there is liquid, then from the tank alone."""
     origin = segments.t_open.value or 0.0
-    tank, run = (Signal.of(log[name]).shifted(origin).reduced(STEP).at(time) for name in ("p_tank", "p_run"))
+    tank, run = (Signal.of(log[name]).shifted(origin).reduced(HISTORY_STEP).at(time) for name in ("p_tank", "p_run"))
     chamber = np.full(time.size, definition.ambient_pressure.value)
     if "p_chamber" in log:
-        chamber = Signal.of(log["p_chamber"]).shifted(origin).reduced(STEP).at(time)
+        chamber = Signal.of(log["p_chamber"]).shifted(origin).reduced(HISTORY_STEP).at(time)
     source = saturation_of(definition.model.properties)
     density = source.liquid_density(source.temperature(np.clip(tank, *source.pressure_range)))
     flow = mass_flows(effective_area(definition, calibration), density, run - chamber)

@@ -28,7 +28,7 @@ from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 from hfanalysis.validate.residuals import Residual, compared
 
-LONGEST = 60.0
+LONGEST_COMPARED = 60.0
 """Seconds after the opening up to which the model is compared."""
 
 
@@ -74,7 +74,7 @@ def run_tank_alone(
     saturation = saturation_of(definition.model.properties)
     tank = Signal.of(log["p_tank"]).shifted(segments.t_open.value or 0.0)
     start = segments.time("t_feed") or 0.0
-    part = tank.between(start, LONGEST)
+    part = tank.between(start, LONGEST_COMPARED)
     if part.time.size < 8:
         raise AbsentError("too few good samples of p_tank after t_feed")
     assert definition.tank is not None
