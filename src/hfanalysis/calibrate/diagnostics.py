@@ -114,7 +114,14 @@ def rest_of(
     left: Array,
     mass: LoadedMass,
 ) -> tuple[Rest, list[str]]:
-    """The tank at rest and what the blowdown says of it, with remarks for people."""
+    """The tank at rest and what the blowdown says of it (temperatures [K], masses [kg], heat [J]), with remarks for
+    people.
+
+    Args:
+        inputs: of the reduction ``r``, in SI units.
+        left: oxidizer that has left the tank [kg], (n,) at the times of ``histories``.
+        mass: what was loaded [kg].
+    """
     tank = histories.signals["p_tank"]
     channel = log["p_tank"]
     bias = channel.zero_std if channel.zero_std is not None else channel.accuracy

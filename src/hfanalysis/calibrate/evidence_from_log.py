@@ -27,13 +27,14 @@ BLOCKS = 120
 """Block means of the chamber pressure that are compared; they are no shorter than FINEST_CHAMBER_BLOCK."""
 
 FINEST_CHAMBER_BLOCK = 0.02
-"""Seconds."""
+"""Shortest block mean of the chamber pressure [s]."""
 
 SETTLE = 0.15
 """Seconds left out on either side of the end of the liquid, which model and log do not have at the same instant."""
 
 VIDEO = 0.25
-"""Standard deviation [s] of a burn time that is stated without one: a flame's end is seen to half a second."""
+"""Standard deviation [s] of a burn time that is stated without one. Source: a flame's end is seen to half a second
+(report, 4.3.1, states burn times from video to the second)."""
 
 SLIVER = 0.02
 """Part of the grain below which what is left of it counts as nothing: the fire went out for want of fuel."""

@@ -35,7 +35,10 @@ def loaded_mass(
     histories: Histories,
     p_v: float,
 ) -> LoadedMass | None:
-    """The stated mass, else the load cell's quiet reading, else what the blowdown itself says; else None."""
+    """The stated mass [kg], else the load cell's quiet reading, else what the blowdown itself says; else None.
+
+    ``p_v``: tank pressure [Pa] at the end of the liquid.
+    """
     tank = definition.tank
     if tank is not None and tank.oxidizer_mass is not None:
         stated = tank.oxidizer_mass

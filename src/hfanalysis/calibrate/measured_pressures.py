@@ -18,7 +18,8 @@ from hfanalysis.segment.breaks import kink
 from hfanalysis.thermo.saturation import Saturation
 
 BREAK = 3.0
-"""Standard deviations by which the slopes on both sides of an instant must differ to count as a break."""
+"""Standard deviations by which the slopes on both sides of an instant must differ to count as a break. Evidence:
+reading through a break only where there is one halved the noise in m."""
 
 PRESSURES = ("p_tank", "p_run", "p_chamber", "p_purge")
 READING_POINTS = 150
@@ -75,7 +76,7 @@ class Histories:
         )
 
     def mean(self, values: Array, start: float, end: float) -> float:
-        """Mean of values on this clock over [start, end)."""
+        """Mean of ``values`` (n,) on this clock, in their unit, over [start, end) [s]."""
         part = (self.time >= start) & (self.time < end)
         return float(values[part].mean()) if part.any() else float("nan")
 
@@ -106,7 +107,7 @@ class Reading:
 
 
 def read_at_break(signal: Signal, noise: Noise, instant: float, before: float, after: float) -> Reading:
-    """A signal where its slope may break, from smooth curves over ``before`` and ``after`` seconds on both sides.
+    """A signal at an ``instant`` [s] where its slope may break, from smooth curves over ``before`` and ``after`` [s].
 
     Where the slopes on both sides do not differ beyond what the noise does, one cubic through both reads better.
     """

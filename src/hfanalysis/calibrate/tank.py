@@ -27,10 +27,12 @@ from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 
 VAPOR_PRESSURE_SHARE = 0.6
-"""Without nitrogen the vapour phase is followed until the tank has this share of its pressure at t_v."""
+"""Without nitrogen the vapor phase is followed until the tank has this share of its pressure at t_v. Evidence:
+test_deviations.py, test_refusals.py: the m of a tank that lost two fifths is found."""
 
 SPAN_SHARE = 0.25
-"""Part of a sensor's accuracy that a zero at ambient does not take away: its error of span."""
+"""Part of a sensor's accuracy that a zero at ambient does not take away: its error of span. Evidence:
+test_deviations.py."""
 
 LONGEST_GAP = 0.1
 """Part of the liquid phase that one channel may miss in one piece; good samples around it are joined linearly."""
@@ -39,7 +41,8 @@ PEAK_OVER = 0.1
 """Seconds over which the peak flow is a mean."""
 
 FULLEST = 1.05
-"""Loaded mass over what the tank holds as liquid at the bulk's temperature, from which on the input is refused."""
+"""Loaded mass over what the tank holds as liquid at the bulk's temperature, from which on the input is refused.
+Evidence: test_rest.py: a mass that does not fit the tank at all is an error of the input."""
 
 NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase",
          "vapor_mass_at_t_v", "mass_at_t_feed", "oxidizer_mass")  # fmt: skip
