@@ -47,7 +47,7 @@ class Flows:
 
     @property
     def of_ratio(self) -> Array:
-        """Oxidizer over fuel."""
+        """Oxidizer over fuel flow [-], (n,) at ``time``."""
         burning = (self.fuel > LEAST_FLOW) & (self.oxidizer > LEAST_FLOW)
         return np.where(burning, self.oxidizer / np.where(burning, self.fuel, 1.0), np.nan)
 
@@ -61,7 +61,11 @@ def oxidizer_flow(
     log: TestLog, segments: Segments, calibration: TankConstants, definition: TestDefinition, alone: TankAlone,
     time: Array,
 ) -> Array:  # fmt: skip
-    """[kg/s] at given times: from the measured pressures while there is liquid, then from the tank alone."""
+    """[kg/s], (n,), at given times (n,) [s]: from the measured pressures while there is liquid, then from the tank
+    alone.
+
+    The injector's flow is that of the report, eq. 3.2.
+    """
     origin = segments.t_open.value or 0.0
     tank, run = (Signal.of(log[name]).shifted(origin).reduced(HISTORY_STEP).at(time) for name in ("p_tank", "p_run"))
     chamber = np.full(time.size, definition.ambient_pressure.value)
@@ -78,7 +82,11 @@ def oxidizer_flow(
 
 
 def burn_fuel(engine: Engine, law: Regression, time: Array, oxidizer: Array, factor: Array | float = 1.0) -> Flows:
-    """The fuel that this oxidizer flow [kg/s] burns, at ``factor`` times the rate of the law."""
+    """The fuel that this oxidizer flow [kg/s], (n,) at ``time`` [s], burns, at ``factor`` [-] times the rate of the
+    law.
+
+    r = a G^n, integrated in closed form for a given flow (report, 4.3.1).
+    """
     steps = np.diff(time, prepend=time[0])
     flowing = oxidizer > 0.0
     summed = np.cumsum(factor * steps * np.where(flowing, oxidizer, 1.0) ** law.n * flowing)

@@ -72,7 +72,7 @@ def clock(log: TestLog, segments: Segments, end: float) -> Array:
 
 
 def measured_histories(log: TestLog, segments: Segments, definition: TestDefinition, time: Array) -> dict[str, Array]:
-    """Thrust, raw and corrected, and chamber pressure, as far as they are logged."""
+    """Thrust [N], raw and corrected, and chamber pressure [Pa], each (n,) at ``time`` [s], as far as they are logged."""
     out = {}
     if "thrust" in log:
         channel = log["thrust"]
@@ -95,7 +95,7 @@ def _on(channel: Channel, segments: Segments, time: Array, raw: Array | None) ->
 
 
 def flow_histories(flows: Flows) -> dict[str, Array]:
-    """Flows, regression and mixture; NaN before the opening."""
+    """Flows [kg/s], regression [m/s], port radius [m] and mixture [-], each (n,); NaN before the opening."""
     lit = flows.time >= 0.0
     found = {
         "oxidizer_flow": flows.oxidizer,

@@ -18,19 +18,21 @@ from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 
 AT_AMBIENT = 0.04
-"""Chamber pressure above ambient, relative, below which the thrust is nothing: a nozzle gives 0.1 p_a A_t or less."""
+"""Chamber pressure above ambient, relative, below which the thrust is nothing. Source: a nozzle that is not choked
+gives 0.1 p_a A_t or less."""
 
 LONG_ENOUGH = 0.5
 """[s] at ambient pressure from which on the cell's reading counts."""
 
 FIRST = 2.0
-"""[s] from then on over which the cell's error is read."""
+"""[s] from the return to ambient pressure on, over which the cell's error is read."""
 
 CELL_SMOOTHING = 0.5
 """[s] of the running mean of the cell after the burn."""
 
 NOTICEABLE = 0.02
-"""Part of the largest thrust from which on a reading without chamber pressure is the cell's error."""
+"""Part of the largest thrust from which on a reading without chamber pressure is the cell's error. Evidence:
+test_thrust.py: a cell that reads next to nothing is left alone."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class Thrust:
 
 
 def thrust_of(log: TestLog, segments: Segments, definition: TestDefinition) -> Thrust:
-    """The thrust without the cell's drift. Raises AbsentError where the log has none."""
+    """The thrust [N] without the cell's drift. Raises AbsentError where the log has none."""
     channel, origin = log["thrust"], segments.t_open.value or 0.0
     signal = Signal.of(channel).shifted(origin)
     since = _at_ambient(log, segments, definition)
