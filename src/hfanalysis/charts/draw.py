@@ -38,7 +38,7 @@ def reduced(chart: Chart, series: Series, bins: int = BINS) -> Envelope:
 
 
 def value_span(chart: Chart, scale: Scale) -> tuple[float, float]:
-    """The value axis, in the scale's unit."""
+    """The ends of the value axis, in the scale's unit [``scale.unit``]."""
     if chart.value_span is not None:
         low, high = chart.value_span
         return scale(low), scale(high)
@@ -60,7 +60,7 @@ def _add(plot: svg.Plot, chart: Chart, one: Series, scale: Scale) -> None:
 
 
 def scaled(data: Envelope, scale: Scale) -> Envelope:
-    """An envelope in the scale's unit."""
+    """An envelope [SI] in the scale's unit."""
     mean, low, high = (scale.factor * array + scale.zero for array in (data.mean, data.low, data.high))
     return Envelope(data.time, mean, mean if data.low is data.mean else low, mean if data.high is data.mean else high)
 
