@@ -170,7 +170,10 @@ def _column(item: Any) -> Column:
 
 
 def required(table: Table, *names: str) -> list[Array]:
-    """Variables of one table; raises :class:`AbsentError` naming one that it has not."""
+    """Variables of one table, each (n,) in the unit that the table has for it.
+
+    Raises :class:`AbsentError` naming one that it has not.
+    """
     for name in names:
         if name not in table or not np.isfinite(table[name].values).any():
             raise AbsentError(f"the products hold no {name.replace('_', ' ')}")

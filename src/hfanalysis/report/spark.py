@@ -11,7 +11,9 @@ from hfanalysis.report.material import Material, window
 from hfanalysis.report.time_charts import of_channel
 
 WIDTH, HEIGHT = 240.0, 44.0
+"""Of the box that the line is drawn in [px]."""
 _BINS = 80
+"""Points of the line: one in three pixels."""
 _CHANNELS = ("p_chamber", "thrust", "p_tank", "m_tank")
 
 

@@ -57,7 +57,7 @@ def spoken_absences(material: Material) -> dict[str, str]:
 
 
 def key_numbers(material: Material) -> dict[str, Quantity]:
-    """The measured numbers that come first; where there are none, what the calibration has instead."""
+    """The measured numbers [SI] that come first; where there are none, what the calibration has instead."""
     validation, calibration = material.get(Validation), material.get(Calibration)
     if validation is not None:
         measured = validation.performance.measured.quantities
@@ -107,7 +107,7 @@ def _of_channels(fault: Finding) -> str:
 
 
 def by_mark(material: Material) -> dict[str, dict[str, Quantity]]:
-    """What a calibration is asked for first, by how far it can be trusted."""
+    """What a calibration is asked for first [SI], by how far it can be trusted."""
     calibration = material.get(Calibration)
     out: dict[str, dict[str, Quantity]] = {"good": {}, "bad": {}, "open": {}}
     found = calibration.quantities if calibration is not None else {}
