@@ -72,7 +72,7 @@ def clock(log: TestLog, segments: Segments, end: float) -> Array:
 
 
 def measured_histories(log: TestLog, segments: Segments, definition: TestDefinition, time: Array) -> dict[str, Array]:
-    """Thrust [N], raw and corrected, and chamber pressure [Pa], each (n,) at ``time`` [s], as far as they are logged."""
+    """Thrust [N], raw and corrected, and chamber pressure [Pa], (n,) at ``time`` (n,) [s]; those that are logged."""
     out = {}
     if "thrust" in log:
         channel = log["thrust"]
