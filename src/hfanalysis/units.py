@@ -236,7 +236,7 @@ def _split(text: str, dimension: str, where: str) -> tuple[float, str, float | N
 
 
 def _spread(spread: float, unit: str, value: float, dimension: str, where: str) -> float:
-    """The standard deviation in SI; a spread in per cent is of the value."""
+    """The standard deviation in SI; a spread in percent is of the value."""
     if unit == "%" and dimension != "dimensionless":
         return abs(value) * spread / 100.0
     if not unit and dimension != "dimensionless":

@@ -33,7 +33,7 @@ HISTORY_POINTS = 200
 
 
 def tank_history(saturation: Saturation, histories: Histories, inputs: Inputs, left: Array) -> TankHistory | None:
-    """Moles of liquid and vapour, n_l + n_v = m/W and n_l v_l + n_v v_v = V (report, section 4.2.1), and the flow.
+    """Moles of liquid and vapor, n_l + n_v = m/W and n_l v_l + n_v v_v = V (report, section 4.2.1), and the flow.
 
     ``left`` is the mass gone [kg] at the histories' times. None for fewer than eight samples.
     """

@@ -57,7 +57,7 @@ def blowdown_mass(saturation: Saturation, volume: float, bulk: float, t_v_temper
 def liquid_phase_heat(saturation: Saturation, volume: float, mass: float, bulk: float, t_end: float) -> float:
     """Heat [J] that the tank received from the opening to t_v: Q = U_v - U_0 + integral of h_l dm.
 
-    ``mass`` [kg] at ``bulk`` [K] leaves as saturated liquid until only vapour at ``t_end`` [K] is left; how its
+    ``mass`` [kg] at ``bulk`` [K] leaves as saturated liquid until only vapor at ``t_end`` [K] is left; how its
     temperature falls with the mass that has gone is taken from the adiabatic tank.
     """
     start = float(internal_energy(saturation, volume, mass, bulk))

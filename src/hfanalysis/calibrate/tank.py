@@ -128,7 +128,7 @@ class _Work:
         return TankConstants.model_validate({**quantities, **about, **said})
 
     def _acting(self, tables: Tables, inputs: Inputs) -> tuple[Inputs, VaporPhase | None]:
-        """The inputs and the vapour phase with the effects in; what they cannot be in is said."""
+        """The inputs and the vapor phase with the effects in; what they cannot be in is said."""
         if not self.effects:
             return inputs, None
         try:
@@ -194,7 +194,7 @@ class _Work:
         )
 
     def _reading_factor(self) -> Array:
-        """Lower factor of the covariance of the pressures read at t_v and at the end of the vapour phase."""
+        """Lower factor of the covariance of the pressures read at t_v and at the end of the vapor phase."""
         noise, first = self.histories.noises["p_tank"], self.at_v
         last = self.at_end or first
         common = noise.common(first.weights, first.time, last.weights, last.time) if self.at_end else 0.0
@@ -246,7 +246,7 @@ class _Work:
         return max(t_v, t_purge if t_purge is not None else t_v + 10.0) + 0.5
 
     def _vapor_end(self) -> tuple[float, float, str | None]:
-        """End of the pure vapour phase [s], its standard deviation, and the reason where there is none."""
+        """End of the pure vapor phase [s], its standard deviation, and the reason where there is none."""
         t_purge = self.segments.time("t_purge")
         if t_purge is not None and t_purge <= self.t_v:
             return (

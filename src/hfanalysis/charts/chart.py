@@ -21,7 +21,7 @@ LOG_TIME = "log time [s]"
 class Series:
     """One line over time, in the SI unit of its chart.
 
-    ``style`` names its colour and ``label`` what people read; ``kind`` is "line", "band" (``values`` and ``upper`` are
+    ``style`` names its color and ``label`` what people read; ``kind`` is "line", "band" (``values`` and ``upper`` are
     its edges) or "level" (a constant, drawn across the whole chart).
     """
 

@@ -1,4 +1,4 @@
-"""Charts as inline SVG. Colours are left to the page's style sheet, so that charts follow light, dark and print."""
+"""Charts as inline SVG. Colors are left to the page's style sheet, so that charts follow light, dark and print."""
 
 from __future__ import annotations
 
@@ -144,7 +144,7 @@ def _x_ticks(plot: Plot, bottom: float) -> Iterator[str]:
 
 
 def tick_text(value: float, ticks: Sequence[float]) -> str:
-    """A tick's value with as many decimals as its neighbours need."""
+    """A tick's value with as many decimals as its neighbors need."""
     step = ticks[1] - ticks[0] if len(ticks) > 1 else abs(value) or 1.0
     return fixed(value, max(0, -math.floor(math.log10(step) + 1e-9)))
 
@@ -198,7 +198,7 @@ def _event(plot: Plot, event: Event, x: float) -> str:
 
 
 def line(plot: Plot, data: Envelope, style: str, name: str) -> None:
-    """The mean of a channel over the band of its extremes, in the colour of ``style``."""
+    """The mean of a channel over the band of its extremes, in the color of ``style``."""
     if data.empty:
         return
     if data.low is not data.mean:

@@ -181,7 +181,7 @@ def load_definition(path: Path) -> TestDefinition:
 
 
 def _odd_names(channels: Mapping[str, ChannelSpec]) -> tuple[str, ...]:
-    """A channel under its own name that looks like a misspelt canonical one is worth a word, not a refusal."""
+    """A channel under its own name that looks like a misspelled canonical one is worth a word, not a refusal."""
     absent = [name for name in CANONICAL if name not in channels]
     offers = {name: near(name, absent) for name in channels if name not in CANONICAL}
     return tuple(f"channel {name!r} is carried through under its own name{o}" for name, o in offers.items() if o)

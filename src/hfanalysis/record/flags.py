@@ -1,6 +1,6 @@
 """Quality flags per sample. Nothing is repaired: a flag says why a reading is not to be trusted.
 
-The rules compare a channel with itself, so that a quantised, quiet or clamped channel is not flagged wholesale, and a
+The rules compare a channel with itself, so that a quantized, quiet or clamped channel is not flagged wholesale, and a
 fast step (valve opening, liquid depletion) or an oscillation is no spike. What is doubtful is left alone.
 """
 
@@ -107,7 +107,7 @@ def _flag_live(readings: Array, flags: Flags) -> None:
 
 
 def _quantum(values: Array) -> float:
-    """The usual size of a change of reading, which for a quantised channel is its resolution."""
+    """The usual size of a change of reading, which for a quantized channel is its resolution."""
     steps = np.abs(np.diff(values[:20_000]))
     steps = steps[steps > 0]
     return float(np.percentile(steps, 10)) if len(steps) else 0.0

@@ -30,7 +30,7 @@ class Flag(IntFlag):
     SATURATED = 4
     """At the end of the sensor's or the logger's range."""
     SPIKE = 8
-    """One to three samples far from their neighbours on both sides."""
+    """One to three samples far from their neighbors on both sides."""
     TIME = 16
     """Its time stamp is not later than that of an earlier sample."""
     EXCLUDED = 32

@@ -67,7 +67,7 @@ DERIVED = {"derived": True}
 
 @section
 class Section:
-    """What every section has: near misses for misspelt keys, and a place for checks across its keys."""
+    """What every section has: near misses for misspelled keys, and a place for checks across its keys."""
 
     @model_validator(mode="before")
     @classmethod

@@ -118,7 +118,7 @@ def symbol_and_words(name: str) -> Markup:
 
 
 MARKS = {"good": "✓", "open": "?", "bad": "✕", "sensor": "!"}
-"""Signs that say without colour what a colour says."""
+"""Signs that say without color what a color says."""
 
 
 def mark(verdict: str) -> str:
@@ -127,7 +127,7 @@ def mark(verdict: str) -> str:
 
 
 def verdict(text: str) -> Markup:
-    """A verdict as a badge: sign, word and colour."""
+    """A verdict as a badge: sign, word and color."""
     if not text:
         return Markup()
     kind = mark(text)

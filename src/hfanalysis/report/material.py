@@ -127,7 +127,7 @@ def event_list(material: Material) -> list[Event]:
 
 
 def phase_list(material: Material) -> list[Phase]:
-    """What flows between one event and the next: the line filling, liquid, vapour, nitrogen; they may overlap."""
+    """What flows between one event and the next: the line filling, liquid, vapor, nitrogen; they may overlap."""
     end = material.event("t_end")
     if not material.fired or end is None:
         return []

@@ -18,7 +18,7 @@ _CHANNELS = ("p_chamber", "thrust", "p_tank", "m_tank")
 
 
 def spark(material: Material) -> dict[str, Any]:
-    """The path of the line in a box of WIDTH by HEIGHT, what it is, and its colour; empty where there is nothing."""
+    """The path of the line in a box of WIDTH by HEIGHT, what it is, and its color; empty where there is nothing."""
     for name in _CHANNELS:
         channel = material.log.get(name)
         path = "" if channel is None else _path(material, name)

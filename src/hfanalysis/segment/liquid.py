@@ -1,6 +1,6 @@
 """t_v: the liquid is gone. The knee of the tank pressure, where it agrees with mass and energy of a saturated tank.
 
-While liquid boils off, the tank pressure falls slowly; once only vapour is left the same valve empties it several times
+While liquid boils off, the tank pressure falls slowly; once only vapor is left the same valve empties it several times
 faster. Valve openings, rebounds of late boiling, nitrogen and the end of the fuel bend the pressure too, so that every
 downward knee is a candidate and is weighed against the pressure at which an adiabatic saturated tank of this volume and
 load runs dry.

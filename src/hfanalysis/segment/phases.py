@@ -249,7 +249,7 @@ class _Search:
         span = (self._time("t_feed") or 0.0, t_v if t_v is not None else min(self.last, 5.0))
         flow = None
         if t_v and tank is not None and tank.oxidizer_mass is not None:
-            flow = 0.8 * tank.oxidizer_mass.value / t_v  # about a fifth of a load is still there as vapour
+            flow = 0.8 * tank.oxidizer_mass.value / t_v  # about a fifth of a load is still there as vapor
         area = (
             np.pi * nozzle.throat_radius.value**2 if nozzle is not None and nozzle.throat_radius is not None else None
         )

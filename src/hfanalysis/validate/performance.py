@@ -1,4 +1,4 @@
-"""The performance table of a hot fire (report, table 4.6), measured and modelled."""
+"""The performance table of a hot fire (report, table 4.6), measured and modeled."""
 
 from __future__ import annotations
 
@@ -224,7 +224,7 @@ def _less(loaded: Value, after: Value | None) -> Quantity:
 
 @dataclass(frozen=True)
 class _Column:
-    """The modelled numbers of one run, in the order of NAMES."""
+    """The modeled numbers of one run, in the order of NAMES."""
 
     values: Array
 

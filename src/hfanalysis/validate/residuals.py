@@ -21,7 +21,7 @@ FORMAT = ("v108", "v110")
 """HDF5 versions that MATLAB and older tools read."""
 
 PHASES = ("before", "filling", "liquid", "vapor", "nitrogen")
-"""Phases by their number in ``residuals.h5``: before the opening, line filling, liquid, pure vapour, with nitrogen."""
+"""Phases by their number in ``residuals.h5``: before the opening, line filling, liquid, pure vapor, with nitrogen."""
 
 LONG_NAMES = {
     "time": "time after the valve opening",

@@ -41,7 +41,7 @@ class TankAlone:
     """A run of the tank alone at the times of ``measured`` p_tank; ``chamber`` and ``run_pressure`` [Pa], ``flow``
     through the injector [kg/s], ``mass`` [kg], liquid gone at ``t_v`` [s] (NaN: not).
 
-    ``start`` is where it starts [s after the opening], ``exponent`` the calibrated one of the vapour (None: there is
+    ``start`` is where it starts [s after the opening], ``exponent`` the calibrated one of the vapor (None: there is
     none); ``factor``: what effects make of the injector's flow; ``nitrogen``: its share of it.
     """
 
@@ -123,7 +123,7 @@ def run_tank_free(
     definition: TestDefinition,
     effects: Sequence[Active] = (),
 ) -> list[Residual]:
-    """Measured and modelled tank and run-line pressure from t_feed on, as their sensors read them.
+    """Measured and modeled tank and run-line pressure from t_feed on, as their sensors read them.
 
     Raises AbsentError where C_i cannot be had. Where m is not identified the run ends with the liquid.
     """
