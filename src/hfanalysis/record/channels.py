@@ -77,5 +77,9 @@ OTHER_ACCURACY = AccuracyClass(0.0, 0.01)
 
 
 def default_accuracy(dimension: str, largest: float) -> float:
-    """The documented class default [SI] for a sensor of this dimension."""
+    """The documented class default [SI] for a sensor of this dimension whose ``largest`` reading is given [SI].
+
+    >>> default_accuracy("pressure", 60e5), default_accuracy("force", 3000.0)
+    (30000.0, 30.0)
+    """
     return ACCURACY.get(dimension, OTHER_ACCURACY).of(abs(largest))

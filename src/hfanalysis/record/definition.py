@@ -24,11 +24,13 @@ __all__ = ["ChannelSpec", "Exclusion", "FileSpec", "LogSpec", "TestDefinition", 
            "load_definition"]  # fmt: skip
 
 SCHEMA = 1
+"""Version of test.toml's form that this package reads. Source: definition."""
 STANDARD_PRESSURE = Value(101325.0, 2000.0)
 """[Pa] where neither altitude nor ambient pressure is stated: sea level, give or take weather and terrain. Source:
 standard atmosphere (ISO 2533), 101325 Pa at sea level."""
 WEATHER = 1000.0
-"""[Pa] standard deviation of the ambient pressure about the altitude's mean."""
+"""[Pa] standard deviation of the ambient pressure about the altitude's mean. Source: weather changes the pressure at
+sea level by some 10 hPa from day to day at middle latitudes."""
 
 
 def check_version(found: Any) -> int:

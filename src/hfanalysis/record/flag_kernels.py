@@ -14,6 +14,7 @@ from hfanalysis.compiled import compiled
 Flags = NDArray[np.uint8]
 
 DROPOUT, STUCK, SATURATED, SPIKE = np.uint8(1), np.uint8(2), np.uint8(4), np.uint8(8)
+"""The bits of :class:`hfanalysis.record.log.Flag`, as compiled code takes them. Source: definition."""
 
 CONTEXT = 30
 """Runs looked at on either side to tell how long this channel usually repeats itself [runs]."""

@@ -15,7 +15,7 @@ from hfanalysis.record import flag_kernels
 from hfanalysis.record.log import Flag, Flags
 
 SENTINELS = (999.0, 9999.0, 999.9, 99999.0, -999.0, -9999.0, -99999.0, 32767.0, -32768.0, 65535.0)
-"""Readings that loggers write where there is none."""
+"""Readings that loggers write where there is none. Source: the ends of 16-bit numbers; rows of nines by custom."""
 DETACHED = 0.2
 """Share of a channel's range by which an exact level must stand apart from its neighbors to be no reading. Evidence:
 test_flags.py: an open thermocouple drops out, zeros of a quantized cell at rest are readings."""

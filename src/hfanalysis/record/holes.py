@@ -11,10 +11,11 @@ from hfanalysis.arrays import Array
 from hfanalysis.record.log import Channel, Flag
 
 SHORTEST_HOLE = 0.1
-"""[s] that a hole lasts at least. Evidence: test_holes.py: sound logs have none, whatever their rate."""
+"""[s] that a hole lasts at least."""
 
 HOLE_STEPS = 10.0
-"""Usual steps between samples that it lasts at least."""
+"""Usual steps between samples that it lasts at least. Evidence: test_holes.py: a log without holes has none, whatever
+its rate."""
 
 HOLES_TOLD = 3
 """Holes that a warning places; of more it gives the number."""

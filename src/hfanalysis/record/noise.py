@@ -61,8 +61,9 @@ class Noise:
         return float(np.sqrt(max(float(weights @ self.covariance(time) @ weights), 0.0)))
 
     def common(self, weights: Array, time: Array, other_weights: Array, other_time: Array) -> float:
-        """Covariance [unit^2] of two weighted sums of samples that lie apart, at times [s]: only the wander is common
-        to them.
+        """Covariance [unit^2] of two weighted sums of samples that lie apart: only the wander is common to them.
+
+        ``weights`` (n,) at ``time`` (n,) [s], ``other_weights`` (k,) at ``other_time`` (k,) [s].
         """
         lag = np.abs(time[:, None] - other_time[None, :])
         apart = np.log(REFERENCE_TIME / np.clip(lag, 5.0 * self.step, REFERENCE_TIME))

@@ -16,7 +16,8 @@ a falling pressure put it 0.1 bar low."""
 MAD_TO_STD = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation. Source: 1 / 0.6745."""
 ON_EDGE = 1e-3
-"""Of the time between samples, within which one counts as on the edge of a stretch."""
+"""Of the time between samples, within which one counts as on the edge of a stretch. Evidence: times counted from
+another origin are rounded anew, and means changed with the last digits of a log."""
 
 BRIDGE = 0.1
 """[s] on either side of a hole over which a signal's mean is taken. Evidence: an impulse across a hole hung on two
@@ -58,7 +59,9 @@ class Signal:
         return replace(self, time=self.time[a:b], value=self.value[a:b])
 
     def holes(self, start: float = -np.inf, end: float = np.inf) -> Array:
-        """From when to when [s] (holes, 2) it has no samples, of holes that reach into a stretch."""
+        """From when to when [s] (holes, 2) it has no samples, of holes that reach into a stretch from ``start`` to
+        ``end`` [s].
+        """
         found = holes(self.time)
         return found[(found[:, 1] > start) & (found[:, 0] < end)]
 

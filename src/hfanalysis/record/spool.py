@@ -20,11 +20,12 @@ from hfanalysis.arrays import Array
 from hfanalysis.record.readers import Source, Text
 
 IN_MEMORY = 1 << 30
-"""Bytes of one log file's columns that may stay in memory."""
+"""Bytes of one log file's columns that may stay in memory [B]."""
 WORKERS = 2
 """Threads that put columns away: most of it is waiting for the system to hand out memory."""
 BLOCK = 1 << 23
-"""Samples of a column kept together: so many that the system hands out memory in large pages, as it is touched."""
+"""Samples of a column kept together [samples]. Evidence: the system hands out memory for so many in large pages, as it
+is touched; small pages cost more than the reading."""
 
 
 @dataclass
@@ -54,7 +55,7 @@ class Growing:
             part, self.size = part[count:], self.size + count
 
     def parts(self) -> list[Array]:
-        """The numbers, in order."""
+        """The numbers, in order: arrays (k,) in the unit of the log."""
         return [*self.blocks[:-1], self.blocks[-1][: self.size - BLOCK * (len(self.blocks) - 1)]]
 
 
@@ -73,7 +74,9 @@ class Spool:
     _files: dict[int, IO[bytes]] = field(default_factory=dict)
 
     def fill(self, columns: Sequence[int], stamps: Sequence[int], progress: Callable[[float], None]) -> None:
-        """Read the columns of the file once."""
+        """Read the columns of the file once, in the unit of the log; ``progress`` is told the share [0 to 1] that has
+        been read.
+        """
         np.empty(31 << 17)  # 31 MB given back: from then on glibc keeps freed memory of this size at hand
         size, idle = 0, []
         with ThreadPoolExecutor(WORKERS) as pool:

@@ -32,7 +32,7 @@ class Zero:
     warnings: tuple[str, ...] = ()
 
     def at(self, time: Array) -> Array | float:
-        """What is subtracted at these times [s]."""
+        """What is subtracted at these times (n,) [s], in the channel's unit [SI]; one number where nothing drifts."""
         if len(self.times) < 2:
             return self.value
         curve: Array = np.interp(time, self.times, (self.value, self.value + self.drift))
