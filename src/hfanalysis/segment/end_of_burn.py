@@ -16,9 +16,10 @@ RATIO_STD = 0.02
 
 
 def find_unchoking(chamber: Signal, ambient: float, t_feed: float, offset: float = 0.0) -> tuple[float, float] | str:
-    """t_end [s] and its standard deviation from the chamber pressure with time from the opening; else the reason.
+    """t_end [s] and its standard deviation [s] from the chamber pressure with time from the opening; else the reason.
 
-    ``offset`` [Pa] is how far the open chamber read from ambient.
+    ``ambient`` [Pa] is the air's, ``t_feed`` [s] from when on it is looked for, ``offset`` [Pa] how far the open
+    chamber read from ambient.
     """
     part = chamber.between(max(t_feed, 0.0), np.inf)
     if part.time.size < 8:

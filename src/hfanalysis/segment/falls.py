@@ -30,10 +30,10 @@ CLEAR_OF_NOISE = 8.0
 
 
 def abrupt_falls(signal: Signal, floor: float, start: float, end: float) -> list[float]:
-    """Instants [s] in [start, end] at which a signal falls at once and stays down, in order of time.
+    """Instants [s] in [``start``, ``end``] [s] at which a signal falls at once and stays down, in order of time.
 
-    ``floor`` is the value of the signal where nothing drives it. Falls closer than FALL_WINDOW + RELAXATION count as
-    one; where the samples are few, a window holds four of them.
+    ``floor`` is the value of the signal, in its unit, where nothing drives it. Falls closer than FALL_WINDOW +
+    RELAXATION count as one; where the samples are few, a window holds four of them.
     """
     width = max(FALL_WINDOW, 4.0 * signal.step)
     times = signal.between(start, end).time

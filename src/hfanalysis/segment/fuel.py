@@ -33,7 +33,8 @@ SMALLEST_FALL = 0.1e5
 test_fuel_bounds.py: a fall of a twentieth of a bar is the wander of a sensor."""
 
 SUDDEN = 0.2
-"""A sudden fall is over within this time [s]."""
+"""A sudden fall is over within this time [s]. Evidence: test_events.py: a chamber that empties slowly after the liquid
+is no end of the fuel."""
 
 RESIDENCE = 0.006
 """Standard deviation [s] of how far the pressure lags the end of the fuel: the chamber has to flush first."""
@@ -47,10 +48,12 @@ CLOSE = 0.012
 Evidence: test_events.py: the two are told apart from 0.08 s on."""
 
 CLOSE_FALL = 0.2
-"""Least part of the response, and of the thrust, that has to go at once close to t_v."""
+"""Least part of the response, and of the thrust, that has to go at once close to t_v. Evidence: test_events.py: near
+the end of the liquid too the thrust has to fall with the chamber."""
 
 SHORT = 0.03
-"""Least length [s] of what is seen between t_v and a fall close to it."""
+"""Least length [s] of what is seen between t_v and a fall close to it. Evidence: test_events.py: from 0.08 s on fuel
+and liquid are told apart."""
 
 OUT_LEVEL, OUT_AFTER = 0.06, 0.15
 """Seconds over which the chamber's level is taken before a fire goes out, and after it."""

@@ -63,7 +63,8 @@ class LiquidEnd:
 def dry_pressure(saturation: Saturation, volume: float, mass: float, pressure: float) -> float | None:
     """Tank pressure [Pa] at which an adiabatic saturated tank runs out of liquid (None where it cannot be saturated).
 
-    ``pressure`` [Pa] is that of the full tank; found by following the blowdown upwards from trial end temperatures.
+    ``volume`` [m^3] holds ``mass`` [kg]; ``pressure`` [Pa] is that of the full tank. Found by following the blowdown
+    upwards from trial end temperatures.
     """
     start = float(saturation.temperature(pressure))
     if not np.isfinite(start) or split(saturation, volume, mass, start).vapor < 0.0:

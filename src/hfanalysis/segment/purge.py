@@ -12,10 +12,11 @@ from hfanalysis.segment.refine import refine_kink
 from hfanalysis.sentences import said, text
 
 SMALLEST_SAG = 0.01
-"""The line has to lose at least this part of its pressure before a sag is believed."""
+"""The line has to lose at least this part of its pressure before a sag is believed. Evidence: test_events.py: a line
+that keeps its pressure lets no nitrogen in."""
 
 SAG_LASTS = 0.4
-"""Seconds over which a sag must go on: valve hammer and electrical spikes do not."""
+"""Seconds over which a sag must go on. Evidence: test_events.py: valve hammer is no nitrogen."""
 
 KNEE_AWAY = 0.05
 """Seconds between two corners of the line from which on they are told apart. Evidence: the corner at the end of the
@@ -25,10 +26,11 @@ liquid took t_purge along by up to 0.15 s (test_events.py)."""
 def find_nitrogen(
     purge: Signal, end: float, tank: Signal | None, knee: float | None = None
 ) -> tuple[float, float] | str:
-    """t_purge [s] and its standard deviation, time counted from the opening, searched up to ``end``; else the reason.
+    """t_purge [s] and its standard deviation [s], time counted from the opening, searched up to ``end`` [s]; else the
+    reason.
 
-    ``tank`` is the tank pressure: the check valve cannot have opened while the tank stands above the purge line. At
-    ``knee`` [s], the end of the liquid, the tank's fall has a corner of its own, and with it the line's.
+    ``purge`` and ``tank`` are pressures [Pa]: the check valve cannot have opened while the tank stands above the purge
+    line. At ``knee`` [s], the end of the liquid, the tank's fall has a corner of its own, and with it the line's.
     """
     quiet = purge.between(-3.0, -0.02)
     if quiet.time.size < 8:

@@ -29,10 +29,11 @@ def refine_kink(
     flat: bool = False,
     noise: Noise | None = None,
 ) -> Break | None:
-    """A change of slope near ``rough`` [s]: window [rough - before, rough + after], searched within ``reach`` of rough.
+    """A change of slope near ``rough`` [s]: window [rough - ``before``, rough + ``after``], searched within ``reach``
+    [s].
 
-    ``flat`` says that the signal is constant before the break; ``noise`` is that of its sensor. None where the window
-    holds too few samples.
+    All in seconds [s] of the signal's time. ``flat`` says that the signal is constant before the break; ``noise`` is
+    that of its sensor. None where the window holds too few samples.
     """
     design = kink(order=2, before=0 if flat else 2)
     return _search([signal], rough, before, after, reach, [design], (0.0,), noise)

@@ -33,7 +33,7 @@ def beside_hole(opening: Opening, signals: Mapping[str, Signal]) -> tuple[Openin
 
 
 def anywhere_in(time: float, std: float, start: float, end: float) -> tuple[float, float]:
-    """An instant [s] that may lie anywhere in a hole, and its standard deviation.
+    """An instant [s] that may lie anywhere in a hole from ``start`` to ``end`` [s], and its standard deviation [s].
 
     >>> anywhere_in(1.9, 0.01, 2.0, 3.2)[0]
     2.6
