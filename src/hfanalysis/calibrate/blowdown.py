@@ -98,7 +98,9 @@ class Tables:
         return [cumulative_trapezoid(x, self.time, initial=0.0) for x in (self.loss, self.chamber)]
 
     def behind(self, at: Array) -> list[Array]:
-        """Feed loss and chamber pressure [Pa] at increasing times: means over the cells about them."""
+        """Feed loss and chamber pressure [Pa], each (k,), at increasing times (k,) [s]: means over the cells about
+        them.
+        """
         edges = np.concatenate([at[:1], 0.5 * (at[1:] + at[:-1]), at[-1:]])
         return [np.diff(np.interp(edges, self.time, total)) / np.diff(edges) for total in self._totals]
 

@@ -81,7 +81,9 @@ class Histories:
         return float(values[part].mean()) if part.any() else float("nan")
 
     def gap(self, start: float, end: float) -> tuple[str, float]:
-        """The channel with the longest stretch without a good sample between two instants, and that stretch [s]."""
+        """The channel with the longest stretch without a good sample from ``start`` to ``end`` [s], and that stretch
+        [s].
+        """
         longest = ("", 0.0)
         for name in ("p_tank", "p_run", "p_chamber"):
             if name not in self.signals:
@@ -91,7 +93,7 @@ class Histories:
         return longest
 
     def tank_temperature(self, saturation: Saturation) -> Array:
-        """T_sat(p_tank) [K]; pressures beyond the critical point count as just below it."""
+        """T_sat(p_tank) [K], (n,); pressures beyond the critical point count as just below it."""
         low, high = saturation.pressure_range
         return saturation.temperature(np.clip(self.tank, low, high))
 

@@ -48,7 +48,9 @@ def fit_bulk(left: Array, temperature: Array) -> BulkFit | None:
 
 
 def blowdown_mass(saturation: Saturation, volume: float, bulk: float, t_v_temperature: float) -> float | None:
-    """Mass [kg] that an adiabatic tank of ``volume`` [m^3] held saturated at ``bulk`` [K], run dry at the other."""
+    """Mass [kg] that an adiabatic tank of ``volume`` [m^3] held saturated at ``bulk`` [K], run dry at
+    ``t_v_temperature`` [K].
+    """
     if not t_v_temperature < bulk < saturation.t_max:
         return None
     return float(mass_along_blowdown(saturation, volume, t_v_temperature, np.array([bulk]))[0])

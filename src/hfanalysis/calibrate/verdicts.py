@@ -20,9 +20,10 @@ PHYSICAL_M = (1.0, 1.3)
 temperature, up to the ratio of heat capacities of the gas, 1.3 at 250 K (CoolProp)."""
 
 LEAST_ANSWERED = 0.9
-"""Part of the draws [-] that must have an m for there to be one."""
+"""Part of the draws [-] that must have an m for there to be one; the others are counted in the reason."""
 WIDEST_M = 0.2
-"""Standard deviation of m from which on the phase says nothing about it."""
+"""Standard deviation of m from which on the phase says nothing about it. Evidence: test_refusals.py: a vapor phase of
+milliseconds does not tell m."""
 
 
 def judged(name: str, value: float, unit: str, draws: Draws, unphysical_below: float | None = None) -> Quantity:
