@@ -53,7 +53,7 @@ class Flows:
 
     @property
     def total(self) -> Array:
-        """Through the nozzle, the chamber's filling apart [kg/s]."""
+        """Through the nozzle, the chamber's filling apart [kg/s], (n,)."""
         return self.oxidizer + self.fuel
 
 
@@ -110,9 +110,10 @@ class Nozzle:
 def nozzle_along(
     engine: Engine, pressure: Array, of_ratio: Array, ambient: float, throat_factor: Array | float = 1.0
 ) -> Nozzle:
-    """What the nozzle does with gas of this mixture at this pressure [Pa]; NaN where there is no mixture.
+    """What the nozzle does with gas of this mixture ``of_ratio`` [-] at this ``pressure`` [Pa], both (n,), into
+    ``ambient`` [Pa].
 
-    ``throat_factor``: of the throat's area.
+    ``throat_factor`` [-]: of the throat's area. NaN where there is no mixture (report, eq. 3.37 to 3.43).
     """
     enthalpy = engine.oxidizer_enthalpy
     assert enthalpy is not None

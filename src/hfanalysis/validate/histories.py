@@ -63,7 +63,7 @@ class Histories:
 
 
 def clock(log: TestLog, segments: Segments, end: float) -> Array:
-    """Times of the histories [s after the opening]."""
+    """Times of the histories [s after the opening], (n,), to the burn's ``end`` [s] and AFTER it."""
     origin = segments.t_open.value or 0.0
     name = next((n for n in ("thrust", "p_chamber", "p_tank") if n in log), next(iter(log.channels)))
     signal = Signal.of(log[name]).shifted(origin)
@@ -110,10 +110,12 @@ def flow_histories(flows: Flows) -> dict[str, Array]:
 def efficiencies(
     measured: Mapping[str, Array], flows: Flows, engine: Engine, ambient: float, fire: Fire, purge: float | None
 ) -> dict[str, Array]:
-    """c* and thrust coefficient with their efficiencies, where the nozzle is choked and both propellants flow.
+    """c* [m/s] and thrust coefficient [-] with their efficiencies [-], where the nozzle is choked and both propellants
+    flow.
 
-    c* ends when nitrogen enters, at ``purge`` [s]: it passes the throat and is in none of the flows, so that p_c A_t
-    over them would rise without bound.
+    All (n,) at the times of ``flows``. c* = p_c A_t / mdot ends when nitrogen enters, at ``purge`` [s]: it passes the
+    throat and is in none of the flows, so that p_c A_t over them would rise without bound. ``ambient`` [Pa] is the
+    air's.
     """
     if "p_chamber" not in measured:
         return {}
