@@ -22,7 +22,7 @@ FEWEST = 3.0
 """Independent residuals that are counted at least. Evidence: test_regression.py: a constant misfit is one value and not
 many."""
 
-KNOWN = 10.0
+WANDER_FREEDOM = 10.0
 """Degrees of freedom of the wander's size. Evidence: read off a few seconds before the opening it is known to a factor
 of two or so."""
 
@@ -33,7 +33,7 @@ REACH = 1.6
 CEILING = 20.0
 """Multiple of the 95 % limit at which the misfit is cut off, so that what is far away does not bend what is near."""
 
-FINE = 161
+SURFACE_POINTS = 161
 """Points per direction at which the surface is read."""
 
 
@@ -95,7 +95,7 @@ def weights_from(residual: Array, samples: int, scales: Array, nuisance: Array, 
     Where the residual is larger, the model has another shape than the fire: then it is its own measure, with as many
     independent values as its own correlation leaves.
     """
-    found = _weights(residual, samples, scales, nuisance + wander, least, KNOWN if wander.any() else np.inf)
+    found = _weights(residual, samples, scales, nuisance + wander, least, WANDER_FREEDOM if wander.any() else np.inf)
     if found.misfit(residual) <= residual.size + 3.0 * np.sqrt(2.0 * residual.size):
         return found
     return _weights(residual, samples, scales, nuisance, least)
@@ -172,7 +172,7 @@ def surface(misfit: Misfit, best: Array, covariance: Array, threshold: float) ->
 
     reach = REACH * float(np.sqrt(threshold))
     spread = reach * np.linalg.cholesky(covariance)
-    nodes, axis = np.linspace(-1.0, 1.0, NODES), np.linspace(-1.0, 1.0, FINE)
+    nodes, axis = np.linspace(-1.0, 1.0, NODES), np.linspace(-1.0, 1.0, SURFACE_POINTS)
     values = np.array([[misfit(best + spread @ np.array([x, y])) for y in nodes] for x in nodes])
     values = np.minimum(values - values.min(), CEILING * threshold)
     fine = RectBivariateSpline(nodes, nodes, values)(axis, axis).ravel()

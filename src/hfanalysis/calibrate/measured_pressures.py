@@ -99,7 +99,7 @@ class Histories:
 
 
 @dataclass(frozen=True)
-class Reading:
+class PressureReading:
     """Value of a signal at an instant, its mean slope there [unit/s], and how it is made from block means."""
 
     value: float
@@ -108,7 +108,7 @@ class Reading:
     time: Array
 
 
-def read_at_break(signal: Signal, noise: Noise, instant: float, before: float, after: float) -> Reading:
+def read_at_break(signal: Signal, noise: Noise, instant: float, before: float, after: float) -> PressureReading:
     """A signal at an ``instant`` [s] where its slope may break, from smooth curves over ``before`` and ``after`` [s].
 
     Where the slopes on both sides do not differ beyond what the noise does, one cubic through both reads better.
@@ -116,13 +116,13 @@ def read_at_break(signal: Signal, noise: Noise, instant: float, before: float, a
     window = signal.between(instant - before, instant + after).reduced((before + after) / READING_POINTS)
     if window.time.size < 8:
         nearest = np.array([float(np.interp(instant, signal.time, signal.value))])
-        return Reading(float(nearest[0]), 0.0, np.ones(1), np.array([instant]))
+        return PressureReading(float(nearest[0]), 0.0, np.ones(1), np.array([instant]))
     weights = np.linalg.pinv(kink(order=2)(window.time, instant), rcond=1e-9)
     beta = weights @ window.value
     if abs(beta[3] - beta[1]) > BREAK * noise.std_of(weights[3] - weights[1], window.time):
-        return Reading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
+        return PressureReading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
     weights = np.linalg.pinv(np.vander(window.time - instant, 4, increasing=True), rcond=1e-9)
-    return Reading(float(weights[0] @ window.value), float(weights[1] @ window.value), weights[0], window.time)
+    return PressureReading(float(weights[0] @ window.value), float(weights[1] @ window.value), weights[0], window.time)
 
 
 def quiet_noises(log: TestLog, segments: Segments) -> dict[str, Noise]:

@@ -11,7 +11,7 @@ from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase,
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
-from hfanalysis.calibrate.measured_pressures import Histories, Reading, read_at_break
+from hfanalysis.calibrate.measured_pressures import Histories, PressureReading, read_at_break
 from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
 from hfanalysis.calibrate.with_effects import acting
@@ -231,7 +231,7 @@ class _Work:
         starts = t[t <= t[-1] - PEAK_OVER]
         return float((np.interp(starts + PEAK_OVER, t, x) - np.interp(starts, t, x)).max()) / PEAK_OVER
 
-    def _read(self, instant: float, before: float, after: float) -> Reading:
+    def _read(self, instant: float, before: float, after: float) -> PressureReading:
         tank = self.histories.signals["p_tank"]
         least = 8.0 * tank.step
         left, right = (min(max(span, least), 0.4 + least) for span in (before, after))

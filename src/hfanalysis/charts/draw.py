@@ -23,7 +23,7 @@ def static(chart: Chart) -> Markup:
     svg.events(plot, chart.events)
     for one in chart.series:
         _add(plot, chart, one, scale)
-    si, team = (described(chart, system) for system in SYSTEMS)
+    si, team = (text_alternative(chart, system) for system in SYSTEMS)
     return svg.render(plot, chart.key, chart.title, si, team)
 
 
@@ -65,7 +65,7 @@ def scaled(data: Envelope, scale: Scale) -> Envelope:
     return Envelope(data.time, mean, mean if data.low is data.mean else low, mean if data.high is data.mean else high)
 
 
-def described(chart: Chart, system: str = "si") -> str:
+def text_alternative(chart: Chart, system: str = "si") -> str:
     """The text alternative: what each line does, and when."""
     scale = chart.scale(system)
     sentences = [_behaviour(chart, one, scale) for one in chart.lines]

@@ -34,7 +34,7 @@ def holes(time: Array) -> Array:
     return np.column_stack([time[places], time[places + 1]])
 
 
-def unasked(channel: Channel) -> Array:
+def not_excluded(channel: Channel) -> Array:
     """The holes [s] (holes, 2) of a channel that are not stretches which the engineer excluded."""
     found = holes(channel.time[channel.good])
     left_out = channel.time[(channel.flags & Flag.EXCLUDED) != 0]
@@ -42,7 +42,7 @@ def unasked(channel: Channel) -> Array:
     return found[~np.array(asked, dtype=bool)] if asked else found
 
 
-def told(found: Iterable[tuple[str, str, Array]], channels: dict[str, int]) -> Iterator[str]:
+def hole_warnings(found: Iterable[tuple[str, str, Array]], channels: dict[str, int]) -> Iterator[str]:
     """One line for every set of holes.
 
     Args:

@@ -91,7 +91,7 @@ class Spool:
                     size = 0
                 self._note(chunk.text)
                 self.written |= chunk.written
-        self.idle = _telling(np.concatenate(idle)) if idle and len(columns) > 1 else None
+        self.idle = _if_rare(np.concatenate(idle)) if idle and len(columns) > 1 else None
 
     def _append(self, numbers: Sequence[tuple[int, Array]]) -> int:
         """Keep the numbers of some columns; returns their bytes."""
@@ -162,6 +162,6 @@ def _all_zero(columns: Sequence[Array]) -> NDArray[np.bool_]:
     return idle
 
 
-def _telling(idle: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
+def _if_rare(idle: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
     """Rows of zeros are a dropped-out logger only where they are rare."""
     return idle if 0 < np.count_nonzero(idle) < 0.05 * len(idle) else None

@@ -37,7 +37,8 @@ SUDDEN = 0.2
 is no end of the fuel."""
 
 RESIDENCE = 0.006
-"""Standard deviation [s] of how far the pressure lags the end of the fuel: the chamber has to flush first."""
+"""Standard deviation [s] of how far the pressure lags the end of the fuel: the chamber has to flush first. Evidence:
+the residence time of a chamber is milliseconds (docs/validation.md)."""
 
 SHARPLY_DATED = 0.01
 """Standard deviation [s] within which a sudden fall has to be dated. Evidence: the bend where the chamber nears ambient

@@ -52,12 +52,12 @@ BESIDE_FALL = 0.04
 
 @dataclass(frozen=True)
 class LiquidEnd:
-    """t_v [s] with its standard deviation, the channels that date it, and what other channels say (seen apart)."""
+    """t_v [s] with its standard deviation [s], the channels that date it, and the ``other_times`` [s] others show."""
 
     time: float
     std: float
     channels: tuple[str, ...]
-    apart: dict[str, float]
+    other_times: dict[str, float]
 
 
 def dry_pressure(saturation: Saturation, volume: float, mass: float, pressure: float) -> float | None:
@@ -95,11 +95,11 @@ def find_liquid_end(signals: Mapping[str, Signal], end: float, expected: float |
     dated = _dated_by_steps(signals, knee, half)
     if dated.channels != ("p_tank",):
         return dated
-    return _rounded(signals, knee, min(WIDE_KNEE, 0.8 * rough), noise, dated.apart)
+    return _rounded(signals, knee, min(WIDE_KNEE, 0.8 * rough), noise, dated.other_times)
 
 
 def _rounded(
-    signals: Mapping[str, Signal], knee: Break, wide: float, noise: Noise, apart: dict[str, float]
+    signals: Mapping[str, Signal], knee: Break, wide: float, noise: Noise, other_times: dict[str, float]
 ) -> LiquidEnd:
     """A knee without a sharp step: the last liquid leaves as froth, and tank and run line show it 0.1 to 0.2 s apart.
 
@@ -110,11 +110,11 @@ def _rounded(
     line = _run_line_fall(signals["p_run"], knee.time, wide) if "p_run" in signals else None
     if line is None:
         found = refine_knee(tank, knee.time, wide, wide, 0.5 * wide, noise) or knee
-        return LiquidEnd(found.time, found.std, ("p_tank",), apart)
+        return LiquidEnd(found.time, found.std, ("p_tank",), other_times)
     near = max(0.35, 8.0 * tank.step)
     found = refine_knee(tank, line, 2.0 * near, 2.0 * near, near, noise) or knee
     std = max(found.std, 0.5 * abs(found.time - line), 0.5 * LINE_REACH)
-    return LiquidEnd(0.5 * (found.time + line), std, ("p_tank", "p_run"), {**apart, "p_run": line})
+    return LiquidEnd(0.5 * (found.time + line), std, ("p_tank", "p_run"), {**other_times, "p_run": line})
 
 
 def _run_line_fall(run: Signal, about: float, wide: float) -> float | None:
@@ -162,7 +162,7 @@ def _slope(signal: Signal, start: float, end: float) -> float:
 def _dated_by_steps(signals: Mapping[str, Signal], knee: Break, half: float) -> LiquidEnd:
     """Chamber pressure and thrust fall within milliseconds when the liquid ends: where they do, they date it best."""
     steps: list[Break] = []
-    apart: dict[str, float] = {}
+    other_times: dict[str, float] = {}
     for name in ("p_chamber", "thrust"):
         found = _sudden_fall(signals[name], knee, half) if name in signals else None
         if found is None:
@@ -170,11 +170,11 @@ def _dated_by_steps(signals: Mapping[str, Signal], knee: Break, half: float) -> 
         if found.relaxation <= SHARP and abs(found.time - knee.time) < 4.0 * np.hypot(knee.std, found.std) + 0.06:
             steps.append(found)
         else:
-            apart[name] = found.time
+            other_times[name] = found.time
     if not steps:
-        return LiquidEnd(knee.time, knee.std, ("p_tank",), apart)
+        return LiquidEnd(knee.time, knee.std, ("p_tank",), other_times)
     best = _weighted(steps)
-    return LiquidEnd(best[0], best[1], ("p_tank", *(s.channels[0] for s in steps)), apart)
+    return LiquidEnd(best[0], best[1], ("p_tank", *(s.channels[0] for s in steps)), other_times)
 
 
 def _weighted(steps: list[Break]) -> tuple[float, float]:

@@ -30,7 +30,8 @@ LONGEST_RUN = 120.0
 """Seconds after the opening in which events are looked for."""
 
 SATURATION_MARGIN = 8.0
-"""Kelvin by which the top of a heated tank may be hotter than its thermometer says."""
+"""Kelvin by which the top of a heated tank may be hotter than its thermometer says [K]. Evidence: on real stands it is
+often the thermometer that is wrong (docs/phases.md)."""
 
 FROM_THE_START = 0.3
 """Nitrogen that flows within this time [s] of the opening presses on the liquid, not on what it leaves."""
@@ -181,7 +182,7 @@ class _Search:
             return (
                 "the tank pressure shows no knee: it never falls faster than before, as it does when the liquid is gone"
             )
-        for name, time in found.apart.items():
+        for name, time in found.other_times.items():
             self.notes.append(f"{name} falls {time - found.time:+.2f} s from the tank's knee")
         return found.time, found.std
 

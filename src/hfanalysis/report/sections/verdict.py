@@ -32,7 +32,7 @@ def render(material: Material) -> Iterator[Block]:
     yield _diagnosed(material)
     if material.adopted:
         yield html.paragraph(material.adopted)
-    for stage, reason in spoken_absences(material).items():
+    for stage, reason in absence_reasons(material).items():
         absent = Markup('<p class="absent"><strong>{}:</strong> {}</p>')
         yield absent.format(stage, html.switchable(reason))
     yield _numbers(key_numbers(material))
@@ -47,7 +47,7 @@ def _diagnosed(material: Material) -> Markup | None:
     return words.format(html.switchable(said)) if said else None
 
 
-def spoken_absences(material: Material) -> dict[str, str]:
+def absence_reasons(material: Material) -> dict[str, str]:
     """Why there are no phases or no calibration, each reason once."""
     told: dict[str, str] = {}
     for name, words in (("segments", "phases"), ("calibration", "calibration"), ("validation", "validation")):
