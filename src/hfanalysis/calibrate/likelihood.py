@@ -27,8 +27,9 @@ WANDER_FREEDOM = 10.0
 of two or so."""
 
 NODES = 9
+"""Runs of the model per direction of the likelihood's surface."""
 REACH = 1.6
-"""Runs per direction of the likelihood's surface, and how far it is followed as a multiple of the 95 % limit."""
+"""How far the surface is followed, as a multiple of the 95 % limit [-]."""
 
 CEILING = 20.0
 """Multiple of the 95 % limit at which the misfit is cut off, so that what is far away does not bend what is near."""

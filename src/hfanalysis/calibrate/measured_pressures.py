@@ -29,7 +29,7 @@ FINEST_BLOCK = 0.002
 """Block means over this time [s]: fine against every phase, coarse enough for hundreds of repetitions."""
 
 BEFORE = 500
-"""Blocks before the opening of a channel that is sampled more slowly than they last."""
+"""Blocks before the opening of a channel that is sampled more slowly than they last [blocks]."""
 
 
 @dataclass(frozen=True)

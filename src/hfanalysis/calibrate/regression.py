@@ -42,15 +42,17 @@ RANGE_N = (-0.3, 1.3)
 """Where n [-] is looked for. Evidence: HF4 has 0.04, whose interval reaches -0.02 (docs/calibration.md); a start beyond
 is moved to the border (test_regression.py)."""
 SCAN_N = (0.1, 0.3, 0.5, 0.7, 0.9)
+"""Exponents [-] from which the best start is taken."""
 RESTARTS = (0.15, 0.45, 0.75)
 """Other exponents [-] that a fit starts from. Evidence: the valley of a and n may have several minima."""
 SCAN_RATE = (0.6, 0.85, 1.2, 1.7)
-"""Exponents, and rates over that which burns the web in the burn time, from which the best start is taken."""
+"""Rates, over that which burns the web in the burn time [-], from which the best start is taken."""
 
 LARGEST_STEP = 0.2
 """Standard deviation of n [-] to which the likelihood's surface is followed at most."""
 
 ROUNDS = 2
+"""Times that the weights follow from what a fit leaves, and the fit from the weights."""
 RESURVEYS = 3
 """Times the surface is followed from a lower point that it has shown, and the misfit by which that has to be lower.
 Evidence: without it values lay outside their own intervals."""

@@ -105,7 +105,7 @@ def _without_wild(values: Array) -> tuple[float, float]:
 
 
 def nice_ticks(low: float, high: float, most: int = 7) -> list[float]:
-    """Round values between ``low`` and ``high``, no more than ``most``.
+    """Round values between ``low`` and ``high`` [one unit], no more than ``most``.
 
     >>> nice_ticks(0.0, 66.0)
     [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0]

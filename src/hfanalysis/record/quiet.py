@@ -20,7 +20,7 @@ LONGEST_QUIET = 30.0
 SHORTEST_QUIET = 0.3
 """[s] of quiet time below which no zero is taken."""
 SETTLED = 1.0
-"""[s] of settled level needed after the firing. Evidence: test_zero.py: a level that still decays is not taken."""
+"""[s] of settled level needed after the firing."""
 SETTLING = 0.5
 """[s] after the firing before a zero may be taken."""
 SHIFTED = 0.4
@@ -28,7 +28,7 @@ SHIFTED = 0.4
 Evidence: a transducer that ignition shifted down rests lower in the end, and its beginning was taken for the firing
 (test_zero.py)."""
 LEAST_DEPARTURE = {"thrust": 10.0}
-"""[N] a departure must reach to be a firing (pressures: 0.3 bar)."""
+"""[N] a departure must reach to be a firing; pressures: 0.3 bar."""
 REFERENCES = ("p_chamber", "thrust", "p_run", "p_tank")
 """Channels that say when the firing is, the most telling first."""
 

@@ -24,7 +24,7 @@ from hfanalysis.wording.numbers import adopted_in_words
 
 P = TypeVar("P", bound=Product)
 _BEFORE, _AFTER = 2.0, 3.0
-"""[s] shown before the opening and after the last event."""
+"""[s] shown before the opening and after the last event; as :mod:`hfanalysis.validate.histories` has them."""
 
 
 @dataclass(frozen=True)

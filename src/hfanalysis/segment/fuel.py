@@ -57,7 +57,7 @@ SHORT = 0.03
 and liquid are told apart."""
 
 OUT_LEVEL, OUT_AFTER = 0.06, 0.15
-"""Seconds over which the chamber's level is taken before a fire goes out, and after it."""
+"""Seconds [s] over which the chamber's level is taken before a fire goes out, and after it."""
 
 OUT = 0.5
 """Least part of the chamber's level, and of the thrust, that goes at once where a fire goes out. Evidence:

@@ -18,8 +18,7 @@ RISE_TIME = 0.6
 test_opening.py: filling the tank and settling, which are slower, are no opening valve."""
 
 SMALLEST_CHANGE = {"p_run": 3e5, "p_chamber": 0.5e5, "p_tank": 1e5, "thrust": 50.0}
-"""Changes within RISE_TIME below these [Pa, N] are not an opening valve, whatever the noise. Evidence: test_opening.py:
-a log in which nothing happens holds no firing."""
+"""Changes within RISE_TIME below these [Pa, N] are not an opening valve, whatever the noise."""
 
 
 @dataclass(frozen=True)

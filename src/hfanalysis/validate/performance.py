@@ -31,7 +31,7 @@ Evidence: test_performance_errors.py: one cycle of a rough chamber is no peak, a
 
 SPAN = 0.25
 """Part of a cell's accuracy that a tare does not take away, and of its drift that a straight line may miss. Evidence:
-test_performance_errors.py: an impulse is known as well as cells warm evenly."""
+test_performance_errors.py: a tare takes away three quarters of what a cell may be off by."""
 
 
 @dataclass(frozen=True)

@@ -165,7 +165,7 @@ def decimals_for(value: float, std: float) -> int:
 
 
 def fixed(value: float, decimals: int) -> str:
-    """The number with a true minus sign.
+    """The number [any unit] with a true minus sign.
 
     >>> fixed(-1.25, 1)
     '−1.2'
@@ -175,7 +175,7 @@ def fixed(value: float, decimals: int) -> str:
 
 
 def tidy(value: float, digits: int = 4) -> str:
-    """A number without uncertainty, to a few digits.
+    """A number [any unit] without uncertainty, to a few digits.
 
     >>> tidy(-0.001234567)
     '−0.001235'
