@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from hfanalysis.products.campaign import Campaign
+from hfanalysis.products.engines import Designed, Simulated
 from hfanalysis.products.kinds import KINDS
 from hfanalysis.products.model import Is, Part, Product
 
@@ -17,7 +18,7 @@ PAGE, SCHEMAS = DOCS / "products.md", DOCS / "schemas"
 BLOCK = re.compile(
     r"(<!-- fields of (?P<file>\S+) \(written by `make readme`\) -->\n).*?(<!-- end of fields -->)", re.DOTALL
 )
-ALL: dict[str, type[Part]] = {**KINDS, Campaign.file: Campaign}
+ALL: dict[str, type[Part]] = {**KINDS, **{kind.file: kind for kind in (Campaign, Simulated, Designed)}}
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 NUMBER_OR_NOTHING = ["number", "null"]

@@ -45,8 +45,9 @@ def shown(folder: Path) -> tuple[float, int]:
     return float(value), int(hits)
 
 
-def test_a_number_changed_two_files_away_is_seen(tmp_path: Path) -> None:
-    package = tmp_path / "thrust"
+def written(folder: Path) -> Path:
+    """A small package with compiled code that calls into another file."""
+    package = folder / "thrust"
     package.mkdir()
     (package / "__init__.py").touch()
     for name in ("compiled.py", "sources.py"):
@@ -54,6 +55,11 @@ def test_a_number_changed_two_files_away_is_seen(tmp_path: Path) -> None:
     (package / "nozzle.py").write_text(CALLER)
     (package / "gas.py").write_text(CALLED)
     (package / "numbers.py").write_text("FACTOR = 1.5\n")
+    return package
+
+
+def test_a_number_changed_two_files_away_is_seen(tmp_path: Path) -> None:
+    package = written(tmp_path)
     assert shown(tmp_path) == (3.0, 0)
     assert shown(tmp_path) == (3.0, 1)
     (package / "nozzle.py").touch()
@@ -72,6 +78,18 @@ def own_compilers(source: str) -> Iterator[str]:
         if isinstance(node, ast.Attribute) and node.attr in COMPILERS:
             base = ast.unparse(node.value).split(".")[0]
             yield from [node.attr] * (base in modules)
+
+
+@pytest.mark.parametrize("content", [b"", b"no pickle at all"])
+def test_a_cache_that_cannot_be_read_is_made_anew(tmp_path: Path, content: bytes) -> None:
+    """A disk that was full, or an older version whose modules have other names."""
+    written(tmp_path)
+    assert shown(tmp_path) == (3.0, 0)
+    for index in tmp_path.rglob("*.nbi"):
+        version = index.read_bytes()[:20] if content else b""
+        index.write_bytes(version + content)
+    assert shown(tmp_path) == (3.0, 0)
+    assert shown(tmp_path) == (3.0, 1)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import pickle
 from tests.products.filled import filled
 
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.disk import to_json
 from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import Quantity
@@ -53,4 +54,6 @@ def test_a_product_has_them_beside_its_texts_and_gives_them_back() -> None:
     assert again.closure.fuel_burned is not None
     assert quoted_in([again.closure.fuel_burned.reason]) == WORDS.quoted
     assert to_json(again) == to_json(made.but(provenance={"code": ""}))
+    found = filled(Diagnosis, {"leftover": 1.0, "sentences": [WORDS], "unknown_elsewhere": 2.0}).to_json()
+    assert set(found["quoted"]) == {"72.4 bar"}
     assert "quoted" not in filled(Validation, {"notes": ["plain"]}).to_json()

@@ -4,7 +4,7 @@ python -m benchmarks.mutants [--list] [--only NAME] [--rooms calibrate,validate]
                              [--write docs/mutants.md]  (`make mutants`)
 
 Errors by hand first, then a sample by rule of each room. Goes on where it stopped: what was found is kept, a noticed
-error as long as its file is the same, one that was not as long as the tests of its room are, too.
+error as long as the definition that it is in is the same, one that was not as long as the tests of its room are, too.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from benchmarks.mutants.catalogue import catalogue
-from benchmarks.mutants.generated import generated
+from benchmarks.mutants.generated import generated, of_room
 from benchmarks.mutants.mutant import ROOT, Mutant
 from benchmarks.mutants.page import page
 from benchmarks.mutants.workshop import Ran, Workshop, room_tests, state
 
-ROOMS = "calibrate,validate,measured_flight,flight,segment,effects"
+ROOMS = "calibrate,validate,measured_flight,flight,segment,effects,diagnose/answer"
 FOUND = Path(__file__).parent / "found.jsonl"
 
 
@@ -50,12 +50,13 @@ def result(mutant: Mutant, ran: Ran) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def asked_for(asked: argparse.Namespace) -> Iterator[Mutant]:
-    """The errors to try."""
-    every = list(catalogue()) if asked.hand else []
+def asked_for(asked: argparse.Namespace, before: Mapping[str, Any]) -> list[Mutant]:
+    """The errors to try: by hand, a sample by rule, and what was tried ``before`` in these rooms."""
+    every = {m.name: m for m in catalogue()} if asked.hand else {}
     for room in filter(None, asked.rooms.split(",")):
-        every += generated(room, asked.each, asked.seed)
-    yield from (m for m in every if re.search(asked.only, m.name))
+        sample = {m.name for m in generated(room, asked.each, asked.seed)} | set(before)
+        every |= {m.name: m for m in of_room(room) if m.name in sample}
+    return [m for m in every.values() if re.search(asked.only, m.name)]
 
 
 def tried(mutants: list[Mutant], found: Path, scratch: Path, again: bool) -> None:
@@ -85,20 +86,24 @@ def main() -> int:
     parser.add_argument("--only", default="", help="those whose names this regular expression is in")
     parser.add_argument("--rooms", default=ROOMS, help="of which errors are made by rule")
     parser.add_argument("--no-hand", dest="hand", action="store_false", help="none of those by hand")
-    parser.add_argument("--each", type=int, default=20, help="errors by rule in each room")
+    parser.add_argument(
+        "--each", type=int, default=12, help="errors by rule in each room, beside those that were tried before"
+    )
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--known", action="store_true", help="try none: the page of what is known")
     parser.add_argument("--again", action="store_true", help="also what is known")
     parser.add_argument("--write", type=Path)
     parser.add_argument("--found", type=Path, default=FOUND)
     parser.add_argument("--scratch", type=Path, default=ROOT / ".cache" / "mutants")
     asked = parser.parse_args()
-    mutants = list(asked_for(asked))
+    mutants = asked_for(asked, read(asked.found))
     if asked.list:
         print("\n".join(f"{m.name} ({m.kind}, {m.edit.file}:{m.edit.line})" for m in mutants))
         return 0
-    tried(mutants, asked.found, asked.scratch, asked.again)
+    if not asked.known:
+        tried(mutants, asked.found, asked.scratch, asked.again)
     rows = read(asked.found)
-    results = [rows[m.name] for m in mutants if m.name in rows]
+    results = [{**rows[m.name], "file": m.edit.file.as_posix()} for m in mutants if known(rows.get(m.name), m)]
     if asked.write:
         asked.write.write_text(page(results), encoding="utf-8")
     return int(any(r["verdict"] != "killed" and r["kind"] == "by hand" for r in results))

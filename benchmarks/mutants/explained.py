@@ -4,7 +4,8 @@ from __future__ import annotations
 
 FLOOR = "a floor against division by nothing: no engine comes near it, so that nothing changes"
 FINER = "how finely something is stepped or tabulated: numbers move by less than they are known to"
-ALL_ALIKE = "a size that is known to no better than this factor: the fit finds the same, a little sooner or later"
+PRIOR = "a scale or bound of a prior that nobody knows better than to this factor; fits find the same"
+ROUGH = "where a search starts or which candidates it looks at; what is found is then dated and judged by other rules"
 
 EXPLAINED: dict[str, str] = {
     "efficiencies: 1e-4": FLOOR,
@@ -14,4 +15,13 @@ EXPLAINED: dict[str, str] = {
     "flight/pitch.py: _fly: 1.0": "from when on a fall ends the ascent: no rocket falls within two seconds of lighting",
     "flight/pitch.py: _rates: 1e-6": FLOOR,
     "flight/pitch.py: _rates: 1e-9": FLOOR,
+    "evidence_from_log.py: FINEST": FINER,
+    "_of_chamber: left.size / chamber.coherence": "told beside a fit with adopted effects; nothing is computed with it",
+    "likelihood.py: surface": "how far from the best the misfit is followed; its interval is read off the same surface",
+    "segment/fuel.py: SMOOTH": "ten times less smoothing: on logs of the tests' noise the same falls are found",
+    "segment/fuel.py: _step: scatter": "open: over drawn noise this deviation is half of the true one, for the slope "
+    "that both sides share is not known either; the threshold in front of it was chosen with it",
+    "segment/liquid.py: BESIDE": ROUGH,
+    "segment/liquid.py: _dated_by_steps: 4.0": "0.06 s beside it decide, where knees are known to milliseconds",
+    "segment/liquid.py: _run_line_fall": ROUGH,
 }

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import ast
-import random
 import re
 from collections.abc import Iterator
+from hashlib import sha256
 from itertools import islice, zip_longest
 from pathlib import Path
 
@@ -17,12 +17,18 @@ FACTORS = ("2.0", "0.1")
 
 
 def generated(room: str, number: int, seed: int) -> list[Mutant]:
-    """A sample of a room's errors, of all kinds alike; the same for the same source and seed."""
-    every = [m for file in files() if file.is_relative_to(room) for m in of_file(file)]
-    random.Random(f"{seed} {room}").shuffle(every)
-    kinds = [[m for m in every if m.kind == kind] for kind in KINDS]
+    """A sample of a room's errors, of all kinds alike; that of a seed changes with the code that it is in alone."""
+    drawn = sorted(of_room(room), key=lambda m: sha256(f"{seed} {m.name}".encode()).digest())
+    kinds = [[m for m in drawn if m.kind == kind] for kind in KINDS]
     in_turn = (m for row in zip_longest(*kinds) for m in row if m is not None)
     return sorted(islice(in_turn, number), key=lambda m: m.name)
+
+
+def of_room(room: str) -> Iterator[Mutant]:
+    """Every error that can be made of a package, or of one within it."""
+    for file in files():
+        if file.is_relative_to(room):
+            yield from of_file(file)
 
 
 def of_file(file: Path) -> Iterator[Mutant]:

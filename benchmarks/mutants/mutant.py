@@ -38,6 +38,14 @@ class Edit:
         text = source(self.file)
         return text[: self.start] + self.new + text[self.end :]
 
+    @property
+    def around(self) -> str:
+        """The definition at the top of the module that it is in, with the error in."""
+        text = source(self.file)
+        spans = (span(text, node) for node in tree(self.file).body)
+        start, end = next(s for s in spans if s[0] <= self.start and self.end <= s[1])
+        return text[start : self.start] + self.new + text[self.end : end]
+
 
 @dataclass(frozen=True)
 class Mutant:

@@ -43,8 +43,8 @@ def room_tests(mutant: Mutant) -> Path:
 
 
 def state(mutant: Mutant, tests: bool) -> str:
-    """What a result hangs on: the file, the error, and where asked for the room's tests."""
-    total = sha256(mutant.edit.applied.encode())
+    """What a result hangs on: the definition with the error in, wherever it stands, and if asked the room's tests."""
+    total = sha256(mutant.edit.around.encode())
     if tests:
         for path in sorted((ROOT / room_tests(mutant)).glob("**/*.py")):
             total.update(path.read_bytes())

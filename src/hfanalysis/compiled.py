@@ -183,8 +183,21 @@ def _borrowed(context: Any, builder: Any, kind: Any, value: Any) -> Any:
 
 
 def _stamp(made: Any, function: Callable[..., Any]) -> None:
-    """Let numba's cache compare sources instead of the age of one of them."""
+    """Let numba's cache compare sources instead of the age of one of them, and pass over one that cannot be read."""
     index = made._cache._cache_file
-    if not hasattr(index, "_source_stamp"):
+    if not (hasattr(index, "_source_stamp") and hasattr(index, "_load_index")):
         raise RuntimeError("this version of numba keeps its cache in another way; hfanalysis.compiled does not know it")
     index._source_stamp = digest(closure(Path(function.__code__.co_filename), inside=False))
+    index._load_index = _readable(index._load_index)
+
+
+def _readable(load: Callable[[], dict[Any, Any]]) -> Callable[[], dict[Any, Any]]:
+    """What a cache holds; nothing where it is damaged, or names modules that are no longer there."""
+
+    def loaded() -> dict[Any, Any]:
+        try:
+            return load()
+        except Exception:  # unpickling raises whatever it meets
+            return {}
+
+    return loaded

@@ -65,7 +65,7 @@ def said(
 ) -> Text:
     """A quantity in words: ``value`` [SI], shown in ``unit`` by a format; with ± ``std`` [SI] where that is given.
 
-    ``size``: of a unit that UNITS does not have, in SI.
+    ``size``: of a unit that UNITS does not have, in SI. A number without a unit is only a word.
 
     >>> said(1.25e6, "bar", ".1f", 5e4, ".1f")
     '12.5 ± 0.5 bar'
@@ -74,7 +74,8 @@ def said(
     factor = factor if size is None else size
     spread = "" if std is None else f" ± {std / factor:{std_form}}"
     words = f"{value / factor:{form}}{spread} {unit}".strip()
-    return Text(words, {words: Quoted(float(value), si, None if std is None else float(std))})
+    quoted = {words: Quoted(float(value), si, None if std is None else float(std))}
+    return Text(words, quoted if unit else {})
 
 
 def text(template: str, **parts: Any) -> Text:
@@ -99,12 +100,13 @@ def quoted_in(data: Any) -> dict[str, Quoted]:
         return dict(data.quoted)
     if isinstance(data, str) or not isinstance(data, Iterable):
         return {}
-    found: dict[str, Quoted] = {}
-    for part in data.values() if isinstance(data, Mapping) else data:
-        if isinstance(part, float):  # of a long history
-            break
-        found |= quoted_in(part)
-    return found
+    parts = data.values() if isinstance(data, Mapping) else () if _history(data) else data
+    return {words: quantity for part in parts for words, quantity in quoted_in(part).items()}
+
+
+def _history(data: Any) -> bool:
+    """Whether it is a list of numbers, which may be long."""
+    return isinstance(data, (list, tuple)) and bool(data) and isinstance(data[0], float)
 
 
 def to_json(quoted: Mapping[str, Quoted]) -> dict[str, dict[str, Any]]:
@@ -124,6 +126,6 @@ def revived(data: Any, quoted: Mapping[str, Quoted]) -> Any:
         return Text(data, own) if own else data
     if isinstance(data, Mapping):
         return {name: revived(part, quoted) for name, part in data.items()}
-    if isinstance(data, list) and not (data and isinstance(data[0], float)):
+    if isinstance(data, list) and not _history(data):
         return [revived(part, quoted) for part in data]
     return data

@@ -6,10 +6,13 @@ from math import pi
 from pathlib import Path
 
 import pytest
+from tests.products.filled import filled
 from tests.segment.stand import definition
 
 from hfanalysis.assembly.calibrated import Regression, engine_of_test
 from hfanalysis.assembly.engine import engine, tank
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import Needs, load_engine
 from hfanalysis.record.sections import Chamber, Grain
 from hfanalysis.units import Value
@@ -21,8 +24,8 @@ GRAIN = Grain(mass=Value(1.6), length=Value(0.61), density=Value(900.0), outer_r
 def test_of_a_test() -> None:
     """What its chamber holds at rest is ambient air in both volumes and the port."""
     stated = definition(grain=GRAIN, chamber=Chamber(pre_volume=Value(PRE), post_volume=Value(POST)))
-    calibration = {n: {"value": v, "std": 0.0} for n, v in (("C_i", 0.3), ("m", 1.1), ("K_loss", 2e8))}
-    calibration["oxidizer_mass"] = {"value": 9.0, "std": 0.0}
+    constants = {"C_i": 0.3, "m": 1.1, "K_loss": 2e8, "oxidizer_mass": 9.0}
+    calibration = filled(Calibration, {name: Quantity(value) for name, value in constants.items()})
     built = engine_of_test(stated, calibration, 293.15, Regression(1e-4, 0.5))
     fuel = pi * 900.0 * 0.61 * (39.5e-3**2 - built.port_radius**2)
     assert fuel == pytest.approx(1.6)

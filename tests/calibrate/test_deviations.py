@@ -9,10 +9,10 @@ import pytest
 from tests.calibrate.engine_sample import TRUTH, evidence
 from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
 
-from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.regression import fit, law_at, result
 from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.products.calibration import TankConstants
 from hfanalysis.record.log import TestLog
 from hfanalysis.units import Value
 
@@ -42,7 +42,7 @@ def test_n_and_the_rate_are_known_as_well_as_noise_and_burn_time_let_them() -> N
     """The bound of Cramer and Rao, by differences of burns about the truth."""
     seen = evidence(noise=NOISE, burn_time_std=BURN_TIME)
     told = result(fit([seen]))
-    flux = told.about["reference_flux"]["value"]
+    flux = told.regression.reference_flux.value
     least = np.linalg.inv(information(seen, flux))
     quantities = told.quantities
     assert quantities["n"].std == pytest.approx(np.sqrt(least[1, 1]), rel=0.3)
@@ -53,9 +53,9 @@ def test_n_and_the_rate_are_known_as_well_as_noise_and_burn_time_let_them() -> N
     assert a.std / a.value == pytest.approx(np.sqrt(direction @ least @ direction), rel=0.3)
 
 
-def calibrated(log: TestLog, test: Trial, samples: int = 150) -> Calibration:
+def calibrated(log: TestLog, test: Trial, samples: int = 150) -> TankConstants:
     stated = definition(test.stand, mass=Value(test.stand.mass, 0.0))
-    return calibrate(log, segments_of(test), stated, samples)
+    return calibrate(log, segments_of(test), stated, samples).constants
 
 
 def with_sensors(log: TestLog, accuracy: float, zeroed: bool) -> TestLog:
@@ -90,7 +90,7 @@ def test_without_nitrogen_a_tank_that_lost_two_fifths_of_its_pressure_tells_m(fa
     short = replace(test, time=test.time[kept], values={n: v[kept] for n, v in test.values.items()})
     absent = replace(segments_of(test).events["t_purge"], value=None, std=None, reason="no nitrogen is seen")
     stated = definition(test.stand, mass=Value(test.stand.mass, 0.0))
-    m = calibrate(log_of(short), segments_of(short, t_purge=absent), stated, 20).quantities["m"]
+    m = calibrate(log_of(short), segments_of(short, t_purge=absent), stated, 20).constants.m
     assert (m.value is not None) is known
     if known:
         assert m.value == pytest.approx(test.stand.m, rel=0.02)

@@ -11,13 +11,12 @@ import pytest
 from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.calibrate.blowdown import Inputs, Reduction
-from hfanalysis.calibrate.calibration import Calibration
 from hfanalysis.calibrate.diagnostics import _mass_remarks
 from hfanalysis.calibrate.loaded_mass import LoadedMass
-from hfanalysis.calibrate.rest import Rest
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent
+from hfanalysis.products.calibration import Rest, TankConstants
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
 from hfanalysis.thermo.nitrous import saturation
@@ -86,8 +85,8 @@ def burn() -> Trial:
     return fire(rate=200.0)
 
 
-def calibrated(log: TestLog, test: Trial, **change: Any) -> Calibration:
-    return calibrate(log, segments_of(test), definition(test.stand, **change), 30)
+def calibrated(log: TestLog, test: Trial, **change: Any) -> TankConstants:
+    return calibrate(log, segments_of(test), definition(test.stand, **change), 30).constants
 
 
 def test_the_loaded_mass_is_as_well_known_as_it_is_stated(burn: Trial) -> None:

@@ -39,9 +39,9 @@ def test_sizes_that_stands_have_are_believed_and_those_that_none_has_are_not(nam
     parameter, possible, impossible = SIZES[name]
     assert parameter in [p.name for p in effect(name).parameters]
     for sign in (1.0, -1.0):
-        assert judged(effect(name).at(**{parameter: sign * possible}))["plausible"] is True
+        assert judged(effect(name).at(**{parameter: sign * possible})).plausible is True
         assert lost(effect(name).at(**{parameter: sign * possible})) == 0.0
-        assert judged(effect(name).at(**{parameter: sign * impossible}))["plausible"] is False
+        assert judged(effect(name).at(**{parameter: sign * impossible})).plausible is False
         assert lost(effect(name).at(**{parameter: sign * impossible})) > 1.0
 
 

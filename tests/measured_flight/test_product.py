@@ -38,13 +38,13 @@ def flown() -> Launch:
 
 def test_the_wet_mass_is_as_well_known_as_its_parts_together() -> None:
     """40 kg to 0.3, 10 kg of oxidizer to 0.04 and 1.6 kg of fuel to 0.03."""
-    found = product(flown(), ROCKET, "no geometry")["wet_mass"]
+    found = product(flown(), ROCKET, "no geometry").wet_mass
     assert found.value == pytest.approx(51.6)
     assert found.std == pytest.approx(np.sqrt(0.3**2 + 0.04**2 + 0.03**2))
 
 
 def test_thrust_to_weight_and_means_are_those_of_the_curve() -> None:
-    found = {n: q for n, q in product(flown(), ROCKET, "no geometry").items() if hasattr(q, "value")}
+    found = product(flown(), ROCKET, "no geometry").quantities
     curve = flown().firing.curve
     weight = 51.6 * 9.80665 * (6_371_000.0 / (6_371_000.0 + GROUND)) ** 2
     assert found["pad_thrust_to_weight"].value == pytest.approx(
@@ -56,15 +56,15 @@ def test_thrust_to_weight_and_means_are_those_of_the_curve() -> None:
 
 
 def test_stated_deviations_are_those_of_the_drawn_flights() -> None:
-    found, drawn = product(flown(), ROCKET, "no geometry"), flown().dispersion.results
-    assert found["apogee"].std == pytest.approx(drawn[:, 0].std(), rel=0.01)
-    low, high = found["apogee"].ci95
+    found, drawn = product(flown(), ROCKET, "no geometry").apogee, flown().dispersion.results
+    assert found.std == pytest.approx(drawn[:, 0].std(), rel=0.01)
+    low, high = found.ci95
     assert np.mean((drawn[:, 0] >= low) & (drawn[:, 0] <= high)) == pytest.approx(0.95, abs=0.01)
 
 
 def test_heights_count_from_the_ground(tmp_path: Path) -> None:
     write_histories(tmp_path / "flight.h5", flown(), "no geometry", {})
-    apogee = product(flown(), ROCKET, "no geometry")["apogee"].value
+    apogee = product(flown(), ROCKET, "no geometry").apogee.value
     with h5py.File(tmp_path / "flight.h5") as file:
         assert file["ascent/height"][0] == pytest.approx(0.0, abs=0.1)
         assert np.max(file["ascent/height"]) == pytest.approx(apogee, rel=1e-3)

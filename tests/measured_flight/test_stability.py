@@ -32,11 +32,11 @@ def stable(mean: float, std: float) -> Stability:
 
 def test_the_margin_at_the_rails_end_is_as_sure_as_gusts_leave_it() -> None:
     found = product(stable(2.0, 0.15))
-    assert found["margin_at_rail_departure"].value == pytest.approx(2.0)
-    assert found["margin_at_rail_departure"].std == pytest.approx(0.15)
-    place, loaded = found["center_of_pressure"].value, found["center_of_gravity_loaded"].value
-    assert found["static_margin_on_pad"].value == pytest.approx((place - loaded) / 0.16)
-    assert (loaded, found["center_of_gravity_empty"].value) == (1.9, 1.7)
+    assert found.margin_at_rail_departure.value == pytest.approx(2.0)
+    assert found.margin_at_rail_departure.std == pytest.approx(0.15)
+    place, loaded = found.center_of_pressure.value, found.center_of_gravity_loaded.value
+    assert found.static_margin_on_pad.value == pytest.approx((place - loaded) / 0.16)
+    assert (loaded, found.center_of_gravity_empty.value) == (1.9, 1.7)
 
 
 @pytest.mark.parametrize(
@@ -52,6 +52,6 @@ def test_the_margin_at_the_rails_end_is_as_sure_as_gusts_leave_it() -> None:
 def test_limits_hold_with_two_deviations(mean: float, std: float, least: str, largest: str) -> None:
     """1.5 to 6 calibers, as competitions ask for."""
     found = checks(stable(mean, std))
-    assert (found["least_static_margin"]["result"], found["largest_static_margin"]["result"]) == (least, largest)
+    assert (found["least_static_margin"].result, found["largest_static_margin"].result) == (least, largest)
     kept = least == largest == "passed"
-    assert product(stable(mean, std))["winds"][0]["result"] == ("passed" if kept else "failed")
+    assert product(stable(mean, std)).winds[0].result == ("passed" if kept else "failed")

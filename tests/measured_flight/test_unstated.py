@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
+from tests.products.filled import filled
 from tests.segment.heated_cell import EMPTY, heated, quenched
 from tests.segment.stand import Trial, definition, segments_of
 
@@ -15,6 +15,7 @@ from hfanalysis.flight.summary import ASCENT
 from hfanalysis.measured_flight.propellant import _exponent, propellant
 from hfanalysis.measured_flight.thrust import MeasuredThrust, _drift_taken, measured_thrust
 from hfanalysis.measured_flight.uncertainty import Dispersion
+from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.sections import Grain
@@ -67,7 +68,7 @@ def test_masses_without_a_deviation_are_known_to_a_hundredth(burn: Trial) -> Non
 
 @pytest.mark.parametrize(("n", "used"), [(0.45, 0.45), (1.5, 1.5), (-0.1, 0.5), (2.4, 0.5), (None, 0.5)])
 def test_a_calibrated_exponent_is_taken_where_fuels_may_have_it(n: float | None, used: float) -> None:
-    calibration: dict[str, Any] = {"n": {"value": n}}
+    calibration = filled(Calibration, {"n": Quantity.absent("not known") if n is None else Quantity(n)})
     assert _exponent(definition(), calibration)[0] == used
 
 

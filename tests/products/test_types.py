@@ -12,7 +12,6 @@ from tests.products.filled import filled
 from tests.products.keys import KEYS
 
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.campaign import Campaign
 from hfanalysis.products.disk import to_json
 from hfanalysis.products.kinds import KINDS
 from hfanalysis.products.model import Is, Part
@@ -27,13 +26,13 @@ def parts(kind: type[Part]) -> Iterator[type[Part]]:
             yield from parts(part)
 
 
-EVERY = sorted({part for kind in (*KINDS.values(), Campaign) for part in parts(kind)}, key=lambda part: part.__name__)
+EVERY = sorted({part for kind in products_page.ALL.values() for part in parts(kind)}, key=lambda part: part.__name__)
 
 
 def test_the_page_and_the_schemas_are_what_the_types_say() -> None:
     page = products_page.PAGE.read_text(encoding="utf-8")
     assert products_page.anew(page) == page, "make readme writes it anew"
-    assert page.count("<!-- fields of ") == len(KINDS) + 1
+    assert page.count("<!-- fields of ") == len(products_page.ALL)
     there = {path.name: path.read_text(encoding="utf-8") for path in products_page.SCHEMAS.iterdir()}
     assert there == products_page.schemas(), "make readme writes them anew"
 

@@ -439,7 +439,7 @@ def test_adopted_effects_show_in_the_verdict_and_in_what_the_page_is_made_from(t
 def test_the_code_of_every_stage_is_stated_and_what_they_share_once(tmp_path: Path) -> None:
     made = material(tmp_path)
     stated = {"hfanalysis": "1", "libraries": {"numpy": "2"}}
-    origins = {name: {**made.products[name], "provenance": {**stated, "code": f"{name}!"}} for name in made.products}
+    origins = {name: part.but(provenance={**stated, "code": f"{name}!"}) for name, part in made.products.items()}
     (table,) = provenance.render(replace(made, products=origins))
     assert [str(table).count(f"<code>{name}!</code>") for name in origins] == [1] * len(origins)
     assert str(table).count("libraries / numpy") == 1

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.segment.stand import Stand, definition, fire, log_of
 
+from hfanalysis.record.sections import Grain, Observed
 from hfanalysis.segment.fuel import GRID, _fade, _fall_at, _Response
+from hfanalysis.segment.phases import find_phases
+from hfanalysis.units import Value
 
 TIME = np.arange(0.0, 6.0, GRID)
 
@@ -41,3 +45,14 @@ def test_a_fade_that_takes_most_of_the_burn_is_no_end_of_the_fuel(lasts: float, 
         assert found.duration == pytest.approx(0.85 * (last - begins), abs=0.05)
         drawn = np.random.default_rng(2).uniform(0.0, found.duration, 20_000)
         assert found.std == pytest.approx(drawn.std(), rel=0.03)
+
+
+@pytest.mark.parametrize(("left", "gone"), [(0.05, True), (0.12, False)])
+def test_where_a_fourteenth_of_the_grain_was_left_no_fall_is_the_end_of_the_fuel(left: float, gone: bool) -> None:
+    """Slivers of a thirtieth are what every grain leaves."""
+    log = log_of(fire(Stand(t_fuel_out=3.0), rate=200.0), white=5e3)
+    stated = definition(grain=Grain(mass=Value(1.6)), observed=Observed(fuel_mass_after=Value(left)))
+    found = find_phases(log, stated).events["t_fuel_out"]
+    assert (found.value is not None) is gone
+    if not gone:
+        assert "0.12 kg of fuel were left" in str(found.reason)

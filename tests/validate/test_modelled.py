@@ -10,9 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.engine.stand import engine_on_stand
+from tests.products.filled import filled
 
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.inference.full_run import FullRun
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.quantity import Quantity
 from hfanalysis.validate.performance import modelled
 
 FLUX = 130.0
@@ -25,15 +28,15 @@ def run() -> FullRun:
     return FullRun(engine, burn(engine, longest=60.0))
 
 
-def calibration(**std: float) -> dict[str, Any]:
+def calibration(**std: float) -> Calibration:
     """What calibration.json has of the engine's constants, exact but for those that are named."""
     engine = run().engine
     values = {
         "C_i": 0.3, "m": engine.polytropic_exponent, "K_loss": engine.feed.loss_factor, "n": engine.n,
         "regression_rate_reference": engine.a * FLUX**engine.n, "oxidizer_mass": engine.oxidizer_mass,
     }  # fmt: skip
-    found: dict[str, Any] = {n: {"value": v, "std": std.get(n, 0.0)} for n, v in values.items()}
-    return {**found, "regression": {"reference_flux": {"value": FLUX}}}
+    found = {n: Quantity(v, std=std.get(n, 0.0)) for n, v in values.items()}
+    return filled(Calibration, {**found, "regression": {"reference_flux": Quantity(FLUX)}})
 
 
 def impulse_by_hand(found: Burn) -> float:
@@ -98,7 +101,7 @@ def test_its_deviations_are_those_of_the_constants_carried_through_the_engine(
     name: str, share: float, moved: Any
 ) -> None:
     """Against burns drawn with them, as Gauss and Hermite would draw three."""
-    std = share * calibration()[name]["value"]
+    std = share * getattr(calibration(), name).value
     found = modelled(run(), calibration(**{name: std}))
     burns = [burn(moved(run().engine, z * std), longest=60.0) for z in np.sqrt(3.0) * np.array([-1.0, 0.0, 1.0])]
     for told, of, least in (

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from hfanalysis.cli.exit_status import put, tell
 from hfanalysis.cli.watch import watch
 from hfanalysis.errors import InputError
 from hfanalysis.products.disk import to_json
 from hfanalysis.record.engine_file import load_engine
+
+if TYPE_CHECKING:
+    from hfanalysis.products.engines import Designed, Simulated
 
 
 def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: float | None = None) -> None:
@@ -51,15 +54,12 @@ def _writing(out: Path) -> Iterator[None]:
         raise InputError(f"--out {out}: cannot be written ({error.strerror}); expected a folder") from None
 
 
-def _show(product: dict[str, Any], as_json: bool, quiet: bool) -> None:
-    text = to_json(product)
+def _show(product: Simulated | Designed, as_json: bool, quiet: bool) -> None:
     if as_json:
-        put(text)
+        put(to_json(product))
     elif not quiet:
-        import json
-
         from hfanalysis.cli import tables
 
-        tables.show_engine(json.loads(text))
-    for warning in product["warnings"]:
+        tables.show_engine(product)
+    for warning in product.warnings:
         tell(f"warning: {warning}")

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hfanalysis.cli.exit_status import nobody_reads
-from hfanalysis.products.model import AdoptedEffect
+from hfanalysis.products.model import AdoptedEffect, Part
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context
@@ -20,6 +20,7 @@ from hfanalysis.wording.numbers import Shown, in_words, ordered, shown
 if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
     from hfanalysis.products.calibration import RegressionBasis
     from hfanalysis.products.campaign import CommonLaw
+    from hfanalysis.products.engines import Designed, Simulated
     from hfanalysis.products.validation import Validation
 
 _NARROWEST = 140
@@ -253,23 +254,16 @@ def _report(context: Context, console: Console) -> None:
     console.print(Text(f"report: {context.product('report.html')}"), soft_wrap=True)
 
 
-def show_engine(product: Mapping[str, Any]) -> None:
+def show_engine(product: Simulated | Designed) -> None:
     """Print what an engine file comes to: every quantity of the product, and of the parts in it."""
     console = paper()
-    words = (product["engine"], product["command"], f"conventions: {product['conventions']}")
+    words = (product.engine, product.command, f"conventions: {product.conventions}")
     console.print(Text("  ".join(words), style="bold"))
-    console.print(Text(f"oxidizer enthalpy: {product['oxidizer_enthalpy']['of']}"))
-    _values(console, _engine_quantities(product), "engine")
-    for name, part in product.items():
-        if isinstance(part, Mapping) and "value" not in part and name != "provenance":
-            _values(console, _engine_quantities(part), in_words(name))
-
-
-def _engine_quantities(part: Mapping[str, Any]) -> dict[str, Quantity]:
-    found = {name: data for name, data in part.items() if isinstance(data, Mapping) and "value" in data}
-    return ordered(
-        {n: Quantity.from_json({"std": None, **data}) for n, data in found.items() if n != "oxidizer_enthalpy"}
-    )
+    console.print(Text(f"oxidizer enthalpy: {product.oxidizer_enthalpy.of}"))
+    _values(console, ordered(product.quantities), "engine")
+    for name, part in product.given.items():
+        if isinstance(part, Part) and part.quantities:
+            _values(console, ordered(part.quantities), in_words(name))
 
 
 def show_effects(product: Mapping[str, Any]) -> None:

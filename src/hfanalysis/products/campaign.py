@@ -25,8 +25,6 @@ class Diagnosed(Part):
 class TestRow(Part):
     """A test in short."""
 
-    __test__ = False
-
     stand: Annotated[str | None, Is("as [test] states it, or else known by the volume of its tank")]
     injector_area: Annotated[float | None, Is("as stated", "m^2")]
     kind: Annotated[str | None, Is("as stated")]

@@ -64,8 +64,6 @@ def _unsafe(name: str) -> bool:
 class Test(Section):
     """[test]: which test this is."""
 
-    __test__ = False
-
     id: Annotated[Text, AfterValidator(_id)]
     kind: Literal["hot_fire", "cold_flow"]
     date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
@@ -126,8 +124,6 @@ class Statements(Section):
 @dataclass(frozen=True, kw_only=True)
 class TestDefinition(Statements):
     """A validated test.toml and where it is; every number in SI."""
-
-    __test__ = False
 
     path: Path
     sha256: str

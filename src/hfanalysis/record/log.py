@@ -75,8 +75,6 @@ class Channel:
 class TestLog:
     """All channels of one test."""
 
-    __test__ = False
-
     channels: dict[str, Channel]
     warnings: tuple[str, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)

@@ -42,8 +42,8 @@ class Vehicle:
 def drag_coefficient(mach: float, table: Array) -> float:
     """C_d at a Mach number: linear between the table's columns (Mach numbers, coefficients), its ends held.
 
-    >>> drag_coefficient(0.4, np.array([[0.3, 0.5], [0.40, 0.42]]))
-    0.41
+    >>> drag_coefficient(0.5, np.array([[0.0, 1.0], [0.5, 0.75]]))
+    0.625
     """
     last = table.shape[1] - 1
     if mach <= table[0, 0]:

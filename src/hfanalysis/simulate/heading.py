@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from hfanalysis.assembly.engine import Enthalpy
+from hfanalysis.products import engines
 from hfanalysis.products.disk import sha256_file
-from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile
 from hfanalysis.version import __version__
 
@@ -18,7 +18,7 @@ def heading(file: EngineFile, command: str, enthalpy: Enthalpy) -> dict[str, Any
         "command": command,
         "conventions": file.model.conventions,
         "properties": file.model.properties,
-        "oxidizer_enthalpy": {**Quantity(enthalpy.value, "J/kg").to_json(), "of": enthalpy.of},
+        "oxidizer_enthalpy": engines.Enthalpy(value=enthalpy.value, unit="J/kg", std=None, ci95=None, of=enthalpy.of),
     }
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from hfanalysis.assembly import engine as build
 from hfanalysis.design import steady
@@ -11,6 +10,7 @@ from hfanalysis.design.steady import Requirement, SteadyEngine
 from hfanalysis.engine.grain import Grain
 from hfanalysis.errors import InputError
 from hfanalysis.flight import constant_thrust
+from hfanalysis.products.engines import Designed, Optimum
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import Vehicle
@@ -51,7 +51,7 @@ class Design:
 
     task: Task
     engine: SteadyEngine
-    product: dict[str, Any]
+    product: Designed
 
 
 def design(file: EngineFile) -> Design:
@@ -67,18 +67,17 @@ def design(file: EngineFile) -> Design:
         best = steady.optimum(task.requirement)
     except (ValueError, ArithmeticError) as error:
         raise InputError(f"{file.where('design')}: {error}") from None
-    product = {
-        **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
-        "fuel_mass_from": "grain.mass" if task.target is None else "design.target_apogee",
-        **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
-        **_flown(file, task, engine),
-        "optimum": {
-            "of_ratio": Quantity(best.of_ratio),
-            "specific_impulse": Quantity(best.specific_impulse, "s"),
-        },
-        "warnings": [],
-        "provenance": heading.provenance(file),
-    }
+    product = Designed.from_json(
+        {
+            **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
+            "fuel_mass_from": "grain.mass" if task.target is None else "design.target_apogee",
+            **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
+            **_flown(file, task, engine),
+            "optimum": Optimum(of_ratio=Quantity(best.of_ratio), specific_impulse=Quantity(best.specific_impulse, "s")),
+            "warnings": (),
+            "provenance": heading.provenance(file),
+        }
+    )
     return Design(task, engine, product)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly import engine as build
@@ -11,6 +10,7 @@ from hfanalysis.engine import closure, unsteady
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
 from hfanalysis.flight import summary
+from hfanalysis.products.engines import Simulated
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, gravity
@@ -29,7 +29,7 @@ class Simulation:
     engine: Engine
     burnt: Burn
     chamber_temperature: Array
-    product: dict[str, Any]
+    product: Simulated
 
 
 def simulate(file: EngineFile, until: float | None = None) -> Simulation:
@@ -42,16 +42,18 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
     engine = build.engine(needs, tank)
     burnt = run(file, engine, until)
     hot = burnt.chamber_temperature()
-    product = {
-        **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
-        **_engine(engine, burnt, hot),
-        **_loaded(file, engine, burnt),
-        **_tank(tank),
-        "flight": _flight(file, engine, burnt),
-        **_propellant(needs, engine),
-        "warnings": _warnings(burnt),
-        "provenance": heading.provenance(file),
-    }
+    product = Simulated.from_json(
+        {
+            **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
+            **_engine(engine, burnt, hot),
+            **_loaded(file, engine, burnt),
+            **_tank(tank),
+            "flight": _flight(file, engine, burnt),
+            **_propellant(needs, engine),
+            "warnings": _warnings(burnt),
+            "provenance": heading.provenance(file),
+        }
+    )
     return Simulation(engine, burnt, hot, product)
 
 

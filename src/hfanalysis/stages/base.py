@@ -6,7 +6,7 @@ A stage is a module of this package that says what it needs, what it writes and 
     def run(context: Context) -> None:
         log = read_log(context.product("ingest.h5"))             # a finished product of a stage this one needs
         ...
-        context.write_json("segments.json", {"t_open": quantity, ...})   # "test" and "provenance" are added
+        context.write(find_phases(log, context.definition))      # a product's model; test and provenance are added
 
     STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run)
 

@@ -259,9 +259,9 @@ def test_a_size_beyond_belief_costs_evidence() -> None:
 def test_an_effect_of_a_team_is_judged_by_what_it_says_itself() -> None:
     silent = replace(effect("tank_heat"), name="of_a_team", believable=None).at(power=1e9)
     assert excess(silent) == 0.0
-    assert judged(silent)["plausible"] is None
+    assert judged(silent).plausible is None
     spoken = replace(effect("tank_heat"), name="of_a_team", believable=Believable("power", 500.0, "no pump", "W"))
-    assert judged(spoken.at(power=600.0))["why"] == "power of 600 W is beyond 500 W: no pump"
+    assert judged(spoken.at(power=600.0)).why == "power of 600 W is beyond 500 W: no pump"
 
 
 def test_what_is_believable_is_of_a_strength_and_every_effect_has_a_plain_name() -> None:
@@ -637,12 +637,12 @@ def test_an_unknown_source_is_no_effect_of_the_name_of_its_site(monkeypatch) -> 
     assert verdict.label == "unknown"
     assert verdict.chosen.names == ("tank_heat",)
     assert verdict.added == ()
-    assert _decisive(verdict, Catalogue(library(), {})) == []
+    assert _decisive(verdict, Catalogue(library(), {})) == ()
     assert "tank_heat" in _not_it(verdict)
 
 
 def test_nothing_is_to_be_measured_where_nothing_is_claimed() -> None:
-    assert _decisive(verdict_of(probable(("tank_heat", -20.0))), Catalogue(library(), {})) == []
+    assert _decisive(verdict_of(probable(("tank_heat", -20.0))), Catalogue(library(), {})) == ()
     assert _decisive(verdict_of(probable(("tank_heat", 40.0))), Catalogue(library(), {}))
 
 

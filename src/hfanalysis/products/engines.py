@@ -1,0 +1,104 @@
+"""The content of simulate.json and design.json: what an engine file comes to."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+from hfanalysis.products.flight import FlightNumbers
+from hfanalysis.products.model import Is, Part, Warnings
+from hfanalysis.quantity import Quantity
+
+
+class Enthalpy(Part):
+    """Of the oxidizer that enters the chamber."""
+
+    value: Annotated[float, Is("of the oxidizer", "J/kg")]
+    unit: Annotated[str, Is("of the value")]
+    std: Annotated[float | None, Is("not known", "J/kg")] = None
+    ci95: Annotated[tuple[float, float] | None, Is("not known", "J/kg")] = None
+    of: Annotated[str, Is("what it is that of")]
+
+
+class EngineHead(Part):
+    """Which engine, by which command, under which conventions."""
+
+    file: ClassVar[str]
+
+    engine: Annotated[str, Is("its name")]
+    command: Annotated[str, Is("that made this")]
+    conventions: Annotated[str, Is("corrected or report")]
+    properties: Annotated[str, Is("of nitrous oxide: coolprop or report")]
+    oxidizer_enthalpy: Annotated[Enthalpy, Is("with which the oxidizer enters the chamber")]
+
+
+class SimulatedFlight(FlightNumbers):
+    """The flight of the simulated engine's rocket."""
+
+    wet_mass: Annotated[Quantity, Is("of the rocket on its pad", "kg")]
+    pad_thrust_to_weight: Annotated[Quantity, Is("peak thrust over wet weight", "")]
+
+
+class Load(Part):
+    """Propellant."""
+
+    oxidizer_mass: Annotated[Quantity, Is("of oxidizer", "kg")]
+    fuel_mass: Annotated[Quantity, Is("of fuel", "kg")]
+
+
+class Simulated(EngineHead):
+    """The unsteady engine of an engine file, and the flight of its rocket."""
+
+    file: ClassVar[str] = "simulate.json"
+
+    burn_time: Annotated[Quantity, Is("until the fuel is gone", "s")]
+    total_impulse: Annotated[Quantity, Is("integral of the thrust", "N s")]
+    specific_impulse: Annotated[Quantity, Is("total impulse over the weight of the load", "s")]
+    peak_chamber_temperature: Annotated[Quantity, Is("of the gas", "K")]
+    peak_chamber_pressure: Annotated[Quantity, Is("of the gas", "Pa")]
+    peak_thrust: Annotated[Quantity, Is("highest", "N")]
+    average_thrust: Annotated[Quantity, Is("total impulse over burn time", "N")]
+    liquid_depletion_time: Annotated[Quantity, Is("when the liquid is gone", "s")]
+    residual_oxidizer_mass: Annotated[Quantity, Is("left in the tank", "kg")]
+    implied_vapor_heat: Annotated[Quantity, Is("that the polytropic vapor would need", "J")]
+    implied_vapor_power: Annotated[Quantity, Is("the same as power, at first", "W")]
+    implied_chamber_heat: Annotated[Quantity, Is("that the quasi-steady chamber would need", "J")]
+    wet_mass: Annotated[Quantity, Is("of the rocket on its pad", "kg")]
+    pad_thrust_to_weight: Annotated[Quantity, Is("peak thrust over wet weight", "")]
+    tank_length: Annotated[Quantity, Is("of the tank", "m")]
+    dip_tube_length: Annotated[Quantity, Is("of its dip tube", "m")]
+    tank_volume: Annotated[Quantity, Is("of the tank", "m^3")]
+    flight: Annotated[SimulatedFlight, Is("of its rocket")]
+    propellant_for_target_apogee: Annotated[Load | None, Is("load for [design] target_apogee")] = None
+    warnings: Warnings
+    provenance: Annotated[dict[str, Any], Is("version, and files by SHA-256")]
+
+
+class Optimum(Part):
+    """The best mixture."""
+
+    of_ratio: Annotated[Quantity, Is("oxidizer over fuel", "")]
+    specific_impulse: Annotated[Quantity, Is("there", "s")]
+
+
+class Designed(EngineHead):
+    """The steady-state design of an engine file."""
+
+    file: ClassVar[str] = "design.json"
+
+    fuel_mass_from: Annotated[str, Is("grain.mass, or design.target_apogee that it was solved for")]
+    burn_time: Annotated[Quantity, Is("of the constant thrust", "s")]
+    oxidizer_mass: Annotated[Quantity, Is("used", "kg")]
+    fuel_mass: Annotated[Quantity, Is("of the grain", "kg")]
+    of_ratio: Annotated[Quantity, Is("oxidizer over fuel", "")]
+    chamber_temperature: Annotated[Quantity, Is("of the gas", "K")]
+    thrust: Annotated[Quantity, Is("constant", "N")]
+    throat_radius: Annotated[Quantity, Is("of the nozzle", "m")]
+    exit_radius: Annotated[Quantity, Is("of the nozzle", "m")]
+    total_impulse: Annotated[Quantity, Is("thrust times burn time", "N s")]
+    specific_impulse: Annotated[Quantity, Is("total impulse over the weight of the propellant", "s")]
+    wet_mass: Annotated[Quantity, Is("of the rocket on its pad", "kg")]
+    pad_thrust_to_weight: Annotated[Quantity, Is("peak thrust over wet weight", "")]
+    apogee: Annotated[Quantity, Is("of its rocket, above ground", "m")]
+    optimum: Annotated[Optimum, Is("the best mixture")]
+    warnings: Warnings
+    provenance: Annotated[dict[str, Any], Is("version, and files by SHA-256")]
