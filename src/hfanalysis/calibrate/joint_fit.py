@@ -36,10 +36,10 @@ from hfanalysis.inference.subject import Subject
 from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, Calibration, RegressionBasis, RegressionTest
 from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 
-TOLD = 0.8
+M_NOT_TOLD = 0.8
 """Standard deviation of m, over what is known of it before, from which on the channels do not tell it."""
 
-STEP = 0.1
+PROBE_STEP = 0.1
 """Of its standard deviation, by which a constant is moved to see what follows from it."""
 
 DERIVED = {"vapor_mass_at_t_v": "kg", "mass_at_t_feed": "kg", "oxidizer_mass_liquid_phase": "kg",
@@ -135,7 +135,7 @@ class _Constants:
         found = self._quantity("polytropic_exponent", "")
         assert found.ci95 is not None
         before = f"what is known of nitrous oxide, {free.center:.2f} ± {free.std:.2f}"
-        if std > TOLD:
+        if std > M_NOT_TOLD:
             why = f"the channels hardly say more than {before}"
             return replace(found, verdict=NOT_IDENTIFIABLE, why=why)
         low, high = found.ci95
@@ -169,7 +169,7 @@ class _Constants:
 
     def _spread(self, values: Array) -> Array:
         fit = self.found.fit
-        steps = STEP * np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+        steps = PROBE_STEP * np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
         slopes = np.zeros((values.size, steps.size))
         for i, step in enumerate(steps.tolist()):
             if step > 0.0:
