@@ -33,9 +33,14 @@ def read(path: Path) -> dict[str, dict[str, Any]]:
     return {row["name"]: row for row in map(json.loads, lines)}
 
 
+def tells(row: dict[str, Any] | None, mutant: Mutant) -> bool:
+    """Whether a result is of this error in this definition; other tests may have come since."""
+    return row is not None and row["state"] == state(mutant, False)
+
+
 def known(row: dict[str, Any] | None, mutant: Mutant) -> bool:
     """Whether a result still holds."""
-    if row is None or row["state"] != state(mutant, False):
+    if row is None or not tells(row, mutant):
         return False
     return bool(row["verdict"] == "killed" or row["tests"] == state(mutant, True))
 
@@ -103,7 +108,7 @@ def main() -> int:
     if not asked.known:
         tried(mutants, asked.found, asked.scratch, asked.again)
     rows = read(asked.found)
-    results = [{**rows[m.name], "file": m.edit.file.as_posix()} for m in mutants if known(rows.get(m.name), m)]
+    results = [{**rows[m.name], "file": m.edit.file.as_posix()} for m in mutants if tells(rows.get(m.name), m)]
     if asked.write:
         asked.write.write_text(page(results), encoding="utf-8")
     return int(any(r["verdict"] != "killed" and r["kind"] == "by hand" for r in results))
