@@ -186,15 +186,6 @@ def test_priors_lie_within_their_bounds(name: str) -> None:
         assert p.center + p.typical <= p.high
 
 
-def test_the_library_has_every_name_that_it_should() -> None:
-    assert list(library()) == [
-        "chamber_heat_loss", "chamber_tap_lag", "combustion_efficiency", "feed_line_fill", "fuel_sliver",
-        "grain_pressure_regression", "ignition_transient", "injector_choked_vapor", "injector_two_phase",
-        "load_cell_drift", "n2_purge", "nozzle_divergence", "nozzle_throat_erosion", "pressure_transducer_offset",
-        "tank_heat", "tank_nonequilibrium", "tank_stratification", "tank_wall_heat_capacity",
-    ]  # fmt: skip
-
-
 def test_an_unknown_effect_is_refused_with_those_there_are() -> None:
     with pytest.raises(ValueError, match="n2_purge"):
         effect("gremlins")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -13,7 +14,7 @@ from hfanalysis.cli.exit_status import nobody_reads
 from hfanalysis.products.model import AdoptedEffect, Part
 from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
-from hfanalysis.stages.base import Context
+from hfanalysis.stages.base import Context, load_stage
 from hfanalysis.wording import numbers as wording
 from hfanalysis.wording.numbers import Shown, in_words, ordered, shown
 
@@ -67,7 +68,7 @@ def show(name: str, context: Context) -> None:
     console.print(_headline(context))
     for stage in way_to(name) if name == "run" else (name,):
         if stage not in context.absent:
-            _SHOWN[stage](context, console)
+            _SHOWN.get(stage, partial(_written, stage))(context, console)
     if adopted := _adopted(name, context):
         console.print(Text(adopted), soft_wrap=True)
 
@@ -250,8 +251,10 @@ SHOWN = 0.005
 """Probability from which on a name is shown."""
 
 
-def _report(context: Context, console: Console) -> None:
-    console.print(Text(f"report: {context.product('report.html')}"), soft_wrap=True)
+def _written(stage: str, context: Context, console: Console) -> None:
+    """What a stage wrote, where nothing else is said of it here."""
+    for name in load_stage(stage).products:
+        console.print(Text(f"{stage}: {context.product(name)}"), soft_wrap=True)
 
 
 def show_engine(product: Simulated | Designed) -> None:
@@ -312,5 +315,4 @@ _SHOWN = {
     "validate": _validate,
     "diagnose": _diagnose,
     "flight": _flight,
-    "report": _report,
 }
