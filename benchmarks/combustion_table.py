@@ -116,7 +116,7 @@ def main() -> None:
     tail = f"""
 The table has {size}.
 Beyond 85 % of nitrogen the gas is below about 1100 K, and where oxidizer is scarce it is below 500 K: the last row's
-worst are there. Mixtures below 0.1 of nitrous oxide to fuel, cold fuel vapour for which CEA has no answer, are given
+worst are there. Mixtures below 0.1 of nitrous oxide to fuel, cold fuel vapor for which CEA has no answer, are given
 the values at 0.1.
 """
     PAGE.write_text(HEAD + "\n".join(lines) + "\n" + tail, encoding="utf-8")

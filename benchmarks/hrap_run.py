@@ -55,7 +55,7 @@ def hf5() -> Engine:
 
 
 def run(engine: Engine) -> Burn:
-    """From ignition through vapour and cold gas."""
+    """From ignition through vapor and cold gas."""
     return burn(engine, longest=SECONDS, run_on=True)
 
 

@@ -26,7 +26,7 @@ Written by `python -m benchmarks.nitrous_properties`.
 
 - `coolprop` (default): CoolProp's reference equation of state (Lemmon and Span 2006), tabulated once.
 - `report`: the correlations and the table of the technical report's appendix, with its two slips corrected: the liquid
-  expands on heating (the printed derivative of its molar volume has the wrong sign), and c_v of the vapour at 250 K is
+  expands on heating (the printed derivative of its molar volume has the wrong sign), and c_v of the vapor at 250 K is
   0.034798, not 0.043798 kJ/(mol K).
 
 Both are C2 splines over theta = (1 - T/T_c)^(1/3), in which densities stay smooth up to the critical point; all
@@ -44,7 +44,7 @@ that, take `report`.
 DEPARTURES = """## Two independent sources
 
 The correlations of ESDU 91022 against CoolProp: what is known of nitrous oxide is known to half of that. A diagnosis
-takes it as unknown: errors of pressure, liquid, vapour and latent heat, each as a level and as what changes over 25 K
+takes it as unknown: errors of pressure, liquid, vapor and latent heat, each as a level and as what changes over 25 K
 (`hfanalysis.thermo.departures`), are constants of every hypothesis.
 """
 
@@ -53,7 +53,7 @@ def differences() -> str:
     """Report against CoolProp, in percent, over the range of a tank."""
     a, b = saturation("report"), saturation("coolprop")
     rows = [
-        "| T, K | p_sat, bar | T read off that pressure | p_sat | liquid density | vapour density "
+        "| T, K | p_sat, bar | T read off that pressure | p_sat | liquid density | vapor density "
         "| p v_v / (h_v - u_v) of the report |",
         "|---|---|---|---|---|---|---|",
     ]
@@ -70,7 +70,7 @@ def differences() -> str:
 def departures() -> str:
     """ESDU 91022 against CoolProp, in percent."""
     source = saturation("coolprop")
-    rows = ["| T, K | p_sat | liquid density | vapour density | latent heat |", "|---|---|---|---|---|"]
+    rows = ["| T, K | p_sat | liquid density | vapor density | latent heat |", "|---|---|---|---|---|"]
     for t in (245.0, 255.0, 265.0, 275.0, 285.0, 295.0, 300.0):
         latent = [float(source.energy(p, t)[0]) for p in (Property.LIQUID_ENTHALPY, Property.VAPOR_ENTHALPY)]
         liquid, vapor = (float(h) for h in enthalpies(np.array(t)))

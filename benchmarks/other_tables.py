@@ -24,7 +24,7 @@ REFERENCE = 273.15
 
 
 def pressure(temperature: Array) -> Array:
-    """Vapour pressure [Pa] by ESDU 91022, eq. 4.1, of temperatures [K] of any shape."""
+    """Vapor pressure [Pa] by ESDU 91022, eq. 4.1, of temperatures [K] of any shape."""
     x = 1.0 - temperature / CRITICAL_TEMPERATURE
     terms = -6.71893 * x + 1.35966 * x**1.5 - 1.3779 * x**2.5 - 4.051 * x**5
     return np.asarray(CRITICAL_PRESSURE * np.exp(CRITICAL_TEMPERATURE / temperature * terms))
@@ -37,14 +37,14 @@ def liquid_density(temperature: Array) -> Array:
 
 
 def vapor_density(temperature: Array) -> Array:
-    """Density of the saturated vapour [kg/m^3] by ESDU 91022, eq. 4.3."""
+    """Density of the saturated vapor [kg/m^3] by ESDU 91022, eq. 4.3."""
     x = np.cbrt(CRITICAL_TEMPERATURE / temperature - 1.0)
     terms = -1.009 * x - 6.28792 * x**2 + 7.50332 * x**3 - 7.90463 * x**4 + 0.629427 * x**5
     return np.asarray(CRITICAL_DENSITY * np.exp(terms))
 
 
 def enthalpies(temperature: Array) -> tuple[Array, Array]:
-    """Of the saturated liquid and vapour [J/kg] by ESDU 91022, eqs. 4.4 and 4.5."""
+    """Of the saturated liquid and vapor [J/kg] by ESDU 91022, eqs. 4.4 and 4.5."""
     x = np.cbrt(1.0 - temperature / CRITICAL_TEMPERATURE)
     liquid = -200.0 + 116.043 * x - 917.225 * x**2 + 794.779 * x**3 - 589.587 * x**4
     vapor = -200.0 + 440.055 * x - 459.701 * x**2 + 434.081 * x**3 - 485.338 * x**4

@@ -1,6 +1,6 @@
 """The report's unsteady model written down plainly (scipy, equilibrium inside the right-hand side), beside ours.
 
-Nothing is tabulated, compiled or rearranged: moles of vapour and liquid with the report's three linear equations, the
+Nothing is tabulated, compiled or rearranged: moles of vapor and liquid with the report's three linear equations, the
 chamber pressure as a state with the report's dp_c/dt, forward differences of T_c and W_c, the nozzle's equations solved
 iteratively. With ``hfanalysis.engine.unsteady`` it shares the properties of nitrous oxide and constants of nature, no
 equation.
@@ -114,7 +114,7 @@ class Reference:
     calls: int = 0
 
     def tank_pressure(self, n_v: float, temperature: float) -> float:
-        """p_sat, or p nu^m = const along the vapour's expansion [Pa]."""
+        """p_sat, or p nu^m = const along the vapor's expansion [Pa]."""
         if self.liquid:
             return float(self.engine.saturation.pressure(temperature))
         return self.p_v * (n_v / self.n_v) ** self.m

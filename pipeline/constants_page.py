@@ -23,7 +23,7 @@ _UNIT = re.compile(r"\[([^\]\s][^\]]{0,24})\]")
 _WORDS = {
     "Seconds": "s",
     "Kelvin": "K",
-    "Metres": "m",
+    "Meters": "m",
     "Standard deviations": "standard deviations",
     "Samples": "samples",
 }

@@ -215,7 +215,7 @@ def test_the_margin_is_least_at_the_rail_s_end_and_in_the_strongest_wind(shaped:
     assert shaped[0]["checks"]["largest_static_margin"]["result"] == "failed"
 
 
-def test_the_centre_of_gravity_moves_ahead_as_the_tank_empties(shaped: tuple[dict[str, Any], Path]) -> None:
+def test_the_center_of_gravity_moves_ahead_as_the_tank_empties(shaped: tuple[dict[str, Any], Path]) -> None:
     """By hand: structure, engine and what is loaded, about the nose tip."""
     with h5py.File(shaped[1] / "flight.h5") as file:
         center, mass = file["balance/center_of_gravity"][:], file["balance/mass"][:]
@@ -224,7 +224,7 @@ def test_the_centre_of_gravity_moves_ahead_as_the_tank_empties(shaped: tuple[dic
     assert center[-1] == pytest.approx((40.0 * 1.75 + 12.5 * 3.1) / 52.5, abs=1e-3)
 
 
-def test_the_rocksim_file_carries_the_engine_s_centre_of_gravity(shaped: tuple[dict[str, Any], Path]) -> None:
+def test_the_rocksim_file_carries_the_engine_s_center_of_gravity(shaped: tuple[dict[str, Any], Path]) -> None:
     motor, points, _, _ = rocksim.read((shaped[1] / "HF5.rse").read_text())
     assert motor.total_mass == pytest.approx(12.5 + 9.944, abs=1e-3)
     assert points.center is not None

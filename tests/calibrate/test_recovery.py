@@ -22,7 +22,7 @@ STANDS = {
     "good injector, wide line": Stand(C_i=0.6, K_loss=2e7, mass=11.0, volume=18e-3),
     "cold tank": Stand(temperature=278.0, chamber=8e5),
     "hot tank, steep expansion": Stand(temperature=300.0, m=1.25),
-    "heated vapour": Stand(m=0.9),
+    "heated vapor": Stand(m=0.9),
     "the report's properties": Stand(source="report"),
 }
 
@@ -109,7 +109,7 @@ def test_C_i_goes_with_the_liquid_that_left(burn: Trial) -> None:
     assert difference[1] - difference[0] == pytest.approx(1.0, rel=1e-9)
 
 
-def test_the_compressibility_factor_is_that_of_the_saturated_vapour() -> None:
+def test_the_compressibility_factor_is_that_of_the_saturated_vapor() -> None:
     from CoolProp import CoolProp
 
     test = fire()

@@ -94,12 +94,12 @@ def test_a_C_i_above_one_is_unphysical(burn: Trial) -> None:
     assert "outside 0.05 to 1.0" in str(found.why)
 
 
-def test_less_oxidizer_than_the_vapour_that_is_left_is_unphysical(burn: Trial) -> None:
+def test_less_oxidizer_than_the_vapor_that_is_left_is_unphysical(burn: Trial) -> None:
     found = calibrated(burn, mass=Value(0.8, 0.01)).quantities["C_i"]
     assert found.value is not None
     assert found.value < 0.0
     assert found.verdict == UNPHYSICAL
-    assert "less than the vapour left at t_v" in str(found.why)
+    assert "less than the vapor left at t_v" in str(found.why)
 
 
 # --- m ----------------------------------------------------------------------------------------------------------------
@@ -112,7 +112,7 @@ def test_with_nitrogen_in_before_the_liquid_is_gone_there_is_no_m(burn: Trial) -
     assert found.quantities["C_i"].value is not None
 
 
-def test_a_vapour_phase_of_milliseconds_does_not_tell_m() -> None:
+def test_a_vapor_phase_of_milliseconds_does_not_tell_m() -> None:
     reason = refused(calibrated(fire(Stand(vapor_time=0.004), rate=1000.0), white=2e4), "m")
     assert "too little to tell m" in reason or "too short" in reason
     assert "0.004 s" in reason
@@ -120,7 +120,7 @@ def test_a_vapour_phase_of_milliseconds_does_not_tell_m() -> None:
 
 def test_a_tank_pressure_that_rises_tells_no_m(burn: Trial) -> None:
     rising = np.where(burn.time > burn.t_v, burn.p_v + 1e5 * (burn.time - burn.t_v), burn.values["p_tank"])
-    assert "does not fall over the vapour phase" in refused(calibrated(with_values(burn, p_tank=rising)), "m")
+    assert "does not fall over the vapor phase" in refused(calibrated(with_values(burn, p_tank=rising)), "m")
 
 
 def test_no_exponent_empties_a_tank_as_fast_as_a_burst_one(burn: Trial) -> None:

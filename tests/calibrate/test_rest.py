@@ -71,11 +71,11 @@ def test_more_than_a_tank_holds_as_liquid_is_remarked_with_the_temperature_at_wh
     assert VOLUME * float(nitrous.liquid_density(fits)) == pytest.approx(mass, rel=0.01)
 
 
-def test_less_than_the_vapour_would_weigh_is_remarked() -> None:
+def test_less_than_the_vapor_would_weigh_is_remarked() -> None:
     share, (remark,) = state_remarks(saturation(), VOLUME, 1.0, 50e5)
     assert share is not None
     assert share < 0.0
-    assert "less than the saturated vapour alone would weigh" in remark
+    assert "less than the saturated vapor alone would weigh" in remark
 
 
 # --- what the blowdown says -------------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ CHAMBER = 14e5 - 6e4 * TIME
 
 
 def emptied(m: float) -> tuple[Tables, Inputs, float]:
-    """What is measured of a blowdown, the instants of its vapour phase, and what is left at the end of it [kg]."""
+    """What is measured of a blowdown, the instants of its vapor phase, and what is left at the end of it [kg]."""
     run = blow_down(saturation(), FEED, 8.0, 290.0, TIME, CHAMBER, m)
     t_end = run.t_v + 0.7
     dry = run.time > run.t_v

@@ -62,12 +62,12 @@ def test_a_layer_of_a_bar_is_none() -> None:
 
 
 @given(some.floats(2.5, 8.0), some.floats(0.0, 10.0))
-def test_what_falls_too_low_is_vapour_made_late(depth: float, size: float) -> None:
+def test_what_falls_too_low_is_vapor_made_late(depth: float, size: float) -> None:
     found = fall_at_opening(tank(layer(size * BAR, 0.1) + late(depth * BAR, 0.5)), logged.segments())
     assert found is not None
     assert found.names == ("tank_nonequilibrium",)
     assert 0.2 < found.end < 1.2
-    assert "comes back to it: vapour is made late" in found.text
+    assert "comes back to it: vapor is made late" in found.text
     assert ("tank_stratification" in found.text) == ("p_tank falls by" in found.text)
 
 

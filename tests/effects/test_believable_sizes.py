@@ -9,7 +9,7 @@ from hfanalysis.effects import effect, library
 
 SIZES = {
     "tank_heat": ("power", 1.5e3, 6e3),  # three heating blankets of 500 W; an instant water heater
-    "tank_wall_heat_capacity": ("capacity", 12 * 900.0, 60 * 900.0),  # 12 kg of aluminium; 60 kg of it round 20 L
+    "tank_wall_heat_capacity": ("capacity", 12 * 900.0, 60 * 900.0),  # 12 kg of aluminum; 60 kg of it round 20 L
     "tank_nonequilibrium": ("depth", 5e5, 20e5),  # Zimmerman's cold flows; half of the tank's pressure
     "tank_stratification": ("excess", 6.0, 25.0),  # a tank in the sun; from a cool cellar to beyond the critical point
     "n2_purge": ("area", 12e-6, 80e-6),  # a bore of 4 mm; of 10 mm, wider than any check valve of a purge line
@@ -21,11 +21,11 @@ SIZES = {
     "grain_pressure_regression": ("exponent", 0.3, 1.0),  # classical fuels of radiating flames; a solid propellant
     "ignition_transient": ("mass", 0.05, 0.5),  # a charge of 50 g; as much as a third of the grain
     "fuel_sliver": ("depth", 0.6, 1.5),
-    "nozzle_throat_erosion": ("rate", 1.5e-4, 1e-3),  # graphite; a millimetre a second
+    "nozzle_throat_erosion": ("rate", 1.5e-4, 1e-3),  # graphite; a millimeter a second
     "nozzle_divergence": ("loss", 0.017, 0.3),  # a cone of 15 degrees loses (1 - cos 15)/2; none of 60 degrees is built
     "load_cell_drift": ("drift", 150.0, 1500.0),  # some per cent of 3 kN; half of it
     "pressure_transducer_offset": ("p_tank", 0.7e5, 10e5),  # 1 % of 70 bar; 10 bar with the tank empty
-    "chamber_tap_lag": ("lag", 0.05, 1.5),  # a metre of tube; longer than the start takes
+    "chamber_tap_lag": ("lag", 0.05, 1.5),  # a meter of tube; longer than the start takes
 }
 """A strength [SI] that stands have had or have by what is on them, and one that none has."""
 

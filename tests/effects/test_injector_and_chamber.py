@@ -57,7 +57,7 @@ def test_choking_leaves_the_liquid_alone() -> None:
 
 
 @pytest.mark.parametrize("vapor", [0.0, 0.6])
-def test_the_vapour_takes_as_much_part_in_flashing_as_it_is_said_to(vapor: float) -> None:
+def test_the_vapor_takes_as_much_part_in_flashing_as_it_is_said_to(vapor: float) -> None:
     """Without a part it flows as the report says; with one, that share of the weight chokes (g = 1.2)."""
     flashing = only("injector_two_phase", weight=0.1, vapor=vapor)
     assert flashing.liquid_out is not None
@@ -79,7 +79,7 @@ def test_gas_that_hardly_expands_flows_as_a_fluid_and_more_drop_only_costs() -> 
     assert shares[-1] == pytest.approx(0.6485 / sqrt(2.0), rel=1e-3)
 
 
-def test_choked_vapour_flows_as_an_orifice_says() -> None:
+def test_choked_vapor_flows_as_an_orifice_says() -> None:
     """Deep below the critical ratio mdot / mdot_incompressible = psi / sqrt(2 (1 - eta)), psi = 0.6485 for g = 1.2."""
     found = only("injector_choked_vapor", weight=1.0, gamma=1.2)
     pressure, density = channel(found, "tank_pressure", 9.0), channel(found, "tank_mass", 9.0) / 16.5e-3
@@ -186,7 +186,7 @@ def test_remainders_of_any_thinness_fade_exponentially() -> None:
     slow, even = (only("fuel_sliver", depth=1.0, width=6e-3, tail=k) for k in (0.97, 0.5))
     left = [engine_on_stand().outer_radius - channel(slow, "port_radius", t) for t in (4.0, 5.0, 6.0)]
     assert left[0] < 6e-3
-    # the flow of the vapour falls: so does the rate, but by less than half
+    # the flow of the vapor falls: so does the rate, but by less than half
     assert 1.0 < np.log(left[0] / left[1]) / np.log(left[1] / left[2]) < 2.0
     assert channel(slow, "port_radius", 9.9) < channel(even, "port_radius", 9.9)
 

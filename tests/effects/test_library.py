@@ -131,7 +131,7 @@ def test_a_term_sets_the_sites_that_it_names_each_in_its_hook(name: str) -> None
 
 
 def sites_set_by(name: str, hook: int) -> set[str]:
-    """Sites that a term changes, over a liquid and a vapour phase, early and late in the grain."""
+    """Sites that a term changes, over a liquid and a vapor phase, early and late in the grain."""
     active, engine = typical(name), engine_on_stand()
     c = constants(engine)
     own = np.array([s.start(engine, active.named) for s in active.effect.states] or [0.0])

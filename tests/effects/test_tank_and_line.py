@@ -108,8 +108,8 @@ def test_a_sustained_dip_stays_to_the_end_of_the_liquid(sustained: float) -> Non
     assert late == pytest.approx(3e5 * sustained, rel=1e-4)
 
 
-def test_the_vapour_goes_on_from_the_lower_pressure_without_a_leap() -> None:
-    """What the liquid leaves behind expands like the report's vapour, its pressure lower in proportion."""
+def test_the_vapor_goes_on_from_the_lower_pressure_without_a_leap() -> None:
+    """What the liquid leaves behind expands like the report's vapor, its pressure lower in proportion."""
     found = only("tank_nonequilibrium", depth=3e5, delay=0.25, sustained=1.0)
     gone = found.liquid_out
     assert gone is not None

@@ -28,7 +28,7 @@ def test_what_stands_behind_the_injector_and_next_to_no_heat_change_nothing() ->
     assert run.mass == pytest.approx(plain.mass, rel=1e-9)
 
 
-def test_an_exponent_that_the_engine_does_not_state_is_the_vapours_own() -> None:
+def test_an_exponent_that_the_engine_does_not_state_is_the_vapors_own() -> None:
     """c_p/c_v as the liquid ends, as in the engine's own course."""
     engine = engine_on_stand(polytropic_exponent=None)
     run = TankAlone.of(engine).run(TIME, np.full(TIME.size, 14e5))
@@ -54,14 +54,14 @@ def test_on_the_engines_own_chamber_pressure_it_takes_the_engines_course(name: s
     assert run.run_pressure[later] == pytest.approx(done.output("run_pressure")[later], rel=5e-3)
 
 
-def test_a_given_loss_takes_the_place_of_the_modelled_one() -> None:
+def test_a_given_loss_takes_the_place_of_the_modeled_one() -> None:
     engine = engine_on_stand(effects=(effect("tank_heat").at(power=1.0),))
     found = TankAlone.of(engine).run(TIME[:100], np.full(100, 14e5), loss=np.full(100, 3e5))
     assert found.pressure - found.run_pressure == pytest.approx(3e5)
 
 
 @pytest.mark.parametrize("name", ["feed_line_fill", "injector_choked_vapor"])
-def test_with_the_engines_own_loss_given_the_vapour_phase_is_the_engines(name: str) -> None:
+def test_with_the_engines_own_loss_given_the_vapor_phase_is_the_engines(name: str) -> None:
     """A line that gives away what it holds goes by its own loss, whatever else is lost between tank and injector."""
     engine = engine_on_stand(effects=(typical(name),))
     done = burn(engine, TIME[-1], rtol=1e-7, run_on=True, times=TIME)

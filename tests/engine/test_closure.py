@@ -29,7 +29,7 @@ def dry(of: Burn) -> NDArray[np.bool_]:
     return of.time > (of.liquid_out or np.inf) + 1e-6
 
 
-def test_the_vapours_heat_closes_its_energy() -> None:
+def test_the_vapors_heat_closes_its_energy() -> None:
     """V dp = k_s p V d ln rho + G dQ: integrated along the run, from pressure and mass alone."""
     of, on = run(), dry(run())
     mass, t, source = of.state("tank_mass")[on], of.state("tank_temperature")[on][0], of.steps.engine.saturation
@@ -47,8 +47,8 @@ def test_a_small_exponent_needs_tens_of_kilowatts_and_an_adiabatic_one_none() ->
     assert abs(vapor_heat(adiabatic)[dry(adiabatic)][0]) < 100.0
 
 
-def test_heat_into_the_vapour_raises_its_pressure_as_grueneisens_parameter_has_it() -> None:
-    """V dp = m p V d ln rho + G Q dt beside the polytropic exponent m, whatever the vapour's temperature stands for."""
+def test_heat_into_the_vapor_raises_its_pressure_as_grueneisens_parameter_has_it() -> None:
+    """V dp = m p V d ln rho + G Q dt beside the polytropic exponent m, whatever the vapor's temperature stands for."""
     heated = engine_on_stand(
         polytropic_exponent=1.1, effects=(effect("tank_heat").at(power=5e3, begun=1.0, fade=500.0),)
     )
@@ -87,7 +87,7 @@ def purged() -> Engine:
 
 
 @pytest.mark.parametrize("engine", [engine_on_stand(), purged()], ids=["plain", "with nitrogen"])
-def test_mass_closes_through_vapour_nitrogen_and_cold_gas(engine: Engine) -> None:
+def test_mass_closes_through_vapor_nitrogen_and_cold_gas(engine: Engine) -> None:
     of = burn(engine, SECONDS, rtol=1e-10, run_on=True)
     held = sum(of.state(n) for n in ("tank_mass", "tank_nitrogen", "chamber_oxidizer", "chamber_nitrogen"))
     held = held + of.state("chamber_fuel") + of.state("cold_gas")

@@ -66,7 +66,7 @@ def energy(nitrous: Saturation, mass: Array, temperature: Array) -> Array:
 
 @both_sources
 @given(fill=st.floats(0.02, 0.98), place=st.floats(0.0, 1.0))
-def test_liquid_and_vapour_fill_the_tank(source: str, fill: float, place: float) -> None:
+def test_liquid_and_vapor_fill_the_tank(source: str, fill: float, place: float) -> None:
     nitrous = saturation(source)
     t = 190.0 + place * 115.0
     rho_l, rho_v = float(nitrous.liquid_density(t)), float(nitrous.vapor_density(t))
@@ -141,7 +141,7 @@ def test_the_end_of_the_liquid_is_found_inside_its_step() -> None:
 
 
 @both_sources
-def test_at_the_end_of_the_liquid_only_saturated_vapour_is_left(source: str) -> None:
+def test_at_the_end_of_the_liquid_only_saturated_vapor_is_left(source: str) -> None:
     run = emptied(source, m=1.0)
     t_empty = run.temperature[-1]  # m = 1 holds it
     nitrous = saturation(source)
@@ -183,7 +183,7 @@ def test_a_tank_below_its_chamber_holds_the_line_at_its_own_pressure() -> None:
 
 
 @pytest.mark.parametrize("m", [0.75, 1.0, 1.3])
-def test_the_vapour_expands_along_its_polytrope(m: float) -> None:
+def test_the_vapor_expands_along_its_polytrope(m: float) -> None:
     run = emptied(m=m)
     after = slice(liquid_part(run).stop, None)
     p, mass, t = run.pressure[after], run.mass[after], run.temperature[after]
@@ -192,12 +192,12 @@ def test_the_vapour_expands_along_its_polytrope(m: float) -> None:
     np.testing.assert_allclose(t / t[0], (mass / mass[0]) ** (m - 1.0), rtol=1e-10)
 
 
-def test_the_compressibility_factor_holds_over_the_vapour_phase() -> None:
+def test_the_compressibility_factor_holds_over_the_vapor_phase() -> None:
     run = emptied(m=1.15)
     after = range(liquid_part(run).stop, run.time.size, 1000)
     z = [compressibility(run.pressure[i], VOLUME, run.mass[i], run.temperature[i]) for i in after]
     assert z == pytest.approx([z[0]] * len(z), rel=1e-10)
-    assert 0.6 < z[0] < 0.95  # nitrous oxide vapour at 20 to 40 bar
+    assert 0.6 < z[0] < 0.95  # nitrous oxide vapor at 20 to 40 bar
 
 
 def test_a_line_with_a_loss_factor_loses_with_the_square_of_the_flow() -> None:
@@ -238,7 +238,7 @@ def test_a_chamber_above_the_tank_keeps_everything_in() -> None:
     assert np.isnan(run.t_v)
 
 
-def test_a_tank_of_saturated_vapour_starts_in_the_vapour_phase() -> None:
+def test_a_tank_of_saturated_vapor_starts_in_the_vapor_phase() -> None:
     nitrous = saturation()
     mass = VOLUME * float(nitrous.vapor_density(TEMPERATURE))
     run = emptied(mass=mass * (1.0 - 1e-12), m=1.2, end=2.0)
@@ -276,7 +276,7 @@ def test_the_heat_that_an_exponent_implies_is_that_of_the_equation_of_state(m: f
         rho, target = density * left / mass[0], pressure * (left / mass[0]) ** m
 
         def excess(warm: float, rho: float = rho, target: float = target) -> float:
-            gas.update(CoolProp.DmassT_INPUTS, rho, warm)  # below saturation too, as vapour
+            gas.update(CoolProp.DmassT_INPUTS, rho, warm)  # below saturation too, as vapor
             return float(gas.p()) - target
 
         brentq(excess, t - 40.0, t + 80.0)
@@ -305,4 +305,4 @@ def test_the_exponent_zero_is_no_exception() -> None:
 def test_an_exponent_below_one_heats_the_gas_with_tens_of_kilowatts() -> None:
     heat = implied_heat(saturation(), 0.75, 1.4, 0.9, 270.0, 0.75)
     assert heat > implied_heat(saturation(), 1.0, 1.4, 0.9, 270.0, 0.75)
-    assert heat / 0.72 > 20e3  # over the 0.72 s of HF5's vapour phase
+    assert heat / 0.72 > 20e3  # over the 0.72 s of HF5's vapor phase

@@ -60,7 +60,7 @@ def reported(done: Burn) -> dict[str, float]:
         "peak_thrust": float(done.output("thrust").max()),
         "average_thrust": impulse / done.burn_time,
         "peak_pressure": float(done.output("chamber_pressure").max()),
-        "vapour_left": float(done.state("tank_mass")[-1]),
+        "vapor_left": float(done.state("tank_mass")[-1]),
         "speed": float(done.state("speed")[-1]),
         "altitude": float(done.state("altitude")[-1]),
     }
@@ -74,7 +74,7 @@ def reported(done: Burn) -> dict[str, float]:
         ("peak_thrust", 6750.0),
         ("average_thrust", 5055.0),
         ("peak_pressure", 27.53e5),
-        ("vapour_left", 0.6775),
+        ("vapor_left", 0.6775),
     ],
 )
 def test_the_design_point_is_the_certified_one(quantity: str, certified: float) -> None:
@@ -230,7 +230,7 @@ def test_an_engine_whose_fuel_goes_first_ends_with_liquid_in_the_tank() -> None:
     assert vapor_compressibility(engine(), done) is None
 
 
-def test_the_vapours_compressibility_follows_from_the_state_at_the_liquids_end() -> None:
+def test_the_vapors_compressibility_follows_from_the_state_at_the_liquids_end() -> None:
     assert vapor_compressibility(engine(), burnt()) == pytest.approx(0.66, abs=0.15)
 
 
@@ -295,7 +295,7 @@ def test_states_that_are_not_numbers_give_rates_that_are_not_and_no_crash() -> N
         assert np.isnan(dy[:2]).all()
 
 
-def test_the_reference_solver_agrees_through_vapour_and_cold_gas() -> None:
+def test_the_reference_solver_agrees_through_vapor_and_cold_gas() -> None:
     run = solve(hf5_like(), longest=17.0, run_on=True)
     ours = burn(hf5_like(), 17.0, run_on=True)
     assert (ours.liquid_out, ours.burn_time) == pytest.approx(run.events[:2], rel=1e-4)

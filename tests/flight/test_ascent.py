@@ -49,7 +49,7 @@ def test_the_rocket_reaches_the_certified_apogee() -> None:
     assert speed == pytest.approx(0.0, abs=1e-6)
 
 
-def test_the_residual_vapour_carries_it_higher() -> None:
+def test_the_residual_vapor_carries_it_higher() -> None:
     residual = float(burnt().state("tank_mass")[-1])
     carrying = replace(flown.curve_of(maelstrom(), burnt()), mass_after=52.5 + residual)
     assert ascend(carrying, ROCKET).height == pytest.approx(3060.0, rel=0.003)

@@ -27,7 +27,7 @@ def impulse(curve: tuple[np.ndarray, np.ndarray]) -> float:
 
 
 def loaded(points: Points) -> Points:
-    """With a mass that falls and a centre that moves back."""
+    """With a mass that falls and a center that moves back."""
     left = 8.944 * left_by_thrust(points)
     return Points(points.time, points.thrust, left, np.linspace(0.5, 0.7, points.time.size))
 
@@ -72,7 +72,7 @@ def test_the_header_carries_masses_and_sizes() -> None:
     assert rocksim.read(rocksim.text(MOTOR, points))[0] == MOTOR
 
 
-def test_mass_and_centre_of_gravity_are_carried_over_time() -> None:
+def test_mass_and_center_of_gravity_are_carried_over_time() -> None:
     time = np.linspace(0.0, 5.0, 400)
     points = points_of(time, 1000.0 - 100.0 * time, 9.0 - time, 0.5 + 0.05 * time)
     read = rocksim.read(rocksim.text(MOTOR, points))[1]

@@ -34,7 +34,7 @@ def flights(wind: float, seeds: int = 1, angle: float = 0.0, center: float = HAL
     return fly_in_wind(reads(angle), weights, aero(HALCYON), wind, seeds, 40.0)
 
 
-def test_the_centre_of_gravity_is_the_mean_weighed_by_mass() -> None:
+def test_the_center_of_gravity_is_the_mean_weighed_by_mass() -> None:
     found = balance([Part(3.0, 1.0), Part(1.0, 2.0)])
     assert found.center == pytest.approx(1.25)
     assert found.inertia == pytest.approx(3.0 * 0.25**2 + 0.75**2)
@@ -89,14 +89,14 @@ def test_it_swings_at_the_frequency_of_its_margin_and_inertia() -> None:
     assert half == pytest.approx(np.pi / np.sqrt(stiffness / INERTIA), rel=0.15)
 
 
-def test_a_rocket_that_weighs_aft_of_its_centre_of_pressure_tumbles() -> None:
+def test_a_rocket_that_weighs_aft_of_its_center_of_pressure_tumbles() -> None:
     path = flights(1.0, center=3.0).paths[0]
     assert np.nanmin(path[:, MARGIN]) < 0.0
     assert np.nanmax(path[: int(5.0 / PITCH_STEP), ATTACK]) > 1.0
 
 
 def test_wind_takes_margin_at_the_rail_s_end() -> None:
-    """The body's lift moves the centre of pressure ahead as the angle of attack grows."""
+    """The body's lift moves the center of pressure ahead as the angle of attack grows."""
     margins = [margin(flights(wind, seeds=5)) for wind in (1.0, 4.0, 8.0)]
     at_rail = [float(m.mean[0]) for m in margins if m is not None]
     assert at_rail == sorted(at_rail, reverse=True)

@@ -91,7 +91,7 @@ def test_a_script_states_the_rocket_as_it_is() -> None:
     assert outside["tail"]["position"] == pytest.approx(0.2)
 
 
-def test_a_rail_that_nobody_states_is_one_of_five_metres() -> None:
+def test_a_rail_that_nobody_states_is_one_of_five_meters() -> None:
     """As long as those of student competitions at least; shorter ones would let the rocket turn in the wind."""
     assert stated()["RAIL_LENGTH"] == 6.05
     assert 4.0 <= stated(rail_length=None)["RAIL_LENGTH"] <= 6.0

@@ -74,7 +74,7 @@ def left(found: Firing, time: float) -> tuple[float, float]:
     return float(np.interp(time, load.time, load.oxidizer)), float(np.interp(time, load.time, load.fuel))
 
 
-def test_the_oxidizer_at_the_end_of_the_liquid_is_the_calibrated_vapour() -> None:
+def test_the_oxidizer_at_the_end_of_the_liquid_is_the_calibrated_vapor() -> None:
     """1.87 kg by the calibration of the noisy log."""
     assert left(replica(), 5.27)[0] == pytest.approx(1.873, rel=0.01)
     assert left(replica(), 0.0) == pytest.approx((8.35, 1.594))

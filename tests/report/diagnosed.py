@@ -96,7 +96,7 @@ DIAGNOSIS: dict[str, Any] = {
     "decisive_measurements": ["tank_heat: a thermocouple on the tank's wall"],
     "plausibility": {
         "tank_heat": _SIZE,
-        "tank_wall_heat_capacity": {"size": "90 kJ/K", "plausible": False, "why": "that is 100 kg of aluminium"},
+        "tank_wall_heat_capacity": {"size": "90 kJ/K", "plausible": False, "why": "that is 100 kg of aluminum"},
     },
     "constants": {
         "without": {"area": _quantity(1.97e-5, "m^2", 1e-7), "m": _quantity(0.746, "", 0.01)},

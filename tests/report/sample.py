@@ -94,7 +94,7 @@ _TIME = np.linspace(0.9, 5.2, 120)
 CALIBRATION: dict[str, Any] = {
     "C_i": quantity(0.2931, "", 0.0034, verdict="identified"),
     "m": quantity(-3.1, "", 0.4, verdict="unphysical", why="needs 14 kW of heat"),
-    "Z": {"value": None, "reason": "the vapour phase lasts 0.05 s", "verdict": "not identifiable"},
+    "Z": {"value": None, "reason": "the vapor phase lasts 0.05 s", "verdict": "not identifiable"},
     "a": quantity(1.32e-4, "m/s (kg/m^2/s)^-n", 3e-5, verdict="not identifiable", why="only with n"),
     "n": quantity(0.55, "", 0.12, verdict="not identifiable", why="only with a"),
     "regression_rate_reference": quantity(1.05e-3, "m/s", 2e-5, verdict="identified"),

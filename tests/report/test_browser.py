@@ -267,8 +267,8 @@ CONTRAST = """(() => {
     .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
   const ground = (element) => {
     for (let e = element; e; e = e.parentElement) {
-      const colour = parts(getComputedStyle(e).backgroundColor);
-      if (colour.length < 4 || colour[3] > 0) return colour;
+      const color = parts(getComputedStyle(e).backgroundColor);
+      if (color.length < 4 || color[3] > 0) return color;
     }
     return [255, 255, 255];
   };
@@ -446,7 +446,7 @@ def test_two_tests_share_one_page(tab: Page, tmp_path: Path) -> None:
 
 
 def test_the_page_looks_like_a_page(opened: Page, tmp_path: Path) -> None:
-    """A picture with one dominating ground colour and dark text on it."""
+    """A picture with one dominating ground color and dark text on it."""
     shot = Image.open(opened.picture(tmp_path / "page.png")).convert("L")
     histogram, pixels = shot.histogram(), shot.width * shot.height
     assert max(histogram) > 0.3 * pixels

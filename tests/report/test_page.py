@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from tests.report.sample import CALIBRATION, FLIGHT, SEGMENTS, VALIDATION, channel, material, quantity, saying, without
 
-from hfanalysis.charts.colours import COLOURS, STYLES
+from hfanalysis.charts.colors import COLORS, STYLES
 from hfanalysis.charts.style import sheet
 from hfanalysis.charts.svg import Event, events, new_plot, value_range
 from hfanalysis.products.ingest import Ingest
@@ -163,7 +163,7 @@ def test_the_verdict_names_what_is_known_and_what_is_not(tmp_path: Path) -> None
         "regression rate at the reference flux."
     )
     assert "Outside its physical range: polytropic exponent." in said
-    assert "Not identifiable from this test: vapour compressibility, vapour-phase feed loss, regression" in said
+    assert "Not identifiable from this test: vapor compressibility, vapor-phase feed loss, regression" in said
 
 
 def test_the_verdict_names_the_sensors_that_look_wrong(tmp_path: Path) -> None:
@@ -193,7 +193,7 @@ def test_modes_that_could_not_run_say_why(tmp_path: Path) -> None:
 
 
 def test_reasons_and_values_are_on_the_page(text: str) -> None:
-    for words in ("needs 14 kW of heat", "the vapour phase lasts 0.05 s", "11.43", "set by the engineer", "ab" * 32):
+    for words in ("needs 14 kW of heat", "the vapor phase lasts 0.05 s", "11.43", "set by the engineer", "ab" * 32):
         assert words in text
 
 
@@ -289,7 +289,7 @@ def test_nitrogen_may_come_before_the_liquid_is_gone(tmp_path: Path) -> None:
         ("line filling", 0.0, 0.87),
         ("liquid", 0.87, 3.0),
         ("liquid + N₂", 3.0, 5.271),
-        ("vapour + N₂", 5.271, 17.0),
+        ("vapor + N₂", 5.271, 17.0),
     ]
 
 
@@ -300,8 +300,8 @@ def test_dead_channels_leave_no_chart_and_no_crash(tmp_path: Path) -> None:
     assert laid["pressures"].absent == "there is nothing to draw"
 
 
-def _luminance(colour: str) -> float:
-    parts = [int(colour[i : i + 2], 16) / 255.0 for i in (1, 3, 5)]
+def _luminance(color: str) -> float:
+    parts = [int(color[i : i + 2], 16) / 255.0 for i in (1, 3, 5)]
     linear = [c / 12.92 if c <= 0.03928 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
@@ -312,25 +312,25 @@ def _contrast(a: str, b: str) -> float:
 
 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-def test_colours_reach_wcag_aa(dark: bool) -> None:
-    colours = {name: pair[dark] for name, pair in COLOURS.items()}
+def test_colors_reach_wcag_aa(dark: bool) -> None:
+    colors = {name: pair[dark] for name, pair in COLORS.items()}
     for ground in ("paper", "raised"):
         for ink in ("ink", "soft", "accent", "good", "open", "bad"):
-            assert _contrast(colours[ink], colours[ground]) >= 4.5, (ink, ground)
+            assert _contrast(colors[ink], colors[ground]) >= 4.5, (ink, ground)
         for line in (*STYLES, "model", "raw", "residual", "C_i", "p_fill"):
-            assert _contrast(colours[line], colours[ground]) >= 3.0, (line, ground)
+            assert _contrast(colors[line], colors[ground]) >= 3.0, (line, ground)
     for verdict in ("good", "open", "bad"):
-        assert _contrast(colours[verdict], colours[f"{verdict}-tint"]) >= 4.5, verdict
+        assert _contrast(colors[verdict], colors[f"{verdict}-tint"]) >= 4.5, verdict
 
 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_names_of_phases_stand_out_from_their_tints(dark: bool) -> None:
-    colours = {name: pair[dark] for name, pair in COLOURS.items()}
+    colors = {name: pair[dark] for name, pair in COLORS.items()}
     share = float(re.findall(r"\.phase \{ opacity: ([\d.]+)", sheet())[0])
     for tint in ("fill", "liquid", "vapor", "nitrogen"):
-        ground = _mixed(colours[tint], colours["paper"], share)
-        assert _contrast(colours["soft"], ground) >= 4.5, tint
-        assert _contrast(colours["ink"], ground) >= 4.5, tint
+        ground = _mixed(colors[tint], colors["paper"], share)
+        assert _contrast(colors["soft"], ground) >= 4.5, tint
+        assert _contrast(colors["ink"], ground) >= 4.5, tint
 
 
 def _mixed(a: str, b: str, share: float) -> str:
@@ -338,8 +338,8 @@ def _mixed(a: str, b: str, share: float) -> str:
     return "#" + "".join(f"{round(share * x + (1 - share) * y):02x}" for x, y in parts)
 
 
-def test_every_colour_that_the_style_sheet_asks_for_is_there() -> None:
-    assert set(re.findall(r"var\(--([\w-]+)[),]", sheet())) - {"c"} <= set(COLOURS)
+def test_every_color_that_the_style_sheet_asks_for_is_there() -> None:
+    assert set(re.findall(r"var\(--([\w-]+)[),]", sheet())) - {"c"} <= set(COLORS)
 
 
 def test_a_drift_that_could_not_be_removed_is_told(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Normal force, centre of pressure and drag beside published examples and RocketPy's."""
+"""Normal force, center of pressure and drag beside published examples and RocketPy's."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_halcyon_s_slopes_are_rocketpy_s() -> None:
     ("mach", "slope", "place"),
     [(0.0, 6.81429, 2.47762), (0.3, 6.90471, 2.48987), (0.6, 7.21003, 2.52896), (0.75, 7.48162, 2.56106)],
 )
-def test_halcyon_s_centre_of_pressure_is_rocketpy_s(mach: float, slope: float, place: float) -> None:
+def test_halcyon_s_center_of_pressure_is_rocketpy_s(mach: float, slope: float, place: float) -> None:
     found = center_of_pressure(components(HALCYON, mach))
     assert found == pytest.approx((slope, place), rel=1e-5)
 
@@ -70,7 +70,7 @@ def test_the_published_example_comes_out() -> None:
     ("fineness", "center"),
     [(1.0, 0.430), (2.0, 0.914), (5.0, 2.326), (6.0, 2.794), (7.0, 3.261), (8.0, 3.729), (9.0, 4.196), (10.0, 4.663)],
 )
-def test_a_tangent_ogive_has_the_centre_of_barrowman_s_own_table(fineness: float, center: float) -> None:
+def test_a_tangent_ogive_has_the_center_of_barrowman_s_own_table(fineness: float, center: float) -> None:
     """J. and J. Barrowman, The Theoretical Prediction of the Center of Pressure, NARAM-8, 1966: X/d over L/d.
 
     To the table's last digit. Its lines for 3 and 4 cannot be read in the transcription at hand.
@@ -81,13 +81,13 @@ def test_a_tangent_ogive_has_the_centre_of_barrowman_s_own_table(fineness: float
 @pytest.mark.parametrize(
     ("kind", "share"), [("cone", 2.0 / 3.0), ("ogive", 0.466), ("von_karman", 0.5), ("ellipsoid", 1.0 / 3.0)]
 )
-def test_a_slender_nose_has_barrowman_s_centre(kind: str, share: float) -> None:
+def test_a_slender_nose_has_barrowman_s_center(kind: str, share: float) -> None:
     assert nose_center(Nose(kind, 1.0), 0.01) == pytest.approx(share, abs=1e-3)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("count", "factor"), [(3, 12.0), (4, 16.0)])
 @pytest.mark.parametrize("shape", [ALPHA, HALCYON], ids=["Alpha III", "Halcyon"])
-def test_slope_and_centre_are_those_of_barrowman_s_published_equations(shape: Shape, count: int, factor: float) -> None:
+def test_slope_and_center_are_those_of_barrowman_s_published_equations(shape: Shape, count: int, factor: float) -> None:
     """NARAM-8, 1966, equations 12, 14, 44, 57 to 59, 76 to 80 (incompressible), written out as they stand there."""
     assert shape.fins is not None
     d, fins = shape.diameter, replace(shape.fins, count=count)
@@ -112,7 +112,7 @@ def test_a_boat_tail_as_wide_as_the_body_does_nothing() -> None:
     assert center_of_pressure(components(blunt, 0.3)) == pytest.approx(center_of_pressure(components(without, 0.3)))
 
 
-def test_fins_that_sit_further_aft_move_the_centre_aft() -> None:
+def test_fins_that_sit_further_aft_move_the_center_aft() -> None:
     assert HALCYON.fins is not None
     ahead = replace(HALCYON, fins=replace(HALCYON.fins, position=2.0))
     assert center_of_pressure(components(ahead, 0.3))[1] < center_of_pressure(components(HALCYON, 0.3))[1]

@@ -137,7 +137,7 @@ def without_fire(test: Trial) -> Trial:
     return replace(test, values={**test.values, "p_chamber": cold, "thrust": 0.12 * test.values["thrust"]})
 
 
-def test_a_cold_flow_is_recognised_and_has_no_end_of_a_burn(burn: Trial) -> None:
+def test_a_cold_flow_is_recognized_and_has_no_end_of_a_burn(burn: Trial) -> None:
     segments = found_in(without_fire(burn), kind="cold_flow")
     assert segments.kind == "cold_flow"
     assert segments.warnings == ()
@@ -160,7 +160,7 @@ def test_nitrogen_may_come_before_the_liquid_is_gone(burn: Trial) -> None:
     level = 1.3 * burn.values["p_tank"].max() / sag[0]
     segments = found_in(replace(burn, values={**burn.values, "p_purge": level * sag}))
     assert segments.time("t_purge") == pytest.approx(early, abs=0.03)
-    assert any("before the liquid is gone: there is no vapour-only phase" in n for n in segments.notes)
+    assert any("before the liquid is gone: there is no vapor-only phase" in n for n in segments.notes)
 
 
 def test_flagged_samples_are_not_looked_at(burn: Trial) -> None:

@@ -89,7 +89,7 @@ def test_the_fuel_burns_what_was_loaded(base: st.Histories, stand: st.Stand) -> 
     assert base.trace(s.FUEL).sum() * kernel.STEP == pytest.approx(stand.fuel_mass, rel=1e-3)
 
 
-def test_the_vapour_is_a_polytrope_of_the_stated_exponent(base: st.Histories, stand: st.Stand) -> None:
+def test_the_vapor_is_a_polytrope_of_the_stated_exponent(base: st.Histories, stand: st.Stand) -> None:
     o = base.traces[int(1000 * base.t_v) + 5 : int(1000 * stand.closing) - 2]
     p, mass = np.diff(np.log(o[:, s.P_TANK])), np.diff(np.log(o[:, s.M_TANK]))
     slope = (p / np.where(mass < 0.0, mass, np.nan))[mass < -1e-8]
@@ -182,7 +182,7 @@ def test_what_the_test_excludes_after_the_valve_has_closed_is_no_evidence() -> N
     ],
 )
 def test_how_a_chamber_flushes_after_its_fire_is_no_evidence(seed: int, shift: dict[int, float], at_rest: bool) -> None:
-    """A model of the flush to the per mille would see slivers of a hundredth of a millimetre in it."""
+    """A model of the flush to the per mille would see slivers of a hundredth of a millimeter in it."""
     rng = np.random.default_rng(seed)
     stand = st.draw(rng, burns_out=True)
     channels, base = observed(stand, ())

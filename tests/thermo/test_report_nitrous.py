@@ -98,7 +98,7 @@ def test_heat_capacities_rise_on_beyond_their_last_entry() -> None:
         assert (np.diff(capacity) > 0.0).all()
 
 
-def test_the_heat_capacity_at_250_K_lies_between_its_neighbours() -> None:
+def test_the_heat_capacity_at_250_K_lies_between_its_neighbors() -> None:
     at = dict(zip(TEMPERATURE, C_V, strict=True))
     assert at[250.0] == 0.034798
     assert at[245.0] < at[250.0] < at[255.0]

@@ -19,11 +19,11 @@ Curve = Callable[[Saturation, float], tuple[Array, Array]]
 CURVES: dict[str, Curve] = {
     "saturation pressure": lambda s, t: (s.pressure(t), s.pressure_slope(t)),
     "liquid volume": lambda s, t: s.liquid_volume(t),
-    "vapour volume": lambda s, t: s.vapor_volume(t),
+    "vapor volume": lambda s, t: s.vapor_volume(t),
     "liquid energy": lambda s, t: s.energy(Property.LIQUID_ENERGY, t),
-    "vapour energy": lambda s, t: s.energy(Property.VAPOR_ENERGY, t),
+    "vapor energy": lambda s, t: s.energy(Property.VAPOR_ENERGY, t),
     "liquid enthalpy": lambda s, t: s.energy(Property.LIQUID_ENTHALPY, t),
-    "vapour enthalpy": lambda s, t: s.energy(Property.VAPOR_ENTHALPY, t),
+    "vapor enthalpy": lambda s, t: s.energy(Property.VAPOR_ENTHALPY, t),
 }
 
 both_sources = pytest.mark.parametrize("source", SOURCES)
@@ -43,7 +43,7 @@ def test_a_slope_is_the_finite_difference_of_its_curve(source: str, name: str, p
 
 
 @both_sources
-def test_warming_expands_the_liquid_and_compresses_the_vapour(source: str) -> None:
+def test_warming_expands_the_liquid_and_compresses_the_vapor(source: str) -> None:
     nitrous = saturation(source)
     t = np.linspace(nitrous.t_min, nitrous.t_max, 500)
     assert (nitrous.liquid_volume(t)[1] > 0.0).all()
@@ -134,7 +134,7 @@ def test_both_sources_agree_on_the_volumes_and_on_heat_of_vaporisation() -> None
 
 @both_sources
 def test_the_isentropic_exponent_is_that_of_the_speed_of_sound(source: str) -> None:
-    """rho c^2 / p of CoolProp's saturated vapour; the report's pressure lies 1 to 5 % above that of its table."""
+    """rho c^2 / p of CoolProp's saturated vapor; the report's pressure lies 1 to 5 % above that of its table."""
     from CoolProp.CoolProp import PropsSI
 
     nitrous = saturation(source)

@@ -16,7 +16,7 @@ from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.inference.full_run import FullRun
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import Quantity
-from hfanalysis.validate.performance import modelled
+from hfanalysis.validate.performance import modeled
 
 FLUX = 130.0
 GRAVITY = 9.80665
@@ -50,7 +50,7 @@ def fuel() -> float:
 
 
 def test_the_table_is_the_sum_of_the_burn() -> None:
-    found, burnt = modelled(run(), calibration()), run().burnt
+    found, burnt = modeled(run(), calibration()), run().burnt
     values = {name: quantity.value for name, quantity in found.items()}
     assert values["total_impulse"] == pytest.approx(impulse_by_hand(burnt), rel=2e-3)
     expended = float(burnt.state("tank_mass")[0]) + fuel()
@@ -102,7 +102,7 @@ def test_its_deviations_are_those_of_the_constants_carried_through_the_engine(
 ) -> None:
     """Against burns drawn with them, as Gauss and Hermite would draw three."""
     std = share * getattr(calibration(), name).value
-    found = modelled(run(), calibration(**{name: std}))
+    found = modeled(run(), calibration(**{name: std}))
     burns = [burn(moved(run().engine, z * std), longest=60.0) for z in np.sqrt(3.0) * np.array([-1.0, 0.0, 1.0])]
     for told, of, least in (
         ("peak_thrust", lambda b: b.output("thrust").max(), 0.3),

@@ -34,7 +34,7 @@ def test_a_residual_is_measured_minus_model() -> None:
 
 
 def test_a_gap_by_hand() -> None:
-    """Liquid: 0, +1, -1 bar. Vapour: +3, -4 bar."""
+    """Liquid: 0, +1, -1 bar. Vapor: +3, -4 bar."""
     found = gaps([RESIDUAL])["p_tank"]
     assert set(found) == {"liquid", "vapor"}
     assert found["liquid"].bias == pytest.approx(0.0, abs=1e-6)
@@ -66,7 +66,7 @@ def test_samples_without_a_number_do_not_count() -> None:
     ],
 )
 def test_the_phase_of_a_sample(t_v: float | None, t_purge: float | None, expected: list[int]) -> None:
-    """Filling up to t_feed = 1 s, liquid up to t_v, vapour; nitrogen wherever it is in."""
+    """Filling up to t_feed = 1 s, liquid up to t_v, vapor; nitrogen wherever it is in."""
     time = np.array([-0.5, 0.5, 1.0, 2.5, 3.0, 4.5, 5.0])
     assert phases_of(time, 1.0, t_v, t_purge).tolist() == expected
 

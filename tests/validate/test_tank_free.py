@@ -114,7 +114,7 @@ def test_without_a_C_i_there_is_no_model_to_run(burn: Trial) -> None:
 
 
 def test_a_negative_C_i_runs_nothing(burn: Trial) -> None:
-    negative = true_calibration(burn, C_i=Quantity(-0.1, why="less than the vapour left"))
+    negative = true_calibration(burn, C_i=Quantity(-0.1, why="less than the vapor left"))
     with pytest.raises(AbsentError, match="C_i is not positive"):
         run(burn, negative)
 

@@ -34,8 +34,8 @@ def test_a_quantity_reads_in_the_units_of_the_stand(
 
 
 def test_a_missing_quantity_says_why() -> None:
-    text = shown(Quantity.absent("the vapour phase lasts 0.05 s", verdict="not identifiable"))
-    assert (text.value, text.verdict, text.why) == ("–", "not identifiable", "the vapour phase lasts 0.05 s")
+    text = shown(Quantity.absent("the vapor phase lasts 0.05 s", verdict="not identifiable"))
+    assert (text.value, text.verdict, text.why) == ("–", "not identifiable", "the vapor phase lasts 0.05 s")
 
 
 @given(st.floats(-1e12, 1e12), st.floats(1e-9, 1e9))
@@ -82,7 +82,7 @@ def test_a_difference_of_temperatures_knows_no_zero_point() -> None:
     assert shown(Quantity(2.0, "K", 0.5), "team", difference=True).value == "2.00"
 
 
-def test_a_burning_surface_is_told_in_millimetres_per_second() -> None:
+def test_a_burning_surface_is_told_in_millimeters_per_second() -> None:
     assert shown(Quantity(1.05e-3, "m/s", 2e-5), name="regression_rate_reference").with_unit == "1.050 mm/s"
     assert scale("m/s").unit == "m/s"
 

@@ -107,7 +107,7 @@ def tank(needs: Needs) -> TankBuilt:
         least, most = (built.volume * float(d(t)) for d in (source.vapor_density, source.liquid_density))
         raise InputError(
             f"{needs.file.where('tank', 'oxidizer_mass')}: found {mass:.4g} kg; expected {least:.4g} to {most:.4g} kg, "
-            f"what {built.volume * 1e3:.4g} L hold as liquid and vapour at {t:.2f} K"
+            f"what {built.volume * 1e3:.4g} L hold as liquid and vapor at {t:.2f} K"
         )
     return built
 

@@ -93,12 +93,12 @@ class Evidence:
 
     def sensitivities(self, law: Regression) -> Array:
         """Change of ``observed`` [Pa, s, kg] per standard deviation of each nuisance, (observations, nuisances)."""
-        centre = self.predict(law)
+        center = self.predict(law)
         columns = np.zeros((self.observed.size, len(NUISANCES)))
         for j, (name, step) in enumerate(zip(NUISANCES, np.sqrt(np.diag(self.covariance)), strict=True)):
             moved = self._moved(law, name, float(step)) if step > 0.0 else None
-            if moved is not None and centre is not None:
-                columns[:, j] = moved - centre
+            if moved is not None and center is not None:
+                columns[:, j] = moved - center
         return columns
 
     def _moved(self, law: Regression, name: str, step: float) -> Array | None:

@@ -143,7 +143,7 @@ def _window_end(
     if t_fuel_out is not None:
         ends.append((t_fuel_out - BESIDE_END, "then the fuel is gone"))
     if calibration.m.value is None:
-        ends.append((t_v, "the vapour's expansion is not calibrated"))
+        ends.append((t_v, "the vapor's expansion is not calibrated"))
     return min(ends)
 
 
@@ -163,7 +163,7 @@ def _remarks(definition: TestDefinition, calibration: TankConstants, effects: Se
     nitrogen = "" if _has_nitrogen(effects) else ", without nitrogen"
     return [
         f"oxidizer flow of the calibrated tank alone{nitrogen}, from the pressure that its liquid phase "
-        f"extrapolates to; feed loss K_loss mdot^2 / rho; vapour exponent {m:.3f} ({known})",
+        f"extrapolates to; feed loss K_loss mdot^2 / rho; vapor exponent {m:.3f} ({known})",
         beyond + "constant throat, even regression",
     ]
 

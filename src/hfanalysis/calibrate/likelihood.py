@@ -1,7 +1,7 @@
 """How well a and n are known: a likelihood whose noise is what the fit leaves, counted by its own correlation.
 
 Residuals of a chamber pressure are no white noise: the sensor wanders, the model has another shape than the fire.
-Neighbouring block means then say the same thing again, and only as many as are independent are counted.
+Neighboring block means then say the same thing again, and only as many as are independent are counted.
 """
 
 from __future__ import annotations

@@ -109,7 +109,7 @@ def state_remarks(
             )
         ]
     if parts.liquid < 0.0:
-        less = "{where}: less than the saturated vapour alone would weigh; mass, volume or pressure is off"
+        less = "{where}: less than the saturated vapor alone would weigh; mass, volume or pressure is off"
         return share, [text(less, where=where)]
     return share, []
 

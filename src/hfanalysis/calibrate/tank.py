@@ -162,7 +162,7 @@ class _Work:
         out["p_loss_vapor"] = (
             judged("loss_vapor", r.loss_vapor, "Pa", draws, unphysical_below=0.0)
             if np.isfinite(r.loss_vapor)
-            else Quantity.absent(self.end_reason or "the vapour phase holds no samples", verdict=NOT_IDENTIFIABLE)
+            else Quantity.absent(self.end_reason or "the vapor phase holds no samples", verdict=NOT_IDENTIFIABLE)
         )
         out["vapor_mass_at_t_v"] = judged("vapor_mass", r.vapor_mass, "kg", draws)
         flow = self._flow_peak(left) if known else None
@@ -256,13 +256,13 @@ class _Work:
             )
         name, gap = self.histories.gap(self.t_v, t_purge if t_purge is not None else self.t_v + 0.2)
         if gap > max(0.1, 4.0 * self.histories.signals["p_tank"].step):
-            return np.nan, 0.0, f"{name} has no good samples for {gap:.2f} s of the vapour phase"
+            return np.nan, 0.0, f"{name} has no good samples for {gap:.2f} s of the vapor phase"
         if t_purge is not None:
             return t_purge, self.segments.std("t_purge"), None
         h = self.histories
         low = (h.time > self.t_v) & (h.tank < VAPOR_PRESSURE_SHARE * self.at_v.value)
         if not low.any():
-            return np.nan, 0.0, "the log ends before the vapour phase has gone far enough"
+            return np.nan, 0.0, "the log ends before the vapor phase has gone far enough"
         self.notes.append(
             "no nitrogen is seen: m is shot to the time at which the tank has lost 40 % of its pressure at t_v"
         )

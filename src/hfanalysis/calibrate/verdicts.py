@@ -47,7 +47,7 @@ def judge_discharge(r: Reduction, draws: Draws, reversed_share: float) -> Quanti
     low, high = quantity.interval
     verdict, why = IDENTIFIED, None
     if r.C_i <= 0.0:
-        verdict, why = UNPHYSICAL, "the loaded mass is less than the vapour left at t_v: mass, volume or t_v is off"
+        verdict, why = UNPHYSICAL, "the loaded mass is less than the vapor left at t_v: mass, volume or t_v is off"
     elif low > PHYSICAL_C_I[1] or high < PHYSICAL_C_I[0]:
         verdict = UNPHYSICAL
         why = f"outside {PHYSICAL_C_I[0]} to {PHYSICAL_C_I[1]}: loaded mass, hole area or a pressure is off"
@@ -70,7 +70,7 @@ def judge_exponent(
     std = draws.std("m")
     if std > WIDEST_M:
         reason = text(
-            "the vapour phase lasts {duration:.3f} s and loses {loss}: too little to tell m ({m:.2f} +/- {std:.2f})",
+            "the vapor phase lasts {duration:.3f} s and loses {loss}: too little to tell m ({m:.2f} +/- {std:.2f})",
             duration=duration,
             loss=said(inputs.p_v - inputs.p_end, "bar", ".2f"),
             m=r.m,
@@ -80,7 +80,7 @@ def judge_exponent(
     low, high = draws.interval("m", r.m)
     heat = implied_heat(saturation, r.m, r.vapor_mass, r.vapor_mass_end, r.temperature_v, r.Z)
     t_end = r.temperature_v * (r.vapor_mass_end / r.vapor_mass) ** (r.m - 1.0)
-    implies = f"it implies {heat / duration / 1e3:+.1f} kW into the vapour and {t_end - 273.15:.0f} degC at its end"
+    implies = f"it implies {heat / duration / 1e3:+.1f} kW into the vapor and {t_end - 273.15:.0f} degC at its end"
     outside = high < PHYSICAL_M[0] or low > PHYSICAL_M[1]
     verdict = UNPHYSICAL if outside else IDENTIFIED
     lead = f"outside {PHYSICAL_M[0]} to {PHYSICAL_M[1]}, no property of nitrous oxide: " if outside else ""
@@ -92,10 +92,10 @@ def _no_root(r: Reduction, inputs: Inputs, duration: float, draws: Draws) -> str
         part = 100.0 * (1.0 - draws.answered("m"))
         return (
             f"within the uncertainties {part:.0f} % of the repetitions have no exponent: "
-            f"{duration:.3f} s of vapour are too short"
+            f"{duration:.3f} s of vapor are too short"
         )
     if inputs.p_end >= inputs.p_v:
-        return "the tank pressure does not fall over the vapour phase: something feeds it"
+        return "the tank pressure does not fall over the vapor phase: something feeds it"
     return text(
         "no exponent between {low:.2f} and {high:.1f} takes the tank from {first} to {last} in {duration:.3f} s",
         low=EXPONENTS[0],

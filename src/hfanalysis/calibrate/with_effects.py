@@ -1,4 +1,4 @@
-"""The tank's calibration with adopted effects acting: on the flow of the liquid phase, and on the vapour's expansion.
+"""The tank's calibration with adopted effects acting: on the flow of the liquid phase, and on the vapor's expansion.
 
 The tank alone is run with the effects on the measured chamber pressure, from the opening to t_v. What its injector
 passes beside A sqrt(2 rho (p_run - p_c)), and what leaves by another way, enters the balance that gives C_i; where the

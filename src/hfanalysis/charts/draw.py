@@ -68,7 +68,7 @@ def scaled(data: Envelope, scale: Scale) -> Envelope:
 def text_alternative(chart: Chart, system: str = "si") -> str:
     """The text alternative: what each line does, and when."""
     scale = chart.scale(system)
-    sentences = [_behaviour(chart, one, scale) for one in chart.lines]
+    sentences = [_behavior(chart, one, scale) for one in chart.lines]
     events = [f"{event.name} at {fixed(event.time, 2)} s" for event in _inside(chart)]
     return " ".join([*sentences, f"Events: {', '.join(events)}." if events else ""]).strip()
 
@@ -77,7 +77,7 @@ def _inside(chart: Chart) -> Iterable[svg.Event]:
     return (event for event in chart.events if chart.span[0] <= event.time <= chart.span[1])
 
 
-def _behaviour(chart: Chart, one: Series, scale: Scale) -> str:
+def _behavior(chart: Chart, one: Series, scale: Scale) -> str:
     data = reduced(chart, one)
     if data.empty:
         return f"{one.label}: no good samples here."

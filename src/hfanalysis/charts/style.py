@@ -7,7 +7,7 @@ from importlib.resources import files
 
 from markupsafe import Markup
 
-from hfanalysis.charts.colours import declarations
+from hfanalysis.charts.colors import declarations
 
 
 @functools.cache

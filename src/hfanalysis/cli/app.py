@@ -163,9 +163,7 @@ EngineJson = Annotated[bool, typer.Option("--json", help="Print the JSON product
 
 Until = Annotated[
     float | None,
-    typer.Option(
-        "--until", metavar="SECONDS", help="Run on after burn-out, through vapour and cold gas, to this time."
-    ),
+    typer.Option("--until", metavar="SECONDS", help="Run on after burn-out, through vapor and cold gas, to this time."),
 ]
 
 

@@ -150,7 +150,7 @@ def _segment(context: Context, console: Console) -> None:
 
     product = context.read(Segments)
     kind = wording.KINDS.get(product.kind, product.kind)
-    _print(console, product.quantities, f"phases (seconds after the valve opens): recognised as {kind}")
+    _print(console, product.quantities, f"phases (seconds after the valve opens): recognized as {kind}")
     if product.engineer:
         console.print(Text(f"  set by the engineer in test.toml: {', '.join(product.engineer)}"))
 
@@ -197,7 +197,7 @@ def _performance(product: Validation, console: Console) -> None:
     for column in table.columns[1:5]:
         column.justify = "right"
     for name, measured in performance.measured.quantities.items():
-        model = shown(performance.model.quantities.get(name) or Quantity.absent("not modelled"))
+        model = shown(performance.model.quantities.get(name) or Quantity.absent("not modeled"))
         found = shown(measured)
         if measured.value is not None or model.value != "–":
             table.add_row(in_words(name), found.value, found.std, model.value, model.std, found.unit or model.unit)

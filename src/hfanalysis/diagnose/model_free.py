@@ -157,7 +157,7 @@ def _in_words(found: Opening, falls: bool, dips: bool) -> str:
     if dips:
         parts.append(
             text(
-                "at {lowest:.1f} s p_tank is {dip} below the course of its later fall, and comes back to it: vapour is "
+                "at {lowest:.1f} s p_tank is {dip} below the course of its later fall, and comes back to it: vapor is "
                 "made late (tank_nonequilibrium)",
                 lowest=found.lowest,
                 dip=said(found.dip, "bar", ".1f"),
@@ -165,7 +165,7 @@ def _in_words(found: Opening, falls: bool, dips: bool) -> str:
         )
     if not dips:
         parts.append(
-            "it was that of a hot ullage over a colder bulk (tank_stratification), or vapour is made late "
+            "it was that of a hot ullage over a colder bulk (tank_stratification), or vapor is made late "
             "(tank_nonequilibrium): these channels do not tell which"
         )
     elif falls:

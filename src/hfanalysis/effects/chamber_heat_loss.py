@@ -79,5 +79,5 @@ EFFECT = Effect(
     term=_term,
     twins=("combustion_efficiency",),
     decisive="thermocouples in the chamber's wall, at two depths",
-    believable=Believable("loss", 4e5, "walls of some kilogrammes take no more for seconds", unit="kW", factor=1e-3),
+    believable=Believable("loss", 4e5, "walls of some kilograms take no more for seconds", unit="kW", factor=1e-3),
 )

@@ -65,6 +65,6 @@ EFFECT = Effect(
     twins=("nozzle_throat_erosion",),
     decisive="a second transducer flush with the chamber's wall, or the throat's diameter after the test",
     believable=Believable(
-        "lag", 0.5, "a tap and a tube of a metre lag some hundredths of a second", unit="ms", factor=1e3
+        "lag", 0.5, "a tap and a tube of a meter lag some hundredths of a second", unit="ms", factor=1e3
     ),
 )

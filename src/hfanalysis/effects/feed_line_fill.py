@@ -189,5 +189,5 @@ EFFECT = Effect(
     ),
     twins=(),
     decisive="the line's length and bore; and the run line's pressure at 1 kHz, where it is read more slowly",
-    believable=Believable("volume", 1e-3, "a litre is ten metres of a line of 11 mm", unit="L", factor=1e3),
+    believable=Believable("volume", 1e-3, "a liter is ten meters of a line of 11 mm", unit="L", factor=1e3),
 )

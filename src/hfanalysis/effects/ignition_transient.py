@@ -50,5 +50,5 @@ EFFECT = Effect(
     states=(OwnState("igniter_mass", "kg", 1e-4, lambda engine, values: values["mass"]),),
     twins=(),
     decisive="the igniter's charge, weighed, and its pressure in a test without oxidizer",
-    believable=Believable("mass", 0.15, "igniter charges weigh some ten grammes", unit="g", factor=1e3),
+    believable=Believable("mass", 0.15, "igniter charges weigh some ten grams", unit="g", factor=1e3),
 )

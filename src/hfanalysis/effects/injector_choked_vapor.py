@@ -41,7 +41,7 @@ EFFECT = Effect(
     name="injector_choked_vapor",
     plain_name="vapor that chokes in the injector",
     equation="injector",
-    meaning="the vapour flows through the injector as a gas that expands and chokes, not as an incompressible fluid",
+    meaning="the vapor flows through the injector as a gas that expands and chokes, not as an incompressible fluid",
     reference="isentropic orifice flow: Sutton and Biblarz, Rocket Propulsion Elements, chapter 3; Hill and Peterson, "
     "Mechanics and Thermodynamics of Propulsion, chapter 3. The report's eq. 3.2 is incompressible in both phases; "
     "line and injector are taken as one restriction between tank and chamber",
@@ -50,11 +50,11 @@ EFFECT = Effect(
     sites=("injector_factor",),
     parameters=(
         Parameter("weight", "-", "0 incompressible, 1 isentropic orifice", typical=1.0, low=0.0, high=1.0),
-        Parameter("gamma", "-", "isentropic exponent of the vapour", 0.1, center=1.2, low=1.02, high=1.5, given=True),
+        Parameter("gamma", "-", "isentropic exponent of the vapor", 0.1, center=1.2, low=1.02, high=1.5, given=True),
     ),
     phases=("vapor", "nitrogen"),
     term=_term,
     twins=(),
-    decisive="cold flow of the vapour through the injector at two back pressures",
+    decisive="cold flow of the vapor through the injector at two back pressures",
     believable=Believable("weight", 1.0, "1 is compressible flow, choked where it must be"),
 )

@@ -80,7 +80,7 @@ EFFECT = Effect(
     "1/(1 + kappa), one half for saturated liquid; equilibrium flow by Leung, AIChE Journal 32 (1986) 1743, with omega "
     "= c_p T p / v_l ((v_v - v_l) / (h_v - h_l))^2, which is 3.7 to 2.9 for nitrous oxide from 270 to 295 K",
     formula="f = 1 - w + w G_eq(max(eta, eta_c)) / sqrt(2 (1 - eta)),  eta = p_c / p_T;  mdot = f mdot_injector;  "
-    "K_loss (1 + l (1 / f^2 - 1)): the line's loss grows as it flashes there too; in the vapour "
+    "K_loss (1 + l (1 / f^2 - 1)): the line's loss grows as it flashes there too; in the vapor "
     "f = 1 + w v (psi / sqrt(2 (1 - eta)) - 1), psi of the isentropic orifice",
     sites=("injector_factor", "feed_factor"),
     parameters=(
@@ -96,7 +96,7 @@ EFFECT = Effect(
             given=True,
         ),
         Parameter("line", "-", "how far the line takes part", typical=0.5, center=0.5, low=0.0, high=1.0),
-        Parameter("vapor", "-", "how far the vapour takes part", typical=0.5, center=0.5, low=0.0, high=1.0),
+        Parameter("vapor", "-", "how far the vapor takes part", typical=0.5, center=0.5, low=0.0, high=1.0),
     ),
     phases=("liquid", "vapor", "nitrogen"),
     term=_term,

@@ -45,5 +45,5 @@ EFFECT = Effect(
     states=(OwnState("throat_growth", "m", 1e-6, lambda engine, values: 0.0),),
     twins=("chamber_tap_lag",),
     decisive="the throat's diameter after the test",
-    believable=Believable("rate", 4e-4, "graphite loses some tenths of a millimetre a second", unit="mm/s", factor=1e3),
+    believable=Believable("rate", 4e-4, "graphite loses some tenths of a millimeter a second", unit="mm/s", factor=1e3),
 )

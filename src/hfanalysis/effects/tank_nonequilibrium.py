@@ -27,10 +27,10 @@ EFFECT = Effect(
     name="tank_nonequilibrium",
     plain_name="boiling that comes late",
     equation="tank_volume",
-    meaning="vapour is made late: the tank's pressure dips below that of saturation after opening, and rebounds",
+    meaning="vapor is made late: the tank's pressure dips below that of saturation after opening, and rebounds",
     reference="Zimmerman, Waxman, Cantwell and Zilliac, Review and Evaluation of Models for Self-Pressurizing "
     "Propellant Tank Dynamics, AIAA 2013-4045: superheat of the liquid until bubbles are there. The dip is that "
-    "of two equal lags in a row (bubbles, then vapour); the superheat that goes on driving the boiling stays",
+    "of two equal lags in a row (bubbles, then vapor); the superheat that goes on driving the boiling stays",
     formula="p_T = p_sat - dp (p_sat / p_sat(T_0)) ((1 - w) (t/tau) exp(1 - t/tau) + w (1 - exp(-t/tau)))",
     sites=("tank_pressure",),
     parameters=(

@@ -37,7 +37,7 @@ EFFECT = Effect(
         Parameter(
             "vapor_share",
             "-",
-            "heat transfer to vapour over that to liquid",
+            "heat transfer to vapor over that to liquid",
             0.3,
             center=0.4,
             low=0.0,
@@ -49,5 +49,5 @@ EFFECT = Effect(
     states=(OwnState("wall_temperature", "K", 0.1, lambda engine, values: engine.temperature + values["excess"]),),
     twins=("tank_heat",),
     decisive="a thermocouple on the tank's wall",
-    believable=Believable("capacity", 2e4, "20 kJ/K are 22 kg of aluminium", unit="kJ/K", factor=1e-3),
+    believable=Believable("capacity", 2e4, "20 kJ/K are 22 kg of aluminum", unit="kJ/K", factor=1e-3),
 )

@@ -68,7 +68,7 @@ class FullRun:
 
     @property
     def run_pressure(self) -> Array:
-        """Modelled pressure before the injector [Pa] at the run's points (n,)."""
+        """Modeled pressure before the injector [Pa] at the run's points (n,)."""
         return self.burnt.output("run_pressure")
 
 

@@ -69,7 +69,7 @@ def stability(
 
 def _tank_note(firing: Firing) -> str:
     known = np.isfinite(firing.propellant.temperature).all()
-    return "" if known else "how the oxidizer divides into liquid and vapour is not known: taken as all liquid"
+    return "" if known else "how the oxidizer divides into liquid and vapor is not known: taken as all liquid"
 
 
 def _parts(firing: Firing, place: Masses, definition: TestDefinition) -> list[Part]:

@@ -53,10 +53,10 @@ class RegressionTest(Part):
     burn_time_std: Annotated[float | None, Is("its standard deviation", "s")] = None
     burn_time_model: Annotated[float, Is("with the fitted a and n", "s")]
     fuel_left_measured: Annotated[float | None, Is("fuel that was left", "kg")] = None
-    initial_temperature: Annotated[float, Is("of the modelled tank at the opening", "K")]
+    initial_temperature: Annotated[float, Is("of the modeled tank at the opening", "K")]
     flux_range: Annotated[tuple[float, float], Is("least and largest oxidizer flux of the burn", UNIT_OF_FLUX)]
-    p_chamber_rms: Annotated[float, Is("rms of measured minus modelled chamber pressure", "Pa")]
-    p_chamber_bias: Annotated[float, Is("mean of measured minus modelled chamber pressure", "Pa")]
+    p_chamber_rms: Annotated[float, Is("rms of measured minus modeled chamber pressure", "Pa")]
+    p_chamber_bias: Annotated[float, Is("mean of measured minus modeled chamber pressure", "Pa")]
     independent_samples: Annotated[float, Is("values that the chamber pressure is worth", "")]
 
 

@@ -76,7 +76,7 @@ class Slope(Part):
     """The normal force of a part of the rocket."""
 
     slope: Annotated[float, Is("of the coefficient over the angle of attack", "1/rad")]
-    position: Annotated[float, Is("of its centre, from the nose tip", "m")]
+    position: Annotated[float, Is("of its center, from the nose tip", "m")]
 
 
 class Stability(Part):

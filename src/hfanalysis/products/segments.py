@@ -16,8 +16,8 @@ class Segments(Product):
 
     file: ClassVar[str] = "segments.json"
 
-    kind: Annotated[str, Is("of test, as recognised: hot_fire, cold_flow")]
-    kind_reason: Annotated[Words, Is("what it was recognised by")]
+    kind: Annotated[str, Is("of test, as recognized: hot_fire, cold_flow")]
+    kind_reason: Annotated[Words, Is("what it was recognized by")]
     misfire: Annotated[bool, Is("stated as a hot fire, and nothing burns")]
     supercharged: Annotated[bool, Is("nitrogen presses on the tank from the start")]
     t_open: Annotated[Quantity, Is("the valve opens, in log time", "s")]

@@ -9,7 +9,7 @@ from hfanalysis.quantity import Quantity
 
 
 class Column(Part):
-    """The performance of a burn, as measured or modelled."""
+    """The performance of a burn, as measured or modeled."""
 
     burn_time: Annotated[Quantity, Is("from the opening to the end of the fire", "s")]
     total_impulse: Annotated[Quantity, Is("integral of the thrust over the burn", "N s")]
@@ -67,7 +67,7 @@ class Validation(Product):
 
     file: ClassVar[str] = "validation.json"
 
-    performance: Annotated[Performance, Is("measured and modelled")]
+    performance: Annotated[Performance, Is("measured and modeled")]
     gap: Annotated[
         dict[str, dict[str, dict[str, PhaseGap]]],
         Is(

@@ -211,7 +211,7 @@ def _written_stamps(log: Path) -> str:
 def _time_line(time: Column | None, columns: list[Column], written: str) -> str:
     if time is None:
         there = ", ".join(_quoted(column.label) for column in columns[:8])
-        return f'# time = {{ column = "…", unit = "s" }}   # the column of time stamps; none recognised among {there}'
+        return f'# time = {{ column = "…", unit = "s" }}   # the column of time stamps; none recognized among {there}'
     unit = time.unit if _fits(time.unit, "time") else written or "s"
     sure = "" if unit in (time.unit, written) else "   # unit not stated in the log: check"
     return f"time = {{ column = {_quoted(time.label)}, unit = {_quoted(unit)} }}{sure}"

@@ -1,7 +1,7 @@
 """A sensor's noise: white noise of single samples and a slow wander with a 1/f spectrum.
 
 Averaging beats white noise but hardly the wander, so that intervals from white noise alone are far too narrow. The
-wander is measured where nothing happens, by the Allan variance: between neighbouring block means it is the same at
+wander is measured where nothing happens, by the Allan variance: between neighboring block means it is the same at
 every block length.
 """
 

@@ -144,7 +144,7 @@ def spread(values: Array) -> float:
 def level(trace: Trace) -> Level | None:
     """Robust mean of a quiet stretch; None where it is too short.
 
-    The standard deviation is that of block means where it is the larger: neighbouring samples are not independent.
+    The standard deviation is that of block means where it is the larger: neighboring samples are not independent.
     """
     if len(trace.time) < 5 or trace.time[-1] - trace.time[0] < SHORTEST_QUIET:
         return None

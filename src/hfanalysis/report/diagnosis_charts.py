@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hfanalysis.charts.chart import Chart, Series, around
-from hfanalysis.charts.colours import style_of
+from hfanalysis.charts.colors import style_of
 from hfanalysis.charts.svg import value_range
 from hfanalysis.diagnose.answer.words import EQUATIONS
 from hfanalysis.products.diagnosis import Diagnosis, Lacking

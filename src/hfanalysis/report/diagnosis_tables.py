@@ -194,7 +194,7 @@ def constants(product: Diagnosis) -> Iterator[Markup]:
     if "m" in without and without["m"].value is not None:
         values = [fixed(side["m"].value or 0.0, 2) for side in (without, better)]
         said = f"m {values[0]} without, {values[1]} {arm}." if arm else f"m {values[0]}."
-        yield html.paragraph(Markup("Polytropic exponent of the vapour: <strong>{}</strong>").format(said), "told")
+        yield html.paragraph(Markup("Polytropic exponent of the vapor: <strong>{}</strong>").format(said), "told")
     names = sorted(without, key=lambda name: name != "m")
     rows = [
         (_head(name), html.value(without[name], name), *((html.value(better[name], name),) if arm else ()))

@@ -145,7 +145,7 @@ def _phase(material: Material, start: float, end: float) -> Phase:
         return Phase(start, end, "line filling", "fill")
     if dry is None or middle < dry:
         return Phase(start, end, "liquid + N₂" if nitrogen else "liquid", "liquid")
-    return Phase(start, end, "vapour + N₂" if nitrogen else "vapour", "nitrogen" if nitrogen else "vapor")
+    return Phase(start, end, "vapor + N₂" if nitrogen else "vapor", "nitrogen" if nitrogen else "vapor")
 
 
 def read_store(path: Path) -> Store:

@@ -11,18 +11,18 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.charts import draw
 from hfanalysis.charts.chart import Chart, Series
-from hfanalysis.charts.colours import COLOURS
+from hfanalysis.charts.colors import COLORS
 from hfanalysis.products.disk import atomic
 
 _BINS = 2000
 """Points across a picture: more than its 1500 pixels."""
 _INCHES = 10.0
 """Width of a picture [in]."""
-_LIGHT = {name: pair[0] for name, pair in COLOURS.items()} | {
-    "noise": COLOURS["soft"][0],
-    "zero": COLOURS["soft"][0],
-    "one": COLOURS["p_tank"][0],
-    "two": COLOURS["p_run"][0],
+_LIGHT = {name: pair[0] for name, pair in COLORS.items()} | {
+    "noise": COLORS["soft"][0],
+    "zero": COLORS["soft"][0],
+    "one": COLORS["p_tank"][0],
+    "two": COLORS["p_run"][0],
 }
 
 
@@ -113,15 +113,15 @@ def _plain(text: str) -> str:
 
 
 def _add(axes: Any, chart: Chart, one: Series) -> None:
-    scale, colour, label = chart.scale(), _LIGHT.get(one.style, _LIGHT["ink"]), _plain(one.label).lstrip("_")
+    scale, color, label = chart.scale(), _LIGHT.get(one.style, _LIGHT["ink"]), _plain(one.label).lstrip("_")
     if one.kind == "level":
-        axes.axhline(scale(float(one.values[0])), color=colour, linewidth=1.0, linestyle="--", label=label)
+        axes.axhline(scale(float(one.values[0])), color=color, linewidth=1.0, linestyle="--", label=label)
         return
     if one.kind == "band" and one.upper is not None:
         edges = (scale.factor * edge + scale.zero for edge in (one.values, one.upper))
-        axes.fill_between(one.time, *edges, color=colour, alpha=0.22, linewidth=0, label=label)
+        axes.fill_between(one.time, *edges, color=color, alpha=0.22, linewidth=0, label=label)
         return
     data = draw.scaled(draw.reduced(chart, one, _BINS), scale)
-    axes.plot(data.time, data.mean, color=colour, linewidth=1.3, linestyle="--" if one.dashed else "-", label=label)
+    axes.plot(data.time, data.mean, color=color, linewidth=1.3, linestyle="--" if one.dashed else "-", label=label)
     if data.low is not data.mean:
-        axes.fill_between(data.time, data.low, data.high, color=colour, alpha=0.22, linewidth=0)
+        axes.fill_between(data.time, data.low, data.high, color=color, alpha=0.22, linewidth=0)

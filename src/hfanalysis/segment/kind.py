@@ -31,7 +31,7 @@ class Kind:
     misfire: bool = False
 
 
-def recognise(
+def recognize(
     signals: Mapping[str, Signal],
     stated: str,
     ambient: float,

@@ -15,7 +15,7 @@ from hfanalysis.record.signals import Signal, live_signals
 from hfanalysis.segment.end_of_burn import find_unchoking
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.fuel import find_fuel_end
-from hfanalysis.segment.kind import Kind, recognise
+from hfanalysis.segment.kind import Kind, recognize
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
@@ -255,7 +255,7 @@ class _Search:
             np.pi * nozzle.throat_radius.value**2 if nozzle is not None and nozzle.throat_radius is not None else None
         )
         ambient = self.ambient + (self._chamber_offset() if "p_chamber" in self.signals else 0.0)
-        kind = recognise(self.signals, self.definition.test.kind, ambient, span, flow, area)
+        kind = recognize(self.signals, self.definition.test.kind, ambient, span, flow, area)
         if kind.misfire:
             self.warnings.append(f"stated as a hot fire, but nothing burns, a cold flow: {kind.why}")
         return kind
@@ -308,7 +308,7 @@ class _Search:
             return
         early = t_v - t_purge
         if early > 2.0 * np.hypot(self.events["t_v"].std or 0.0, self.events["t_purge"].std or 0.0):
-            self.notes.append(f"nitrogen enters {early:.2f} s before the liquid is gone: there is no vapour-only phase")
+            self.notes.append(f"nitrogen enters {early:.2f} s before the liquid is gone: there is no vapor-only phase")
 
     def _time(self, name: str) -> float | None:
         return self.events[name].value if name in self.events else None

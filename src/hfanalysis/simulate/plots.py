@@ -10,7 +10,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.charts import svg
-from hfanalysis.charts.colours import STYLES
+from hfanalysis.charts.colors import STYLES
 from hfanalysis.charts.envelope import Envelope
 from hfanalysis.charts.style import sheet
 from hfanalysis.design.steady import SteadyEngine
@@ -90,10 +90,10 @@ def chart(title: str, x_label: str, y_label: str, curves: Sequence[Curve], with_
     xs = np.concatenate([curve.x for curve in curves])
     plot = svg.new_plot((float(xs.min()), float(xs.max())), svg.value_range([c.y for c in curves], with_zero))
     svg.axes(plot, x_label, y_label)
-    colours = cycle(STYLES)
+    colors = cycle(STYLES)
     for curve in curves:
         data = Envelope(curve.x, curve.y, curve.y, curve.y)
-        svg.line(plot, data, curve.style or next(colours), curve.name)
+        svg.line(plot, data, curve.style or next(colors), curve.name)
     drawn = str(svg.render(plot, "chart", title, f"{y_label} over {x_label}"))
     head, body = drawn.split(">", 1)
     return f'{head} xmlns="http://www.w3.org/2000/svg"><style><![CDATA[{sheet()}{_ALONE}]]></style>{body}\n'

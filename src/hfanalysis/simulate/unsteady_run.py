@@ -90,7 +90,7 @@ def _engine(engine: Engine, burnt: Burn, hot: Array) -> dict[str, Quantity]:
 def _implied(burnt: Burn) -> dict[str, Quantity]:
     """Heat that the polytropic vapor and the quasi-steady chamber would need: what the model leaves open."""
     power, stored = closure.vapor_heat(burnt), closure.chamber_energy(burnt)
-    none = "there is no vapour phase within the burn"
+    none = "there is no vapor phase within the burn"
     return {
         "implied_vapor_heat": Quantity(closure.vapor_heat_total(burnt), "J") if power.any() else Quantity.absent(none),
         "implied_vapor_power": Quantity(float(power[power != 0.0][0]), "W") if power.any() else Quantity.absent(none),

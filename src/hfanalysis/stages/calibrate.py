@@ -1,4 +1,4 @@
-"""calibrate: the injector coefficient, the feed loss, the vapour's polytropic exponent and the fuel's regression.
+"""calibrate: the injector coefficient, the feed loss, the vapor's polytropic exponent and the fuel's regression.
 
 Reads ``ingest.h5`` and ``segments.json``; writes ``calibration.json``, the calibration with the adopted effects acting,
 and ``base_calibration.json``, that of the base model, which a diagnosis starts from. Without adopted effects they are

@@ -38,8 +38,8 @@ DEPARTURES = (
     Departure("pressure's slope", "pressure", slope=2.5e-4),
     Departure("liquid's volume", "liquid", level=5e-4),
     Departure("liquid's expansion", "liquid", slope=1.25e-3),
-    Departure("vapour's volume", "vapor", level=1.5e-3),
-    Departure("vapour's expansion", "vapor", slope=1.5e-3),
+    Departure("vapor's volume", "vapor", level=1.5e-3),
+    Departure("vapor's expansion", "vapor", slope=1.5e-3),
     Departure("latent heat", "latent heat", level=1.25e-3),
     Departure("latent heat's slope", "latent heat", slope=7.5e-4),
 )

@@ -1,7 +1,7 @@
 """Saturated nitrous oxide as the technical report has it (appendix A.1, after Green & Perry 2008).
 
 Two slips of the printed appendix are corrected: the sign of d(nu_l)/dT (liquid expands on heating) never enters because
-the derivative is that of the spline; c_v of the vapor at 250 K is 0.034798, not 0.043798 kJ/(mol K), as its neighbours
+the derivative is that of the spline; c_v of the vapor at 250 K is 0.034798, not 0.043798 kJ/(mol K), as its neighbors
 and every finite difference of them show. The pressure correlation and the table come from different sources: the
 correlation lies 1.4 % above the equation of state behind the table at 298 K.
 """

@@ -239,7 +239,7 @@ class _Column:
 _UNITS = ("s", "N s", "s", "Pa", "N", "N", "kg", "kg")
 
 
-def modelled(full: FullRun, calibration: Calibration) -> dict[str, Quantity]:
+def modeled(full: FullRun, calibration: Calibration) -> dict[str, Quantity]:
     """The model's column [s, N s, Pa, N, kg], with what the calibrated constants' uncertainties make of it."""
     engine = full.engine
     nominal = _Column.of(full, full.burnt, engine.oxidizer_mass, engine.fuel_mass).values

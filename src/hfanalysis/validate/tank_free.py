@@ -177,7 +177,7 @@ def _start(
     assert mass is not None
     parts = split(saturation, feed.volume, mass, temperature)
     if min(parts.liquid, parts.vapor) < 0.0:
-        side = "do not fit" if parts.vapor < 0.0 else "are less than the vapour of"
+        side = "do not fit" if parts.vapor < 0.0 else "are less than the vapor of"
         raise AbsentError(
             text(
                 "the tank cannot be saturated at {start:.2f} s: {mass:.2f} kg {side} {volume:.1f} L at {pressure}; "

@@ -97,7 +97,7 @@ class _Work:
         }
         measured = performance.measured(self.true, self.segments, self.definition, self._calibration)
         if full is not None:
-            model = performance.modelled(full, self.calibration)
+            model = performance.modeled(full, self.calibration)
         else:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
         sensors = findings(self.true, self.segments, self.definition, self.fire)

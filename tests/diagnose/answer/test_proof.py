@@ -69,10 +69,10 @@ def test_constants_that_are_not_those_of_the_stand_do_not_close_it() -> None:
     assert proof.fractions["other_test"] < 0.0
 
 
-def test_a_test_that_cannot_be_modelled_is_said_to_prove_nothing() -> None:
+def test_a_test_that_cannot_be_modeled_is_said_to_prove_nothing() -> None:
     other = elsewhere(on_the_other())
     engine = other.hypothesis.engine
     nowhere = replace(other.hypothesis, engine=replace(engine, feed=replace(engine.feed, volume=1e-3)))
     proof = prove(named(), single("tank_heat"), replace(other, hypothesis=nowhere))
     assert proof.fractions["other_test"] is None
-    assert any("T2 cannot be modelled" in note for note in proof.notes)
+    assert any("T2 cannot be modeled" in note for note in proof.notes)

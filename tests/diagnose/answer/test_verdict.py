@@ -273,7 +273,7 @@ def test_what_is_believable_is_of_a_strength_and_every_effect_has_a_plain_name()
 
 
 def test_an_impossible_size_makes_a_name_less_probable() -> None:
-    """Throat erosion of a millimetre a second, and the same evidence."""
+    """Throat erosion of a millimeter a second, and the same evidence."""
     found = eroded()
     single = found.singles[0]
     engine = single.fit.burnt.steps.engine
@@ -586,7 +586,7 @@ def test_the_band_of_a_source_holds_what_its_other_constants_leave_open() -> Non
 
 def test_variants_are_known_by_name() -> None:
     assert settings_of("") == VARIANTS[""]
-    assert settings_of("white_noise").coloured is False
+    assert settings_of("white_noise").colored is False
     assert sum(settings_of(name) == settings_of("") for name in VARIANTS) == 1
     with pytest.raises(InputError, match="expected one of no_tempering"):
         settings_of("no_such")

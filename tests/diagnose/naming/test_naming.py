@@ -61,7 +61,7 @@ def catalogue(names: tuple[str, ...] = TRIED) -> Catalogue:
 
 
 def leak(size: float = 0.2) -> Active:
-    """Two hundred grammes a second that leave the tank elsewhere, from 2 to 4 s: no effect of the library."""
+    """Two hundred grams a second that leave the tank elsewhere, from 2 to 4 s: no effect of the library."""
     splines = Splines.over(0.0, 6.0, 0.5)
     peak = splines.first + splines.spacing * np.arange(splines.count)
     flow = {f"c{i}": size * float(2.0 < t < 4.0) for i, t in enumerate(peak)}

@@ -96,7 +96,7 @@ def test_nitrogen_takes_volume_in_the_tank() -> None:
     assert (np.diff(volume.value[after]) > 0.0).all()
     states, outputs = run.steps.at(volume.time[after])
     taken = 296.8 * states[:, NITROGEN] * states[:, TEMPERATURE] / outputs[:, O_TANK_PRESSURE] * 1e3
-    # its pressure is read as warmer oxidizer, which would be less vapour: that comes on top of the volume it takes
+    # its pressure is read as warmer oxidizer, which would be less vapor: that comes on top of the volume it takes
     assert (volume.value[after] > taken).all()
     assert (volume.value[after] < 3.0 * taken).all()
     injector = found["injector"]

@@ -144,7 +144,7 @@ def test_a_sensors_effect_alone_leaves_the_constants_one_by_one(root: Path) -> N
 
 
 def test_next_to_no_heat_is_next_to_no_change(root: Path, base: dict[str, dict[str, Any]]) -> None:
-    """One by one, the vapour phase on the engine's equations is the report's, but for the order of its steps."""
+    """One by one, the vapor phase on the engine's equations is the report's, but for the order of its steps."""
     found = done(root, "calibrate", '[tank_heat]\npower = "1e-6 W"\n')["calibration"]["one_by_one"]
     for name, off in (("m", 2e-3), ("C_i", 1e-6), ("K_loss", 1e-6)):
         assert found[name]["value"] == pytest.approx(base["calibration"][name]["value"], rel=off)

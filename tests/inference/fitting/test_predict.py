@@ -83,15 +83,15 @@ def test_slopes_are_differences_of_predictions(of) -> None:  # type: ignore[no-u
 
 @pytest.mark.parametrize("common", [False, True])
 def test_the_residual_of_the_truth_is_white(common: bool) -> None:
-    means, neighbours = [], []
+    means, neighbors = [], []
     for seed in range(6):
         test = made.observed(seed=seed, common=common)
         residual = predict(made.hypothesis(), test, made.truth(), tangents=False).residual
         means.append(np.mean(residual**2))
-        neighbours.append(np.mean(residual[1:] * residual[:-1]))
+        neighbors.append(np.mean(residual[1:] * residual[:-1]))
     count = 6 * residual.size
     assert np.mean(means) == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / count))
-    assert np.mean(neighbours) == pytest.approx(0.0, abs=4.0 / np.sqrt(count))
+    assert np.mean(neighbors) == pytest.approx(0.0, abs=4.0 / np.sqrt(count))
 
 
 def test_the_constants_come_back_from_a_wrong_start() -> None:

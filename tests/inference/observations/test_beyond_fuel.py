@@ -36,7 +36,7 @@ CLOSING, DRAINING = 9.5, 0.12
 """When the valve ahead of p_run closes [s], and how fast the line behind it drains."""
 
 LESS = 0.6
-"""Part of the fuel with which it is gone while there is liquid; all of it is gone in the vapour."""
+"""Part of the fuel with which it is gone while there is liquid; all of it is gone in the vapor."""
 
 
 @cache

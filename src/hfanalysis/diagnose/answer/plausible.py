@@ -48,6 +48,6 @@ def judged(active: Active) -> Plausibility:
     chosen = _parameter(active)
     size, most = limit.text(active.strengths[chosen]), limit.text(limit.most)
     possible = excess(active) <= 1.0
-    judgement = "{chosen} of {size} is below {most}" if possible else "{chosen} of {size} is beyond {most}: {why}"
-    why = text(judgement, chosen=chosen, size=size, most=most, why=limit.why)
+    judgment = "{chosen} of {size} is below {most}" if possible else "{chosen} of {size} is beyond {most}: {why}"
+    why = text(judgment, chosen=chosen, size=size, most=most, why=limit.why)
     return Plausibility(size=size, plausible=possible, why=why)

@@ -52,7 +52,7 @@ def prove(found: Naming, chosen: Candidate, other: OtherTest | None) -> Proof:
     if other is None:
         notes.append("there is no other test of this stand to prove it on")
     elif elsewhere is None:
-        notes.append(f"{other.name} cannot be modelled with these constants of the effects: nothing is proved on it")
+        notes.append(f"{other.name} cannot be modeled with these constants of the effects: nothing is proved on it")
     wrong = _placebo(found, chosen)
     fractions["placebo"] = closed(before, total_gap(wrong.fit, observed)) if wrong else None
     free = next((c for c in found.unknown if len(c.names) == 1), None)

@@ -62,7 +62,7 @@ def name_effects(
 ) -> Naming:
     """Try the base model, every effect of the catalogue, sets of them, and unknown sources."""
     settings = settings or Settings()
-    bench = Bench(observed if settings.coloured else observed.with_white_noise(), settings.tempering)
+    bench = Bench(observed if settings.colored else observed.with_white_noise(), settings.tempering)
     search = Search(bench, catalogue, settings, progress)
     progress("fitting the base model", 0.0)
     base, valleys = base_model(hypothesis, bench)

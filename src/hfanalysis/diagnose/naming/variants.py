@@ -13,14 +13,14 @@ class Settings:
 
     tempering: bool = True
     projection: bool = True
-    coloured: bool = True
+    colored: bool = True
 
 
 VARIANTS = {
     "": Settings(),
     "no_tempering": Settings(tempering=False),
     "no_projection": Settings(projection=False),
-    "white_noise": Settings(coloured=False),
+    "white_noise": Settings(colored=False),
 }
 """By name; the first is the method."""
 

@@ -78,13 +78,13 @@ def abrupt_end(engine: Engine) -> float:
 
 
 def fade_misfit(seconds: float, abrupt: float, engine: Engine, speed: float) -> float:
-    """Log of the measured over the modelled time in which the fire goes out [-]; 0 for falls faster than an ``abrupt``
+    """Log of the measured over the modeled time in which the fire goes out [-]; 0 for falls faster than an ``abrupt``
     one.
 
     ``seconds``: the measured time [s]; ``abrupt`` [s]: that of a fire which is out at once; ``speed``: regression at
     the end [m/s].
     """
-    return log(max(seconds, abrupt) / _modelled(abrupt, engine, speed))
+    return log(max(seconds, abrupt) / _modeled(abrupt, engine, speed))
 
 
 def fade_slope(name: str, abrupt: float, engine: Engine, speed: float) -> float:
@@ -98,11 +98,11 @@ def fade_slope(name: str, abrupt: float, engine: Engine, speed: float) -> float:
                 active.effect.fading_web(active.named | {parameter: active.named[parameter] + side * step})
                 for side in (-1.0, 1.0)
             )
-            return -(more - less) / (2.0 * step) / speed / _modelled(abrupt, engine, speed)
+            return -(more - less) / (2.0 * step) / speed / _modeled(abrupt, engine, speed)
     return 0.0
 
 
-def _modelled(abrupt: float, engine: Engine, speed: float) -> float:
+def _modeled(abrupt: float, engine: Engine, speed: float) -> float:
     """Seconds in which the fire of a model goes out."""
     webs = [a.effect.fading_web(a.named) for a in engine.effects if a.effect.fading_web is not None]
     return abrupt + sum(webs) / speed

@@ -24,7 +24,7 @@ AROUND_CHANGE = 0.04
 """Seconds on either side of a phase change (beside its own deviation) without blocks: knees are rounded."""
 
 FIRST = 0.03
-"""Seconds after the opening before which nothing is compared: the chamber fills, the igniter is not modelled."""
+"""Seconds after the opening before which nothing is compared: the chamber fills, the igniter is not modeled."""
 
 TANK_SIDE = ("p_tank", "p_run", "m_tank", "p_purge")
 """Channels that go on telling when the nozzle has unchoked."""

@@ -99,7 +99,7 @@ class Observed:
         return of_blocks + sum(log(self.spread(name) / deviation) for name, (_, deviation) in self.events.items())
 
     def spread(self, event: str) -> float:
-        """Standard deviation of measured less modelled instant [s] of an event.
+        """Standard deviation of measured less modeled instant [s] of an event.
 
         What a form gets wrong of the tank moves the end of its liquid by as large a part, and what nobody knows of a
         flow without fire moves it besides.

@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.charts.chart import Chart, Series, around
-from hfanalysis.charts.colours import STYLES
+from hfanalysis.charts.colors import STYLES
 from hfanalysis.charts.svg import Event
 from hfanalysis.products.flight import Check, Flight, Stability
 from hfanalysis.quantity import Quantity

@@ -73,7 +73,7 @@ def _content(material: Material) -> Chart | None:
     time, liquid, vapor = found
     series = [
         Series("liquid", "p_tank", time, liquid * MOLES_TO_KG),
-        Series("vapour", "m_tank", time, vapor * MOLES_TO_KG),
+        Series("vapor", "m_tank", time, vapor * MOLES_TO_KG),
     ]
     caption = "From the loaded mass, less what the calibrated injector passed, at the measured pressure."
     axis, span = ("mass", "kg"), around([time])

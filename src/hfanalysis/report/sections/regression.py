@@ -90,7 +90,7 @@ def _efficiencies(material: Material) -> Chart | None:
         "C_F = F/(p_c A_t) over that of the ideal nozzle judges the nozzle; it needs no flow. c* over that of the "
         "equilibrium gas judges the combustion by its course. Its level is close to 1 while liquid flows, because a "
         "and n were fitted to this chamber pressure, as said above; after t_v it judges the calibrated tank's "
-        f"flow of vapour as much as the combustion.{_until_nitrogen(material)}"
+        f"flow of vapor as much as the combustion.{_until_nitrogen(material)}"
     )
     return _drawn(material, "efficiencies", "Efficiencies", ("efficiency", ""), lines, caption, with_zero=False)
 

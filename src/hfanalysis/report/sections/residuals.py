@@ -8,7 +8,7 @@ import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.charts.chart import Chart, Series, around
-from hfanalysis.charts.colours import style_of
+from hfanalysis.charts.colors import style_of
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.validation import Validation
 from hfanalysis.record.channels import LONG_NAMES
@@ -74,7 +74,7 @@ def _charts(material: Material, mode: str, channel: str, table: Table) -> Iterat
     band = Series("noise, 95 %", "noise", time, -1.96 * noise, "band", 1.96 * noise)
     zero = Series("zero", "zero", time[[0, -1]], np.zeros(2), "level")
     left = [band, Series("residual", "residual", time, residual), zero]
-    caption = "Measured less model. The grey band is what noise alone would do in 95 % of the samples."
+    caption = "Measured less model. The gray band is what noise alone would do in 95 % of the samples."
     title, axis = f"{words.capitalize()}: residual", ("measured − model", unit)
     yield over_time(
         material,

@@ -7,7 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from hfanalysis.charts.colours import COLOURS
+from hfanalysis.charts.colors import COLORS
 from hfanalysis.products.ingest import ChannelSummary, Ingest
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
@@ -42,7 +42,7 @@ def _row(name: str, channel: ChannelSummary) -> tuple[Any, ...]:
 
 
 def _name(name: str) -> Markup:
-    style = name if name in COLOURS else "other"
+    style = name if name in COLORS else "other"
     return Markup('<span class="swatch {}" aria-hidden="true"></span><bdi>{}</bdi>').format(style, name)
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from hfanalysis.charts.chart import Chart
-from hfanalysis.charts.colours import style_of
+from hfanalysis.charts.colors import style_of
 from hfanalysis.errors import AbsentError
 from hfanalysis.record.channels import CANONICAL, LONG_NAMES
 from hfanalysis.record.log import Channel

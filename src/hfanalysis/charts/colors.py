@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-COLOURS: dict[str, tuple[str, str]] = {
+COLORS: dict[str, tuple[str, str]] = {
     "paper": ("#fbfaf7", "#14171b"),
     "raised": ("#ffffff", "#1c2026"),
     "ink": ("#1b1f24", "#eceae4"),
@@ -41,9 +41,9 @@ STYLES = ("p_tank", "p_run", "p_chamber", "p_purge", "thrust", "m_tank")
 
 def declarations(dark: bool) -> str:
     """The colors as custom properties of CSS."""
-    return " ".join(f"--{name}: {pair[dark]};" for name, pair in COLOURS.items())
+    return " ".join(f"--{name}: {pair[dark]};" for name, pair in COLORS.items())
 
 
 def style_of(name: str, number: int = 0) -> str:
     """The color of a channel: its own where it has one, else the next of the row."""
-    return name if name in COLOURS else STYLES[number % len(STYLES)]
+    return name if name in COLORS else STYLES[number % len(STYLES)]
