@@ -4,7 +4,6 @@ from __future__ import annotations
 
 FLOOR = "a floor against division by nothing: no engine comes near it, so that nothing changes"
 FINER = "how finely something is stepped or tabulated: numbers move by less than they are known to"
-PRIOR = "a scale or bound of a prior that nobody knows better than to this factor; fits find the same"
 ROUGH = "where a search starts or which candidates it looks at; what is found is then dated and judged by other rules"
 
 EXPLAINED: dict[str, str] = {
@@ -18,6 +17,9 @@ EXPLAINED: dict[str, str] = {
     "evidence_from_log.py: FINEST": FINER,
     "_of_chamber: left.size / chamber.coherence": "told beside a fit with adopted effects; nothing is computed with it",
     "likelihood.py: surface": "how far from the best the misfit is followed; its interval is read off the same surface",
+    "critical_ratio: 1e-13": FINER,
+    "fuel_sliver.py: _fading_web: 1.0 x 2.0": "open: the web of a deep sliver would count from its start, not "
+    "from where the fade is timed; no test follows one so deep",
     "segment/fuel.py: SMOOTH": "ten times less smoothing: on logs of the tests' noise the same falls are found",
     "segment/fuel.py: _step: scatter": "open: over drawn noise this deviation is half of the true one, for the slope "
     "that both sides share is not known either; the threshold in front of it was chosen with it",
