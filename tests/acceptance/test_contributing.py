@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
@@ -12,7 +13,6 @@ from typing import cast
 
 import numpy as np
 import pytest
-import tomllib
 from tests.engine.stand import engine_on_stand
 from tests.record import make
 from tests.report.sample import material, without
