@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy recovery mutants replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy recovery mutants last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -89,6 +89,9 @@ recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 
 mutants: $(STAMP) ## small errors put into a copy of the source, and whether tests notice: docs/mutants.md; FLAGS='--each 40'
 	$(BIN)/python -m benchmarks.mutants --write docs/mutants.md $(FLAGS)
+
+last-digits: $(STAMP) ## how far numbers move by the last digits of logs, FLAGS='--cases FOLDER' with others too: docs/last-digits.md
+	$(BIN)/python -m benchmarks.last_digits --write docs/last-digits.md $(FLAGS)
 
 blind-cases: $(STAMP) ## tests with hidden effects under .cache/blind/; FLAGS='--n 20' (docs/blind.md)
 	$(BIN)/python -m simulated.blind write --jobs 2 $(FLAGS)

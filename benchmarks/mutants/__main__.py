@@ -33,9 +33,14 @@ def read(path: Path) -> dict[str, dict[str, Any]]:
     return {row["name"]: row for row in map(json.loads, lines)}
 
 
+def tells(row: dict[str, Any] | None, mutant: Mutant) -> bool:
+    """Whether a result is of this error in this definition; other tests may have come since."""
+    return row is not None and row["state"] == state(mutant, False)
+
+
 def known(row: dict[str, Any] | None, mutant: Mutant) -> bool:
     """Whether a result still holds."""
-    if row is None or row["state"] != state(mutant, False):
+    if row is None or not tells(row, mutant):
         return False
     return bool(row["verdict"] == "killed" or row["tests"] == state(mutant, True))
 
@@ -90,6 +95,7 @@ def main() -> int:
         "--each", type=int, default=12, help="errors by rule in each room, beside those that were tried before"
     )
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--known", action="store_true", help="try none: the page of what is known")
     parser.add_argument("--again", action="store_true", help="also what is known")
     parser.add_argument("--write", type=Path)
     parser.add_argument("--found", type=Path, default=FOUND)
@@ -99,9 +105,10 @@ def main() -> int:
     if asked.list:
         print("\n".join(f"{m.name} ({m.kind}, {m.edit.file}:{m.edit.line})" for m in mutants))
         return 0
-    tried(mutants, asked.found, asked.scratch, asked.again)
+    if not asked.known:
+        tried(mutants, asked.found, asked.scratch, asked.again)
     rows = read(asked.found)
-    results = [rows[m.name] for m in mutants if known(rows.get(m.name), m)]
+    results = [{**rows[m.name], "file": m.edit.file.as_posix()} for m in mutants if tells(rows.get(m.name), m)]
     if asked.write:
         asked.write.write_text(page(results), encoding="utf-8")
     return int(any(r["verdict"] != "killed" and r["kind"] == "by hand" for r in results))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 NORMAL_95 = 1.959963984540054
-"""Half-width of the central 95 % of a normal distribution, in standard deviations."""
+"""Half-width of the central 95 % of a normal distribution [standard deviations]. Source: its quantile at 0.975."""
 
 IDENTIFIED = "identified"
 NOT_IDENTIFIABLE = "not identifiable"
@@ -44,7 +44,11 @@ class Quantity:
 
     @property
     def interval(self) -> tuple[float, float] | None:
-        """The 95 % interval: as given, else the normal one from ``std``; None where neither is known."""
+        """The 95 % interval [``unit``]: as given, else the normal one from ``std``; None where neither is known.
+
+        >>> [round(end, 2) for end in Quantity(10.0, "s", 1.0).interval or ()]
+        [8.04, 11.96]
+        """
         if self.ci95 is not None:
             return self.ci95
         if self.value is None or self.std is None:
@@ -81,7 +85,7 @@ class Quantity:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Quantity:
-        """The inverse of :meth:`to_json`."""
+        """The inverse of :meth:`to_json`: numbers in the SI unit that ``data`` names [``data["unit"]``]."""
         if data["value"] is None:
             return cls(None, reason=data["reason"], verdict=data.get("verdict"))
         ci95 = data.get("ci95")

@@ -24,7 +24,7 @@ UNITS = {
     "L": ("m^3", 1e-3),
     "g": ("kg", 1e-3),
 }
-"""Units of sentences that are none of SI: the SI unit, and how many of it they are."""
+"""Units of sentences that are none of SI: the SI unit, and how many of it they are. Source: definitions."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def said(
     std_form: str = ".2g",
     size: float | None = None,
 ) -> Text:
-    """A quantity in words: ``value`` in SI, shown in ``unit`` by a format; with ± ``std`` where that is given.
+    """A quantity in words: ``value`` [SI], shown in ``unit`` by a format; with ± ``std`` [SI] where that is given.
 
     ``size``: of a unit that UNITS does not have, in SI. A number without a unit is only a word.
 

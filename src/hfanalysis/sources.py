@@ -30,7 +30,7 @@ _NAMED = re.compile(rf'"({PACKAGE.name}(?:\.\w+)+)"')
 _WALKS = ("(__path__)", 'import_module(f"{__name__}.')
 _NOT_CODE = ("__pycache__",)
 
-Found = tuple[frozenset[str], frozenset[str]]
+Imports = tuple[frozenset[str], frozenset[str]]
 """Dotted names that a file may import: at its top level, and anywhere."""
 
 
@@ -108,7 +108,7 @@ def _packages(folder: Path) -> tuple[Path, ...]:
 
 
 @cache
-def _names(path: Path) -> Found:
+def _names(path: Path) -> Imports:
     code = _without_texts(_read(path).decode("utf-8", "replace"))
     walks = path.name == "__init__.py" and any(mark in code for mark in _WALKS)
     top: set[str] = set()

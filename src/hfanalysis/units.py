@@ -61,11 +61,17 @@ DIMENSIONS: dict[str, Dimension] = {
 }
 
 _PSI = 4.4482216152605 / 0.0254**2
+"""[Pa]. Source: definition: one lbf on a square inch."""
 _LB = 0.45359237
+"""[kg]. Source: definition (international avoirdupois pound, 1959)."""
 _LBF = 4.4482216152605
+"""[N]. Source: definition: one lb at standard gravity."""
 _G = 9.80665
+"""[m/s^2]. Source: standard gravity (CGPM 1901)."""
 _INCH = 0.0254
+"""[m]. Source: definition (international inch, 1959)."""
 _FAHRENHEIT = 5.0 / 9.0
+"""[K]. Source: definition: 180 degrees Fahrenheit are 100 K."""
 
 TABLE: dict[str, dict[str, tuple[float, float]]] = {
     "pressure": {
@@ -105,7 +111,8 @@ TABLE: dict[str, dict[str, tuple[float, float]]] = {
     "current": {"A": (1.0, 0.0), "mA": (1e-3, 0.0)},
     "dimensionless": {"": (1.0, 0.0), "1": (1.0, 0.0), "-": (1.0, 0.0), "%": (0.01, 0.0)},
 }  # fmt: skip
-"""Per dimension: unit -> (scale, offset) with SI = scale * x + offset."""
+"""Per dimension: unit -> (scale, offset) with SI = scale * x + offset. Source: definitions; test_units.py checks every
+entry against pint."""
 
 GAUGE: dict[str, str] = {"psig": "psi", "barg": "bar", "kPag": "kPa", "MPag": "MPa", "mbarg": "mbar", "bar(g)": "bar",
                          "psi(g)": "psi"}  # fmt: skip
@@ -171,9 +178,12 @@ def si_unit(dimension: str) -> str:
 
 @lru_cache(maxsize=1024)
 def unit_factor(unit: str, dimension: str, where: str) -> tuple[float, float]:
-    """(scale, offset) with SI = scale * x + offset; a gauge unit gives its absolute twin's.
+    """(scale [SI / unit], offset [SI]) with SI = scale * x + offset; a gauge unit gives its absolute twin's.
 
     Raises :class:`InputError` where the unit is unknown or of another dimension.
+
+    >>> unit_factor("bar", "pressure", "tank"), unit_factor("degC", "temperature", "tank")
+    ((100000.0, 0.0), (1.0, 273.15))
     """
     base = DIMENSIONS[dimension].of or dimension
     scale, offset = _in_table(unit, base) or _in_pint(unit, base, where)
@@ -188,7 +198,9 @@ def dimension_of(unit: str, where: str) -> str:
 
 
 def parse(text: str | float | int, dimension: str, where: str) -> Value:
-    """A value with its unit, and +/- one standard deviation where stated, in SI.
+    """A value [SI] from a text with its unit, and +/- one standard deviation where stated.
+
+    Raises :class:`InputError` naming ``where``, what was found and what was expected.
 
     >>> parse("8.35 +/- 0.05 kg", "mass", "tank.oxidizer_mass")
     Value(value=8.35, std=0.05)
@@ -224,7 +236,7 @@ def _split(text: str, dimension: str, where: str) -> tuple[float, str, float | N
 
 
 def _spread(spread: float, unit: str, value: float, dimension: str, where: str) -> float:
-    """The standard deviation in SI; a spread in per cent is of the value."""
+    """The standard deviation in SI; a spread in percent is of the value."""
     if unit == "%" and dimension != "dimensionless":
         return abs(value) * spread / 100.0
     if not unit and dimension != "dimensionless":

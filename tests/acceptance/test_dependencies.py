@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 
 from hfanalysis.sources import PACKAGE, libraries
-from hfanalysis.stages.freshness import DISTRIBUTIONS
 
 REPOSITORY = Path(__file__).parents[2]
-COMES_WITH = {"pydantic_core": "pydantic", **DISTRIBUTIONS}
+COMES_WITH = {"pydantic_core": "pydantic"}
 """Imported modules that come in a distribution of another name."""
 
 

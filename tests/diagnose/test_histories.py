@@ -18,10 +18,12 @@ def test_an_effect_and_an_unknown_source_beside_it_may_have_the_same_name(tmp_pa
     naming = name_effects(made.hypothesis(), made.observed(), catalogue(("load_cell_drift",)))
     band = {"unit": "W", "time": [0.0, 1.0], "low90": [0.0, 0.0], "high90": [9.0, 9.0]}
     rows = [
-        {"site": "tank_heat", "equation": "tank_energy", "history": {**band, "mean": [size, size]}}
+        SimpleNamespace(site="tank_heat", equation="tank_energy", history=SimpleNamespace(**band, mean=[size, size]))
         for size in (5.0, 2.0)
     ]
-    found = SimpleNamespace(naming=naming, verdict=SimpleNamespace(chosen=naming.base), product={"localisation": rows})
+    found = SimpleNamespace(
+        naming=naming, verdict=SimpleNamespace(chosen=naming.base), product=SimpleNamespace(localisation=rows)
+    )
     write_histories(tmp_path / "diagnosis.h5", found, {})  # type: ignore[arg-type]
     with h5py.File(tmp_path / "diagnosis.h5") as file:
         assert set(file["sources"]) == {"tank_heat", "tank_heat 2"}

@@ -9,7 +9,7 @@ from tests.effects.runs import OF_SENSORS, base, only, typical, with_effects
 
 from hfanalysis.effects import effect
 from hfanalysis.effects.chamber_tap_lag import lagged
-from hfanalysis.effects.load_cell_drift import FAINT, heat_clock
+from hfanalysis.effects.load_cell_drift import LEAST_OVERPRESSURE, heat_clock
 from hfanalysis.engine.observe import CHANNELS, distorted, observe
 
 Array = NDArray[np.float64]
@@ -79,7 +79,7 @@ def test_a_cell_warms_with_a_power_of_the_pressure_and_by_time_where_that_is_not
     pressure = np.where((times >= 0.0) & (times < 2.0), 31e5, 1e5)
     clock = heat_clock(times, pressure, power)
     assert clock[times < 0.0].max() == 0.0
-    soaked = 3.0 * FAINT**power
+    soaked = 3.0 * LEAST_OVERPRESSURE**power
     assert clock[-1] == pytest.approx(warmed + (soaked if power > 0.0 else 0.0), rel=1e-3)
     assert np.ptp(clock[times > 2.001]) == pytest.approx(soaked, rel=0.01)
     assert heat_clock(times, np.zeros(times.size), power) == pytest.approx(np.maximum(times, 0.0))

@@ -300,3 +300,11 @@ def test_the_reference_solver_agrees_through_vapour_and_cold_gas() -> None:
     ours = burn(hf5_like(), 17.0, run_on=True)
     assert (ours.liquid_out, ours.burn_time) == pytest.approx(run.events[:2], rel=1e-4)
     assert max(differences(ours, run).values()) < 1e-4
+
+
+def test_a_last_digit_changes_no_step() -> None:
+    """Errors are rounded off; steps that followed their digits would make of one of 1e-13 one of the tolerance."""
+    engine = hf5_like()
+    one, other = (burn(replace(engine, a=a), 10.0, run_on=True).steps for a in (engine.a, engine.a * (1.0 + 1e-13)))
+    assert other.times == pytest.approx(one.times, rel=1e-9)
+    assert other.end[:, :6] == pytest.approx(one.end[:, :6], rel=1e-7)

@@ -11,7 +11,7 @@ from tests.rocket.test_aerodynamics import HALCYON, HALCYON_CENTER
 from hfanalysis.flight.ascent import Arguments, arguments, ascend
 from hfanalysis.flight.curve import Curve
 from hfanalysis.flight.margin import margin
-from hfanalysis.flight.pitch import ATTACK, ATTITUDE, HEIGHT, MARGIN, SPEED, STEP, Flights, aero, fly_in_wind
+from hfanalysis.flight.pitch import ATTACK, ATTITUDE, HEIGHT, MARGIN, PITCH_STEP, SPEED, Flights, aero, fly_in_wind
 from hfanalysis.rocket.aerodynamics import center_of_pressure, components
 from hfanalysis.rocket.balance import Part, TankPlace, balance, oxidizer
 from hfanalysis.rocket.vehicle import Vehicle
@@ -58,7 +58,7 @@ def test_without_wind_and_straight_up_it_flies_as_the_ascent_does() -> None:
     alone = ascend(BURN, rocket(), 12.0)
     assert np.nanmax(path[:, HEIGHT]) == pytest.approx(alone.height, rel=1e-4)
     assert np.nanmax(path[:, SPEED]) == pytest.approx(float(alone.column("speed").max()), rel=1e-3)
-    assert np.nanmax(np.abs(path[: int(20.0 / STEP), ATTITUDE])) == 0.0
+    assert np.nanmax(np.abs(path[: int(20.0 / PITCH_STEP), ATTITUDE])) == 0.0
 
 
 def test_the_margin_without_an_angle_of_attack_is_barrowman_s() -> None:
@@ -72,7 +72,7 @@ def test_the_margin_without_an_angle_of_attack_is_barrowman_s() -> None:
 def test_a_stable_rocket_turns_into_the_wind() -> None:
     path, at = flights(6.0).paths[0], flights(6.0).departure[0]
     assert path[at, ATTACK] == pytest.approx(np.arctan(6.0 / 37.0), rel=0.15)
-    later = int(at + 3.0 / STEP)
+    later = int(at + 3.0 / PITCH_STEP)
     assert path[later, ATTITUDE] > 0.0
     assert path[later, ATTACK] < 0.2 * path[at, ATTACK]
 
@@ -81,9 +81,9 @@ def test_it_swings_at_the_frequency_of_its_margin_and_inertia() -> None:
     """omega^2 = q A C_N x / I; the damping is weak, the speed grows by a few per cent over half a swing."""
     found = flights(3.0)
     path, at = found.paths[0], int(found.departure[0])
-    attitude = path[at : at + int(1.0 / STEP), ATTITUDE]
-    half = float(np.argmax(attitude)) * STEP
-    mean = path[at : at + int(half / STEP), SPEED].mean()
+    attitude = path[at : at + int(1.0 / PITCH_STEP), ATTITUDE]
+    half = float(np.argmax(attitude)) * PITCH_STEP
+    mean = path[at : at + int(half / PITCH_STEP), SPEED].mean()
     slope, place = center_of_pressure(components(HALCYON, 0.1))
     stiffness = 0.5 * air(140.0)[1] * mean**2 * HALCYON.area * slope * (place - HALCYON_CENTER)
     assert half == pytest.approx(np.pi / np.sqrt(stiffness / INERTIA), rel=0.15)
@@ -92,7 +92,7 @@ def test_it_swings_at_the_frequency_of_its_margin_and_inertia() -> None:
 def test_a_rocket_that_weighs_aft_of_its_centre_of_pressure_tumbles() -> None:
     path = flights(1.0, center=3.0).paths[0]
     assert np.nanmin(path[:, MARGIN]) < 0.0
-    assert np.nanmax(path[: int(5.0 / STEP), ATTACK]) > 1.0
+    assert np.nanmax(path[: int(5.0 / PITCH_STEP), ATTACK]) > 1.0
 
 
 def test_wind_takes_margin_at_the_rail_s_end() -> None:

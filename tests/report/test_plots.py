@@ -17,7 +17,7 @@ from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import InputError
 from hfanalysis.report import pdf
 from hfanalysis.report.compare import both_charts, compare
-from hfanalysis.report.payload import LEAST, MOST, detail
+from hfanalysis.report.payload import LEAST_SAMPLES, MOST_SAMPLES, detail
 from hfanalysis.report.plots import csv, write_plots
 from hfanalysis.report.sections import charts
 
@@ -113,13 +113,13 @@ def test_a_browser_that_cannot_print_is_told_with_its_words(monkeypatch: pytest.
 def test_many_lines_share_what_a_page_may_weigh() -> None:
     line = Series("a", "p_tank", np.zeros(30_000), np.zeros(30_000))
     one, many = chart(line), chart(*[line] * 10)
-    assert detail([one]) == MOST
-    assert detail([many] * 10) < 0.3 * MOST
+    assert detail([one]) == MOST_SAMPLES
+    assert detail([many] * 10) < 0.3 * MOST_SAMPLES
     assert detail([many] * 10) < detail([many] * 5 + [replace(many, weight=0.1)] * 5)
-    assert detail([many] * 500) == LEAST
+    assert detail([many] * 500) == LEAST_SAMPLES
 
 
 def test_lines_with_few_samples_leave_their_share_to_the_others() -> None:
     short = Series("a", "p_tank", np.zeros(100), np.zeros(100))
     long = Series("a", "p_tank", np.zeros(30_000), np.zeros(30_000))
-    assert detail([chart(long), *[chart(short)] * 200]) == MOST
+    assert detail([chart(long), *[chart(short)] * 200]) == MOST_SAMPLES

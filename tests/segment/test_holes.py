@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.segment.stand import definition, fire, log_of
 
-from hfanalysis.record.holes import holes, told, unasked
+from hfanalysis.record.holes import hole_warnings, holes, not_excluded
 from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.segment.phases import find_phases
 
@@ -38,19 +38,19 @@ def test_a_log_without_holes_has_none_whatever_its_rate() -> None:
 def test_what_the_engineer_left_out_is_no_hole_to_tell() -> None:
     channel = log_of(fire()).channels["p_tank"]
     inside = (channel.time > 101.0) & (channel.time < 102.0)
-    assert unasked(replace(channel, flags=np.where(inside, Flag.EXCLUDED, 0).astype(np.uint8))).size == 0
-    assert unasked(replace(channel, flags=np.where(inside, Flag.DROPOUT, 0).astype(np.uint8))).shape == (1, 2)
+    assert not_excluded(replace(channel, flags=np.where(inside, Flag.EXCLUDED, 0).astype(np.uint8))).size == 0
+    assert not_excluded(replace(channel, flags=np.where(inside, Flag.DROPOUT, 0).astype(np.uint8))).shape == (1, 2)
 
 
 def test_one_hole_in_all_channels_is_told_once_and_of_many_the_longest() -> None:
     hole = np.array([[2.0, 2.6]])
     both = [("log.csv", "p_tank", hole), ("log.csv", "thrust", hole), ("slow.csv", "T_tank", hole)]
-    assert list(told(both, {"log.csv": 2, "slow.csv": 1})) == [
+    assert list(hole_warnings(both, {"log.csv": 2, "slow.csv": 1})) == [
         "log.csv: no good samples from 2.00 to 2.60 s of log time; what happens there is not known",
         "T_tank: no good samples from 2.00 to 2.60 s of log time; what happens there is not known",
     ]
     many = np.array([[float(i), i + 0.1 * (i + 1)] for i in range(5)])
-    assert list(told([("log.csv", "p_run", many)], {"log.csv": 2})) == [
+    assert list(hole_warnings([("log.csv", "p_run", many)], {"log.csv": 2})) == [
         "p_run: no good samples from 2.00 to 2.30 s, 3.00 to 3.40 s, 4.00 to 4.50 s of log time and in 2 shorter "
         "stretches; what happens there is not known"
     ]

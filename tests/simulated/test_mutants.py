@@ -35,10 +35,8 @@ def test_every_error_has_room_tests_its_room(by_hand: list[Mutant]) -> None:
 
 
 def test_a_symbol_that_is_nowhere_is_said() -> None:
-    nowhere = replace(CATALOGUE[0], symbol="no_such_symbol")
     with pytest.raises(LookupError, match="is in 0 places"):
-        list(catalogue([nowhere]))
-    assert next(catalogue([nowhere, CATALOGUE[0]])) == CATALOGUE[0].mutant()
+        replace(CATALOGUE[0], symbol="no_such_symbol").mutant()
 
 
 @pytest.mark.parametrize("room", ["validate", "flight"])

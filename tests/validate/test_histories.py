@@ -10,7 +10,7 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.engine.unsteady import Burn, burn
 from hfanalysis.thermo.combustion import equilibrium
-from hfanalysis.validate.flows import STEP, Flows
+from hfanalysis.validate.flows import HISTORY_STEP, Flows
 from hfanalysis.validate.histories import closure, efficiencies
 from hfanalysis.validate.performance import Fire
 
@@ -25,7 +25,7 @@ def run() -> Burn:
 
 def histories() -> tuple[dict[str, np.ndarray], Flows]:
     """Chamber pressure, thrust and flows of the liquid phase on an even clock."""
-    time = np.arange(0.0, 5.0, STEP)
+    time = np.arange(0.0, 5.0, HISTORY_STEP)
     found = {n: np.interp(time, run().time, run().output(n)) for n in
              ("chamber_pressure", "thrust", "oxidizer_flow", "fuel_flow")}  # fmt: skip
     flows = Flows(time, found["oxidizer_flow"], found["fuel_flow"], np.zeros(time.size), np.zeros(time.size))

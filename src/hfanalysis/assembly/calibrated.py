@@ -26,11 +26,12 @@ from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
 
 ASSUMED_EXPONENT = (1.15, 0.1)
-"""Polytropic exponent of the vapour and its standard deviation where a test does not tell: the middle of 1.0 to 1.3."""
+"""Polytropic exponent of the vapor and its standard deviation [-] where a test does not tell. Evidence: the middle of
+what a calibration takes as physical, 1.0 to 1.3 (docs/calibration.md)."""
 
 
 COLDER = 15.0
-"""[K] by which an effect may let a bulk be colder than its tank's pressure says."""
+"""By how much an effect may let a bulk be colder than its tank's pressure says [K]."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,7 @@ def loss_factor(calibration: TankConstants) -> float:
 
 
 def loaded_mass(definition: TestDefinition, calibration: TankConstants) -> float:
-    """The oxidizer that the calibration worked with [kg]."""
+    """The oxidizer that the calibration worked with [kg]. Raises AbsentError where it has none."""
     found = calibration.load
     if found.value is None:
         raise AbsentError(f"test {definition.test.id}: the loaded oxidizer is not known ({found.reason})")
@@ -131,22 +132,24 @@ def loaded_mass(definition: TestDefinition, calibration: TankConstants) -> float
 
 
 def exponent(calibration: TankConstants) -> tuple[float, float]:
-    """The vapour's polytropic exponent with its standard deviation: as calibrated, else ASSUMED_EXPONENT."""
+    """The vapor's polytropic exponent [-] with its standard deviation: as calibrated, else ASSUMED_EXPONENT."""
     found = calibration.m
     return ASSUMED_EXPONENT if found.value is None else (found.value, found.std or 0.0)
 
 
 def oxidizer_enthalpy(definition: TestDefinition, source: Saturation, temperature: float) -> float:
-    """Of the oxidizer entering the chamber [J/kg]: PROPEP's (report), or the saturated liquid's."""
+    """Of the oxidizer entering the chamber [J/kg]: PROPEP's (report), or the saturated liquid's at its ``temperature``
+    [K]."""
     if definition.model.conventions == "report":
         return PROPEP_OXIDIZER_ENTHALPY
     return FORMATION_OFFSET + float(source.energy(Property.LIQUID_ENTHALPY, temperature)[0])
 
 
 def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
-    """The engine with the tank temperature from which its tank has ``pressure`` [Pa] at ``instant`` [s].
+    """The engine with the tank temperature [K] from which its tank has ``pressure`` [Pa] at ``instant`` [s] after
+    ignition.
 
-    The report's extrapolation of phase 2 to the opening (section 4.3.4). Raises AbsentError where no saturated tank
+    The report's extrapolation of phase 2 to the opening (section 4.4). Raises AbsentError where no saturated tank
     with this load does.
     """
     coldest = float(engine.saturation.temperature(pressure))
@@ -169,7 +172,10 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
 
 
 def pressure_at(engine: Engine, instant: float) -> float:
-    """Modelled tank pressure [Pa] at an instant [s after ignition]."""
+    """Modeled tank pressure [Pa] at an ``instant`` [s after ignition].
+
+    Raises AbsentError where the solver does not come that far.
+    """
     if instant <= 0.0 and not engine.effects:
         return float(engine.saturation.pressure(engine.temperature))
     try:
@@ -180,7 +186,7 @@ def pressure_at(engine: Engine, instant: float) -> float:
 
 
 def _possible(engine: Engine, coldest: float) -> tuple[float, float]:
-    """Temperatures [K] from ``coldest`` up at which the load is liquid and vapour; equal where there are none."""
+    """Temperatures [K] from ``coldest`` up at which the load is liquid and vapor; equal where there are none."""
     source, density = engine.saturation, engine.oxidizer_mass / engine.feed.volume
     grid = np.linspace(coldest, source.t_max - 0.05, 400)
     fits = (source.vapor_density(grid) < density) & (density < source.liquid_density(grid))

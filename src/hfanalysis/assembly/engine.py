@@ -21,6 +21,7 @@ from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
 
 _STANDARD = 101_325.0
+"""Ambient pressure [Pa] where none is stated. Source: standard atmosphere."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,8 @@ def temperature(needs: Needs) -> float:
 
 
 def oxidizer_enthalpy(needs: Needs) -> Enthalpy:
-    """What the conventions take: PROPEP's ideal gas (report), or the liquid at the tank's initial temperature."""
+    """What the conventions take [J/kg]: PROPEP's ideal gas (report), or the liquid at the tank's initial
+    temperature."""
     if needs.file.model.conventions == "report":
         return Enthalpy(combustion.PROPEP_OXIDIZER_ENTHALPY, "PROPEP: ideal gas at 298.15 K")
     t = temperature(needs)
@@ -90,7 +92,10 @@ def site_altitude(file: EngineFile) -> float:
 
 
 def tank(needs: Needs) -> TankBuilt:
-    """The tank from its volume, length or ullage, holding the file's oxidizer as saturated liquid and vapour."""
+    """The tank [m^3] from its volume, length or ullage, holding the file's oxidizer [kg] as saturated liquid and vapor.
+
+    Raises InputError where it does not hold that much, or where the file does not say enough.
+    """
     t, source, stated = temperature(needs), properties(needs.file), needs.file.tank
     mass = needs.value(stated.oxidizer_mass, "tank", "oxidizer_mass").value
     try:
@@ -143,7 +148,8 @@ def _dip_tube(needs: Needs) -> sizing.DipTube:
 
 
 def feed(needs: Needs, volume: float) -> FeedSystem:
-    """Feed line and injector on a tank of that volume [m^3]."""
+    """Feed line and injector on a tank of that ``volume`` [m^3]. Raises InputError where the file does not say
+    enough."""
     injector, line = needs.file.injector, needs.file.feed
     key = "hole_area (or hole_diameter)" if injector.holes is not None else "holes"
     area = needs.value(injector.area, "injector", key).value * needs.value(injector.C_i, "injector", "C_i")
@@ -173,7 +179,7 @@ def parachutes(file: EngineFile) -> tuple[Parachute, Parachute] | str:
 
 
 def steady_grain(needs: Needs) -> Grain:
-    """The grain's casing and regression law."""
+    """The grain's casing [m] and regression law. Raises InputError where the file lacks one of them."""
     grain = needs.file.grain
     return Grain(
         length=needs.value(grain.length, "grain", "length").value,
@@ -190,7 +196,10 @@ def fuel_mass(needs: Needs) -> float:
 
 
 def requirement(needs: Needs) -> steady.Requirement:
-    """What a steady design starts from; the exit is ideally expanded where the file gives no radius."""
+    """What a steady design starts from [kg/s, Pa, m]; the exit is ideally expanded where the file gives no radius.
+
+    Raises InputError for a chamber pressure that is not above ambient.
+    """
     stated, exit_radius = needs.file.design, needs.file.nozzle.exit_radius
     ambient = ambient_pressure(needs.file)
     pressure = needs.value(stated.chamber_pressure, "design", "chamber_pressure").value
@@ -209,7 +218,10 @@ def requirement(needs: Needs) -> steady.Requirement:
 
 
 def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
-    """The unsteady engine on its rocket, or on its stand at the site where there is none that can fly."""
+    """The unsteady engine on its rocket, or on its stand at the site where there is none that can fly.
+
+    Raises InputError where the file does not say enough, or where nothing flows.
+    """
     file, grain = needs.file, steady_grain(needs)
     flying = vehicle(file)
     throat = needs.value(file.nozzle.throat_radius, "nozzle", "throat_radius").value
@@ -238,7 +250,7 @@ def engine(needs: Needs, built: TankBuilt) -> unsteady.Engine:
 
 
 def _exponent(needs: Needs) -> float | None:
-    """The polytropic exponent; None for c_p/c_v of the vapour when the liquid runs out."""
+    """The polytropic exponent; None for c_p/c_v of the vapor when the liquid runs out."""
     found = needs.file.tank.polytropic_exponent
     needs.value(found, "tank", "polytropic_exponent")
     return None if isinstance(found, str) else found
@@ -264,9 +276,9 @@ def _that_flows(needs: Needs, made: unsteady.Engine) -> unsteady.Engine:
 
 
 def scaled(needs: Needs, made: unsteady.Engine, oxidizer_mass: float, of_ratio: float) -> unsteady.Engine:
-    """The same engine with another load at a fixed O/F of loaded masses and the same ullage (tank volume per mass).
+    """The same engine with a load ``oxidizer_mass`` [kg] at an ``of_ratio`` [-] of loaded masses.
 
-    Raises ValueError where the fuel does not fit into the casing.
+    The ullage stays (tank volume per mass). Raises ValueError where the fuel does not fit into the casing.
     """
     fuel = oxidizer_mass / of_ratio
     steady_grain(needs).port_radius(fuel)

@@ -14,7 +14,8 @@ from hfanalysis.rocket.vehicle import Vehicle
 
 
 def vehicle(rocket: Rocket | None, folder: Path, launch_altitude: float) -> Vehicle | str:
-    """The rocket, its drag table read from ``folder``, or why it cannot fly."""
+    """The rocket, its drag table read from ``folder``, or why it cannot fly; ``launch_altitude`` above sea level
+    [m]."""
     if rocket is None:
         return "no [rocket] is given"
     area = frontal_area(rocket)

@@ -11,11 +11,11 @@ from hfanalysis.rocket.aerodynamics import REGULAR_PAINT, Fins, Nose, Shape, Tai
 from hfanalysis.rocket.balance import Part, TankPlace
 
 AGREE = 0.02
-"""Relative, within which the dry mass and the sum of structure and engine are the same rocket."""
+"""Relative difference [-] within which the dry mass and the sum of structure and engine are the same rocket."""
 
 
 def shape(rocket: Rocket | None) -> Shape | str:
-    """The rocket's outside, or what is not given of it."""
+    """The rocket's outside [m], or what is not given of it."""
     geometry = rocket.geometry if rocket is not None else None
     if rocket is None or geometry is None:
         return "no [rocket.geometry] is given"
@@ -54,7 +54,7 @@ class Masses:
     """Parts that stay as they are, where the tank is, and the middles of grain and chamber [m from the nose tip].
 
     ``front``: the engine's front, from which engine files count; ``length``: of the engine [m]; ``dry``: mass [kg] and
-    centre of gravity of the empty engine, None where the structure holds it.
+    center of gravity of the empty engine, None where the structure holds it.
     """
 
     fixed: tuple[Part, ...]
@@ -71,7 +71,7 @@ class Masses:
 def masses(
     rocket: Rocket, outside: Shape, tank: Tank | None, grain: Grain | None, chamber: Chamber | None
 ) -> Masses | str:
-    """Where the masses are, or what is not given of it."""
+    """Where the masses [kg] are [m from the nose tip], or what is not given of it."""
     geometry = rocket.geometry
     if geometry is None:
         return "no [rocket.geometry] is given"

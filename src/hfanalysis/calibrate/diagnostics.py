@@ -33,9 +33,9 @@ HISTORY_POINTS = 200
 
 
 def tank_history(saturation: Saturation, histories: Histories, inputs: Inputs, left: Array) -> TankHistory | None:
-    """Moles of liquid and vapour, n_l + n_v = m/W and n_l v_l + n_v v_v = V (report, section 4.2.1), and the flow.
+    """Moles of liquid and vapor, n_l + n_v = m/W and n_l v_l + n_v v_v = V (report, 4.2.1), and the flow [mol, kg/s].
 
-    ``left`` is the mass gone [kg] at the histories' times. None for fewer than eight samples.
+    ``left`` (n,) is the mass gone [kg] at the histories' times. None for fewer than eight samples.
     """
     wet = histories.time < inputs.t_v
     if wet.sum() < 8:
@@ -62,11 +62,11 @@ def _rounded(values: Array) -> Numbers:
 def coefficient_history(
     saturation: Saturation, histories: Histories, inputs: Inputs, left: Array, window: float = 0.5
 ) -> CoefficientHistory | None:
-    """C_i(t) from mdot = U_T / (h_l - U_M) dT/dt of the saturated tank over the injector's ideal flow.
+    """C_i(t) [-] from mdot = U_T / (h_l - U_M) dT/dt of the saturated tank over the injector's ideal flow.
 
     Heat into the tank makes it too small, nitrogen too; where it drifts, the tank or the injector does something that
-    the model lacks. ``left`` is the mass gone [kg] at the histories' times. None for a liquid phase shorter than two
-    windows.
+    the model lacks. ``left`` (n,) is the mass gone [kg] at the histories' times, ``window`` [s] that of a slope. None
+    for a liquid phase shorter than two windows.
     """
     start, end = max(inputs.t_feed, 0.1), inputs.t_v - 0.02
     if end - start < 2.0 * window:
@@ -114,7 +114,14 @@ def rest_of(
     left: Array,
     mass: LoadedMass,
 ) -> tuple[Rest, list[str]]:
-    """The tank at rest and what the blowdown says of it, with remarks for people."""
+    """The tank at rest and what the blowdown says of it (temperatures [K], masses [kg], heat [J]), with remarks for
+    people.
+
+    Args:
+        inputs: of the reduction ``r``, in SI units.
+        left: oxidizer that has left the tank [kg], (n,) at the times of ``histories``.
+        mass: what was loaded [kg].
+    """
     tank = histories.signals["p_tank"]
     channel = log["p_tank"]
     bias = channel.zero_std if channel.zero_std is not None else channel.accuracy

@@ -58,7 +58,9 @@ class Evidence:
 
     @cached_property
     def observed(self) -> Array:
-        """All observations in one vector: chamber pressures, then burn time, then fuel left, as far as there are."""
+        """All observations in one vector (n,): chamber pressures [Pa], then burn time [s] and fuel left [kg], as far as
+        there are.
+        """
         return np.concatenate((self.chamber, [s.value for s in self.scalars]))
 
     @property
@@ -68,7 +70,7 @@ class Evidence:
 
     @property
     def scales(self) -> Array:
-        """Standard deviations of the scalars."""
+        """Standard deviations of the scalars: burn time [s], fuel left [kg], as far as there are."""
         return np.array([s.std for s in self.scalars])
 
     def with_regression(self, law: Regression) -> Evidence:
@@ -77,7 +79,7 @@ class Evidence:
         return replace(self, engine=starting_for(lit, *self.anchor))
 
     def predict(self, law: Regression) -> Array | None:
-        """The model of ``observed``; None where the engine cannot be run with these constants."""
+        """The model of ``observed`` (n,) [Pa, s, kg]; None where the engine cannot be run with these constants."""
         return _predicted(self, replace(self.engine, a=law.a, n=law.n))
 
     def burnt(self, law: Regression) -> Burn:
@@ -86,11 +88,11 @@ class Evidence:
 
     @property
     def longest(self) -> float:
-        """Seconds after which a burn is given up."""
+        """When a burn is given up [s]."""
         return 2.0 * max(self.end, float(self.time[-1])) + 5.0
 
     def sensitivities(self, law: Regression) -> Array:
-        """Change of ``observed`` per standard deviation of each nuisance, (observations, nuisances)."""
+        """Change of ``observed`` [Pa, s, kg] per standard deviation of each nuisance, (observations, nuisances)."""
         centre = self.predict(law)
         columns = np.zeros((self.observed.size, len(NUISANCES)))
         for j, (name, step) in enumerate(zip(NUISANCES, np.sqrt(np.diag(self.covariance)), strict=True)):
@@ -134,7 +136,7 @@ def _predicted(evidence: Evidence, engine: Engine) -> Array | None:
 
 
 def chamber_at(engine: Engine, burnt: Burn, time: Array, timed: bool = True) -> Array:
-    """Modelled chamber pressure [Pa] at given times.
+    """Modeled chamber pressure [Pa], (n,), at given times (n,) [s].
 
     After the burn it is that of its end where the end itself is ``timed``, so that a burn that is short by a moment is
     not held against the constants twice, and far too heavily; else ambient.

@@ -24,16 +24,17 @@ from hfanalysis.record.signals import Signal, line_at
 from hfanalysis.units import Value
 
 BLOCKS = 120
-"""Block means of the chamber pressure that are compared; they are no shorter than FINEST."""
+"""Block means of the chamber pressure that are compared; they are no shorter than FINEST_CHAMBER_BLOCK."""
 
-FINEST = 0.02
-"""Seconds."""
+FINEST_CHAMBER_BLOCK = 0.02
+"""Shortest block mean of the chamber pressure [s]."""
 
-SETTLE = 0.15
+BESIDE_END = 0.15
 """Seconds left out on either side of the end of the liquid, which model and log do not have at the same instant."""
 
 VIDEO = 0.25
-"""Standard deviation [s] of a burn time that is stated without one: a flame's end is seen to half a second."""
+"""Standard deviation [s] of a burn time that is stated without one. Source: a flame's end is seen to half a second
+(report, 4.3.1, states burn times from video to the second)."""
 
 SLIVER = 0.02
 """Part of the grain below which what is left of it counts as nothing: the fire went out for want of fuel."""
@@ -64,7 +65,7 @@ def evidence_of(
     first = starting_for(replace(engine, a=web / end), start, pressure)
     stop, why = _window_end(segments, calibration, t_v, end, _has_nitrogen(engine.effects))
     burnt = burn(first, longest=end)
-    width = max((stop - start) / BLOCKS, FINEST)
+    width = max((stop - start) / BLOCKS, FINEST_CHAMBER_BLOCK)
     part = _compared(chamber, start, stop, (t_v, burnt.liquid_out or t_v), width)
     if part.time.size < 8:
         raise AbsentError("too few good samples of p_chamber after t_feed")
@@ -97,7 +98,7 @@ def _saturated(definition: TestDefinition, pressure: float) -> float:
 
 def _compared(chamber: Signal, start: float, stop: float, gone: tuple[float, float], width: float) -> Signal:
     """Block means of the chamber pressure, without the stretch in which only model or log has liquid left."""
-    low, high = min(gone) - SETTLE, max(gone) + SETTLE
+    low, high = min(gone) - BESIDE_END, max(gone) + BESIDE_END
     parts = [chamber.between(start, min(low, stop)).reduced(width), chamber.between(high, stop).reduced(width)]
     time, value = (np.concatenate([getattr(p, name) for p in parts]) for name in ("time", "value"))
     return replace(chamber, time=time, value=value)
@@ -135,12 +136,12 @@ def _window_end(
 ) -> tuple[float, str]:
     """Until when the chamber pressure is one that the model can have, and why."""
     t_purge, t_fuel_out = segments.time("t_purge"), segments.time("t_fuel_out")
-    ends = [(end - SETTLE, "the end of the burn")]
+    ends = [(end - BESIDE_END, "the end of the burn")]
     if t_purge is not None:
         # with an adopted purge too: what is known of the gas in the chamber rests on its nitrogen from there on
         ends.append((t_purge, "then nitrogen enters" + ("" if nitrogen else ", which the model does not have")))
     if t_fuel_out is not None:
-        ends.append((t_fuel_out - SETTLE, "then the fuel is gone"))
+        ends.append((t_fuel_out - BESIDE_END, "then the fuel is gone"))
     if calibration.m.value is None:
         ends.append((t_v, "the vapour's expansion is not calibrated"))
     return min(ends)

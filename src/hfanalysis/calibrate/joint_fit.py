@@ -29,17 +29,17 @@ from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.candidate import Bench, Candidate
 from hfanalysis.inference.fitting.hypothesis import Free
-from hfanalysis.inference.full_run import LONGEST
+from hfanalysis.inference.full_run import LONGEST_BURN
 from hfanalysis.inference.gap import flowing, residuals_of
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.subject import Subject
 from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, Calibration, RegressionBasis, RegressionTest
 from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 
-TOLD = 0.8
+M_NOT_TOLD = 0.8
 """Standard deviation of m, over what is known of it before, from which on the channels do not tell it."""
 
-STEP = 0.1
+PROBE_STEP = 0.1
 """Of its standard deviation, by which a constant is moved to see what follows from it."""
 
 DERIVED = {"vapor_mass_at_t_v": "kg", "mass_at_t_feed": "kg", "oxidizer_mass_liquid_phase": "kg",
@@ -92,7 +92,7 @@ class _Constants:
     @cached_property
     def burnt(self) -> Burn:
         """Its burn, to the end."""
-        return burn(self.engine, longest=LONGEST)
+        return burn(self.engine, longest=LONGEST_BURN)
 
     def _free(self, name: str) -> tuple[Free, float, float]:
         """What may move, where it is, and its standard deviation, both in those of its prior."""
@@ -135,7 +135,7 @@ class _Constants:
         found = self._quantity("polytropic_exponent", "")
         assert found.ci95 is not None
         before = f"what is known of nitrous oxide, {free.center:.2f} ± {free.std:.2f}"
-        if std > TOLD:
+        if std > M_NOT_TOLD:
             why = f"the channels hardly say more than {before}"
             return replace(found, verdict=NOT_IDENTIFIABLE, why=why)
         low, high = found.ci95
@@ -156,7 +156,7 @@ class _Constants:
 
     def _followed(self, engine: Engine) -> Array:
         """DERIVED of an engine's burn [SI]; NaN where its liquid does not end."""
-        burnt = burn(engine, longest=LONGEST)
+        burnt = burn(engine, longest=LONGEST_BURN)
         if burnt.liquid_out is None:
             return np.full(len(DERIVED), np.nan)
         time, mass, flow = burnt.time, burnt.state("tank_mass"), burnt.output("oxidizer_flow")
@@ -169,7 +169,7 @@ class _Constants:
 
     def _spread(self, values: Array) -> Array:
         fit = self.found.fit
-        steps = STEP * np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+        steps = PROBE_STEP * np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
         slopes = np.zeros((values.size, steps.size))
         for i, step in enumerate(steps.tolist()):
             if step > 0.0:

@@ -19,26 +19,32 @@ from hfanalysis.quantity import NORMAL_95
 Misfit = Callable[[Array], float]
 
 FEWEST = 3.0
-"""Independent residuals that are counted at least."""
+"""Independent residuals that are counted at least. Evidence: test_regression.py: a constant misfit is one value and not
+many."""
 
-KNOWN = 10.0
-"""Degrees of freedom of the wander's size: read off a few seconds before the opening, to a factor of two or so."""
+WANDER_FREEDOM = 10.0
+"""Degrees of freedom of the wander's size. Evidence: read off a few seconds before the opening it is known to a factor
+of two or so."""
 
 NODES = 9
+"""Runs of the model per direction of the likelihood's surface."""
 REACH = 1.6
-"""Runs per direction of the likelihood's surface, and how far it is followed as a multiple of the 95 % limit."""
+"""How far the surface is followed, as a multiple of the 95 % limit [-]."""
 
 CEILING = 20.0
 """Multiple of the 95 % limit at which the misfit is cut off, so that what is far away does not bend what is near."""
 
-FINE = 161
+SURFACE_POINTS = 161
 """Points per direction at which the surface is read."""
 
 
 def effective_samples(residual: Array) -> float:
-    """How many of the residuals are independent: n / (1 + 2 sum rho_k), to the first rho_k that is not positive.
+    """How many of the residuals (n,), in any unit, are independent [-]: n / (1 + 2 sum rho_k), to the first rho_k <= 0.
 
     The mean is not taken out: a constant misfit is one, not many.
+
+    >>> effective_samples(np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0]))
+    6.0
     """
     n = residual.size
     power = float(residual @ residual)
@@ -67,25 +73,30 @@ class Weights:
     effective: float
 
     def misfit(self, residual: Array) -> float:
-        """r' P r."""
+        """r' P r [-] of the ``residual`` (n,) [Pa, s, kg], as :attr:`Evidence.observed` has them."""
         return float(residual @ self.precision @ residual)
 
 
 def first_guess(samples: int, level: float, scales: Array) -> Weights:
-    """Weights before anything is known of the residuals: 3 % of the pressure, one in ten independent."""
+    """Weights before anything is known of the residuals: 3 % of the pressure, one in ten independent.
+
+    ``samples`` of the chamber pressure at a mean ``level`` [Pa]; ``scales``: standard deviations of the scalars [s,
+    kg].
+    """
     variances = np.concatenate((np.full(samples, (0.03 * level) ** 2 * 10.0), scales**2))
     return Weights(np.diag(1.0 / variances), 4.0, 0.03 * level, 0.1 * samples)
 
 
 def weights_from(residual: Array, samples: int, scales: Array, nuisance: Array, wander: Array, least: float) -> Weights:
-    """Weights from what a fit leaves.
+    """Weights from what a fit leaves, ``residual`` (n,) [Pa, s, kg], the first ``samples`` of them pressures.
 
-    ``nuisance`` is the covariance of the observations by what the calibration leaves open, ``wander`` that by the slow
-    wander of the chamber's sensor; ``least`` [Pa] is the scatter that the sensor alone has. Where these explain the
-    residual, they are its covariance. Where the residual is larger, the model has another shape than the fire: then it
-    is its own measure, with as many independent values as its own correlation leaves.
+    ``scales`` are the standard deviations of the scalars [s, kg], ``nuisance`` (n, n) is the covariance of the
+    observations by what the calibration leaves open, ``wander`` (n, n) that by the slow wander of the chamber's sensor;
+    ``least`` [Pa] is the scatter that the sensor alone has. Where these explain the residual, they are its covariance.
+    Where the residual is larger, the model has another shape than the fire: then it is its own measure, with as many
+    independent values as its own correlation leaves.
     """
-    found = _weights(residual, samples, scales, nuisance + wander, least, KNOWN if wander.any() else np.inf)
+    found = _weights(residual, samples, scales, nuisance + wander, least, WANDER_FREEDOM if wander.any() else np.inf)
     if found.misfit(residual) <= residual.size + 3.0 * np.sqrt(2.0 * residual.size):
         return found
     return _weights(residual, samples, scales, nuisance, least)
@@ -128,19 +139,21 @@ class Surface:
     threshold: float
 
     def interval(self, weights: Array) -> tuple[float, float]:
-        """95 % profile-likelihood interval of a linear combination of the parameters: the region's projection."""
+        """95 % profile-likelihood interval of ``weights`` (2,) times the parameters, in their unit [-]: the region's
+        projection.
+        """
         inside = self.points[self.rise <= self.threshold] @ weights
         return float(inside.min()), float(inside.max())
 
     @property
     def covariance(self) -> Array:
-        """Of the parameters (2, 2), by the likelihood over the grid: smooth in it, as no point at its edge is."""
+        """Of the parameters [-], (2, 2), by the likelihood over the grid: smooth in it, as no point at its edge is."""
         likelihood = np.exp(-0.5 * NORMAL_95**2 * self.rise / self.threshold)
         return np.cov(self.points.T, aweights=likelihood)
 
     @property
     def lowest(self) -> Array:
-        """Where the misfit is least."""
+        """Where the misfit is least: (2,) [-], as ``points``."""
         return np.asarray(self.points[int(np.argmin(self.rise))])
 
     @property
@@ -150,15 +163,17 @@ class Surface:
 
 
 def surface(misfit: Misfit, best: Array, covariance: Array, threshold: float) -> Surface:
-    """Follow the misfit about ``best`` in the directions of a first ``covariance`` (2, 2), on both sides of each.
+    """Follow the misfit about ``best`` (2,) in the directions of a first ``covariance`` (2, 2), on both sides of each
+    [-].
 
-    A bicubic spline through NODES x NODES runs of the model stands for it in between.
+    ``threshold`` is the rise of the misfit at the 95 % limit. A bicubic spline through NODES x NODES runs of the model
+    stands for it in between.
     """
     from scipy.interpolate import RectBivariateSpline
 
     reach = REACH * float(np.sqrt(threshold))
     spread = reach * np.linalg.cholesky(covariance)
-    nodes, axis = np.linspace(-1.0, 1.0, NODES), np.linspace(-1.0, 1.0, FINE)
+    nodes, axis = np.linspace(-1.0, 1.0, NODES), np.linspace(-1.0, 1.0, SURFACE_POINTS)
     values = np.array([[misfit(best + spread @ np.array([x, y])) for y in nodes] for x in nodes])
     values = np.minimum(values - values.min(), CEILING * threshold)
     fine = RectBivariateSpline(nodes, nodes, values)(axis, axis).ravel()

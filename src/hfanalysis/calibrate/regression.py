@@ -28,39 +28,50 @@ from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, FuelLaw, Re
 from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 
 WIDEST_N = 0.1
-"""Standard deviation of n from which on a test does not tell a and n apart."""
+"""Standard deviation of n from which on a test does not tell a and n apart. Evidence: of 400 whole engines
+(docs/recovery.md) 66 are not told apart; there n is off by 0.09 in the median."""
 
 WIDEST_RATE = 0.25
 """Standard deviation of the logarithm of the rate from which on it is not known either."""
 
 PHYSICAL_N = (0.0, 1.0)
-"""A flux that slows the regression, or acts more than in proportion, is no regression law."""
+"""A flux that slows the regression, or acts more than in proportion, is no regression law [-]. Source: Marxman's
+turbulent boundary layer has 0.8, paraffin 0.5 and more (docs/calibration.md)."""
 
 RANGE_N = (-0.3, 1.3)
+"""Where n [-] is looked for. Evidence: HF4 has 0.04, whose interval reaches -0.02 (docs/calibration.md); a start beyond
+is moved to the border (test_regression.py)."""
 SCAN_N = (0.1, 0.3, 0.5, 0.7, 0.9)
+"""Exponents [-] from which the best start is taken."""
 RESTARTS = (0.15, 0.45, 0.75)
+"""Other exponents [-] that a fit starts from. Evidence: the valley of a and n may have several minima."""
 SCAN_RATE = (0.6, 0.85, 1.2, 1.7)
-"""Exponents, and rates over that which burns the web in the burn time, from which the best start is taken."""
+"""Rates, over that which burns the web in the burn time [-], from which the best start is taken."""
 
 LARGEST_STEP = 0.2
 """Standard deviation of n [-] to which the likelihood's surface is followed at most."""
 
 ROUNDS = 2
+"""Times that the weights follow from what a fit leaves, and the fit from the weights."""
 RESURVEYS = 3
+"""Times the surface is followed from a lower point that it has shown, and the misfit by which that has to be lower.
+Evidence: without it values lay outside their own intervals."""
 NEGLIGIBLE = 0.05
 """Times the surface is followed from a lower point that it has shown, and the misfit by which that has to be lower."""
 
 TESTS_DISAGREE = 0.01
-"""Probability of the rise in misfit by common constants below which tests are said to disagree."""
+"""Probability of the rise in misfit by common constants below which tests are said to disagree. Evidence:
+test_regression.py: tests of one law agree, of two disagree."""
 
 NEAR, EXACT = 1e-4, 1e-7
-"""To what ln r and n are found of a minimum that is one of several, and of the one that is told: along a valley, steps
-are short before its end is reached."""
+"""To what ln r and n are found of a minimum that is one of several, and of the one that is told. Evidence: along a
+valley, steps are short before its end is reached, and where a fit stood followed the last digits of a log."""
 
 FIRST_STEP = 500.0
 """Of the search for a minimum, over what it is found to."""
 
 FAILED = 1e12
+"""Misfit [-] of constants with which the engine cannot be run: above any other."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +107,14 @@ class Fitted:
 
 
 def law_at(point: Array, flux: float) -> Regression:
-    """a and n from (ln r at ``flux``, n)."""
+    """a [SI] and n [-] from ``point``: (ln of the rate r [m/s] at ``flux`` [kg/m^2/s], n).
+
+    r = a G^n (report, 4.3.1).
+
+    >>> law = law_at(np.array([log(1e-3), 0.5]), 100.0)
+    >>> round(law.a, 6), law.n
+    (0.0001, 0.5)
+    """
     return Regression(exp(float(point[0]) - float(point[1]) * log(flux)), float(point[1]))
 
 
@@ -111,7 +129,6 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
         evidence = [e.with_regression(law) for e in evidence]
         weights = [_weighed(e, law) for e in evidence]
         best = _least(evidence, weights, flux, best)
-    best = _minimum(evidence, weights, flux, best, EXACT)
     return _surveyed(evidence, weights, flux, best)
 
 
@@ -119,6 +136,7 @@ def _surveyed(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: fl
     """The fit with its likelihood's surface."""
     objective, threshold = _objective(evidence, weights, flux), max(w.threshold for w in weights)
     for _ in range(RESURVEYS):
+        best = _minimum(evidence, weights, flux, best, EXACT)
         found = surface(objective, best, _covariance(evidence, weights, flux, best), threshold)
         lower = _minimum(evidence, weights, flux, found.lowest)
         if objective(lower) > objective(best) - NEGLIGIBLE:
@@ -128,7 +146,7 @@ def _surveyed(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: fl
 
 
 def middle_flux(evidence: Evidence) -> float:
-    """Oxidizer flux [kg/m^2/s] of the first flow at the port's mean radius: where the rate is parametrised."""
+    """Oxidizer flux [kg/m^2/s] of the first flow at the port's mean radius: where the rate is parametrized."""
     engine = evidence.engine
     drop = float(engine.saturation.pressure(engine.temperature)) - float(evidence.chamber.mean())
     density = float(engine.saturation.liquid_density(engine.temperature))
@@ -252,16 +270,21 @@ def result(found: Fitted) -> FuelLaw:
 
 
 def rate_at(flux: float) -> str:
-    """What the rate at the reference flux [kg/m^2/s] is."""
+    """What the rate [m/s] at the reference flux [kg/m^2/s] is."""
     return f"rate at an oxidizer flux of {flux:.0f} kg/(m^2 s), where the test tells it best: ln a + n ln G_ref"
 
 
 def judge_regression(
     bounded: bool, interval: tuple[float, float], std: float, flux: float, spread: float
 ) -> tuple[str, str]:
-    """Verdict on a and n, and why, from the interval and deviation of n and the relative one of the rate at ``flux``.
+    """Verdict on a and n, and why.
 
-    ``bounded``: whether the interval is one, and not the end of where it was looked.
+    Args:
+        bounded: whether the interval is one, and not the end of where it was looked.
+        interval: 95 % interval of n [-].
+        std: standard deviation of n [-].
+        flux: the reference flux [kg/m^2/s].
+        spread: relative standard deviation [-] of the rate at it.
     """
     if not bounded or std > WIDEST_N:
         return NOT_IDENTIFIABLE, (

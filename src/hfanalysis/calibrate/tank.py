@@ -11,7 +11,7 @@ from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase,
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
-from hfanalysis.calibrate.measured_pressures import Histories, Reading, read_at_break
+from hfanalysis.calibrate.measured_pressures import Histories, PressureReading, read_at_break
 from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
 from hfanalysis.calibrate.with_effects import acting
@@ -27,10 +27,12 @@ from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 
 VAPOR_PRESSURE_SHARE = 0.6
-"""Without nitrogen the vapour phase is followed until the tank has this share of its pressure at t_v."""
+"""Without nitrogen the vapor phase is followed until the tank has this share of its pressure at t_v. Evidence:
+test_deviations.py, test_refusals.py: the m of a tank that lost two fifths is found."""
 
 SPAN_SHARE = 0.25
-"""Part of a sensor's accuracy that a zero at ambient does not take away: its error of span."""
+"""Part of a sensor's accuracy that a zero at ambient does not take away: its error of span. Evidence:
+test_deviations.py."""
 
 LONGEST_GAP = 0.1
 """Part of the liquid phase that one channel may miss in one piece; good samples around it are joined linearly."""
@@ -39,7 +41,8 @@ PEAK_OVER = 0.1
 """Seconds over which the peak flow is a mean."""
 
 FULLEST = 1.05
-"""Loaded mass over what the tank holds as liquid at the bulk's temperature, from which on the input is refused."""
+"""Loaded mass over what the tank holds as liquid at the bulk's temperature, from which on the input is refused.
+Evidence: test_rest.py: a mass that does not fit the tank at all is an error of the input."""
 
 NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase",
          "vapor_mass_at_t_v", "mass_at_t_feed", "oxidizer_mass")  # fmt: skip
@@ -125,7 +128,7 @@ class _Work:
         return TankConstants.model_validate({**quantities, **about, **said})
 
     def _acting(self, tables: Tables, inputs: Inputs) -> tuple[Inputs, VaporPhase | None]:
-        """The inputs and the vapour phase with the effects in; what they cannot be in is said."""
+        """The inputs and the vapor phase with the effects in; what they cannot be in is said."""
         if not self.effects:
             return inputs, None
         try:
@@ -191,7 +194,7 @@ class _Work:
         )
 
     def _reading_factor(self) -> Array:
-        """Lower factor of the covariance of the pressures read at t_v and at the end of the vapour phase."""
+        """Lower factor of the covariance of the pressures read at t_v and at the end of the vapor phase."""
         noise, first = self.histories.noises["p_tank"], self.at_v
         last = self.at_end or first
         common = noise.common(first.weights, first.time, last.weights, last.time) if self.at_end else 0.0
@@ -228,7 +231,7 @@ class _Work:
         starts = t[t <= t[-1] - PEAK_OVER]
         return float((np.interp(starts + PEAK_OVER, t, x) - np.interp(starts, t, x)).max()) / PEAK_OVER
 
-    def _read(self, instant: float, before: float, after: float) -> Reading:
+    def _read(self, instant: float, before: float, after: float) -> PressureReading:
         tank = self.histories.signals["p_tank"]
         least = 8.0 * tank.step
         left, right = (min(max(span, least), 0.4 + least) for span in (before, after))
@@ -243,7 +246,7 @@ class _Work:
         return max(t_v, t_purge if t_purge is not None else t_v + 10.0) + 0.5
 
     def _vapor_end(self) -> tuple[float, float, str | None]:
-        """End of the pure vapour phase [s], its standard deviation, and the reason where there is none."""
+        """End of the pure vapor phase [s], its standard deviation, and the reason where there is none."""
         t_purge = self.segments.time("t_purge")
         if t_purge is not None and t_purge <= self.t_v:
             return (

@@ -16,6 +16,7 @@ from hfanalysis.calibrate.blowdown import Inputs, Reduction, Shift, Tables, Vapo
 from hfanalysis.thermo.saturation import Saturation
 
 SEED = 20230101
+"""Of the generator: every run of a test draws the same numbers, so that its intervals do not change."""
 
 
 @dataclass(frozen=True)
@@ -48,22 +49,24 @@ class Draws:
     inputs: dict[str, Array] = field(default_factory=dict)
 
     def std(self, name: str) -> float:
-        """Standard deviation over the draws that have an answer (NaN where fewer than ten do)."""
+        """Standard deviation over the draws that have an answer, in the quantity's unit [SI]; NaN where fewer than ten
+        do.
+        """
         good = self.good(name)
         return float(good.std(ddof=1)) if good.size >= 10 else float("nan")
 
     def interval(self, name: str, value: float) -> tuple[float, float]:
-        """The 95 % interval: the draws' quantiles about their median, moved to the value itself."""
+        """The 95 % interval [SI]: the draws' quantiles about their median, moved to the ``value`` itself."""
         good = self.good(name)
         low, middle, high = np.quantile(good, (0.025, 0.5, 0.975))
         return float(value + low - middle), float(value + high - middle)
 
     def answered(self, name: str) -> float:
-        """Part of the draws that have an answer."""
+        """Part of the draws [-] that have an answer."""
         return self.good(name).size / max(self.values[name].size, 1)
 
     def good(self, name: str) -> Array:
-        """The draws that have an answer."""
+        """The draws (k,) that have an answer, in the quantity's unit [SI]."""
         values = self.values[name]
         return values[np.isfinite(values)]
 

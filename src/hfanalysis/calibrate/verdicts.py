@@ -12,18 +12,24 @@ from hfanalysis.sentences import said, text
 from hfanalysis.thermo.saturation import Saturation
 
 PHYSICAL_C_I = (0.05, 1.0)
-"""A hole passes no more than the ideal flow, and drilled plates pass 0.2 to 0.9 of it."""
+"""A hole passes no more than the ideal flow, and drilled plates pass 0.2 to 0.9 of it. Source: report, 4.2.1: 0.26 and
+0.29 here, 0.50 to 0.79 of high-performance injectors."""
 
 PHYSICAL_M = (1.0, 1.3)
-"""Polytropic exponents of expanding nitrous oxide vapour near saturation without heat and with some."""
+"""Polytropic exponents [-] of expanding nitrous oxide vapor near saturation. Source: 1 where heat keeps its
+temperature, up to the ratio of heat capacities of the gas, 1.3 at 250 K (CoolProp)."""
 
 LEAST_ANSWERED = 0.9
+"""Part of the draws [-] that must have an m for there to be one; the others are counted in the reason."""
 WIDEST_M = 0.2
-"""Standard deviation of m from which on the phase says nothing about it."""
+"""Standard deviation of m from which on the phase says nothing about it. Evidence: test_refusals.py: a vapor phase of
+milliseconds does not tell m."""
 
 
 def judged(name: str, value: float, unit: str, draws: Draws, unphysical_below: float | None = None) -> Quantity:
-    """A quantity with its deviation and interval from the draws; unphysical where the interval lies below a bound."""
+    """A quantity with its deviation and interval from the draws, ``value`` in ``unit``; unphysical where the interval
+    lies below a bound [``unit``].
+    """
     if not np.isfinite(value) or not np.isfinite(draws.std(name)):
         return Quantity.absent("the reduction has no answer", verdict=NOT_IDENTIFIABLE)
     interval = draws.interval(name, value)
@@ -34,7 +40,7 @@ def judged(name: str, value: float, unit: str, draws: Draws, unphysical_below: f
 
 
 def judge_discharge(r: Reduction, draws: Draws, reversed_share: float) -> Quantity:
-    """C_i with its verdict."""
+    """C_i [-] with its verdict; ``reversed_share`` [-]: of the samples in which p_run is not above p_chamber."""
     quantity = judged("C_i", r.C_i, "", draws)
     if quantity.value is None or quantity.interval is None:
         return quantity
@@ -53,7 +59,9 @@ def judge_discharge(r: Reduction, draws: Draws, reversed_share: float) -> Quanti
 def judge_exponent(
     r: Reduction, draws: Draws, inputs: Inputs, end_reason: str | None, saturation: Saturation
 ) -> Quantity:
-    """m with its verdict; an exponent outside the physical range with the heat that it would take."""
+    """m [-] with its verdict; an exponent outside the physical range with the heat [J] that it would take (report,
+    4.2.2).
+    """
     if end_reason is not None:
         return Quantity.absent(end_reason, verdict=NOT_IDENTIFIABLE)
     duration = inputs.t_end - inputs.t_v

@@ -2,7 +2,7 @@
 
 The tank alone is run with the effects on the measured chamber pressure, from the opening to t_v. What its injector
 passes beside A sqrt(2 rho (p_run - p_c)), and what leaves by another way, enters the balance that gives C_i; where the
-run stands at t_v (nitrogen, states of effects, a pressure beside saturation) is where the vapour phase starts, and m is
+run stands at t_v (nitrogen, states of effects, a pressure beside saturation) is where the vapor phase starts, and m is
 shot along it with the effects in.
 """
 
@@ -33,10 +33,10 @@ def acting(
     histories: Histories, tables: Tables, saturation: Saturation, definition: TestDefinition, inputs: Inputs,
     effects: Sequence[Active],
 ) -> tuple[Inputs, VaporPhase | None]:  # fmt: skip
-    """The inputs as the effects leave them for the balance that gives C_i, and the vapour phase with them in.
+    """The inputs as the effects leave them for the balance that gives C_i, and the vapor phase with them in.
 
     The load counts less what left by another way than the injector, its area times the mean of what the effects make of
-    the flow. No vapour phase where C_i has no answer. Raises ArithmeticError where the tank's model cannot be run.
+    the flow. No vapor phase where C_i has no answer. Raises ArithmeticError where the tank's model cannot be run.
     """
     balance, phase, share = inputs, None, 1.0
     for _ in range(ROUNDS):

@@ -1,1 +1,1 @@
-"""Several tests together: all analysed side by side, and what the tests of one stand agree on."""
+"""Several tests together: all analyzed side by side, and what the tests of one stand agree on."""

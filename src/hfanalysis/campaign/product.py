@@ -147,7 +147,8 @@ def _effects(rows: Mapping[str, TestRow]) -> dict[str, EffectRow]:
 
 
 def probability_of(diagnosis: Diagnosed, named: NamedEffect | None, name: str) -> float | None:
-    """Of being there: as stated where it is named, or else as the first effect or beside it, whichever is more.
+    """Of being there [-, 0 to 1]: as stated where it is named, or else as the first effect or beside it, whichever is
+    more.
 
     None where it was not tried.
     """

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from hfanalysis.errors import AbsentError, InputError
 
 DONE, INPUT_AT_FAULT, ABSENT = 0, InputError.exit_status, AbsentError.exit_status
+"""Exit statuses of a test's run: done, and the two in which an analysis ends early."""
 
 _ADDRESSED = "hfa: "
 _WARNING = "hfa: warning: "

@@ -16,7 +16,7 @@ WIDTH, LEFT, RIGHT, TOP, ROW, BOTTOM = 640.0, 130.0, 24.0, 8.0, 26.0, 44.0
 
 
 def strip(name: str, found: Mapping[str, Quantity], together: Quantity) -> Markup:
-    """The picture of a quantity by test; empty where fewer than two tests have a value."""
+    """The picture of a quantity [SI] by test, as people read it; empty where fewer than two tests have a value."""
     known = {test: q for test, q in found.items() if q.value is not None}
     if len(known) < 2:
         return Markup()

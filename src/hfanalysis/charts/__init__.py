@@ -1,1 +1,1 @@
-"""Charts as SVG, and their colours."""
+"""Charts as SVG, and their colors."""

@@ -21,7 +21,7 @@ LOG_TIME = "log time [s]"
 class Series:
     """One line over time, in the SI unit of its chart.
 
-    ``style`` names its colour and ``label`` what people read; ``kind`` is "line", "band" (``values`` and ``upper`` are
+    ``style`` names its color and ``label`` what people read; ``kind`` is "line", "band" (``values`` and ``upper`` are
     its edges) or "level" (a constant, drawn across the whole chart).
     """
 
@@ -34,7 +34,7 @@ class Series:
     dashed: bool = False
 
     def reduced(self, start: float, end: float, bins: int) -> Envelope:
-        """The line with at most ``bins`` points."""
+        """The line from ``start`` to ``end`` [s] with at most ``bins`` points, in the chart's unit [SI]."""
         return envelope(self.time, self.values, start, end, bins)
 
     @property
@@ -80,7 +80,11 @@ class Chart:
 
 
 def around(times: Sequence[Array]) -> tuple[float, float]:
-    """A little more than the stretch that the times cover."""
+    """A little more than the stretch [s] that the times, each (n,) [s], cover.
+
+    >>> around([np.array([0.0, 10.0])])
+    (-0.4, 10.4)
+    """
     first = min(float(time[0]) for time in times if time.size)
     last = max(float(time[-1]) for time in times if time.size)
     air = 0.04 * (last - first) or 0.5

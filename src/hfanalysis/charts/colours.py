@@ -1,4 +1,4 @@
-"""Every colour of the pages and plots, for light and for dark, in one place."""
+"""Every color of the pages and plots, for light and for dark, in one place."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ COLOURS: dict[str, tuple[str, str]] = {
 """Name: (light, dark). Inks reach WCAG AA (4.5) on both grounds, lines 3."""
 
 STYLES = ("p_tank", "p_run", "p_chamber", "p_purge", "thrust", "m_tank")
-"""The colours that lines without one of their own take, in turn."""
+"""The colors that lines without one of their own take, in turn."""
 
 
 def declarations(dark: bool) -> str:
-    """The colours as custom properties of CSS."""
+    """The colors as custom properties of CSS."""
     return " ".join(f"--{name}: {pair[dark]};" for name, pair in COLOURS.items())
 
 
 def style_of(name: str, number: int = 0) -> str:
-    """The colour of a channel: its own where it has one, else the next of the row."""
+    """The color of a channel: its own where it has one, else the next of the row."""
     return name if name in COLOURS else STYLES[number % len(STYLES)]

@@ -23,7 +23,7 @@ def static(chart: Chart) -> Markup:
     svg.events(plot, chart.events)
     for one in chart.series:
         _add(plot, chart, one, scale)
-    si, team = (described(chart, system) for system in SYSTEMS)
+    si, team = (text_alternative(chart, system) for system in SYSTEMS)
     return svg.render(plot, chart.key, chart.title, si, team)
 
 
@@ -38,7 +38,7 @@ def reduced(chart: Chart, series: Series, bins: int = BINS) -> Envelope:
 
 
 def value_span(chart: Chart, scale: Scale) -> tuple[float, float]:
-    """The value axis, in the scale's unit."""
+    """The ends of the value axis, in the scale's unit [``scale.unit``]."""
     if chart.value_span is not None:
         low, high = chart.value_span
         return scale(low), scale(high)
@@ -60,12 +60,12 @@ def _add(plot: svg.Plot, chart: Chart, one: Series, scale: Scale) -> None:
 
 
 def scaled(data: Envelope, scale: Scale) -> Envelope:
-    """An envelope in the scale's unit."""
+    """An envelope [SI] in the scale's unit."""
     mean, low, high = (scale.factor * array + scale.zero for array in (data.mean, data.low, data.high))
     return Envelope(data.time, mean, mean if data.low is data.mean else low, mean if data.high is data.mean else high)
 
 
-def described(chart: Chart, system: str = "si") -> str:
+def text_alternative(chart: Chart, system: str = "si") -> str:
     """The text alternative: what each line does, and when."""
     scale = chart.scale(system)
     sentences = [_behaviour(chart, one, scale) for one in chart.lines]

@@ -1,4 +1,4 @@
-"""The style sheet, with the colours put in."""
+"""The style sheet, with the colors put in."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Charts as inline SVG. Colours are left to the page's style sheet, so that charts follow light, dark and print."""
+"""Charts as inline SVG. Colors are left to the page's style sheet, so that charts follow light, dark and print."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from hfanalysis.charts.envelope import Envelope
 from hfanalysis.wording.numbers import fixed
 
 WIDTH = 960.0
+"""Width of every chart [px of its view box]; the page scales it."""
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 116.0, 56.0, 46.0
-"""Margins: for the values, the names at the lines' ends, the events, and the time."""
+"""Margins [px]: for the values, the names at the lines' ends, the events, and the time."""
 
 _ROWS = 3
 """Rows for the names of events above a chart."""
 
 _LETTER = 6.6
-"""Width of a letter of the charts' text."""
+"""Width of a letter of the charts' text [px]."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Axis:
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
     def all(self, values: Array) -> Array:
-        """The same for an array."""
+        """The places [px], (n,), of ``values`` (n,) in the axis's unit."""
         return self.start + (values - self.low) * ((self.end - self.start) / (self.high - self.low))
 
 
@@ -73,7 +74,7 @@ class Plot:
 
 
 def new_plot(times: tuple[float, float], values: tuple[float, float], height: float = 320.0) -> Plot:
-    """An empty chart over the given ranges."""
+    """An empty chart over the given ranges: ``times`` [s], ``values`` [as shown], of a ``height`` [px]."""
     low, high = values
     return Plot(Axis(*times, LEFT, WIDTH - RIGHT), Axis(low, high, height - BOTTOM, TOP), height)
 
@@ -82,7 +83,7 @@ def value_range(arrays: Iterable[Array], with_zero: bool = True) -> tuple[float,
     """A range with a little air around the finite values; a few wild ones (under 1 %) may be left outside.
 
     Args:
-        arrays: what is to be drawn; NaN where there is nothing.
+        arrays: what is to be drawn, each (n,), in the unit of the axis; NaN where there is nothing.
         with_zero: whether zero belongs to the range.
     """
     finite = [array[np.isfinite(array)] for array in arrays]
@@ -104,7 +105,7 @@ def _without_wild(values: Array) -> tuple[float, float]:
 
 
 def nice_ticks(low: float, high: float, most: int = 7) -> list[float]:
-    """Round values between ``low`` and ``high``, no more than ``most``.
+    """Round values between ``low`` and ``high`` [one unit], no more than ``most``.
 
     >>> nice_ticks(0.0, 66.0)
     [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0]
@@ -143,7 +144,7 @@ def _x_ticks(plot: Plot, bottom: float) -> Iterator[str]:
 
 
 def tick_text(value: float, ticks: Sequence[float]) -> str:
-    """A tick's value with as many decimals as its neighbours need."""
+    """A tick's value with as many decimals as its neighbors need."""
     step = ticks[1] - ticks[0] if len(ticks) > 1 else abs(value) or 1.0
     return fixed(value, max(0, -math.floor(math.log10(step) + 1e-9)))
 
@@ -197,7 +198,7 @@ def _event(plot: Plot, event: Event, x: float) -> str:
 
 
 def line(plot: Plot, data: Envelope, style: str, name: str) -> None:
-    """The mean of a channel over the band of its extremes, in the colour of ``style``."""
+    """The mean of a channel over the band of its extremes, in the color of ``style``."""
     if data.empty:
         return
     if data.low is not data.mean:
@@ -208,22 +209,24 @@ def line(plot: Plot, data: Envelope, style: str, name: str) -> None:
 
 
 def band(plot: Plot, time: Array, low: Array, high: Array, style: str) -> None:
-    """An interval over time."""
+    """An interval over time: ``time`` [s], its ends ``low`` and ``high`` [as shown], each (n,)."""
     plot.parts.append(f'<path class="band {style}" d="{band_path(plot, time, low, high)}"/>')
 
 
 def level(plot: Plot, value: float, style: str) -> None:
-    """A horizontal line across the chart."""
+    """A horizontal line across the chart at a ``value`` [as shown]."""
     plot.parts.append(f'<path class="level {style}" d="M{LEFT:.1f} {plot.y(value):.1f}H{WIDTH - RIGHT:.1f}"/>')
 
 
 def line_path(plot: Plot, time: Array, values: Array) -> str:
-    """An SVG path through the finite points; it breaks where there are none."""
+    """An SVG path through the finite points of ``values`` [as shown] at ``time`` [s], each (n,); it breaks where there
+    are none.
+    """
     return "".join("M" + "L".join(_points(plot, time[part], values[part])) for part in _runs(values))
 
 
 def band_path(plot: Plot, time: Array, low: Array, high: Array) -> str:
-    """An SVG path around the band between two curves."""
+    """An SVG path around the band between two curves [as shown] over ``time`` [s], each (n,)."""
     out = []
     for part in _runs(low + high):
         there = _points(plot, time[part], high[part])

@@ -7,6 +7,7 @@ import os
 import sys
 
 INTERRUPTED = 130
+"""Exit status after Ctrl-C. Source: shells' convention, 128 plus the number of the signal (2)."""
 
 
 def main() -> None:

@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
 
 def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: float | None = None) -> None:
-    """The unsteady model of the engine file at ``path``; what it found to ``out`` where that is given."""
+    """The unsteady model of the engine file at ``path``; what it found to ``out`` where that is given.
+
+    To burn-out, or on through cold gas until ``until`` [s].
+    """
     file = load_engine(path)
     with watch(file.engine.id, quiet):
         from hfanalysis.simulate import unsteady_run, write

@@ -17,7 +17,7 @@ PATIENCE = 2.0
 
 @contextmanager
 def spinner(test: str, console: Console | None = None, patience: float = PATIENCE) -> Iterator[Callback]:
-    """A callback for progress; what it is told shows on standard error after ``patience`` seconds."""
+    """A callback for progress; what it is told shows on standard error after ``patience`` [s]."""
     bar = Progress(
         SpinnerColumn(),
         TextColumn("{task.description}"),

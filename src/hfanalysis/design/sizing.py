@@ -30,10 +30,10 @@ class TankSize:
 def size_for_ullage(
     saturation: Saturation, mass: float, temperature: float, diameter: float, tube: DipTube, ullage: float
 ) -> TankSize:
-    """Tank for ``mass`` [kg] at ``temperature`` [K] with U = V_vapour / V_liquid (report, first method).
+    """Tank for ``mass`` [kg] at ``temperature`` [K] with U = V_vapor / V_liquid (report, eq. 3.51 to 3.57).
 
-    The dip tube ends at the liquid's surface, so that its length is that of the ullage. Raises ValueError for an ullage
-    that is not positive.
+    Inner ``diameter`` [m], ``ullage`` U [-]. The dip tube ends at the liquid's surface, so that its length is that of
+    the ullage. Raises ValueError for an ullage that is not positive.
     """
     if not ullage > 0.0:
         raise ValueError(f"an ullage has to be positive, not {ullage}")
@@ -47,13 +47,14 @@ def size_for_ullage(
 def size_for_length(
     saturation: Saturation, mass: float, temperature: float, diameter: float, tube: DipTube, length: float
 ) -> TankSize:
-    """The same tank with its length [m] given instead (report, second method).
+    """The same tank with its ``length`` [m] given instead (report, eq. 3.58); ``mass`` [kg], ``temperature`` [K],
+    ``diameter`` [m].
 
-    Raises ValueError where the mass does not fit as saturated liquid and vapour.
+    Raises ValueError where the mass does not fit as saturated liquid and vapor.
     """
     v_l, v_v = float(saturation.liquid_volume(temperature)[0]), float(saturation.vapor_volume(temperature)[0])
     section, ring = 0.25 * pi * diameter**2, _ullage_area(diameter, tube)
-    # liquid fills the section below the dip tube's end, vapour the ring around it: mass is linear in the tube's length
+    # liquid fills the section below the dip tube's end, vapor the ring around it: mass is linear in the tube's length
     full = section * length / v_l
     dip = (full - mass) / (section / v_l - ring / v_v)
     if not 0.0 <= dip <= length:

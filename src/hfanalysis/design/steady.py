@@ -57,13 +57,13 @@ class SteadyEngine:
         return (self.oxidizer_mass + self.fuel_mass) / self.burn_time
 
     def thrust_to_weight(self, vehicle: Vehicle) -> float:
-        """Thrust over the weight of the loaded rocket on its pad."""
+        """Thrust over the weight of the loaded rocket on its pad [-]."""
         mass = vehicle.dry_mass + self.oxidizer_mass + self.fuel_mass
         return self.thrust / (mass * gravity(vehicle.launch_altitude))
 
 
 def design(requirement: Requirement, grain: Grain, fuel_mass: float) -> SteadyEngine:
-    """The engine that burns ``fuel_mass`` [kg] of a grain under the requirement.
+    """The engine that burns ``fuel_mass`` [kg] of a grain under the requirement (report, eq. 2.1 to 2.15).
 
     Raises ValueError for a grain that does not fit or an exit smaller than the throat.
     """
@@ -133,7 +133,7 @@ class Optimum:
 
 
 def ideal_specific_impulse(requirement: Requirement, of_ratio: float) -> float:
-    """Specific impulse [s] of the ideally expanded nozzle at a mixture."""
+    """Specific impulse [s] of the ideally expanded nozzle at a mixture ``of_ratio`` [-] (report, eq. 2.9 to 2.15)."""
     gas = equilibrium(requirement.chamber_pressure, of_ratio, requirement.oxidizer_enthalpy)
     thrust, _ = _thrust(gas, replace(requirement, exit_radius=None), 1.0)
     flow = choked_flow(gas.gamma, _heat(gas), requirement.chamber_pressure, 1.0)
@@ -141,7 +141,7 @@ def ideal_specific_impulse(requirement: Requirement, of_ratio: float) -> float:
 
 
 def optimum(requirement: Requirement) -> Optimum:
-    """The best mixture at the chamber pressure, expanded to ambient."""
+    """The best mixture [-] at the chamber pressure, expanded to ambient, with its specific impulse [s]."""
     from scipy.optimize import minimize_scalar
 
     def loss(of_ratio: float) -> float:

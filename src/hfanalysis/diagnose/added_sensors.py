@@ -24,11 +24,11 @@ from hfanalysis.inference.observations.covariance import FILLING_ERROR, FILLING_
 from hfanalysis.inference.observations.frame import AROUND_CHANGE, FIRST
 from hfanalysis.inference.observations.observed import Observed
 
-STEP = 5
+BLOCK_POINTS = 5
 """Points of the common grid that a virtual sensor's block holds."""
 
 COHERENT = 1.0
-"""Seconds over which its noise is."""
+"""Time over which the slow half of its noise is coherent [s]."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Sensor:
     """A sensor that could be added: its ``name``, in words, and how accurate [SI] it would be taken to be.
 
     ``reads``: a canonical channel ("channel"), a state or output of the model that no effect distorts ("inside"), or
-    something measured after the test ("after"). ``of``: its name there. ``liquid_only``: no word in vapour.
+    something measured after the test ("after"). ``of``: its name there. ``liquid_only``: no word in vapor.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Sensor:
     liquid_only: bool = False
 
     def slopes(self, hypothesis: Hypothesis, observed: Observed, found: Tangents) -> Array:
-        """Whitened slopes (rows, parameters) [SI] of what it would read; they count like those of the residuals."""
+        """Whitened slopes (rows, parameters) [1/SI] of what it would read; they count like those of the residuals."""
         if self.reads == "after":
             return self._after(hypothesis, observed, found)
         points = self._points(observed, found.burn)
@@ -74,7 +74,7 @@ class Sensor:
 
     def _alone(self, values: Array, points: Integers, observed: Observed) -> Observed:
         """The test as if only this sensor were there, which reads ``values`` on the common grid."""
-        count = np.full(points.size, STEP)
+        count = np.full(points.size, BLOCK_POINTS)
         time, value = (averaged(rows, points, count) for rows in (observed.grid, values))
         lag = np.abs(time[:, None] - time[None, :])
         covariance = 0.5 * self.accuracy**2 * (1.0 + np.exp(-lag / COHERENT))
@@ -88,8 +88,8 @@ class Sensor:
 
     def _points(self, observed: Observed, burnt: Burn) -> Integers:
         """Where its blocks begin on the common grid."""
-        first = np.flatnonzero(~observed.resting)[::STEP][:-1]
-        last = first + STEP - 1
+        first = np.flatnonzero(~observed.resting)[::BLOCK_POINTS][:-1]
+        last = first + BLOCK_POINTS - 1
         begin, end = observed.grid[first], observed.grid[last]
         gone = observed.events["t_v"][0] if "t_v" in observed.events else burnt.liquid_out
         good = (begin > FIRST) & (end < observed.end)
@@ -99,6 +99,7 @@ class Sensor:
 
 
 BAR = 1e5
+"""A bar [Pa]. Source: definition."""
 
 USUAL = (
     Sensor("p_tank", "a transducer at the tank", 0.15 * BAR, "Pa", "channel", "p_tank"),

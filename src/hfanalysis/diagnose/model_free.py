@@ -23,14 +23,15 @@ from hfanalysis.validate.performance import fire_of
 from hfanalysis.validate.sensor_faults import findings
 
 BAR = 1e5
+"""A bar [Pa]. Source: definition."""
 
 COURSE = 0.5 * BAR
-"""Standard deviation of the pressure at rest by the line through the later fall."""
+"""Standard deviation of the pressure at rest by the line through the later fall [Pa]."""
 
 LEAST_FALL, LEAST_DIP, LEAST_FLOW = 2.0 * BAR, 1.5 * BAR, 5.0 * BAR
-"""What is called a fall at the opening, a dip below the bulk's pressure, and a valve that nitrogen passes. Chosen as
-twice of what 231 tests of the calibration split have at most that lack these; 1,308 of the scored split have 1.06, 0.66
-and 2.39 bar at most."""
+"""What is called a fall at the opening, a dip below the bulk's pressure, and a valve that nitrogen passes [Pa].
+Evidence: twice of what 231 tests of the calibration split have at most that lack these. Layers of a bar are none, and
+larger ones are seen with their size (tests/diagnose/test_model_free.py)."""
 
 SURE = 3.0
 """Standard deviations that a fall has to have besides."""
@@ -95,7 +96,8 @@ def shown(log: TestLog, segments: Segments, definition: TestDefinition) -> Shown
 class Opening:
     """How far a tank at rest was above the line through its later fall, and how far it then came below it [Pa].
 
-    ``straight``: standard deviation of where that line begins; ``lowest``: when it is furthest below [s].
+    ``straight``: standard deviation of where that line begins [Pa]; ``lowest``: when it is furthest below [s after the
+    opening].
     """
 
     fall: float
@@ -110,7 +112,8 @@ class Opening:
 
 
 def opening_of(log: TestLog, segments: Segments) -> Opening | None:
-    """What the tank's pressure does as the valve opens; None where its later fall cannot be told."""
+    """What the tank's pressure [Pa] does as the valve opens [s after the opening]; None where its later fall cannot be
+    told."""
     tank, end = _signal(log, segments, "p_tank"), _steady_until(segments)
     if tank is None or end is None:
         return None
@@ -123,7 +126,11 @@ def opening_of(log: TestLog, segments: Segments) -> Opening | None:
 
 
 def fall_at_opening(log: TestLog, segments: Segments) -> Sign | None:
-    """A tank at rest that was warmer above than its bulk, or boils late: its pressure falls fast as the valve opens."""
+    """A tank at rest that was warmer above than its bulk, or boils late: its pressure [Pa] falls fast as the valve
+    opens.
+
+    None where it falls by less than LEAST_FALL and dips by less than LEAST_DIP, or than is uncertain of either.
+    """
     found = opening_of(log, segments)
     if found is None:
         return None
@@ -189,7 +196,8 @@ def _dip(tank: Signal, line: Array, end: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class PurgeLine:
-    """How far a purge line is above the tank as its check valve opens and at the end, and how far it fell [Pa]."""
+    """How far a purge line is above the tank as its check valve ``opens`` and at the ``end`` [s after the opening], how
+    far it ``fell``, and its ``pressure`` as it opens [Pa]."""
 
     opens: float
     end: float
@@ -205,7 +213,8 @@ class PurgeLine:
 
 
 def purge_line_of(log: TestLog, segments: Segments) -> PurgeLine | None:
-    """What a purge line does from the opening of its valve on; None where that is not recorded."""
+    """What a purge line does [Pa] from the opening of its valve on [s after the opening]; None where that is not
+    recorded."""
     tank, line = _signal(log, segments, "p_tank"), _signal(log, segments, "p_purge")
     opens, end = segments.time("t_purge"), segments.time("t_end")
     if tank is None or line is None or opens is None or end is None:
@@ -217,7 +226,10 @@ def purge_line_of(log: TestLog, segments: Segments) -> PurgeLine | None:
 
 
 def open_check_valve(log: TestLog, segments: Segments) -> Sign | None:
-    """A purge line that stays above the tank by more than its valve opens at, and falls: nitrogen flows."""
+    """A purge line that stays above the tank by more than its valve opens at [Pa], and falls: nitrogen flows.
+
+    None where it is less than LEAST_FLOW more, or falls by less than SAGS of its pressure.
+    """
     found = purge_line_of(log, segments)
     if found is None or found.more < LEAST_FLOW or found.fell < SAGS * found.pressure:
         return None

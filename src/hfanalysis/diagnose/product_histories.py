@@ -16,7 +16,8 @@ from hfanalysis.record.channels import unit_of
 
 
 def write_histories(path: Path, found: Diagnosed, provenance: Mapping[str, Any]) -> None:
-    """Groups ``sources/SITE`` {time, mean, low90, high90}, ``residuals/CHANNEL`` {time, before, after, noise_std}.
+    """Groups ``sources/SITE`` {time [s after the opening], mean, low90, high90 [the source's unit]},
+    ``residuals/CHANNEL`` {time [s], before, after, noise_std [SI]}; all (n,).
 
     A second source at a site is ``sources/SITE 2``.
     """

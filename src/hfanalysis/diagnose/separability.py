@@ -44,11 +44,12 @@ SMALL = 0.01
 
 @dataclass(frozen=True)
 class Information:
-    """Fisher information of strengths (and shapes), nuisances projected out, in units of what is typical of each.
+    """Fisher information ``matrix`` (columns, columns) of strengths (and shapes), nuisances projected out, in units of
+    what is typical of each.
 
-    ``owners``: the effect of every column; ``shapes``: which columns are shapes, with the prior N(0, 1). An effect with
-    several strengths counts as all of them at their typical size, independent of one another. ``one_sided``: effects
-    whose strength cannot be negative.
+    ``owners``: the effect of every column; ``shapes`` (columns,): which columns are shapes, with the prior N(0, 1). An
+    effect with several strengths counts as all of them at their typical size, independent of one another.
+    ``one_sided``: effects whose strength cannot be negative.
     """
 
     owners: tuple[str, ...]
@@ -60,18 +61,30 @@ class Information:
         return [i for i, owner in enumerate(self.owners) if owner == name and (shapes or not self.shapes[i])]
 
     def detectability(self, name: str) -> float:
-        """d' of an effect of typical strength; 0 where the channels do not show it."""
+        """d' [-] of an effect of typical strength; 0 where the channels do not show it.
+
+        >>> told = Information(("a", "b"), np.array([[100.0, 60.0], [60.0, 100.0]]), np.zeros(2, dtype=bool))
+        >>> told.detectability("a")
+        10.0
+        """
         own = self._columns(name)
         return float(np.sqrt(max(np.trace(self.matrix[np.ix_(own, own)]), 0.0)))
 
     def correlation(self, one: str, other: str) -> float:
-        """rho of the first strengths of two effects; NaN where one of them is not shown."""
+        """rho [-] of the first strengths of two effects; NaN where one of them is not shown."""
         i, j = self._columns(one)[0], self._columns(other)[0]
         size = float(np.sqrt(self.matrix[i, i] * self.matrix[j, j]))
         return float(self.matrix[i, j]) / size if size > 0.0 else float("nan")
 
     def beside(self, name: str, rival: str) -> float:
-        """d' of an effect of typical strength that is left when a rival takes up what it can."""
+        """d' [-] of an effect of typical strength that is left when a rival takes up what it can.
+
+        d'^2 = F_kk - F_kl F_ll^-1 F_lk, the Schur complement in the information.
+
+        >>> told = Information(("a", "b"), np.array([[100.0, 60.0], [60.0, 100.0]]), np.zeros(2, dtype=bool))
+        >>> round(told.beside("a", "b"), 9)
+        8.0
+        """
         own, other = self._columns(name), self._columns(rival, shapes=True)
         cross = self.matrix[np.ix_(own, other)]
         stiff = self.matrix[np.ix_(other, other)] + np.diag(self.shapes[other].astype(float))
@@ -81,12 +94,13 @@ class Information:
         return float(np.sqrt(max(np.trace(self.matrix[np.ix_(own, own)] - cross @ share), 0.0)))
 
     def at_nominal(self, name: str, rival: str) -> float:
-        """d'_{k|l} of an effect that is as strong as to be seen with NOMINAL; NaN for one that is not shown at all."""
+        """d'_{k|l} [-] of an effect that is as strong as to be seen with NOMINAL; NaN for one that is not shown at
+        all."""
         seen = self.detectability(name)
         return NOMINAL * self.beside(name, rival) / seen if seen > 0.0 else float("nan")
 
     def apart(self, one: str, other: str) -> float:
-        """The lesser of the two d'_{k|l} of a pair at nominal strength."""
+        """The lesser of the two d'_{k|l} [-] of a pair at nominal strength."""
         return min(self.at_nominal(one, other), self.at_nominal(other, one))
 
 
@@ -133,7 +147,7 @@ class Outlook:
         return Information(self.owners, projected(slopes, self.nuisances), self.shapes, one_sided)
 
     def strength_at(self, name: str, detectability: float) -> float:
-        """The first strength [SI] that is seen with a given d'; infinite where nothing is."""
+        """The first strength [SI] that is seen with a given d' [-]; infinite where nothing is."""
         seen = self.now.detectability(name)
         return detectability / seen * self.effects[name].strength.typical if seen > 0.0 else float("inf")
 
@@ -148,13 +162,14 @@ class Outlook:
 
     @cached_property
     def twins(self) -> dict[tuple[str, str], float]:
-        """Pairs of visible effects that a test of nominal strength does not tell apart, the closest first."""
+        """Pairs of visible effects that a test of nominal strength does not tell apart, with the lesser d'_{k|l} [-],
+        the closest first."""
         pairs = [(a, b) for i, a in enumerate(self.visible) for b in self.visible[i + 1 :]]
         close = {pair: d for pair in pairs if (d := self.now.apart(*pair)) < TWINS}
         return dict(sorted(close.items(), key=lambda item: item[1]))
 
     def twins_with(self, sensor: Sensor) -> dict[tuple[str, str], float]:
-        """How far apart the twins are with one more sensor, at the strengths that were nominal without it."""
+        """How far apart (d' [-]) the twins are with one more sensor, at the strengths that were nominal without it."""
         more, found = self.with_sensor(sensor), {}
         for one, other in self.twins:
             both = ((one, other), (other, one))
@@ -162,11 +177,11 @@ class Outlook:
         return found
 
     def separated(self, sensor: Sensor) -> dict[tuple[str, str], float]:
-        """Twins that are twins no longer with one more sensor."""
+        """Twins that are twins no longer with one more sensor, with their d' [-]."""
         return {pair: d for pair, d in self.twins_with(sensor).items() if d >= TWINS}
 
     def shown(self, sensor: Sensor) -> dict[str, float]:
-        """Effects that are seen at their typical strength with one more sensor and not without it: their d'."""
+        """Effects that are seen at their typical strength with one more sensor and not without it: their d' [-]."""
         more = self.with_sensor(sensor)
         found = {n: more.detectability(n) for n in self.effects if self.now.detectability(n) < SEEN}
         return {n: d for n, d in found.items() if d >= SEEN}

@@ -24,8 +24,8 @@ def channels_alone(subject: Subject, why: str) -> Diagnosis:
 
     A thrust cell that does not come back to its zero has drifted, whatever the engine did. That thrust and chamber
     pressure disagree says that one of them, or the nozzle, is not what is stated, and not which. What tank and purge
-    line show is in ``diagnose.signs``. Nothing tells which of several explains most: a drift comes first, for its size
-    is known, and nothing else is added to the model.
+    line show is in ``diagnose.model_free``. Nothing tells which of several explains most: a drift comes first, for its
+    size is known, and nothing else is added to the model.
     """
     seen = shown(subject.log, subject.segments, subject.definition)
     if not seen.wrong and not seen.signs:

@@ -20,16 +20,17 @@ from hfanalysis.engine.sites import (
 
 LOSS, EXPONENT, WARMING = range(3)
 REFERENCE_PRESSURE = 10e5
-"""Chamber pressure [Pa] at which the loss is stated: about the mean of a firing."""
+"""Chamber pressure [Pa] at which the loss is stated: about the mean of a firing. Source: by definition of the loss."""
 
 
 LATE = 5.0
-"""Square root of time from which on the series in its inverse is taken."""
+"""Square root of time, in units of the wall's own [-], from which on the series in its inverse is taken. Source: erfc's
+asymptotic series."""
 
 
 @compiled
 def cold_share(root: float) -> float:
-    """Heat flow into a thick wall, of what a cold one takes; ``root`` is sqrt(t h^2 / (k rho c)).
+    """Heat flow into a thick wall, of what a cold one takes [-]; ``root`` is sqrt(t h^2 / (k rho c)) [-].
 
     >>> [round(cold_share(root), 3) for root in (0.0, 1.0, 10.0)]
     [1.0, 0.428, 0.056]

@@ -11,17 +11,18 @@ from hfanalysis.compiled import compiled
 from hfanalysis.engine.effect import Believable, Channels, Effect, Parameter
 
 REFERENCE = 10e5
-"""Pressure [Pa] at which the lag is stated."""
+"""Pressure [Pa] at which the lag is stated. Source: by definition of the lag."""
 
-LEAST = 0.5e5
+LEAST_TAP_PRESSURE = 0.5e5
 """Pressure [Pa] below which a tube fills no slower."""
 
 
 @compiled
 def lagged(times: Array, true: Array, lags: Array) -> Array:
-    """What a sensor of first order reads that starts at rest: exact for values taken linear between ``times`` [s].
+    """What a sensor of first order reads that starts at rest, (n,), in the unit of ``true`` (n,).
 
-    ``lags`` [s]: those of the stretches that end at ``times``.
+    Exact for values taken linear between ``times`` [s], (n,). ``lags`` [s], (n,): those of the stretches that end at
+    ``times``.
     """
     out = np.empty_like(true)
     behind = 0.0
@@ -39,7 +40,7 @@ def lagged(times: Array, true: Array, lags: Array) -> Array:
 
 def _distort(times: Array, channels: Channels, values: Mapping[str, float]) -> dict[str, Array]:
     true = np.ascontiguousarray(channels["p_chamber"], dtype=np.float64)
-    lags = values["lag"] * (REFERENCE / np.maximum(true, LEAST)) ** values["thinning"]
+    lags = values["lag"] * (REFERENCE / np.maximum(true, LEAST_TAP_PRESSURE)) ** values["thinning"]
     return {**channels, "p_chamber": lagged(np.ascontiguousarray(times, dtype=np.float64), true, lags)}
 
 

@@ -11,20 +11,21 @@ from hfanalysis.engine.equations import OUTER_RADIUS
 from hfanalysis.engine.sites import PORT_RADIUS, RATES, REGRESSION_FACTOR, term
 
 DEPTH, WIDTH, TAIL = range(3)
-MOST = 0.995
-"""Share of the surface that can have burnt through before the last fuel goes: the end stays within reach."""
+LARGEST_DEPTH = 0.995
+"""Share of the surface that can have burnt through before the last fuel goes [-]: the end stays within reach."""
 
 WHOLE = 20.0
-"""Webs left, in units of the width, from which on no wall shows: exp(-40) of the surface's square."""
+"""Webs left, in units of the width [-], from which on no wall shows. Evidence: exp(-40) is then left of the surface's
+square."""
 
 TIMED = 0.8, 0.1
-"""Shares of the surface between which its fading is timed; it is the fall of a ramp that goes on at that rate."""
+"""Shares of the surface [-] between which its fading is timed; it is the fall of a ramp that goes on at that rate."""
 
 SHALLOW = 0.4
-"""Depth up to which what is left goes at once all the same, so that no ramp is seen."""
+"""Depth [-] up to which what is left goes at once all the same, so that no ramp is seen."""
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
-"""Of the quadrature over the web."""
+"""Of the quadrature over the web. Source: Gauss and Legendre's, of 40 points."""
 
 
 @term
@@ -33,14 +34,14 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
         return
     web = max(c[OUTER_RADIUS] - env[PORT_RADIUS], 0.0) / p[WIDTH]  # beyond the wall there may be spare fuel
     if web < WHOLE:
-        last = 1.0 - min(p[DEPTH], MOST)
+        last = 1.0 - min(p[DEPTH], LARGEST_DEPTH)
         site[REGRESSION_FACTOR] *= np.sqrt(1.0 - (1.0 - last**2) * np.exp(-2.0 * web ** (2.0 * p[TAIL])))
 
 
 def _fading_web(values: Mapping[str, float]) -> float:
     """The web over which the surface goes, where it is deep enough to be seen to: the integral of dw / A between the
     shares of TIMED, as if all of it went at that rate."""
-    depth, power = min(values["depth"], MOST), 2.0 * values["tail"]
+    depth, power = min(values["depth"], LARGEST_DEPTH), 2.0 * values["tail"]
     if depth <= SHALLOW:
         return 0.0
     shown = 1.0 - (1.0 - depth) ** 2

@@ -14,7 +14,7 @@ from hfanalysis.engine.sites import P_CHAMBER, RATES, REGRESSION_FACTOR, term
 EXPONENT, BEND, REFERENCE = range(3)
 
 LEAST_BENT = 1e-5
-"""Below it the series of (exp(x) - 1)/x is as good as the quotient."""
+"""Value [-] below which the series of (exp(x) - 1)/x is as good as the quotient."""
 
 
 @term

@@ -1,4 +1,4 @@
-"""Vapour that expands, and chokes, on its way through the injector."""
+"""Vapor that expands, and chokes, on its way through the injector."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, P_CHAMB
 
 WEIGHT, GAMMA = range(2)
 LEAST_DROP = 1e-4
-"""Relative pressure drop below which the two laws agree."""
+"""Relative pressure drop [-] below which the two laws agree."""
 
 
 @compiled
 def expanding_flow(ratio: float, gamma: float) -> float:
-    """Flow of a gas that expands to p / p_0, or chokes, over that of an incompressible fluid of the density at p_0.
+    """Flow of a gas that expands to p / p_0, or chokes, over that of an incompressible fluid of the density at p_0 [-].
+
+    ``ratio`` p / p_0 [-], ``gamma`` [-] (Sutton and Biblarz, Rocket Propulsion Elements, chapter 3).
 
     >>> round(expanding_flow(0.9, 1.2), 4)
     0.9361

@@ -1,6 +1,6 @@
 """Liquid that flashes on its way through the injector, so that its flow hardly asks for the chamber's pressure.
 
-The vapour that follows expands on the same way: saturated vapour is where homogeneous equilibrium flow ends as the
+The vapor that follows expands on the same way: saturated vapor is where homogeneous equilibrium flow ends as the
 share of liquid goes to nothing.
 """
 
@@ -15,18 +15,19 @@ from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, INJECTOR_FACTOR, IS_LI
 
 WEIGHT, OMEGA, LINE, VAPOR = range(4)
 GAMMA = 1.2
-"""Isentropic exponent of the vapour."""
+"""Isentropic exponent of the vapor [-]. Evidence: saturated vapor has 1.21 at 278 K and 1.25 at 298 K (CoolProp)."""
 
 OMEGA_AT, OMEGA_SLOPE, LEAST_OMEGA = 285.0, -0.032, 1.0
 """Temperature [K] at which omega is stated, its slope [1/K] for saturated nitrous oxide, and the least of it."""
 
 LEAST_DROP = 1e-4
-"""Relative pressure drop below which flashing and single-phase flow agree."""
+"""Relative pressure drop [-] below which flashing and single-phase flow agree."""
 
 
 @compiled
 def flashing_flow(ratio: float, omega: float) -> float:
-    """G / sqrt(p_0 rho_0) of homogeneous equilibrium flow that starts as saturated liquid (Leung 1986), eta = p / p_0.
+    """G / sqrt(p_0 rho_0) [-] of homogeneous equilibrium flow that starts as saturated liquid (Leung 1986), eta = p /
+    p_0.
 
     >>> round(flashing_flow(0.9, 1.0), 4)
     0.4131
@@ -36,8 +37,8 @@ def flashing_flow(ratio: float, omega: float) -> float:
 
 @compiled
 def critical_ratio(omega: float) -> float:
-    """eta = p / p_0 at which flashing flow is largest: the root in (0, 1) of eta^2 + (w^2 - 2 w)(1 - eta)^2 +
-    2 w^2 (ln eta + 1 - eta), by Newton's method.
+    """eta = p / p_0 [-] at which flashing flow is largest: the root in (0, 1) of eta^2 + (w^2 - 2 w)(1 - eta)^2 + 2 w^2
+    (ln eta + 1 - eta), by Newton's method (Leung 1986).
 
     >>> round(critical_ratio(1.0), 4)
     0.6065

@@ -10,22 +10,23 @@ from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Believable, Channels, Effect, Parameter
 
 REFERENCE = 10e5
-"""Pressure [Pa] of a chamber at which the warming time is stated."""
+"""Pressure [Pa] of a chamber at which the warming time is stated. Source: by definition of that time."""
 
 
-FAINT = 1e-3
-"""Least pressure over the surroundings' that counts, in REFERENCE: noise goes below, and has no power there."""
+LEAST_OVERPRESSURE = 1e-3
+"""Least pressure over the surroundings' that counts, in REFERENCE [-]: noise goes below, and has no power there."""
 
 
 def heat_clock(times: Array, pressure: Array, power: float) -> Array:
-    """Seconds at REFERENCE that bring as much heat as a chamber has brought since the opening (time 0).
+    """Time [s] at REFERENCE that brings as much heat as a chamber has brought since the opening (time 0), (n,).
 
-    Heat goes with a power of its pressure over the surroundings': from 0 (a cell that goes on warming by what soaks
-    into it) to 1. It is the time itself where the pressure was not recorded.
+    ``times`` [s] and ``pressure`` [Pa], (n,) each. Heat goes with a ``power`` [-] of its pressure over the
+    surroundings': from 0 (a cell that goes on warming by what soaks into it) to 1. It is the time itself where the
+    pressure was not recorded.
     """
     if not np.ptp(pressure) > 0.0:
         return np.maximum(times, 0.0)
-    over = np.maximum((pressure - pressure.min()) / REFERENCE, FAINT)
+    over = np.maximum((pressure - pressure.min()) / REFERENCE, LEAST_OVERPRESSURE)
     rate = np.where(times >= 0.0, over**power, 0.0)
     return np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(times))])
 

@@ -17,14 +17,19 @@ from hfanalysis.engine.tank import NITROGEN_CV, SPECIFIC_NITROGEN
 
 AREA, SUPPLY, CRACKING, TEMPERATURE, LINE_TO_VALVE, CRITICAL = range(6)
 GAMMA = 1.4
+"""Heat capacity ratio of nitrogen [-]. Source: a diatomic ideal gas has 7/5."""
+
 CHOKED = float(choked_flow_factor(GAMMA))
+"""mdot sqrt(R T) / (A p_0) of nitrogen through a choked throat [-]."""
+
 SMALL_SHARE = 1e-3
-"""Share of the choked flow squared below which the flow falls linearly."""
+"""Share of the choked flow squared [-] below which the flow falls linearly."""
 
 LEAST_AREA = 1e-6
 """Effective area [m^2] of a leak that opens its valve by half: what a smaller one loses in it grows with the leak."""
 
 CP = NITROGEN_CV + SPECIFIC_NITROGEN
+"""c_p of nitrogen [J/(kg K)]. Source: a diatomic ideal gas has 7/2 R."""
 
 
 @switch

@@ -10,7 +10,7 @@ from hfanalysis.engine.sites import HOT_SHARE, IS_BURNING, P_CHAMBER, RATES, THR
 
 RATE, EXPONENT, HEATING = range(3)
 REFERENCE_PRESSURE = 20e5
-"""Chamber pressure [Pa] at which the rate is stated."""
+"""Chamber pressure [Pa] at which the rate is stated. Source: by definition of the rate."""
 
 
 @term

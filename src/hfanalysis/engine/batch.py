@@ -11,7 +11,7 @@ from hfanalysis.processors import processors
 
 
 def burn_many(engines: Sequence[Engine], *, workers: int | None = None, **options: Any) -> list[Burn | str]:
-    """Every engine as by :func:`hfanalysis.engine.unsteady.burn` with ``options``, in order.
+    """Every engine as by :func:`hfanalysis.engine.unsteady.burn` with ``options`` [s, SI], in order.
 
     An engine that is refused has its reason in place of a run. ``workers``: default one for each core this process may
     use.

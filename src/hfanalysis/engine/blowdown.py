@@ -1,7 +1,7 @@
 """The tank alone, emptied through feed line and injector against a given chamber pressure.
 
 The engine's own equations from the tank to the injector, with every site that effects have there; the chamber's
-pressure, and the feed loss where that is given too, take the place of what is modelled behind. Fixed steps of the
+pressure, and the feed loss where that is given too, take the place of what is modeled behind. Fixed steps of the
 classical Runge-Kutta method: the tank's time scales are seconds, a step is milliseconds, and the end of the liquid is
 located inside its step by the secant rule, so that no step straddles the change of equations.
 """
@@ -38,7 +38,10 @@ engine's own) and heat into the saturated tank."""
 
 @separate(EVALUATION)
 def rates_alone(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array, out: Array) -> None:
-    """As :func:`hfanalysis.engine.model.rates`, from the tank to the injector."""
+    """As :func:`hfanalysis.engine.model.rates`, from the tank to the injector.
+
+    ``t`` [s]; ``y`` and ``dy`` (states,) as STATES [SI, SI/s]; ``out`` (outputs,) as OUTPUTS [SI].
+    """
     m = equations_at(model)
     given = m.c[m.c.size - len(GIVEN) :]
     upstream(t, y, liquid, burning, m, dy)
@@ -56,7 +59,8 @@ def rates_alone(t: float, y: Array, liquid: bool, burning: bool, model: int, dy:
 
 @inlined
 def lacking_loss(whole: float, m: Equations) -> float:
-    """Pressure [Pa] that has to be lost beside the line's own loss, which effects may ask for, to make a whole one."""
+    """Pressure [Pa] that has to be lost beside the line's own loss, which effects may ask for, to make a ``whole`` one
+    [Pa]."""
     c, env, site = m.c, m.env, m.site
     if c[eq.LIQUID_LOSS] >= 0.0:
         return float(whole - (c[eq.LIQUID_LOSS] if env[at.IS_LIQUID] > 0.0 else c[eq.VAPOR_LOSS]))
@@ -76,41 +80,44 @@ class TankRun:
 
     @property
     def pressure(self) -> Array:
-        """In the tank [Pa]."""
+        """In the tank [Pa], (n,)."""
         return self.outputs[:, eq.O_TANK_PRESSURE]
 
     @property
     def run_pressure(self) -> Array:
-        """Before the injector [Pa]."""
+        """Before the injector [Pa], (n,)."""
         return self.outputs[:, eq.O_RUN_PRESSURE]
 
     @property
     def flow(self) -> Array:
-        """Through the injector [kg/s]."""
+        """Through the injector [kg/s], (n,)."""
         return self.outputs[:, eq.O_OXIDIZER_FLOW]
 
     @property
     def nitrogen_share(self) -> Array:
-        """Of nitrogen in the flow, by mass."""
+        """Of nitrogen in the flow, by mass [-], (n,)."""
         return self.outputs[:, eq.O_SHARE]
 
     @property
     def leak(self) -> Array:
-        """Out of the tank by another way [kg/s]."""
+        """Out of the tank by another way [kg/s], (n,)."""
         return np.asarray(self.outputs[:, eq.O_OUTFLOW] - self.outputs[:, eq.O_OXIDIZER_FLOW])
 
     @property
     def mass(self) -> Array:
-        """Of nitrous oxide and nitrogen in the tank [kg]."""
+        """Of nitrous oxide and nitrogen in the tank [kg], (n,)."""
         return np.asarray(self.states[:, eq.TANK] + self.states[:, eq.NITROGEN])
 
     @property
     def temperature(self) -> Array:
-        """Of the tank [K]."""
+        """Of the tank [K], (n,)."""
         return self.states[:, eq.TEMPERATURE]
 
     def injector_factor(self, area: float, density: Array) -> Array:
-        """Flow over A sqrt(2 rho (p_run - p_c)), ``density`` [kg/m^3] of what flows; 1 where nothing does."""
+        """Flow over A sqrt(2 rho (p_run - p_c)) [-], (n,); 1 where nothing flows.
+
+        ``area`` A [m^2], ``density`` [kg/m^3] of what flows, (n,).
+        """
         plain = mass_flows(area, density, self.run_pressure - self.outputs[:, eq.O_CHAMBER_PRESSURE])
         return np.where(plain > 0.0, self.flow / np.where(plain > 0.0, plain, 1.0), 1.0)
 
@@ -126,7 +133,7 @@ class TankAlone:
 
     @classmethod
     def of(cls, engine: Engine) -> TankAlone:
-        """The tank of an engine as its temperature and load have it."""
+        """The tank of an engine as its temperature [K] and load [kg] have it."""
         composition = compose(engine.effects, constants(engine), len(STATES))
         c = np.concatenate([composition.constants, np.zeros(len(GIVEN))])
         state = np.zeros(len(STATES))
@@ -136,7 +143,11 @@ class TankAlone:
         return cls(engine, composition, equations, state)
 
     def at(self, own: Array | None = None, **changes: float) -> TankAlone:
-        """The same tank in another state: STATES by their names, and ``own``, those that effects bring along."""
+        """The same tank in another state: STATES by their names [SI], and ``own`` (own states,) [SI], those that
+        effects bring along.
+
+        Raises ValueError for a name that is none of STATES.
+        """
         state = self.state.copy()
         for name, value in changes.items():
             state[STATES.index(name)] = value
@@ -153,11 +164,11 @@ class TankAlone:
     def run(
         self, time: Array, chamber: Array, loss: Array | None = None, vapor: bool = False, heat: float = 0.0
     ) -> TankRun:
-        """Empty the tank against ``chamber`` [Pa], given at increasing ``time`` [s] and linear between.
+        """Empty the tank against ``chamber`` [Pa], given at increasing ``time`` [s], both (n,), and linear between.
 
-        ``loss`` [Pa]: a given feed loss in place of the engine's own; ``heat`` [W]: into the saturated tank, beside
-        that of effects. ``vapor``: there is no liquid, and ``vapor_compressibility`` and ``vapor_exponent`` are in the
-        state.
+        ``loss`` [Pa], (n,): a given feed loss in place of the engine's own; ``heat`` [W]: into the saturated tank,
+        beside that of effects. ``vapor``: there is no liquid, and ``vapor_compressibility`` and ``vapor_exponent`` are
+        in the state.
         """
         self.equations.c[HEAT - len(GIVEN)] = heat
         columns = (time, chamber, np.full(np.size(time), np.nan) if loss is None else loss)
@@ -172,7 +183,7 @@ def tank_alone(
 ) -> TankAlone:  # fmt: skip
     """A tank with ``mass`` [kg] at ``temperature`` [K], of which the engine behind the injector is not known.
 
-    ``ambient``: pressure [Pa] around it.
+    ``polytropic_exponent`` [-] of its vapor; ``ambient``: pressure [Pa] around it.
     """
     engine = Engine(
         saturation, NO_GAS, feed, mass, temperature, polytropic_exponent, fuel_mass=1.0, grain_length=0.5,
@@ -186,10 +197,10 @@ def blow_down(
     saturation: Saturation, feed: FeedSystem, mass: float, temperature: float, time: Array, chamber_pressure: Array,
     polytropic_exponent: float, heat: float = 0.0,
 ) -> TankRun:  # fmt: skip
-    """Empty a saturated tank (report, eq. 3.1 to 3.17) from ``mass`` [kg] and ``temperature`` [K].
+    """Empty a saturated tank (report, eq. 3.1 to 3.16) from ``mass`` [kg] and ``temperature`` [K].
 
-    ``time`` [s] is increasing, ``chamber_pressure`` [Pa] is given at these times and taken linear between them. After
-    the liquid is gone p = p_v (M/M_v)^m with Z held. ``heat`` [W] goes into the saturated tank.
+    ``time`` [s] is increasing, ``chamber_pressure`` [Pa] is given at these times, both (n,), and taken linear between
+    them. After the liquid is gone p = p_v (M/M_v)^m with Z held. ``heat`` [W] goes into the saturated tank.
     """
     alone = tank_alone(saturation, feed, mass, temperature, polytropic_exponent)
     return alone.run(time, chamber_pressure, heat=heat)

@@ -1,7 +1,7 @@
 """The heat that the model's simplifications imply: where its equations do not close in energy, how much is missing.
 
-A polytropic vapour. What leaves takes its own entropy with it, so that V dp = k_s p V d ln rho + G Qdot dt, with the
-isentropic exponent k_s and Grueneisen's G of the vapour with which it begins. A polytropic exponent k, dp = k p d ln
+A polytropic vapor. What leaves takes its own entropy with it, so that V dp = k_s p V d ln rho + G Qdot dt, with the
+isentropic exponent k_s and Grueneisen's G of the vapor with which it begins. A polytropic exponent k, dp = k p d ln
 rho, takes Qdot = mdot (k_s - k) p V/(m G): none for k = k_s. Nitrogen in it, an ideal gas, adds its part to (dp/dT)_V,
 to (dp/d ln rho)_T, and to the heat capacity, which give both G and k_s of the mixture.
 
@@ -23,7 +23,7 @@ from hfanalysis.thermo.saturation import Saturation
 
 
 def vapor_heat(burn: Burn) -> Array:
-    """Heat flow into the tank's vapour [W] over ``burn.time``; 0 while there is liquid."""
+    """Heat flow into the tank's vapor [W], (n,) over ``burn.time``; 0 while there is liquid."""
     dry = burn.time > burn.liquid_out if burn.liquid_out is not None else np.zeros(burn.time.size, dtype=bool)
     if not dry.any():
         return np.zeros(burn.time.size)
@@ -49,7 +49,8 @@ def vapor_heat_total(burn: Burn) -> float:
 
 
 def chamber_energy(burn: Burn) -> Array:
-    """p V of the chamber [J] over ``burn.time``; its fall is the heat flow that the quasi-steady chamber implies."""
+    """p V of the chamber [J], (n,) over ``burn.time``; its fall is the heat flow that the quasi-steady chamber
+    implies."""
     engine = burn.steps.engine
     volume = chamber_volume(engine.dead_volume, burn.state("port_radius"), engine.grain_length)
     return np.asarray(burn.output("chamber_pressure") * volume)
@@ -58,10 +59,10 @@ def chamber_energy(burn: Burn) -> Array:
 def implied_heat(
     saturation: Saturation, exponent: float, mass_start: float, mass_end: float, temperature: float, z: float
 ) -> float:
-    """Heat [J] that a polytropic vapour blowdown needs from outside (negative: must give away).
+    """Heat [J] that a polytropic vapor blowdown needs from outside (negative: must give away).
 
-    From ``mass_start`` to ``mass_end`` [kg], beginning with saturated vapour at ``temperature`` [K]: the integral of
-    (m_s - m) p V/G over -d ln M, p V = Z R T_v M_v (M/M_v)^m, with that vapour's isentropic exponent m_s and
+    From ``mass_start`` to ``mass_end`` [kg], beginning with saturated vapor at ``temperature`` [K]: the integral of
+    (m_s - m) p V/G over -d ln M, p V = Z R T_v M_v (M/M_v)^m, with that vapor's isentropic exponent m_s and
     Grueneisen's G. The polytropic law itself does not conserve energy.
     """
     held = z * SPECIFIC_GAS_CONSTANT * temperature * mass_start

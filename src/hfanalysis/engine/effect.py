@@ -147,12 +147,12 @@ class Active:
 
     @property
     def named(self) -> dict[str, float]:
-        """Values by the parameters' names."""
+        """Values [SI] by the parameters' names."""
         return {p.name: v for p, v in zip(self.effect.parameters, self.values, strict=True)}
 
     @property
     def strengths(self) -> dict[str, float]:
-        """Values of its strengths by their names."""
+        """Values [SI] of its strengths by their names."""
         return dict(list(self.named.items())[: self.effect.strengths])
 
     @property
@@ -175,15 +175,16 @@ class Composition:
     active: tuple[Active, ...]
 
     def initial(self, engine: Engine) -> Array:
-        """Where the own states start."""
+        """Where the own states start [SI], (own states,)."""
         return np.array([s.start(engine, a.named) for a in self.active for s in a.effect.states], dtype=np.float64)
 
 
 def compose(effects: Sequence[Active], constants: Array, states: int, idle: bool = False) -> Composition:
-    """Effects with terms in canonical order; ``states`` of the engine precede their own.
+    """Effects with terms in canonical order; ``constants`` (n,) are the engine's [SI], ``states`` of the engine precede
+    their own.
 
-    Idle effects are left out unless they are asked for (their tangents need them). Raises ValueError for an effect
-    that is named twice.
+    Idle effects are left out unless they are asked for (their tangents need them). Raises ValueError for an effect that
+    is named twice.
     """
     names = [a.effect.name for a in effects]
     if len(set(names)) < len(names):

@@ -91,7 +91,7 @@ answer without work: most columns of a Jacobian leave two of the three alone."""
 
 
 def nothing_kept() -> Array:
-    """:attr:`Equations.kept` before the first evaluation."""
+    """:attr:`Equations.kept` before the first evaluation, (KEPT,)."""
     kept = np.full(KEPT, np.nan)
     kept[KEEPS] = 1.0
     return kept
@@ -99,7 +99,7 @@ def nothing_kept() -> Array:
 
 @inlined
 def asked(kept: Array, at: int, question: tuple[float, ...]) -> bool:
-    """Whether the kept answer is to this very question, to the bit."""
+    """Whether the kept answer in ``kept`` (KEPT,) from ``at`` on is to this very question [SI], to the bit."""
     same = True
     for i in range(len(question)):
         same = same and kept[at + i] == question[i]
@@ -108,7 +108,7 @@ def asked(kept: Array, at: int, question: tuple[float, ...]) -> bool:
 
 @inlined
 def keep(kept: Array, at: int, question: tuple[float, ...], answer: tuple[float, ...]) -> None:
-    """Keep question and answer, if this evaluation is one to keep."""
+    """Keep question and answer [SI] in ``kept`` (KEPT,) from ``at`` on, if this evaluation is one to keep."""
     if kept[KEEPS] > 0.0:
         for i in range(len(question)):
             kept[at + i] = question[i]
@@ -118,18 +118,22 @@ def keep(kept: Array, at: int, question: tuple[float, ...], answer: tuple[float,
 
 @inlined
 def at_saturation(m: Equations, row: int, temperature: float) -> float:
-    """A row of the table of saturated nitrous oxide."""
+    """A row [SI] of the table of saturated nitrous oxide at a ``temperature`` [K]."""
     table, start, step, critical = m.saturation
     return float(evaluate(table, start, step, critical, row, temperature)[0])
 
 
 @compiled
 def evaluate_rates(t: float, y: Array, liquid: bool, burning: bool, m: Equations, dy: Array, out: Array) -> None:
-    """:func:`rates`, for Python."""
+    """:func:`rates`, for Python: of ``y`` (states,) [SI] at ``t`` [s], into ``dy`` (states,) [SI/s] and ``out``
+    (outputs,) [SI]."""
     call(m.rates, t, y, liquid, burning, address_of(m), dy, out)
 
 
 @inlined
 def rates_at(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array, out: Array) -> None:
-    """:func:`rates`, for other compiled code: called, not merged into it."""
+    """:func:`rates`, for other compiled code: called, not merged into it.
+
+    Of ``y`` (states,) [SI] at ``t`` [s], into ``dy`` (states,) [SI/s] and ``out`` (outputs,) [SI].
+    """
     call(equations_at(model).rates, t, y, liquid, burning, model, dy, out)

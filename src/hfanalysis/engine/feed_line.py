@@ -24,7 +24,7 @@ class FeedSystem:
     """Tank volume [m^3], effective injector area C_i N_i A_i [m^2], and the feed loss.
 
     The loss is K_loss mdot^2 / rho with ``loss_factor`` [1/m^4], or, where ``constant_losses`` is given, the report's
-    constant pressure losses (liquid phase, vapour phase) [Pa].
+    constant pressure losses (liquid phase, vapor phase) [Pa].
     """
 
     volume: float
@@ -34,7 +34,8 @@ class FeedSystem:
 
 
 NO_STATED_LOSSES = (-1.0, -1.0)
-"""In their place where the loss is quadratic."""
+"""In their place where the loss is quadratic [Pa]. Source: by definition, a negative loss stands for the quadratic
+law."""
 
 
 @law
@@ -56,7 +57,7 @@ def line_flow(area: float, factor: float, stated: float, density: float, drop: f
 
 @inlined
 def feed(liquid: bool, m: Equations) -> None:
-    """Flow through feed line and injector, and the pressure between them."""
+    """Flow [kg/s] through feed line and injector and the pressure [Pa] between them, into ENVIRONMENT."""
     c, env, site = m.c, m.env, m.site
     drop = env[P_TANK] - env[P_CHAMBER] - site[FEED_LOSS]
     factor, stated = c[LOSS_FACTOR] * site[FEED_FACTOR], c[LIQUID_LOSS] if liquid else c[VAPOR_LOSS]

@@ -30,7 +30,7 @@ PAD = 1e-3
 
 @compiled
 def neutral(site: Array) -> None:
-    """Sources to 0, factors to 1."""
+    """Sources to 0 [Pa, W, kg/s], factors to 1 [-]; ``site`` (SITES,)."""
     site[:] = 0.0
     site[at.FEED_FACTOR] = site[at.INJECTOR_FACTOR] = site[at.REGRESSION_FACTOR] = 1.0
     site[at.TEMPERATURE_FACTOR] = site[at.THROAT_FACTOR] = site[at.THRUST_FACTOR] = 1.0
@@ -38,7 +38,7 @@ def neutral(site: Array) -> None:
 
 @inlined
 def act(hook: int, t: float, y: Array, m: Equations, dy: Array) -> None:
-    """Every active term at one hook."""
+    """Every active term at one hook, at ``t`` [s]; ``y`` and ``dy`` (states,) [SI, SI/s]."""
     for k in range(m.terms.shape[0]):
         p_at, x_at = m.terms[k, at.PARAMETERS_AT], m.terms[k, at.STATES_AT]
         call_term(m.terms[k, at.ADDRESS], hook, t, m.env, m.c, p_at, y, x_at, m.site, dy)  # type: ignore[call-arg]
@@ -46,7 +46,11 @@ def act(hook: int, t: float, y: Array, m: Equations, dy: Array) -> None:
 
 @separate(EVALUATION)
 def rates(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array, out: Array) -> None:
-    """dy/dt and OUTPUTS in one phase; ENVIRONMENT and SITES keep what was found on the way."""
+    """dy/dt and OUTPUTS in one phase; ENVIRONMENT and SITES keep what was found on the way.
+
+    ``t`` after ignition [s]; ``y`` (states,) as STATES and those of effects [SI]; fills ``dy`` (states,) [SI/s] and
+    ``out`` (outputs,) [SI].
+    """
     m = equations_at(model)
     upstream(t, y, liquid, burning, m, dy)
     chamber(y, m)
@@ -55,11 +59,11 @@ def rates(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array
     m.env[at.RT_CHAMBER] *= m.site[at.TEMPERATURE_FACTOR]
     act(at.AT_FLOW, t, y, m, dy)
     feed(liquid, m)
-    opening, surface = grain(y, burning, m)
+    regression, surface = grain(y, burning, m)
     act(at.RATES, t, y, m, dy)
-    opening *= m.site[at.REGRESSION_FACTOR]
-    m.env[at.FUEL_FLOW] = surface * opening + m.site[at.FUEL_SOURCE]
-    dy[eq.RADIUS] = opening
+    regression *= m.site[at.REGRESSION_FACTOR]
+    m.env[at.FUEL_FLOW] = surface * regression + m.site[at.FUEL_SOURCE]
+    dy[eq.RADIUS] = regression
     ejected, thrust = nozzle(m)
     dy[eq.IMPULSE] = thrust
     tank_rates(y, liquid, m, dy)
@@ -70,7 +74,10 @@ def rates(t: float, y: Array, liquid: bool, burning: bool, model: int, dy: Array
 
 @inlined
 def upstream(t: float, y: Array, liquid: bool, burning: bool, m: Equations, dy: Array) -> None:
-    """All that is known before the flow is: surroundings and tank; rates and sites without anything in them."""
+    """All that is known before the flow is: surroundings and tank; rates and sites without anything in them.
+
+    At ``t`` [s]; ``y`` and ``dy`` (states,) [SI, SI/s].
+    """
     neutral(m.site)
     for i in range(y.size):
         dy[i] = 0.0
@@ -82,7 +89,7 @@ def upstream(t: float, y: Array, liquid: bool, burning: bool, m: Equations, dy: 
 
 @inlined
 def surroundings(y: Array, liquid: bool, burning: bool, m: Equations) -> None:
-    """Phase, ambient pressure, and what of the state terms may read."""
+    """Phase, ambient pressure [Pa], and what terms may read of the state ``y`` (states,) [SI]."""
     env = m.env
     env[at.IS_LIQUID], env[at.IS_BURNING] = (1.0 if liquid else 0.0), (1.0 if burning else 0.0)
     env[at.P_AMBIENT] = air(y[eq.ALTITUDE])[0] if m.c[eq.FLIES] > 0.0 else m.c[eq.AMBIENT_PRESSURE]
@@ -92,7 +99,11 @@ def surroundings(y: Array, liquid: bool, burning: bool, m: Equations) -> None:
 
 @inlined
 def ascent(y: Array, thrust: float, m: Equations, dy: Array) -> None:
-    """The rocket climbs; on its pad it stands, and what lifts it is the thrust alone."""
+    """The rocket climbs (report, eq. 2.17 to 2.21); on its pad it stands, and what lifts it is the ``thrust`` alone
+    [N].
+
+    ``y`` (states,) [SI]; fills altitude and speed of ``dy`` (states,) [m/s, m/s^2].
+    """
     c = m.c
     if not c[eq.FLIES] > 0.0:
         return
@@ -107,7 +118,7 @@ def ascent(y: Array, thrust: float, m: Equations, dy: Array) -> None:
 
 @inlined
 def report(ejected: float, thrust: float, dy: Array, m: Equations, out: Array) -> None:
-    """OUTPUTS."""
+    """OUTPUTS [SI] into ``out`` (outputs,), with the nozzle's flow ``ejected`` [kg/s] and ``thrust`` [N]."""
     env, site = m.env, m.site
     out[eq.O_TANK_PRESSURE], out[eq.O_CHAMBER_PRESSURE] = env[at.P_TANK], env[at.P_CHAMBER]
     out[eq.O_RT] = env[at.RT_CHAMBER]

@@ -20,8 +20,10 @@ from hfanalysis.thermo.combustion import Gas
 from hfanalysis.thermo.combustion_table import Grid, gas_at
 
 SUBSONIC, SHOCK, SUPERSONIC = 0, 1, 2
+"""Indices of REGIMES."""
+
 SMALL_EXCESS = 1e-4
-"""Excess of the chamber's over the ambient pressure, relative, below which the exit velocity falls linearly."""
+"""Excess of the chamber's over the ambient pressure, relative [-], below which the exit velocity falls linearly."""
 
 REGIMES = ("subsonic", "shock in the diverging part", "supersonic")
 
@@ -50,7 +52,7 @@ def nozzle_flow(gas: Gas, pressure: float, ambient: float, throat_area: float, e
 
 @compiled
 def area_ratio(mach: float, gamma: float) -> float:
-    """A/A* = ((2/(g+1)) (1 + (g-1)/2 M^2))^((g+1)/(2(g-1))) / M (report, eq. 3.37).
+    """A/A* = ((2/(g+1)) (1 + (g-1)/2 M^2))^((g+1)/(2(g-1))) / M [-] (report, eq. 3.33).
 
     >>> round(area_ratio(2.0, 1.4), 4)
     1.6875
@@ -61,7 +63,11 @@ def area_ratio(mach: float, gamma: float) -> float:
 
 @compiled
 def mach_at_area(ratio: float, gamma: float, supersonic: bool) -> float:
-    """Mach number at A/A* = ``ratio`` >= 1 on one branch: Halley on ln(A/A*) in ln M, kept on its side of M = 1."""
+    """Mach number [-] at A/A* = ``ratio`` >= 1 on one branch: Halley on ln(A/A*) in ln M, kept on its side of M = 1.
+
+    >>> round(mach_at_area(1.6875, 1.4, True), 4)
+    2.0
+    """
     if ratio <= 1.0:
         return 1.0
     # near the throat ln(A/A*) is quadratic in ln M; far from it the branches follow powers of the ratio
@@ -92,7 +98,7 @@ def mach_at_area(ratio: float, gamma: float, supersonic: bool) -> float:
 
 @compiled
 def pressure_ratio(mach: float, gamma: float) -> float:
-    """p/p_0 of isentropic flow at a Mach number (report, eq. 3.38).
+    """p/p_0 [-] of isentropic flow at a Mach number (report, eq. 3.34).
 
     >>> round(pressure_ratio(2.0, 1.4), 5)
     0.1278
@@ -102,7 +108,7 @@ def pressure_ratio(mach: float, gamma: float) -> float:
 
 @compiled
 def pressure_after_shock(mach: float, gamma: float) -> float:
-    """p_2/p_1 across a normal shock (report, eq. 3.41).
+    """p_2/p_1 [-] across a normal shock (report, eq. 3.37).
 
     >>> round(pressure_after_shock(2.0, 1.4), 4)
     4.5
@@ -112,7 +118,7 @@ def pressure_after_shock(mach: float, gamma: float) -> float:
 
 @compiled
 def stagnation_after_shock(mach: float, gamma: float) -> float:
-    """p_0y/p_0x across a normal shock (report, eq. 3.43).
+    """p_0y/p_0x [-] across a normal shock (report, eq. 3.39).
 
     >>> round(stagnation_after_shock(2.0, 1.4), 4)
     0.7209
@@ -125,13 +131,16 @@ def stagnation_after_shock(mach: float, gamma: float) -> float:
 
 @law
 def choked_flow_factor(gamma: Real) -> Real:
-    """mdot sqrt(R T) / (A p_0) of a choked throat."""
+    """mdot sqrt(R T) / (A p_0) [-] of a choked throat (report, eq. 3.45 at M = 1)."""
     return np.sqrt(gamma) * (0.5 * (gamma + 1.0)) ** (-0.5 * (gamma + 1.0) / (gamma - 1.0))
 
 
 @law
 def choked_flow(gamma: Real, specific_temperature: Real, pressure: Real, throat_area: Real) -> Real:
-    """mdot [kg/s] of a choked throat; ``specific_temperature`` R T [J/kg]."""
+    """mdot [kg/s] of a choked throat (report, eq. 3.45 at M = 1).
+
+    ``specific_temperature`` R T [J/kg], ``pressure`` [Pa] and ``throat_area`` [m^2].
+    """
     return choked_flow_factor(gamma) * throat_area * pressure / np.sqrt(specific_temperature)
 
 
@@ -143,7 +152,11 @@ def characteristic_velocity(specific_temperature: Real, gamma: Real) -> Real:
 
 @compiled
 def mach_at_pressure(ratio: float, gamma: float) -> float:
-    """Mach number at p/p_0 = ``ratio`` <= 1 (the inverse of :func:`pressure_ratio`)."""
+    """Mach number [-] at p/p_0 = ``ratio`` <= 1 (report, eq. 2.10; the inverse of :func:`pressure_ratio`).
+
+    >>> round(mach_at_pressure(0.1278, 1.4), 3)
+    2.0
+    """
     return float(np.sqrt(2.0 / (gamma - 1.0) * (ratio ** (-(gamma - 1.0) / gamma) - 1.0)))
 
 
@@ -153,7 +166,8 @@ def expand(
 ) -> tuple[float, float, float, float, int]:
     """Mass flow [kg/s], thrust [N], exit Mach number, exit pressure [Pa], regime; no flow for p <= ambient.
 
-    ``specific_temperature`` is R T of the chamber gas [J/kg].
+    ``specific_temperature`` is R T of the chamber gas [J/kg], ``pressure`` and ``ambient`` [Pa], areas [m^2] (report,
+    section 3.1.4).
     """
     if not pressure > ambient:
         return 0.0, 0.0, 0.0, ambient, SUBSONIC
@@ -188,7 +202,11 @@ def ejected(
     exit_pressure: float,
     regime: int,
 ) -> tuple[float, float, float, float, int]:
-    """Flow and thrust F = mdot v_e + (p_e - p_a) A_e from the exit's state; total temperature is conserved."""
+    """Flow [kg/s] and thrust F = mdot v_e + (p_e - p_a) A_e [N] (report, eq. 3.43 to 3.46) from the exit's state.
+
+    ``specific_temperature`` R T [J/kg] of the chamber, pressures [Pa], ``exit_area`` [m^2]; then ``mach``,
+    ``exit_pressure`` [Pa] and ``regime`` as they were given. Total temperature is conserved.
+    """
     exit_temperature = specific_temperature / (1.0 + 0.5 * (gamma - 1.0) * mach * mach)
     velocity = mach * np.sqrt(gamma * exit_temperature)
     flow = exit_pressure / exit_temperature * velocity * exit_area
@@ -232,7 +250,7 @@ def nozzle(m: Equations) -> tuple[float, float]:
 
 @inlined
 def expanded(m: Equations, *question: float) -> tuple[float, float]:
-    """Flow and thrust of :func:`expand`, or what is kept of them."""
+    """Flow [kg/s] and thrust [N] of :func:`expand`, or what is kept of them."""
     kept, at = m.kept, KEPT_NOZZLE + 6
     if asked(kept, KEPT_NOZZLE, question):
         return kept[at], kept[at + 1]

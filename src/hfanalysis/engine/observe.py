@@ -27,11 +27,11 @@ CHANNELS = {
 """Canonical channels and the outputs or states whose sum they show [Pa, N, kg]; a tank's scale weighs its nitrogen."""
 
 SMALL = 1e-6
-"""Relative to a channel's span: by how much channels are moved to find a distortion's slope."""
+"""By how much channels are moved, relative to their span [-], to find a distortion's slope."""
 
 
 def observe(burn: Burn, times: ArrayLike, effects: Sequence[Active] | None = None) -> dict[str, Array]:
-    """Channels at increasing ``times`` [s] as sensors read them.
+    """Channels [Pa, N, kg], (n,) each, at increasing ``times`` [s], (n,), as sensors read them.
 
     ``effects`` (default: the engine's own) may be of any kind; those that distort are applied.
     """
@@ -40,14 +40,17 @@ def observe(burn: Burn, times: ArrayLike, effects: Sequence[Active] | None = Non
 
 
 def true_channels(burn: Burn, times: Array) -> dict[str, Array]:
-    """Channels without any distortion."""
+    """Channels [Pa, N, kg], (n,) each, at ``times`` [s], (n,), without any distortion."""
     states, outputs = burn.steps.at(times)
     values = dict(zip(STATES, states.T, strict=False)) | dict(zip(OUTPUTS, outputs.T, strict=True))
     return {channel: np.sum([values[name] for name in names], axis=0) for channel, names in CHANNELS.items()}
 
 
 def distorted(channels: Mapping[str, Array], times: Array, effects: Sequence[Active]) -> dict[str, Array]:
-    """Channels as the distorting effects among ``effects`` leave them, in canonical order."""
+    """Channels [Pa, N, kg], (n,) each, as the distorting effects among ``effects`` leave them, in canonical order.
+
+    ``times`` [s], (n,).
+    """
     out = dict(channels)
     for active in _distorting(effects):
         if not active.idle and active.effect.distort is not None:
@@ -58,17 +61,22 @@ def distorted(channels: Mapping[str, Array], times: Array, effects: Sequence[Act
 def read_as(
     models: Mapping[str, Array], times: Array, effects: Sequence[Active], beside: Mapping[str, Array] | None = None
 ) -> dict[str, Array]:
-    """Modelled channels, not all of them, as distorting effects let sensors read them; ``beside``: known others."""
+    """Modeled channels [Pa, N, kg], (n,) each, not all of them, as distorting effects let sensors read them.
+
+    ``times`` [s], (n,); ``beside``: other channels that are known.
+    """
     full = {**{name: np.zeros(times.size) for name in CHANNELS}, **(beside or {}), **models}
     found = distorted(full, times, effects)
     return {name: found[name] for name in models}
 
 
 def observe_tangents(tangents: Tangents, times: ArrayLike, effects: Sequence[Active] | None = None) -> dict[str, Array]:
-    """Sensitivities (times, parameters) of every channel of :func:`observe` to ``tangents.parameters``.
+    """Sensitivities (times, parameters) of every channel of :func:`observe` [Pa, N, kg] to ``tangents.parameters``
+    [SI].
 
-    Parameters of distorting effects are among them where ``tangents`` names them ("EFFECT.PARAMETER"): a distortion
-    passes on the model's sensitivities and adds those of its own parameters, of strength 0 too.
+    ``times`` [s] are increasing. Parameters of distorting effects are among them where ``tangents`` names them
+    ("EFFECT.PARAMETER"): a distortion passes on the model's sensitivities and adds those of its own parameters, of
+    strength 0 too.
     """
     where = np.ascontiguousarray(times, dtype=np.float64)
     channels, slopes = true_channels(tangents.burn, where), true_tangents(tangents, where)
@@ -76,7 +84,7 @@ def observe_tangents(tangents: Tangents, times: ArrayLike, effects: Sequence[Act
 
 
 def true_tangents(tangents: Tangents, times: Array) -> dict[str, Array]:
-    """Sensitivities (times, parameters) of :func:`true_channels`."""
+    """Sensitivities (times, parameters) of :func:`true_channels` [Pa, N, kg per SI] at ``times`` [s]."""
     return {
         channel: np.sum([tangents.output(name, times) for name in names], axis=0) for channel, names in CHANNELS.items()
     }
@@ -89,7 +97,10 @@ def distorted_tangents(
     effects: Sequence[Active],
     names: tuple[str, ...],
 ) -> dict[str, Array]:
-    """Sensitivities to the parameters ``names`` behind the distortions, given what comes before them."""
+    """Sensitivities (times, parameters) [Pa, N, kg per SI] to the parameters ``names`` behind the distortions.
+
+    ``channels`` (times,) and ``slopes`` (times, parameters) are what comes before them, at ``times`` [s].
+    """
     for active in _distorting(effects):
         slopes = _passed_on(active, times, channels, slopes, names)
         channels = distorted(channels, times, [active])

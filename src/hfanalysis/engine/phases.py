@@ -40,37 +40,38 @@ SCALES = np.array([1e-2, 1e-1, 1e-4, 1e-5, 1e-5, 1e-1, 1e-2, 1.0, 1e-3, 1e-5, 10
 LIQUID_OUT, FUEL_OUT, GROUND, CHOKING, SHOCK = range(5)
 """Events of the engine; those from OWN_EVENTS on are the switches of its terms."""
 OWN_EVENTS = 5
+"""Number of the engine's own events."""
 
 REACHED_END, BURNT_OUT, GIVEN_UP, BLOWN_DOWN = range(4)
 """How a run ends."""
 
 MOST_STEPS = 8000
-"""Steps after which an engine is given up; a burn takes about a hundred."""
+"""Steps after which an engine is given up. Evidence: a burn takes about a hundred."""
 
 FIRST_STEP = 1e-5
-"""Seconds; after an event a step begins anew with ten times this at most."""
+"""First step of a run [s]; after an event a step begins anew with ten times this at most."""
 
 LEAST_STEP = 1e-13
-"""Seconds, or relative to the time."""
+"""Shortest step [s], or relative to the time where that is above a second."""
 
 SPENT = 1e-4
-"""Excess of a tank's over the ambient pressure, relative, at which nothing flows any more that could burn."""
+"""Excess of a tank's over the ambient pressure, relative [-], at which nothing flows any more that could burn."""
 
 ROOM = 256
 """Steps that there is room for at first."""
 
 TICK = 1e-6
-"""Seconds: the difference with which slopes in time are formed."""
+"""Difference in time [s] with which slopes are formed."""
 
 INCREMENT = 1e-7
-"""Relative to a state, or to its scale: the difference with which Jacobians are formed."""
+"""Difference with which Jacobians are formed, relative to a state or to its scale [-]."""
 
 PARTS_OF_OCTAVE = 8
-"""Of which the steps' factors are whole numbers. What a Jacobian of differences rounds off is in every error, and by
-steps that follow it a run's last digit would grow to its tolerance."""
+"""Parts of an octave of which the steps' factors are whole numbers. Evidence: what a Jacobian of differences rounds off
+is in every error, and by steps that follow it a run's last digit would grow to its tolerance."""
 
 ROUNDED_OFF = 1e-6
-"""Part of the tolerance below which an error is what was rounded off."""
+"""Part of the tolerance [-] below which an error is what was rounded off."""
 
 
 @inner
@@ -91,7 +92,10 @@ def moves(i: int, burning: bool, c: Array, terms: int) -> bool:
 
 @inner
 def active_states(size: int, burning: bool, c: Array, terms: int) -> Integers:
-    """Indices of the states that change in a phase; the others stay, and the linear algebra is spared them."""
+    """Indices (k,) of the states that change in a phase; the others stay, and the linear algebra is spared them.
+
+    ``c`` (CONSTANTS and effects' parameters,) [SI].
+    """
     out, n = np.empty(size, dtype=np.int64), 0
     for i in range(size):
         if moves(i, burning, c, terms):
@@ -139,8 +143,10 @@ class History(NamedTuple):
 
 @separate(EVALUATION)
 def event_values(t: float, y: Array, liquid: bool, burning: bool, model: int, out: Array, values: Array) -> None:
-    """Positive before an event and negative after (switches: either way); ``out`` and ENVIRONMENT are those of
-    ``rates`` at ``y``."""
+    """Positive before an event and negative after (switches: either way) [SI], into ``values`` (events,).
+
+    ``t`` [s], ``y`` (states,) [SI]; ``out`` (outputs,) [SI] and ENVIRONMENT are those of ``rates`` at ``y``.
+    """
     m, dry = equations_at(model), 1.0
     c = m.c
     if liquid:
@@ -163,19 +169,19 @@ def event_values(t: float, y: Array, liquid: bool, burning: bool, model: int, ou
 
 @inlined
 def events_at(t: float, y: Array, liquid: bool, burning: bool, model: int, out: Array, values: Array) -> None:
-    """:func:`event_values`, for other compiled code: called, not merged into it."""
+    """:func:`event_values` at ``t`` [s], for other compiled code: called, not merged into it; ``values`` (events,)."""
     call(equations_at(model).events, t, y, liquid, burning, model, out, values)
 
 
 @compiled
 def evaluate_events(t: float, y: Array, liquid: bool, burning: bool, m: Equations, out: Array, values: Array) -> None:
-    """:func:`event_values`, for Python."""
+    """:func:`event_values` at ``t`` [s], for Python; ``values`` (events,)."""
     call(m.events, t, y, liquid, burning, address_of(m), out, values)
 
 
 @compiled
 def change(event: int, m: Equations, y: Array) -> None:
-    """What an event does to the state."""
+    """What an event does to the state ``y`` (states,) [SI]."""
     if event == LIQUID_OUT:
         run_dry(m, y)
     elif event == GROUND:
@@ -184,7 +190,7 @@ def change(event: int, m: Equations, y: Array) -> None:
 
 @inner
 def enter(t: float, y: Array, liquid: bool, burning: bool, model: int) -> Scratch:
-    """Room for the steps of a phase, with rates, outputs and events at its start."""
+    """Room for the steps of a phase, with rates, outputs and events at its start ``t`` [s] in ``y`` (states,) [SI]."""
     m, size, outs = equations_at(model), y.size, len(OUTPUTS)
     active = active_states(size, burning, m.c, m.terms.shape[0])
     n, kinds = active.size, OWN_EVENTS + m.terms.shape[0]
@@ -203,7 +209,8 @@ def enter(t: float, y: Array, liquid: bool, burning: bool, model: int) -> Scratc
 def linearize(t: float, y: Array, liquid: bool, burning: bool, scales: Array, model: int, s: Scratch) -> None:
     """Jacobian of the active states and slope in time, by forward differences; the impulse moves nothing.
 
-    What the evaluation at ``y`` itself found, which comes before, is kept throughout.
+    ``t`` [s], ``y`` and ``scales`` (states,) [SI]. What the evaluation at ``y`` itself found, which comes before, is
+    kept throughout.
     """
     kept_parts = equations_at(model).kept
     kept_parts[eq.KEEPS] = 0.0
@@ -226,7 +233,10 @@ def linearize(t: float, y: Array, liquid: bool, burning: bool, scales: Array, mo
 
 @inner
 def attempt(t: float, y: Array, h: float, liquid: bool, burning: bool, model: int, s: Scratch) -> bool:
-    """The stages ``u`` of a step and its result, ``trial``; the last stage is the error. False: singular."""
+    """The stages ``u`` of a step of ``h`` from ``t`` [s] on, and its result, ``trial``; the last stage is the error.
+
+    ``y`` (states,) [SI]. False: singular.
+    """
     n = s.active.size
     for i in range(n):
         for j in range(n):
@@ -243,7 +253,10 @@ def attempt(t: float, y: Array, h: float, liquid: bool, burning: bool, model: in
 
 @inner
 def stage(k: int, t: float, y: Array, h: float, liquid: bool, burning: bool, model: int, s: Scratch) -> None:
-    """Stage ``k``, from those before it; leaves the state it was evaluated at in ``trial``."""
+    """Stage ``k``, from those before it; leaves the state it was evaluated at in ``trial``.
+
+    The step is that of ``h`` from ``t`` on [s], in ``y`` (states,) [SI].
+    """
     copy(y, s.trial, y.size)
     for j in range(k):
         if A[k, j] != 0.0:
@@ -263,7 +276,7 @@ def stage(k: int, t: float, y: Array, h: float, liquid: bool, burning: bool, mod
 
 @inner
 def error_norm(y: Array, scales: Array, rtol: float, s: Scratch) -> float:
-    """Root mean square of the error in units of its tolerance."""
+    """Root mean square of the error in units of its tolerance [-]; ``y`` and ``scales`` (states,) [SI]."""
     total = 0.0
     for i in range(s.active.size):
         j = s.active[i]
@@ -274,7 +287,7 @@ def error_norm(y: Array, scales: Array, rtol: float, s: Scratch) -> float:
 
 @inner
 def arrive(t: float, liquid: bool, burning: bool, model: int, s: Scratch, dense: Array) -> None:
-    """Rates, outputs and events at the end of a step, and its interpolant."""
+    """Rates, outputs and events at the end ``t`` of a step [s], and its interpolant ``dense`` (3, states) [SI]."""
     rates_at(t, s.trial, liquid, burning, model, s.g, s.out)
     events_at(t, s.trial, liquid, burning, model, s.out, s.after)
     for k in range(3):
@@ -296,7 +309,7 @@ def value_within(
     event: int, theta: float, t: float, y: Array, h: float, dense: Array, liquid: bool, burning: bool, model: int,
     s: Scratch,
 ) -> float:  # fmt: skip
-    """An event's value at a fraction of a step."""
+    """An event's value [SI] at a fraction ``theta`` of the step of ``h`` from ``t`` on [s]; ``dense`` (3, states)."""
     between = np.empty_like(y)
     interpolate(theta, y, s.trial, dense, between)
     out = np.empty_like(s.out)
@@ -310,7 +323,10 @@ def locate(
     event: int, latest: float, t: float, y: Array, h: float, dense: Array, liquid: bool, burning: bool, model: int,
     s: Scratch,
 ) -> float:  # fmt: skip
-    """The fraction of a step at which an event happens, by false position and halving; 2 if not up to ``latest``."""
+    """The fraction of a step at which an event happens, by false position and halving; 2 if not up to ``latest``.
+
+    The step is that of ``h`` from ``t`` on [s], in ``y`` (states,) [SI]; ``dense`` (3, states).
+    """
     low, low_value, high, high_value = 0.0, s.before[event], latest, s.after[event]
     if latest < 1.0:
         high_value = value_within(event, latest, t, y, h, dense, liquid, burning, model, s)
@@ -333,7 +349,10 @@ def locate(
 def first_event(
     t: float, y: Array, h: float, dense: Array, liquid: bool, burning: bool, model: int, s: Scratch
 ) -> tuple[int, float]:
-    """The earliest event within a step (-1: none) and the fraction of the step at which it happens."""
+    """The earliest event within a step (-1: none) and the fraction of the step at which it happens.
+
+    The step is that of ``h`` from ``t`` on [s], in ``y`` (states,) [SI]; ``dense`` (3, states).
+    """
     event, theta = -1, 1.0
     for k in range(s.before.size):
         if passed(k, s.before[k], s.after[k]):
@@ -370,7 +389,7 @@ def first(steps: History, n: int, room: int) -> History:
 def record(
     steps: History, n: int, t: float, y: Array, h: float, liquid: bool, burning: bool, event: int, s: Scratch
 ) -> None:
-    """Keep a step."""
+    """Keep step ``n``, of ``h`` from ``t`` on [s], in ``y`` (states,) [SI]."""
     steps.times[n, 0], steps.times[n, 1] = t, t + h
     steps.phases[n, 0], steps.phases[n, 1], steps.events[n] = int(liquid), int(burning), event
     copy(y, steps.begin[n], y.size)
@@ -387,13 +406,13 @@ def in_whole_parts(factor: float) -> float:
 
 @inner
 def shortened(h: float, error: float) -> float:
-    """The step to try after one whose error was too large."""
+    """The step [s] to try after one of ``h`` [s] whose error (in units of its tolerance) was too large."""
     return h * in_whole_parts(max(0.2, 0.9 * error**-0.2)) if np.isfinite(error) else 0.1 * h
 
 
 @inner
 def next_step(h: float, error: float, old_error: float, rejected: bool) -> float:
-    """The step after an accepted one (PI control)."""
+    """The step [s] after an accepted one of ``h`` [s] (PI control); errors in units of their tolerance."""
     most = 1.0 if rejected else 6.0
     if error < ROUNDED_OFF:
         return h * most
@@ -403,7 +422,7 @@ def next_step(h: float, error: float, old_error: float, rejected: bool) -> float
 
 @inner
 def advance(y: Array, s: Scratch) -> None:
-    """The end of a step becomes the start of the next."""
+    """The end of a step becomes the start of the next: ``y`` (states,) [SI]."""
     copy(s.trial, y, y.size)
     copy(s.g, s.f, y.size)
     copy(s.after, s.before, s.before.size)
@@ -414,13 +433,15 @@ def advance(y: Array, s: Scratch) -> None:
 def integrate(
     y0: Array, longest: float, run_on: bool, rtol: float, scales: Array, m: Equations, liquid: bool, burning: bool
 ) -> tuple[int, History, Array]:
-    """From ignition (``liquid``, ``burning``) until the fuel is gone, or to ``longest`` seconds if it is to ``run_on``.
+    """From ignition (``liquid``, ``burning``) until the fuel is gone, or to ``longest`` [s] if it is to ``run_on``.
 
-    A tank blown down to ambient pressure ends a run too that is not to run on.
+    ``y0`` and ``scales`` (states,) [SI]; ``rtol`` the relative tolerance. A tank blown down to ambient pressure ends a
+    run too that is not to run on.
 
-    Returns how it ended and per step: times (n, 2) of start and end, states at start and end, outputs at start and end
-    (before an event changes the equations), interpolants (n, 3, states), phases (n, 2: liquid, burning), the event at
-    its end (-1: none); and the time of every event's last occurrence (NaN: none).
+    Returns how it ended and per step: times (n, 2) of start and end [s], states (n, states) at start and end, outputs
+    (n, 2, outputs) at start and end (before an event changes the equations) [SI], interpolants (n, 3, states), phases
+    (n, 2: liquid, burning), the event at its end (n,) (-1: none); and the time [s] of every event's last occurrence
+    (NaN: none).
     """
     y, steps = y0.copy(), empty_history(ROOM, y0.size)
     t, n, h, ending, model = 0.0, 0, FIRST_STEP, REACHED_END, address_of(m)
@@ -478,7 +499,8 @@ def integrate(
 
 @compiled(nogil=True)
 def sample(at: Array, steps: History, m: Equations) -> tuple[Array, Array]:
-    """States and outputs at increasing times, from the steps' interpolants; the ends are held."""
+    """States (n, states) and outputs (n, outputs) [SI] at increasing times ``at`` (n,) [s], from the steps'
+    interpolants; the ends are held."""
     size = steps.begin.shape[1]
     states, outputs, dy = np.empty((at.size, size)), np.empty((at.size, len(OUTPUTS))), np.zeros(size)
     times, phases, model = steps.times, steps.phases, address_of(m)

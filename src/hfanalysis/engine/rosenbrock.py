@@ -16,7 +16,10 @@ from hfanalysis.arrays import Array
 from hfanalysis.compiled import inner
 
 STAGES = 8
+"""Of Rodas5P. Source: Steinebach 2023."""
+
 GAMMA = 0.21193756319429014
+"""Diagonal coefficient of Rodas5P [-]. Source: Steinebach 2023."""
 
 
 def _lower(rows: list[list[float]]) -> Array:
@@ -27,6 +30,8 @@ def _lower(rows: list[list[float]]) -> Array:
 
 
 _LAST = [-7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.030198172008377946]
+"""Row of a_ij that the last three stages share [-]. Source: Steinebach 2023, transformed."""
+
 A = _lower(
     [
         [],
@@ -39,6 +44,8 @@ A = _lower(
         [*_LAST, 1.0, 1.0],
     ]
 )
+"""Coefficients a_ij [-]. Source: Steinebach 2023, transformed."""
+
 C = _lower(
     [
         [],
@@ -53,7 +60,11 @@ C = _lower(
          -54.66780262877968, -9.48861652309627],
     ]
 )  # fmt: skip
+"""Coefficients c_ij [-]. Source: Steinebach 2023, transformed."""
+
 TIME = np.array([0.0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664, 1.0, 1.0, 1.0])
+"""Where in a step its stages lie [-]. Source: Steinebach 2023."""
+
 TIME_SLOPE = np.array(
     [
         0.21193756319429014,
@@ -66,6 +77,8 @@ TIME_SLOPE = np.array(
         0.0,
     ]
 )
+"""Coefficients d_i of f_t [-]. Source: Steinebach 2023."""
+
 DENSE = np.array(
     [
         [25.948786856663858, -2.5579724845846235, 10.433815404888879, -2.3679251022685204, 0.524948541321073,
@@ -76,8 +89,8 @@ DENSE = np.array(
          -59.78993625266729, -0.15582684282751913, 4.883087185713722],
     ]
 )  # fmt: skip
-"""Interpolant: y(theta) = (1-theta) y_0 + theta (y_1 + (1-theta)(d_0 + theta (d_1 + theta d_2))), d_k = sum
-DENSE_ki u_i."""
+"""Interpolant: y(theta) = (1-theta) y_0 + theta (y_1 + (1-theta)(d_0 + theta (d_1 + theta d_2))), d_k = sum DENSE_ki
+u_i. Source: Steinebach 2023."""
 
 
 @inner
@@ -90,7 +103,8 @@ def copy(source: Array, target: Array, count: int) -> None:
 
 @inner
 def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
-    """LU factors with partial pivoting in place, ``pivots`` the row swaps; False for a singular matrix."""
+    """LU factors of ``a`` (n, n) with partial pivoting in place, ``pivots`` (n,) the row swaps; False for a singular
+    matrix."""
     n = a.shape[0]
     for k in range(n):
         best, row = abs(a[k, k]), k
@@ -115,7 +129,7 @@ def factorize(a: Array, pivots: NDArray[np.int64]) -> bool:
 
 @inner
 def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
-    """Solve with the factors of :func:`factorize`, in place."""
+    """Solve for ``b`` (n,) with the factors ``lu`` (n, n) of :func:`factorize`, in place."""
     n = lu.shape[0]
     for k in range(n):
         if pivots[k] != k:
@@ -134,7 +148,7 @@ def substitute(lu: Array, pivots: NDArray[np.int64], b: Array) -> None:
 
 @inner
 def interpolate(theta: float, y0: Array, y1: Array, dense: Array, y: Array) -> None:
-    """The state at a fraction ``theta`` of a step, into ``y``; ``dense`` has the shape (3, states)."""
+    """The state at a fraction ``theta`` of a step, into ``y`` (states,); ``dense`` has the shape (3, states)."""
     rest = 1.0 - theta
     for i in range(y.size):
         inner = y1[i] + rest * (dense[0, i] + theta * (dense[1, i] + theta * dense[2, i]))

@@ -36,7 +36,7 @@ ENGINE_PARAMETERS = {
 """Numbers of an engine that can be a parameter, with what counts as large of each [SI]."""
 
 SHIFT = 1e-6
-"""Relative to what counts as large: by how much a parameter is moved for its difference quotient."""
+"""By how much a parameter is moved for its difference quotient, relative to what counts as large [-]."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,8 @@ class Tangents:
         return tangents.at_times(where, self.burn.steps.times, source[:, :, row : row + 1])[:, 0]
 
     def event(self, number: int) -> Array:
-        """Sensitivities (parameters,) of the time of an event of :mod:`hfanalysis.engine.phases` [s]."""
+        """Sensitivities (parameters,) of the time [s] of an event of :mod:`hfanalysis.engine.phases`; NaN where there
+        is none."""
         at = np.flatnonzero(self.burn.steps.events == number)
         return self.moments[at[-1]] if at.size else np.full(len(self.parameters), np.nan)
 
@@ -121,9 +122,11 @@ def run_with_tangents(
     run_on: bool = False,
     times: Sequence[float] | Array | None = None,
 ) -> Tangents:
-    """A run (as :func:`hfanalysis.engine.unsteady.burn`) and its sensitivities to ``parameters``.
+    """A run (as :func:`hfanalysis.engine.unsteady.burn`) and its sensitivities to ``parameters`` [SI].
 
-    Parameters of effects at strength 0 are allowed: their terms act with that strength.
+    ``longest`` [s]; ``times`` (n,) [s]. Parameters of effects at strength 0 are allowed: their terms act with that
+    strength. Raises ValueError for an engine that cannot be and for names that are none of its parameters,
+    ArithmeticError where the solver gives up.
     """
     return tangents_of(burn(engine, longest, rtol, run_on, times, keep_idle=True), parameters)
 

@@ -22,7 +22,7 @@ from hfanalysis.engine.phases import INCREMENT, LIQUID_OUT, OWN_EVENTS, TICK, Hi
 from hfanalysis.engine.rosenbrock import copy, factorize, interpolate, substitute
 
 NUDGE = 1e-6
-"""Relative to a state, or to its scale: the difference with which an event's change of the state is followed."""
+"""Difference with which an event's change of the state is followed, relative to a state or to its scale [-]."""
 
 INSIDE = 1e-3
 """Part of a step by which slopes are formed beside an event, on the step's own side: differences of the state at the
@@ -30,6 +30,9 @@ event itself might lead to the other."""
 
 _ROOT = np.sqrt(6.0)
 NODES = np.array([(4.0 - _ROOT) / 10.0, (4.0 + _ROOT) / 10.0, 1.0])
+"""Where in a step its three stages lie [-]. Source: Radau IIA, order 5 (Hairer and Wanner, Solving Ordinary
+Differential Equations II, table IV.5.6)."""
+
 RADAU = np.array(
     [
         [(88.0 - 7.0 * _ROOT) / 360.0, (296.0 - 169.0 * _ROOT) / 1800.0, (-2.0 + 3.0 * _ROOT) / 225.0],
@@ -37,7 +40,8 @@ RADAU = np.array(
         [(16.0 - _ROOT) / 36.0, (16.0 + _ROOT) / 36.0, 1.0 / 9.0],
     ]
 )
-"""Radau IIA, order 5 (Hairer and Wanner, Solving Ordinary Differential Equations II, table IV.5.6)."""
+"""Coefficients of Radau IIA, order 5 [-]. Source: Hairer and Wanner, Solving Ordinary Differential Equations II, table
+IV.5.6."""
 
 
 class Parameters(NamedTuple):
@@ -70,13 +74,13 @@ class Spare(NamedTuple):
 
 @inner
 def with_constants(m: Equations, c: Array) -> Equations:
-    """The equations of an engine with other constants."""
+    """The equations of an engine with other constants ``c`` (CONSTANTS and effects' parameters,) [SI]."""
     return Equations(m.rates, m.events, m.saturation, m.gas, m.drag, c, m.terms, m.env, m.site, m.kept)
 
 
 @inner
 def quotient(spare: Spare, step: float, f_column: Array, out_column: Array) -> None:
-    """Difference quotients of rates and outputs, into columns."""
+    """Difference quotients of rates and outputs by a ``step`` [SI], into columns (states,) and (outputs,)."""
     for i in range(f_column.size):
         f_column[i] = (spare.moved[i] - spare.f[i]) / step
     for i in range(out_column.size):
@@ -88,7 +92,8 @@ def linearize(
     t: float, y: Array, liquid: bool, burning: bool, m: Equations, p: Parameters, moving: Integers, slopes: Slopes,
     spare: Spare,
 ) -> None:  # fmt: skip
-    """All the slopes at one point, by forward differences; those with the ``moving`` states only."""
+    """All the slopes [SI] at one point ``y`` (states,) at ``t`` [s], by forward differences; those with the ``moving``
+    states only."""
     model = address_of(m)
     rates_at(t, y, liquid, burning, model, spare.f, spare.out)
     m.kept[KEEPS] = 0.0
@@ -112,7 +117,8 @@ def linearize(
 
 @inner
 def moving_states(s: Array) -> Integers:
-    """States that any parameter moves; not the impulse, on which nothing depends."""
+    """States that any parameter moves, of sensitivities ``s`` (states, parameters); not the impulse, on which nothing
+    depends."""
     found, n = np.empty(s.shape[0], dtype=np.int64), 0
     for i in range(s.shape[0]):
         if i != IMPULSE and not_zero(s[i]):
@@ -132,7 +138,7 @@ def not_zero(row: Array) -> bool:
 
 @inner
 def joined(moving: Integers, slopes: Slopes) -> Integers:
-    """``moving``, and the states that parameters or moving states begin to move at one of the nodes of a step."""
+    """``moving`` (k,), and the states that parameters or moving states begin to move at one of the nodes of a step."""
     size = slopes.f_y.shape[1]
     known = np.zeros(size, dtype=np.bool_)
     known[IMPULSE] = True
@@ -154,7 +160,8 @@ def joined(moving: Integers, slopes: Slopes) -> Integers:
 
 @inner
 def radau_matrix(h: float, f_y: Array, moving: Integers, matrix: Array) -> None:
-    """1 - h (RADAU x f_y) of the moving states."""
+    """1 - h (RADAU x f_y) of the moving states, (3 moving, 3 moving), for a step ``h`` [s]; ``f_y`` (nodes, states,
+    states)."""
     m = moving.size
     for a in range(3):
         for b in range(3):
@@ -169,7 +176,8 @@ def radau_matrix(h: float, f_y: Array, moving: Integers, matrix: Array) -> None:
 def radau_stages(
     h: float, k: int, s: Array, f_p: Array, moving: Integers, lu: Array, pivots: Integers, u: Array
 ) -> None:
-    """Sensitivities ``u`` of the moving states at the three nodes to parameter ``k``."""
+    """Sensitivities ``u`` (3 moving,) of the moving states at the three nodes of a step ``h`` [s] to parameter
+    ``k``."""
     m = moving.size
     for a in range(3):
         for i in range(m):
@@ -182,7 +190,8 @@ def radau_stages(
 
 @inner
 def spread(h: float, k: int, s: Array, slopes: Slopes, moving: Integers, u: Array, states: Array) -> None:
-    """The stages of parameter ``k`` into ``states`` (nodes, states, parameters); the impulse is a quadrature."""
+    """The stages of parameter ``k`` of a step ``h`` [s] into ``states`` (nodes, states, parameters); the impulse is a
+    quadrature."""
     m = moving.size
     for a in range(3):
         for i in range(s.shape[0]):
@@ -199,7 +208,7 @@ def spread(h: float, k: int, s: Array, slopes: Slopes, moving: Integers, u: Arra
 
 @inner
 def outputs_of(s: Array, moving: Integers, out_y: Array, out_p: Array, result: Array) -> None:
-    """Sensitivities of the outputs: out_y S + out_p."""
+    """Sensitivities of the outputs (outputs, parameters) [SI]: out_y S + out_p."""
     copy(out_p, result, out_p.size)
     for o in range(out_y.shape[0]):
         for j in moving:
@@ -237,7 +246,8 @@ def copy_slopes(slopes: Slopes, source: int, target: int) -> None:
 def linearize_step(
     n: int, run: History, y: Array, m: Equations, p: Parameters, moving: Integers, slopes: Slopes, spare: Spare
 ) -> None:
-    """Slopes at the nodes of a step, and at its start where an event comes before it."""
+    """Slopes [SI] at the nodes of step ``n``, and at its start where an event comes before it; ``y`` (states,) is
+    scratch."""
     t, h = run.times[n, 0], run.times[n, 1] - run.times[n, 0]
     liquid, burning = run.phases[n, 0] == 1, run.phases[n, 1] == 1
     if n == 0 or run.events[n - 1] >= 0:
@@ -253,13 +263,13 @@ def linearize_step(
 def propagate(
     run: History, m: Equations, shifted: Array, steps: Array, acting: Array, scales: Array, start: Array
 ) -> tuple[Array, Array, Array]:
-    """Sensitivities at four nodes of every step (its start and NODES) and of the event times.
+    """Sensitivities [SI] at four nodes of every step (its start and NODES) and of the event times [s].
 
     ``shifted``, ``steps`` and ``acting`` as in Parameters, ``start`` (states, parameters) the sensitivities of the
     initial state. States that no parameter moves (no nitrogen, no cold gas yet) take no part; one that begins to move
-    within a step is found by its slopes, and the step is taken anew with it.
-    Returns those of the states (n, 4, states, parameters), of the outputs (n, 4, outputs, parameters), and of the time
-    of the event at each step's end (n, parameters; 0 without one).
+    within a step is found by its slopes, and the step is taken anew with it. Returns those of the states (n, 4, states,
+    parameters), of the outputs (n, 4, outputs, parameters), and of the time of the event at each step's end (n,
+    parameters; 0 without one).
     """
     count, size, number, outs = run.times.shape[0], run.begin.shape[1], steps.size, len(OUTPUTS)
     states, outputs = np.zeros((count, 4, size, number)), np.zeros((count, 4, outs, number))
@@ -301,7 +311,7 @@ def propagate(
 def event_value(
     event: int, t: float, y: Array, liquid: bool, burning: bool, m: Equations, spare: Spare, values: Array
 ) -> float:
-    """Value of an event; leaves the rates in ``spare.moved``."""
+    """Value [SI] of an event at ``t`` [s] in ``y`` (states,); leaves the rates in ``spare.moved``."""
     model = address_of(m)
     rates_at(t, y, liquid, burning, model, spare.moved, spare.moved_out)
     events_at(t, y, liquid, burning, model, spare.moved_out, values)
@@ -313,7 +323,8 @@ def event_slopes(
     event: int, here: float, t: float, y: Array, liquid: bool, burning: bool, m: Equations, p: Parameters, s: Array,
     spare: Spare, values: Array, moment: Array,
 ) -> None:  # fmt: skip
-    """How the time of an event moves with every parameter: -(g_y S + g_p) / (g_y f + g_t)."""
+    """How the time [s] of an event moves with every parameter, into ``moment`` (parameters,): -(g_y S + g_p) / (g_y f +
+    g_t)."""
     slope = (event_value(event, t + TICK, y, liquid, burning, m, spare, values) - here) / TICK
     for k in range(p.steps.size):
         moved = event_value(event, t, y, liquid, burning, with_constants(m, p.shifted[k]), spare, values)
@@ -333,7 +344,8 @@ def event_slopes(
 
 @inner
 def through_event(n: int, run: History, m: Equations, p: Parameters, spare: Spare, s: Array, moment: Array) -> None:
-    """Move ``s`` across the event at the end of step ``n``, and tell how its time moves."""
+    """Move ``s`` (states, parameters) across the event at the end of step ``n``; into ``moment`` (parameters,) how its
+    time [s] moves."""
     t, y, event = run.times[n, 1], run.end[n].copy(), run.events[n]
     liquid, burning = run.phases[n, 0] == 1, run.phases[n, 1] == 1
     values = np.ones(OWN_EVENTS + m.terms.shape[0])
@@ -357,7 +369,8 @@ def through_event(n: int, run: History, m: Equations, p: Parameters, spare: Spar
 
 @inner
 def follow(event: int, m: Equations, p: Parameters, k: int, y: Array, s: Array, base: Array) -> None:
-    """Column ``k`` of ``s`` across the change of the state, from ``y`` to ``base``, that an event makes."""
+    """Column ``k`` of ``s`` (states, parameters) across the change of the state [SI], from ``y`` to ``base``, that an
+    event makes."""
     largest, changed = 1e-300, y.copy()
     for i in range(y.size):
         largest = max(largest, abs(s[i, k]) / max(abs(y[i]), p.scales[i]))
@@ -375,7 +388,10 @@ def follow(event: int, m: Equations, p: Parameters, k: int, y: Array, s: Array, 
 
 @compiled
 def at_times(at: Array, times: Array, values: Array) -> Array:
-    """Sensitivities (times, rows, parameters) at increasing times: cubics through each step's four nodes."""
+    """Sensitivities (times, rows, parameters) at increasing times ``at`` [s]: cubics through each step's four nodes.
+
+    ``times`` (n, 2): starts and ends of the steps [s]; ``values`` (n, 4, rows, parameters).
+    """
     out = np.empty((at.size, values.shape[2], values.shape[3]))
     nodes = np.array([0.0, NODES[0], NODES[1], NODES[2]])
     k, last = 0, times.shape[0] - 1

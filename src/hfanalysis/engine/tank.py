@@ -1,7 +1,7 @@
-"""The self-pressurising oxidizer tank: liquid and vapour in equilibrium, then vapour alone.
+"""The self-pressurizing oxidizer tank: liquid and vapor in equilibrium, then vapor alone.
 
 Report, section 3.1.2 ("Self-Pressurizing Oxidizer Tank"). The saturated tank is written in its total mass M and its
-temperature T; with M and T given, the volume fixes how much of it is liquid (eq. 3.5). The report's three linear
+temperature T; with M and T given, the volume fixes how much of it is liquid (eq. 3.4). The report's three linear
 equations (mass, volume, energy) then have the closed form of :func:`temperature_rate`.
 """
 
@@ -39,17 +39,22 @@ from hfanalysis.thermo.saturation import (
 SPECIFIC_GAS_CONSTANT = GAS_CONSTANT / OXIDIZER_MOLAR_MASS
 """R_u / W_o of nitrous oxide [J/(kg K)]."""
 
-FINEST = 0.1
-"""Steps [K] at most along an adiabatic blowdown."""
+TEMPERATURE_STEP = 0.1
+"""Steps [K] at most along an adiabatic blowdown. Evidence: masses are those of a run of the tank to 1e-5
+(tests/engine/test_tank.py)."""
 
 SPECIFIC_NITROGEN = GAS_CONSTANT / NITROGEN_MOLAR_MASS
+"""R_u / W of nitrogen [J/(kg K)]."""
+
 NITROGEN_CV = 2.5 * SPECIFIC_NITROGEN
+"""c_v of nitrogen [J/(kg K)]. Source: a diatomic ideal gas has 5/2 R."""
 
 LEAST_ULLAGE = 1e-9
 """Volume [m^3] that nitrogen in a full tank has at least."""
 
 COLDEST_VAPOR, WARMEST_VAPOR = 185.0, 305.0
-"""Temperatures [K] between which the vapour's heat capacity and enthalpy are read from the saturation line."""
+"""Temperatures [K] between which the vapor's heat capacity and enthalpy are read from the saturation line. Source: the
+line itself: it begins at the triple point (182.3 K) and c_p has no bound at its end (309.5 K)."""
 
 
 @dataclass(frozen=True)
@@ -61,10 +66,10 @@ class TankSplit:
 
 
 def split(saturation: Saturation, volume: float, mass: float, temperature: float) -> TankSplit:
-    """Liquid and vapour mass [kg] of a saturated tank: V = m_l v_l + m_v v_v (report, eq. 3.5).
+    """Liquid and vapor mass [kg] of a saturated tank: V = m_l v_l + m_v v_v (report, eq. 3.4).
 
-    ``volume`` [m^3], total ``mass`` [kg], ``temperature`` [K]. A negative liquid mass means superheated vapour, a
-    negative vapour mass a tank so full that the liquid is compressed.
+    ``volume`` [m^3], total ``mass`` [kg], ``temperature`` [K]. A negative liquid mass means superheated vapor, a
+    negative vapor mass a tank so full that the liquid is compressed.
     """
     liquid = liquid_mass(saturation.kernel_table, volume, mass, temperature)
     return TankSplit(liquid, mass - liquid)
@@ -72,25 +77,32 @@ def split(saturation: Saturation, volume: float, mass: float, temperature: float
 
 @law
 def compressibility(pressure: Real, volume: Real, mass: Real, temperature: Real) -> Real:
-    """Z = p V / (m R T) of the vapour at the end of the liquid (report, section 4.2.2); pressure [Pa], volume
-    [m^3]."""
+    """Z = p V / (m R T) [-] of the vapor at the end of the liquid (report, eq. 4.2); [Pa], [m^3], [kg], [K]."""
     return pressure * volume / (mass * SPECIFIC_GAS_CONSTANT * temperature)
 
 
 @law
 def polytropic(pressure: Real, start: Real, exponent: Real, mass: Real) -> Real:
-    """p = p_v (M/M_v)^m of the vapour that is left (report, eq. 3.11), from ``pressure`` [Pa] and ``start`` [kg] on."""
+    """p = p_v (M/M_v)^m [Pa] of the vapor that is left (report, eq. 3.11), from ``pressure`` [Pa] and ``start`` [kg]
+    on.
+
+    >>> round(polytropic(38e5, 2.4, 1.15, 1.2) / 1e5, 2)
+    17.12
+    """
     return pressure * (mass / start) ** exponent
 
 
 @law
 def liquid_of(volume: Real, mass: Real, v_l: Real, v_v: Real) -> Real:
-    """m_l = (M v_v - V) / (v_v - v_l) [kg], of which V = m_l v_l + m_v v_v (report, eq. 3.5); volumes [m^3, m^3/kg]."""
+    """m_l = (M v_v - V) / (v_v - v_l) [kg], of which V = m_l v_l + m_v v_v (report, eq. 3.4); [m^3], [kg], [m^3/kg]."""
     return (mass * v_v - volume) / (v_v - v_l)
 
 
 def internal_energy(saturation: Saturation, volume: ArrayLike, mass: ArrayLike, temperature: ArrayLike) -> Array:
-    """U = m_l u_l + m_v u_v [J] of a saturated tank of ``volume`` [m^3] with ``mass`` [kg] at ``temperature`` [K]."""
+    """U = m_l u_l + m_v u_v [J] of a saturated tank of ``volume`` [m^3] with ``mass`` [kg] at ``temperature`` [K].
+
+    Numbers, or arrays of one shape.
+    """
     v_l, v_v = saturation.liquid_volume(temperature)[0], saturation.vapor_volume(temperature)[0]
     u_l, u_v = (saturation.energy(p, temperature)[0] for p in (Property.LIQUID_ENERGY, Property.VAPOR_ENERGY))
     liquid = liquid_of(np.asarray(volume), np.asarray(mass), v_l, v_v)
@@ -112,7 +124,7 @@ def mass_along_blowdown(saturation: Saturation, volume: float, t_empty: float, t
 
 @compiled
 def liquid_mass(table: Table, volume: float, mass: float, temperature: float) -> float:
-    """m_l = (M v_v - V) / (v_v - v_l)."""
+    """m_l = (M v_v - V) / (v_v - v_l) [kg] of a tank of ``volume`` [m^3] with ``mass`` [kg] at ``temperature`` [K]."""
     v_l, _ = evaluate(*table, LIQUID_VOLUME, temperature)
     v_v = np.exp(evaluate(*table, LN_VAPOR_VOLUME, temperature)[0])
     return float(liquid_of(volume, mass, v_l, v_v))
@@ -153,7 +165,7 @@ def saturated_tank(
 def temperature_rate(by_mass: Real, by_temperature: Real, h_l: Real, outflow: Real, heat: Real) -> Real:
     """dT/dt [K/s] of the saturated tank losing liquid at ``outflow`` [kg/s] and receiving ``heat`` [W].
 
-    From d(M, T)/dt in dU/dt = -mdot h_l + Qdot (report, eq. 3.9 with a heat term); the first three are those of
+    From d(M, T)/dt in dU/dt = -mdot h_l + Qdot (report, eq. 3.7 with a heat term); the first three are those of
     :func:`energy_derivatives`.
     """
     return (heat + outflow * (by_mass - h_l)) / by_temperature
@@ -161,13 +173,15 @@ def temperature_rate(by_mass: Real, by_temperature: Real, h_l: Real, outflow: Re
 
 @compiled
 def mass_along(table: Table, volume: float, mass: float, temperature: float, temperatures: Array) -> Array:
-    """Mass [kg] of an adiabatic saturated tank at one temperature [K] after the other, from ``mass`` on.
+    """Mass [kg] of an adiabatic saturated tank at one of ``temperatures`` (n,) [K] after the other, from ``mass`` [kg]
+    on.
 
-    dM/dT = U_T / (h_l - U_M) does not ask how fast it cools. Runge-Kutta steps of FINEST at most.
+    dM/dT = U_T / (h_l - U_M) does not ask how fast it cools. ``volume`` [m^3]. Runge-Kutta steps of TEMPERATURE_STEP at
+    most.
     """
     out = np.empty_like(temperatures)
     for i in range(temperatures.size):
-        steps = max(int(np.ceil(abs(temperatures[i] - temperature) / FINEST)), 1)
+        steps = max(int(np.ceil(abs(temperatures[i] - temperature) / TEMPERATURE_STEP)), 1)
         h = (temperatures[i] - temperature) / steps
         for _ in range(steps):
             k1 = along_blowdown(table, volume, mass, temperature)
@@ -189,7 +203,7 @@ def along_blowdown(table: Table, volume: float, mass: float, temperature: float)
 
 @inlined
 def tank_pressure(y: Array, liquid: bool, m: Equations) -> None:
-    """Pressure, density and enthalpy of what leaves the tank."""
+    """Pressure [Pa], density [kg/m^3] and enthalpy [J/kg] of what leaves the tank, of ``y`` (states,) [SI]."""
     if liquid:
         saturated(y, m)
     else:
@@ -198,7 +212,7 @@ def tank_pressure(y: Array, liquid: bool, m: Equations) -> None:
 
 @inlined
 def saturated(y: Array, m: Equations) -> None:
-    """Liquid under its vapour, with nitrogen in the ullage."""
+    """Liquid under its vapor, with nitrogen in the ullage; ``y`` (states,) [SI]."""
     env, volume = m.env, m.c[eq.VOLUME]
     p, density, liquid, by_mass, by_temperature, h = tank_of(m, volume, y[eq.TANK], y[eq.TEMPERATURE])
     if y[eq.NITROGEN] > 0.0:
@@ -210,7 +224,7 @@ def saturated(y: Array, m: Equations) -> None:
 
 @inlined
 def tank_of(m: Equations, *question: float) -> tuple[float, float, float, float, float, float]:
-    """:func:`saturated_tank` of volume, mass and temperature, or what is kept of it."""
+    """:func:`saturated_tank` of volume [m^3], mass [kg] and temperature [K], or what is kept of it."""
     kept, at = m.kept, eq.KEPT_TANK + 3
     if asked(kept, eq.KEPT_TANK, question):
         return kept[at], kept[at + 1], kept[at + 2], kept[at + 3], kept[at + 4], kept[at + 5]
@@ -221,7 +235,7 @@ def tank_of(m: Equations, *question: float) -> tuple[float, float, float, float,
 
 @inlined
 def superheated(y: Array, m: Equations) -> None:
-    """Vapour and nitrogen, mixed."""
+    """Vapor and nitrogen, mixed; ``y`` (states,) [SI]."""
     env, volume, held = m.env, m.c[eq.VOLUME], y[eq.TANK] + y[eq.NITROGEN]
     env[at.P_TANK], env[at.RHO_FEED] = constant_held(y) * y[eq.TEMPERATURE] / volume, held / volume
     env[at.M_LIQUID] = 0.0
@@ -232,13 +246,15 @@ def superheated(y: Array, m: Equations) -> None:
 
 @inlined
 def constant_held(y: Array) -> float:
-    """p V / T of vapour and nitrogen [J/K]: masses times Z times their gas constants."""
+    """p V / T of vapor and nitrogen [J/K] in ``y`` (states,): masses times Z times their gas constants (report, eq.
+    3.14)."""
     return float(y[eq.COMPRESSIBILITY] * SPECIFIC_GAS_CONSTANT * y[eq.TANK] + SPECIFIC_NITROGEN * y[eq.NITROGEN])
 
 
 @inner
 def run_dry(m: Equations, y: Array) -> None:
-    """The vapour's compressibility and exponent, which hold from the end of the liquid on (report, section 4.2.2)."""
+    """The vapor's compressibility and exponent [-] into ``y`` (states,), which hold from the end of the liquid on
+    (report, section 4.2.2)."""
     p = np.exp(at_saturation(m, LN_PRESSURE, y[eq.TEMPERATURE]))
     y[eq.COMPRESSIBILITY] = compressibility(p, m.c[eq.VOLUME], y[eq.TANK], y[eq.TEMPERATURE])
     y[eq.EXPONENT] = m.c[eq.POLYTROPIC_EXPONENT]
@@ -249,15 +265,16 @@ def run_dry(m: Equations, y: Array) -> None:
 
 @inlined
 def vapor(m: Equations, row: int, temperature: float) -> float:
-    """A row of the table at the vapour's temperature, inside the range where it is read."""
+    """A row [SI] of the table at the vapor's ``temperature`` [K], inside the range where it is read."""
     return at_saturation(m, row, min(max(temperature, COLDEST_VAPOR), WARMEST_VAPOR))
 
 
 @inlined
 def tank_rates(y: Array, liquid: bool, m: Equations, dy: Array) -> None:
-    """Masses and temperature of the tank (report, eq. 3.9 and the polytropic vapour).
+    """Masses [kg/s] and temperature [K/s] of the tank into ``dy`` (states,) (report, eq. 3.1, 3.7 and, of the vapor,
+    3.16).
 
-    The polytropic vapour is as warm as its pressure asks for at the compressibility with which it began. Heat Q raises
+    The polytropic vapor is as warm as its pressure asks for at the compressibility with which it began. Heat Q raises
     the pressure of a real one by G Q/V (Grueneisen's parameter G, about 0.3), which an ideal gas of its c_v would do by
     Z R Q/(c_v V): half as much near 275 K. So it warms by what that pressure asks for.
     """

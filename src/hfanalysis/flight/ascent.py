@@ -19,11 +19,13 @@ from hfanalysis.thermo.air import air
 from hfanalysis.thermo.atmosphere import HIGHEST
 
 COAST_STEP = 0.05
-"""[s] of the coast; Runge-Kutta of fourth order follows what is left, drag and gravity, to 1e-8."""
+"""Step of the coast [s]. Evidence: Runge-Kutta of fourth order follows what is left, drag and gravity, to 1e-8."""
 
-LONGEST = 3600.0
+LONGEST_ASCENT = 3600.0
+"""Longest flight to its apogee [s]."""
+
 PAD = 1e-3
-"""Height [m] above which a rocket has left its pad."""
+"""Height [m] above which a rocket has left its pad. Evidence: a tenth of it changes no flight that is tested."""
 
 NOT_FROM_PAD = "the rocket does not leave its pad"
 
@@ -31,8 +33,12 @@ APOGEE, TIME, RAIL, SPEED, MACH, ACCELERATION, LIFT_OFF, PRESSURE = range(8)
 """What :func:`fly` finds: height [m] and time [s] of the apogee, speed [m/s] at the rail's end (NaN: not reached), peak
 speed, peak Mach number, peak acceleration [m/s^2] while burning, time [s] of lift-off, peak dynamic pressure [Pa]."""
 RESULTS = 8
+"""How many results a flight has."""
 
 NOMINAL = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 1.0, np.nan, 0.0, 0.0])
+"""A flight that differs in nothing [1, N, N, kg, 1, 1, rad, m/s, m/s]. Source: by definition: factors of 1, offsets of
+0, the vehicle's launch angle."""
+
 THRUST_SCALE, THRUST_BIAS, THRUST_DRIFT, MASS, PROPELLANT, DRAG, ANGLE, WIND, CROSSWIND = range(9)
 """What a flight may differ in: factor on the thrust, its offset [N] and drift over the burn [N], mass added [kg],
 factors on the propellant and on the drag, launch angle [rad] (NaN: the vehicle's), wind along and across [m/s]."""
@@ -52,7 +58,7 @@ class Ascent:
     trace: Array
 
     def column(self, name: str) -> Array:
-        """One of TRACE over time."""
+        """One of TRACE over time, (n,), [s, m, m/s, m/s^2, N, N, kg, 1]; raises ValueError for a name that is none."""
         return self.trace[:, TRACE.index(name)]
 
     @property
@@ -67,8 +73,12 @@ class Ascent:
 
 
 def ascend(curve: Curve, vehicle: Vehicle, rail_length: float | None = None, row: Array = NOMINAL) -> Ascent:
-    """Fly to apogee. Raises ValueError for a rocket that stays on its pad or leaves the atmosphere model."""
-    trace = np.empty((curve.thrust.size + int(LONGEST / COAST_STEP), len(TRACE)))
+    """Fly to apogee (report, eq. 2.17 to 2.21); ``rail_length`` [m] (None: there is no rail to leave).
+
+    ``row`` (9,): what differs from the nominal flight, as NOMINAL. Raises ValueError for a rocket that stays on its pad
+    or leaves the atmosphere model.
+    """
+    trace = np.empty((curve.thrust.size + int(LONGEST_ASCENT / COAST_STEP), len(TRACE)))
     results = np.empty(RESULTS)
     steps = fly(*arguments(curve, vehicle, rail_length), row, results, trace, 0.0, trace[:0, :3])
     if not results[APOGEE] > 0.0:
@@ -79,7 +89,10 @@ def ascend(curve: Curve, vehicle: Vehicle, rail_length: float | None = None, row
 
 
 def arguments(curve: Curve, vehicle: Vehicle, rail_length: float | None) -> Arguments:
-    """What :func:`fly` reads of a thrust curve and a vehicle."""
+    """What :func:`fly` reads of a thrust curve and a vehicle: (n + 1,), (n + 1,), (n + 1, k), (2, m), (9,) [SI].
+
+    ``rail_length`` [m] (None: there is no rail to leave).
+    """
     fixed = np.array([
         curve.step, vehicle.dry_mass, curve.mass_after, vehicle.frontal_area, vehicle.launch_angle,
         vehicle.launch_altitude, np.inf if rail_length is None else rail_length, *curve.ambients,
@@ -92,7 +105,11 @@ def fly_all(
     thrust: Array, mass: Array, gain: Array, table: Array, fixed: Array, rows: Array, results: Array, every: float,
     paths: Array,
 ) -> None:  # fmt: skip
-    """Many flights, one by row; ``paths`` (flights, n, 3): altitude, speed, acceleration ``every`` so many seconds."""
+    """Many flights, one by row; ``rows`` (flights, 9) as NOMINAL, ``results`` (flights, 8) as APOGEE and following.
+
+    ``paths`` (flights, n, 3): altitude [m], speed [m/s], acceleration [m/s^2] ``every`` so many seconds [s]. The other
+    arguments are those of :func:`arguments`.
+    """
     none = np.empty((0, 8))
     for i in range(rows.shape[0]):
         fly(thrust, mass, gain, table, fixed, rows[i], results[i], none, every, paths[i])
@@ -103,7 +120,11 @@ def fly(
     thrust: Array, mass: Array, gain: Array, table: Array, fixed: Array, row: Array, results: Array, trace: Array,
     every: float, path: Array,
 ) -> int:  # fmt: skip
-    """One flight; fills ``results``, ``trace`` and ``path`` (of length 0: not wanted). Returns the traced steps."""
+    """One flight; fills ``results`` (8,), ``trace`` (n, 8) and ``path`` (m, 3) (of length 0: not wanted) [SI].
+
+    ``row`` (9,) as NOMINAL; ``every`` [s] between the rows of ``path`` (altitude, speed, acceleration). The other
+    arguments are those of :func:`arguments`. Returns the traced steps.
+    """
     burn_step, last, base, rail = fixed[0], thrust.size - 1, fixed[5], fixed[6]
     angle = fixed[4] if np.isnan(row[ANGLE]) else row[ANGLE]
     climb, on_rail = np.cos(angle), True
@@ -112,7 +133,7 @@ def fly(
     results[RAIL] = results[LIFT_OFF] = np.nan
     path[:] = np.nan
     steps = next_path = 0
-    while t < LONGEST:
+    while t < LONGEST_ASCENT:
         burning = now < last
         h = burn_step if burning else COAST_STEP
         a, mach, pressure, resistance, force, m = _felt(thrust, mass, gain, table, fixed, row, now, 0.0, z, v, climb)

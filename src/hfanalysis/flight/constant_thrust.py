@@ -11,6 +11,7 @@ from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle, d
 __all__ = ["EARTH_RADIUS", "STANDARD_GRAVITY", "Vehicle", "apogee", "drag_coefficient", "gravity"]
 
 STEPS = 400
+"""Steps of the burn."""
 
 
 def apogee(vehicle: Vehicle, thrust: float, mass_flow: float, burn_time: float) -> float:

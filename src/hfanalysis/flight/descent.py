@@ -13,7 +13,8 @@ from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, drag, gravity
 from hfanalysis.thermo.atmosphere import density
 
 Rates = Callable[[float, Array], list[float]]
-LONGEST = 3600.0
+LONGEST_FALL = 3600.0
+"""Longest part of a descent [s]."""
 
 
 @dataclass(frozen=True)
@@ -26,12 +27,15 @@ class Leg:
 
     @property
     def end(self) -> tuple[float, float, float]:
-        """Last time, altitude and speed."""
+        """Last time [s], altitude above sea level [m] and speed [m/s]."""
         return float(self.time[-1]), float(self.altitude[-1]), float(self.speed[-1])
 
 
 def fall(vehicle: Vehicle, drag_area: float, start: tuple[float, float, float], floor: float) -> Leg:
-    """Fall from (time, altitude, speed) to an altitude with a drag area C_d A [m^2] beside the rocket's own."""
+    """Fall from (time [s], altitude [m], speed [m/s]) to an altitude ``floor`` [m] (report, eq. 3.48 to 3.50).
+
+    ``drag_area``: C_d A [m^2] beside the rocket's own.
+    """
     area, table = vehicle.frontal_area, vehicle.drag_table
 
     def rates(_t: float, y: Array) -> list[float]:
@@ -47,7 +51,7 @@ def _until(rates: Rates, start: tuple[float, float, float], gone: Callable[[Arra
 
     event.terminal = True  # type: ignore[attr-defined]
     event.direction = -1  # type: ignore[attr-defined]
-    span = (start[0], start[0] + LONGEST)
+    span = (start[0], start[0] + LONGEST_FALL)
     out = solve_ivp(rates, span, list(start[1:]), method="LSODA", events=event, rtol=1e-9, atol=1e-7, max_step=1.0)
     return Leg(out.t, out.y[0], out.y[1])
 
@@ -66,9 +70,10 @@ class Descent:
 
 
 def descend(vehicle: Vehicle, apogee: tuple[float, float, float], drogue: Parachute, main: Parachute) -> Descent:
-    """From apogee (time, altitude above sea level, speed) to the ground; a main opens at its deploy altitude or below.
+    """From apogee (time [s], altitude above sea level [m], speed [m/s]) to the ground (report, section 3.1.5).
 
-    A main without a deploy altitude, or one that is above the apogee, opens at apogee; the drogue then does nothing.
+    A main opens at its deploy altitude or below. One without a deploy altitude, or one that is above the apogee, opens
+    at apogee; the drogue then does nothing.
     """
     ground = vehicle.launch_altitude
     top = (apogee[0], apogee[1], 0.0)

@@ -1,4 +1,4 @@
-"""Static margin along a flight: mean and two standard deviations over gusts, beside the limits (report, 3.2.5)."""
+"""Static margin along a flight: mean and two standard deviations over gusts, beside the limits (report, 3.2.4)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.flight.pitch import ATTACK, HEIGHT, HIGH, LOW, MARGIN, SPEED, STEP, Flights
+from hfanalysis.flight.pitch import ATTACK, HEIGHT, HIGH, LOW, MARGIN, PITCH_STEP, SPEED, Flights
 from hfanalysis.products.flight import Mean, WindMargin
 
 EVERY = 5
@@ -28,7 +28,7 @@ class Margin:
 
     @property
     def band(self) -> tuple[Array, Array]:
-        """Two standard deviations on each side of the mean."""
+        """Two standard deviations on each side of the mean [calibers], (n,) each."""
         return self.mean - 2.0 * self.std, self.mean + 2.0 * self.std
 
     def product(self) -> WindMargin:
@@ -45,7 +45,7 @@ class Margin:
 
 
 def margin(flights: Flights) -> Margin | None:
-    """The margin over the flights in one wind; None where a rail's end is not reached."""
+    """The margin [calibers] over the flights in one wind; None where a rail's end is not reached."""
     if (flights.departure < 0).any():
         return None
     start = int(flights.departure.max())
@@ -60,7 +60,7 @@ def margin(flights: Flights) -> Margin | None:
     apogees = np.nanmax(flights.paths[:, :, HEIGHT], axis=1)
     return Margin(
         flights.wind,
-        np.asarray(STEP * np.arange(window.start, window.stop, EVERY), dtype=np.float64),
+        np.asarray(PITCH_STEP * np.arange(window.start, window.stop, EVERY), dtype=np.float64),
         seen[:, :, MARGIN].mean(axis=0),
         seen[:, :, MARGIN].std(axis=0, ddof=1) if len(seen) > 1 else np.zeros(seen.shape[1]),
         seen[:, :, ATTACK].mean(axis=0),

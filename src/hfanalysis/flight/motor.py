@@ -11,16 +11,17 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array
 
 RAMP = 1e-3
-"""[s] in which a thrust that is there from the start rises, and one that is there to the end falls."""
+"""Time [s] in which a thrust that is there from the start rises, and one that is there to the end falls."""
 
 RESOLUTION = 1e-6
-"""[s] that engine files resolve."""
+"""Time that engine files resolve [s]. Source: they are written with six digits."""
 
 MOST_POINTS = 200
 """Points to which a curve is thinned first; more where the impulse asks for them."""
 
 IMPULSE_TOLERANCE = 5e-4
-"""Relative impulse that thinning may lose before it is put back."""
+"""Relative impulse that thinning may lose before it is put back [-]. Evidence: a tenth of it takes more points and
+changes nothing else."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Motor:
 
 @dataclass(frozen=True)
 class Points:
-    """A thrust curve: times [s] and thrust [N]; mass of propellant left [kg] and the motor's centre of gravity [m from
+    """A thrust curve: times [s] and thrust [N]; mass of propellant left [kg] and the motor's center of gravity [m from
     its front] where they are known."""
 
     time: Array
@@ -63,13 +64,13 @@ def word(name: str) -> str:
 
 
 def as_written(points: Points) -> Points:
-    """The curve to the digits that engine files carry: microseconds, 0.1 mN, milligrams, micrometres."""
+    """The curve to the digits that engine files carry: microseconds, 0.1 mN, milligrams, micrometers."""
     loads = (None if series is None else np.round(series, 6) for series in (points.mass, points.center))
     return Points(np.round(points.time, 6), np.round(points.thrust, 4), *loads)
 
 
 def left_by_thrust(points: Points) -> Array:
-    """Share of the propellant left at each point, used up as the impulse builds up."""
+    """Share of the propellant left at each point [-], (n,), used up as the impulse builds up."""
     gone = np.cumsum(0.5 * np.diff(points.time) * (points.thrust[1:] + points.thrust[:-1]))
     return np.clip(1.0 - np.concatenate(([0.0], gone)) / points.impulse, 0.0, 1.0)
 
@@ -104,8 +105,8 @@ def points_of(
 ) -> Points:
     """A curve that keeps the rules from one sampled at increasing times [s], the first of which is ignition.
 
-    Negative thrust counts as none. Thinned to about ``most`` points, with the impulse [N s] kept. Raises ValueError for
-    a curve without thrust.
+    ``thrust`` [N], ``mass`` of propellant [kg] and ``center`` of gravity [m], (n,) each. Negative thrust counts as
+    none. Thinned to about ``most`` points, with the impulse [N s] kept. Raises ValueError for a curve without thrust.
     """
     t = np.asarray(time, dtype=np.float64) - time[0]
     force = np.maximum(np.asarray(thrust, dtype=np.float64), 0.0)

@@ -2,7 +2,7 @@
 
 Three degrees of freedom: place, height and attitude. On the rail the attitude is the rail's. Gusts are a first-order
 process of Dryden's form: an intensity in parts of the wind, and a length over which the air forgets them. The margin's
-centre of pressure moves with Mach number and, by the body's lift, with the angle of attack.
+center of pressure moves with Mach number and, by the body's lift, with the angle of attack.
 """
 
 from __future__ import annotations
@@ -19,21 +19,23 @@ from hfanalysis.rocket.aerodynamics import BODY_LIFT, Shape, center_of_pressure,
 from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, drag_coefficient
 from hfanalysis.thermo.air import air
 
-STEP = 0.01
-"""[s]; a rocket of a few calibers' margin swings in a second or so."""
+PITCH_STEP = 0.01
+"""Step of a flight in wind [s]. Evidence: a rocket of a few calibers' margin swings in a second or so."""
 
 GUST_INTENSITY = 0.10
-"""Standard deviation of the gusts in parts of the wind: moderate, as OpenRocket has it by default."""
+"""Standard deviation of the gusts in parts of the wind [-]. Source: OpenRocket's default, moderate."""
 
 GUST_LENGTH = 70.0
-"""[m] of the gusts along the wind near the ground (MIL-F-8785C's Dryden form at 10 m)."""
+"""Length of the gusts along the wind near the ground [m]. Source: MIL-F-8785C's Dryden form at 10 m."""
 
 LOW, HIGH = 1.5, 6.0
-"""Static margin [calibers] that a flight should keep within (report, section 3.2.5)."""
+"""Static margin [calibers] that a flight should keep within. Source: report, section 3.2.4."""
 
 MACHS = 33
 """Mach numbers, from 0 to 1.6, at which slope, place and damping of the normal force are tabulated."""
 MACH_STEP = 0.05
+"""Between the Mach numbers of the table [-]. Evidence: with twice as much no number moves by more than it is known
+to."""
 
 TIME, HEIGHT, SPEED, MARGIN, ATTACK, ATTITUDE = range(6)
 COLUMNS = ("time", "height", "speed", "margin", "angle_of_attack", "attitude")
@@ -52,7 +54,7 @@ class Aero:
 
 
 def aero(shape: Shape) -> Aero:
-    """Tabulate a shape's normal force."""
+    """Tabulate a shape's normal force [1/rad], its place [m] and its damping over Mach number."""
     table = np.empty((4, MACHS))
     for i in range(MACHS):
         parts = components(shape, MACH_STEP * i)
@@ -78,8 +80,12 @@ class Flights:
 def fly_in_wind(
     arguments: Arguments, balance: tuple[Array, Array], aerodynamics: Aero, wind: float, seeds: int, longest: float
 ) -> Flights:
-    """Fly ``seeds`` times in a ``wind`` [m/s] from ahead; ``balance``: CG and inertia on the thrust curve's clock."""
-    count = int(longest / STEP) + 1
+    """Fly ``seeds`` times in a ``wind`` [m/s] from ahead, ``longest`` [s] at most.
+
+    ``arguments``: those of :func:`hfanalysis.flight.ascent.arguments`; ``balance``: CG [m from the nose tip] and pitch
+    inertia [kg m^2] on the thrust curve's clock, (n + 1,) each. The gusts are the same from run to run.
+    """
+    count = int(longest / PITCH_STEP) + 1
     paths = np.full((seeds, count, len(COLUMNS)), np.nan)
     departure = np.zeros(seeds, dtype=np.intp)
     for seed in range(seeds):
@@ -108,23 +114,23 @@ def _fly(
     seen = np.empty(4)
     rail, gust, departure = True, gusts * noise[0], -1
     for i in range(path.shape[0]):
-        t = i * STEP
+        t = i * PITCH_STEP
         flow = wind + gust
         _rates(y, t, rail, flow, thrust, mass, gain, drag, fixed, center, inertia, table, body, k1, seen)
         path[i, 0], path[i, 1], path[i, 2] = t, y[1] - fixed[5], seen[0]
         path[i, 3], path[i, 4], path[i, 5] = seen[1], seen[2], y[4]
-        _rates(y + 0.5 * STEP * k1, t + 0.5 * STEP, rail, flow, thrust, mass, gain, drag, fixed, center, inertia,
-               table, body, k2, seen)  # fmt: skip
-        _rates(y + 0.5 * STEP * k2, t + 0.5 * STEP, rail, flow, thrust, mass, gain, drag, fixed, center, inertia,
-               table, body, k3, seen)  # fmt: skip
-        _rates(y + STEP * k3, t + STEP, rail, flow, thrust, mass, gain, drag, fixed, center, inertia, table, body, k4,
-               seen)  # fmt: skip
-        y = y + STEP / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+        _rates(y + 0.5 * PITCH_STEP * k1, t + 0.5 * PITCH_STEP, rail, flow, thrust, mass, gain, drag, fixed, center,
+               inertia, table, body, k2, seen)  # fmt: skip
+        _rates(y + 0.5 * PITCH_STEP * k2, t + 0.5 * PITCH_STEP, rail, flow, thrust, mass, gain, drag, fixed, center,
+               inertia, table, body, k3, seen)  # fmt: skip
+        _rates(y + PITCH_STEP * k3, t + PITCH_STEP, rail, flow, thrust, mass, gain, drag, fixed, center, inertia, table,
+               body, k4, seen)  # fmt: skip
+        y = y + PITCH_STEP / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
         if rail and np.hypot(y[0], y[1] - fixed[5]) >= fixed[6]:
             rail, departure = False, i + 1
         if y[3] < 0.0 and t > 1.0:
             break
-        forgotten = np.exp(-max(np.hypot(y[2], y[3]), wind) * STEP / GUST_LENGTH)
+        forgotten = np.exp(-max(np.hypot(y[2], y[3]), wind) * PITCH_STEP / GUST_LENGTH)
         gust = forgotten * gust + gusts * np.sqrt(1.0 - forgotten * forgotten) * noise[i]
     return departure
 
@@ -161,7 +167,7 @@ def _rates(
     dy[2], dy[3] = ahead * s + sideways * c, ahead * c - sideways * s
     damping = 0.5 * rho * speed * body[0] * (second - 2.0 * cg * first + cg * cg * slope)
     dy[4] = 0.0 if rail else y[5]
-    # a force to the right behind the centre of gravity turns the nose to the left
+    # a force to the right behind the center of gravity turns the nose to the left
     dy[5] = 0.0 if rail else (-side * (cp - cg) - damping * y[5]) / turn
     seen[0], seen[1], seen[2], seen[3] = speed, (cp - cg) / body[1], attack, cp
 
@@ -170,7 +176,7 @@ def _rates(
 def _at(
     t: float, pressure: float, thrust: Array, mass: Array, gain: Array, fixed: Array, center: Array, inertia: Array
 ) -> tuple[float, float, float, float]:
-    """Thrust [N] at the ambient pressure, mass [kg], centre of gravity [m] and pitch inertia [kg m^2]."""
+    """Thrust [N] at the ambient pressure, mass [kg], center of gravity [m] and pitch inertia [kg m^2]."""
     last = thrust.size - 1
     x = t / fixed[0]
     if x >= last:

@@ -13,13 +13,15 @@ from hfanalysis.flight.motor import RAMP, Motor, Points
 __all__ = ["RAMP", "Motor", "constant_thrust", "of_points", "read", "text"]
 
 _HEADER = 7
-"""Name, diameter [mm], length [mm], delays, propellant [kg], total mass [kg], maker."""
+"""Fields of a header: name, diameter [mm], length [mm], delays, propellant [kg], total mass [kg], maker. Source: the
+RASP format."""
 
 
 def constant_thrust(thrust: float, burn_time: float) -> list[tuple[float, float]]:
-    """Times [s] and thrust [N] of a constant thrust over ``burn_time``, its impulse kept exactly.
+    """Times [s] and thrust [N] of a constant ``thrust`` [N] over ``burn_time`` [s], its impulse kept exactly.
 
-    The format starts at (0, 0) by itself; the thrust stands after the rise and falls after the burn time.
+    The format starts at (0, 0) by itself; the thrust stands after the rise and falls after the burn time. Raises
+    ValueError for a burn that is shorter than the rise.
 
     >>> constant_thrust(100.0, 2.0)
     [(0.001, 100.0), (2.0, 100.0), (2.001, 0.0)]
@@ -30,7 +32,10 @@ def constant_thrust(thrust: float, burn_time: float) -> list[tuple[float, float]
 
 
 def text(motor: Motor, points: Sequence[tuple[float, float]], comments: Sequence[str] = ()) -> str:
-    """The engine file. Raises ValueError for times that do not increase from above zero, or an end that is not zero."""
+    """The engine file of ``points`` (time [s], thrust [N]).
+
+    Raises ValueError for times that do not increase from above zero, or an end that is not zero.
+    """
     times = [0.0, *(time for time, _ in points)]
     if len(points) < 2 or any(later <= earlier for earlier, later in pairwise(times)):
         raise ValueError("an engine file needs times that start above zero and increase")

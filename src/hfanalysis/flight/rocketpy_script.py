@@ -17,7 +17,7 @@ NOSES = {"cone": "conical", "ogive": "ogive", "von_karman": "von karman", "ellip
 """What RocketPy calls them."""
 
 RAIL_UNKNOWN = 5.0
-"""[m] of a rail that is not stated: RocketPy cannot do without one."""
+"""Length of a rail that is not stated [m]. Evidence: RocketPy cannot do without one."""
 
 HEAD = '''"""{title}
 
@@ -113,7 +113,7 @@ if __name__ == "__main__":
 class Scripted:
     """What a script states: the rocket, motor and curve (with its masses), shape, canopies, rail [m].
 
-    Empty engine [kg], pitch inertia [kg m^2], centre of mass over the tail [m], radius of the nozzle's exit [m].
+    Empty engine [kg], pitch inertia [kg m^2], center of mass over the tail [m], radius of the nozzle's exit [m].
     """
 
     vehicle: Vehicle

@@ -1,4 +1,4 @@
-"""RockSim engine files (``.rse``): thrust, propellant mass and centre of gravity over time."""
+"""RockSim engine files (``.rse``): thrust, propellant mass and center of gravity over time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from hfanalysis.rocket.vehicle import STANDARD_GRAVITY
 def text(motor: Motor, points: Points, comments: Sequence[str] = (), radii: tuple[float, float] = (0.0, 0.0)) -> str:
     """The engine file; ``radii`` [m] of throat and exit. Raises ValueError for a curve that breaks the rules.
 
-    Without a mass history simulators are told to make one from the thrust, without a centre of gravity to take the
+    Without a mass history simulators are told to make one from the thrust, without a center of gravity to take the
     middle.
     """
     points = as_written(points)

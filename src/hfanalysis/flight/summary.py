@@ -50,7 +50,10 @@ def quantities(
     canopies: tuple[Parachute, Parachute] | str,
     spreads: dict[str, Spread] | None = None,
 ) -> dict[str, Quantity]:
-    """Every quantity of a flight that took place; what cannot be had says why."""
+    """Every quantity of a flight that took place, each with its unit [m, s, m/s, m/s^2]; what cannot be had says why.
+
+    ``rail_length`` [m] (None: not known), ``canopies`` or why there are none, ``spreads`` of the ascent's quantities.
+    """
     known = spreads or {}
     found = {name: _of_ascent(flown, name, known.get(name)) for name in ASCENT}
     if rail_length is None:

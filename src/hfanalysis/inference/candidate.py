@@ -21,22 +21,22 @@ from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import History, Unknown
 
 FIRST_STEP, STEP = 1.0, 5.0
-"""Log of the odds against the first step of the model-form error, on either side, and against each further one.
-
-The finest suits a generator whose gas is as ideal as the model's; a step coarser is as good a guess for a stand. How
-many right explanations of simulated tests ask for more `make blind-calibrate` prints."""
+"""Log of the odds against the first step of the model-form error, on either side, and against each further one. The
+finest suits a generator whose gas is as ideal as the model's; a step coarser is as good a guess for a stand. How many
+right explanations of simulated tests ask for more `make blind-calibrate` prints. Evidence: with the finest form a third
+as large and no step nearly free, a practice case without an effect was called unknown for 0.03 bar."""
 
 FURTHER = 5.0
-"""Log of the odds against each effect beyond the first: several at once are rarer than one."""
+"""Log of the odds against each effect beyond the first [natural log]: several at once are rarer than one."""
 
 HOPELESS = 30.0
-"""Log evidence behind the best at the same form from which on a candidate is not fitted any finer."""
+"""Log evidence [natural log] behind the best at the same form from which on a candidate is not fitted any finer."""
 
 DOUBT, FAR_DOUBT = 30.0, 100.0
 """Log evidence that a form may promise to lose, by the slopes of a fit, and still be tried, for nothing is linear: by
-sets of effects, which are near the data, and by the rest. In HF4, HF5 and five practice cases no form that gained
-something had promised to lose more than 30, but for free sources; of those of sets that gained nothing three in four
-had."""
+sets of effects, which are near the data, and by the rest. Evidence: in HF4, HF5 and five practice cases no form that
+gained something had promised to lose more than 30, but for free sources; of those of sets that gained nothing three in
+four had."""
 
 SHORT, LONG, LONGEST = 12, 25, 60
 """Steps of a fit that looks around, of one that is to converge, and of one whose numbers are told: a valley may be long
@@ -62,18 +62,18 @@ class Candidate:
         return self.source is not None
 
     def history(self, observed: Observed) -> History:
-        """Its source over time."""
+        """Its source over time [s], in the unit of its place."""
         assert self.source is not None
         return self.source.history(self.fit, observed)
 
     @property
     def chi2(self) -> float:
-        """What is left, in squared standard deviations."""
+        """What is left: the sum of the squares of the whitened residual [-]."""
         return float(self.fit.residual @ self.fit.residual)
 
     @property
     def leftover(self) -> float:
-        """The same per observation."""
+        """The same per observation [-]."""
         return self.chi2 / self.fit.residual.size
 
 
@@ -97,7 +97,7 @@ class Bench:
         None where it cannot be run.
         """
         coarse = attempted(hypothesis, self.at(COARSEST), np.zeros(hypothesis.size), SHORT)
-        return None if coarse is None else self.told(candidate((), coarse, COARSEST))
+        return None if coarse is None else self.told(self.judged(candidate((), coarse, COARSEST)))
 
     def judged(self, found: Candidate) -> Candidate:
         """A candidate at the form that makes the data most probable: finer or coarser as long as that helps.
@@ -162,27 +162,18 @@ class Bench:
         again = self._gone_on(found, form, SHORT)
         return None if again is None else candidate(found.names, again, form, found.source)
 
-    def told(self, found: Candidate) -> Candidate:
-        """A candidate whose numbers are told: at its form, its fit brought to its end."""
-        return self.converged(self.judged(found))
-
     def converged(self, found: Candidate) -> Candidate:
-        """The candidate, its fit brought to its end: where it is stopped on its way its numbers are no answer."""
-        if found.fit.within <= ENDED:
-            return found
-        again = self._ended(found)
-        return found if again is None else candidate(found.names, again, found.form, found.source)
+        """The candidate, its fit gone on with until it has converged, or as far as LONGEST steps lead."""
+        again = None if found.fit.converged else self._gone_on(found, found.form, LONGEST)
+        return found if again is None else _with_fit(found, again)
 
-    def _ended(self, found: Candidate) -> Fit | None:
-        """The candidate's fit at its end; None where it cannot be run."""
-        near = found.fit if found.fit.converged else self._gone_on(found, found.form, LONGEST)
-        if near is None:
-            return None
+    def told(self, found: Candidate) -> Candidate:
+        """A candidate whose numbers are told, its fit brought to its end: stopped on its way they are no answer."""
+        near = self.converged(found)
+        if near.fit.within <= ENDED or not near.fit.converged:
+            return near
         try:
-            ended = brought_to_end(near, self.at(found.form))
-            if ended.within <= ENDED:
-                return ended
-            return fit_on(near, self.at(found.form), self.at(found.form), LONGEST, ENDED)  # at a knee slopes do not end
+            return _with_fit(near, brought_to_end(near.fit, self.at(near.form)))
         except (ValueError, ArithmeticError):
             return near
 
@@ -195,7 +186,7 @@ class Bench:
 
 
 def price(form: Form) -> float:
-    """Log of the odds against a form."""
+    """Log of the odds against a form [natural log]."""
     return sum(FIRST_STEP * min(steps, 1) + STEP * max(steps - 1, 0) for steps in form)
 
 
@@ -203,6 +194,11 @@ def candidate(names: tuple[str, ...], found: Fit, form: Form, source: Unknown | 
     """A fit at a form as a candidate, at the price of the form and of effects beyond the first."""
     further = max(len(names) - (source is not None) - 1, 0)
     return Candidate(names, found, found.log_evidence - price(form) - FURTHER * further, form, source)
+
+
+def _with_fit(found: Candidate, fit: Fit) -> Candidate:
+    """The candidate with another fit at its form; what its evidence holds besides stays."""
+    return replace(found, fit=fit, log_evidence=found.log_evidence + fit.log_evidence - found.fit.log_evidence)
 
 
 def more_probable(one: Candidate, other: Candidate) -> bool:
@@ -215,7 +211,8 @@ WELL_FITTED = 1.15
 
 
 def attempted(hypothesis: Hypothesis, observed: Observed, start: Array, most: int = LONG) -> Fit | None:
-    """A fit, or None where its start cannot be run."""
+    """A fit from ``start`` (parameters,), in prior standard deviations, in at ``most`` so many steps; None where it
+    cannot be run there."""
     try:
         return fit(hypothesis, observed, start, most)
     except (ValueError, ArithmeticError):
@@ -225,14 +222,16 @@ def attempted(hypothesis: Hypothesis, observed: Observed, start: Array, most: in
 def followed(made: Hypothesis, own: slice, observed: Observed, start: Array) -> Fit | None:
     """A fit in which the constants follow to an effect of a given size before its ``own`` parameters are free.
 
-    Far from what suits them they would take the effect along on their way. None where it cannot be run.
+    ``start`` (parameters,) in prior standard deviations. Far from what suits them the constants would take the effect
+    along on their way. None where it cannot be run.
     """
     near = attempted(held(made, own, start), observed, start, SHORT)
     return None if near is None else attempted(made, observed, near.x, SHORT)
 
 
 def held(hypothesis: Hypothesis, places: slice, x: Array) -> Hypothesis:
-    """The same with some of its free parameters held where they are."""
+    """The same with some of its free parameters held where they are: at ``x`` (parameters,), in prior standard
+    deviations."""
     free = list(hypothesis.free)
     free[places] = [replace(f, least=at, most=at) for f, at in zip(free[places], x[places].tolist(), strict=True)]
     return replace(hypothesis, free=tuple(free))

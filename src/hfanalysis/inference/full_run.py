@@ -26,7 +26,7 @@ from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, line_at
 from hfanalysis.thermo.nitrous import saturation
 
-LONGEST = 60.0
+LONGEST_BURN = 60.0
 """Seconds after which a burn that does not end is cut off."""
 
 
@@ -47,7 +47,8 @@ class FullRun:
         return _burn(engine, self.follows)
 
     def factor(self, site: str, times: Array) -> Array:
-        """What effects make of one of the model's factors along the run, at ``times`` [s]; 1 without effects."""
+        """What effects make of one of the model's factors [-] along the run, at ``times`` (n,) [s after the opening]; 1
+        without effects."""
         if not self.engine.effects:
             return np.ones(times.size)
         return np.asarray(np.interp(times, self.burnt.time, self._sites[:, SITES.index(site)]))
@@ -67,7 +68,7 @@ class FullRun:
 
     @property
     def run_pressure(self) -> Array:
-        """Modelled pressure before the injector [Pa]."""
+        """Modelled pressure before the injector [Pa] at the run's points (n,)."""
         return self.burnt.output("run_pressure")
 
 
@@ -93,11 +94,11 @@ def run_full(
     pressure = line_at(tank, instant)
     engine = engine_of_test(definition, calibration, _temperature(definition, pressure), law, effects)
     started = starting_for(engine, instant, pressure)
-    return FullRun(started, burn(started, longest=LONGEST))
+    return FullRun(started, burn(started, longest=LONGEST_BURN))
 
 
 def _burn(engine: Engine, follows: bool) -> Burn:
-    return burn(replace(engine, oxidizer_enthalpy=None) if follows else engine, longest=LONGEST)
+    return burn(replace(engine, oxidizer_enthalpy=None) if follows else engine, longest=LONGEST_BURN)
 
 
 def _temperature(definition: TestDefinition, pressure: float) -> float:
@@ -106,9 +107,9 @@ def _temperature(definition: TestDefinition, pressure: float) -> float:
 
 
 def moved(full: FullRun, change: Mapping[str, float]) -> Burn:
-    """The burn of the same engine with other constants, from the same tank temperature.
+    """The burn of the same engine with other constants [SI], from the same tank temperature.
 
-    ``change`` names fields of the engine, or ``area`` and ``loss_factor`` of its feed system.
+    ``change`` names fields of the engine, or ``area`` [m^2] and ``loss_factor`` [1/m^4] of its feed system.
     """
     parts: dict[str, Any] = dict(change)
     feed: dict[str, Any] = {name: parts.pop(name) for name in ("area", "loss_factor") if name in parts}

@@ -58,7 +58,8 @@ class Linearized:
         return self.at(PLACES, self.splines)
 
     def at(self, places: Sequence[Place], splines: Splines) -> list[tuple[Place, Projected]]:
-        """Those of the places that have no source yet, with splines at each."""
+        """Those of the places that have no source yet, with splines at each; what is projected is whitened, by
+        coefficients in the unit of the place."""
         hypothesis, observed = self.fitted.hypothesis, self.observed
         engine = hypothesis.at(self.fitted.x)
         taken = {a.effect.name for a in engine.effects}
@@ -73,7 +74,7 @@ class Linearized:
         return [(place, self._project(own)) for place, own in zip(probes, columns, strict=True)]
 
     def read_by(self, sensor: str, splines: Splines) -> Projected:
-        """With splines in what a sensor reads."""
+        """With splines in what a sensor reads, by coefficients in its SI unit."""
         return self._project(sensor_slopes(self.observed, sensor, splines))
 
     def _project(self, columns: Array) -> Projected:

@@ -16,6 +16,7 @@ from hfanalysis.inference.unknown import nameless_effect
 GIVEN = ("site", "hook", "first", "spacing", "count", "wet")
 SITE, HOOK, FIRST, SPACING, COUNT, WET = range(6)
 COEFFICIENTS = len(GIVEN) + 1
+"""Where in the parameters of the effect the coefficients begin, behind the strength and GIVEN."""
 
 
 @term
@@ -59,13 +60,19 @@ class Splines:
 
     @classmethod
     def over(cls, start: float, end: float, spacing: float, wet: bool = False) -> Splines:
-        """Splines that reach over an interval, or over that in which liquid flows."""
+        """Splines that reach over an interval, or over that in which liquid flows. ``start``, ``end`` and ``spacing``
+        [s]."""
         pieces = max(int(np.ceil((end - start) / spacing)), 1)
         width = (end - start) / pieces
         return cls(start - width, width, pieces + 3, liquid_out=end if wet else inf)
 
     def at(self, times: Array) -> Array:
-        """Values (times, count) of the splines."""
+        """Values (times, count) [-] of the splines at ``times`` (times,) [s]; where all of them reach they add up to
+        one (de Boor, A Practical Guide to Splines, chapter IX).
+
+        >>> float(Splines.over(0.0, 2.0, 0.5).at(np.array([0.7])).sum().round(9))
+        1.0
+        """
         if self.held:
             last = self.first + (self.count - 2) * self.spacing
             times = np.clip(times, self.first + self.spacing, last)

@@ -35,7 +35,7 @@ class Subject:
         return observe_test(self.log, self.segments, self.definition)
 
     def stated(self) -> dict[str, dict[str, float]]:
-        """What it states of parameters of effects [SI], by effect."""
+        """What it states of parameters of effects [SI], by effect and parameter."""
         return {"n2_purge": _purge(self)}
 
     def hypothesis(self) -> Hypothesis:

@@ -77,12 +77,17 @@ class History:
 
     @property
     def of_equation(self) -> Array:
-        """Its mean by the unit of its equation: a tenth of a large flow is more than a tenth of a small one."""
+        """Its mean (n,) [unit of its equation]: a tenth of a large flow is more than a tenth of a small one."""
         return self.mean if self.whole is None else self.mean / (1.0 + self.mean) * self.whole
 
 
 def spread_of(slopes: Array, covariance: Array) -> Array:
-    """Standard deviations (n,) of what has these slopes (n, m) with m numbers of a covariance (m, m)."""
+    """Standard deviations (n,) [the slopes' unit] of what has these slopes (n, m) with m numbers of a covariance (m,
+    m).
+
+    >>> spread_of(np.array([[3.0, 4.0]]), np.eye(2)).tolist()
+    [5.0]
+    """
     return np.asarray(np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", slopes, covariance, slopes), 0.0)))
 
 
@@ -111,7 +116,8 @@ class Unknown(ABC):
 
     @property
     def hides(self) -> float:
-        """Seconds before the end of the liquid in which no blocks are compared, for no name could be judged by them."""
+        """Time [s] before the end of the liquid in which no blocks are compared, for no name could be judged by
+        them."""
         return 0.0
 
     @property
@@ -121,11 +127,12 @@ class Unknown(ABC):
 
     @abstractmethod
     def added_to(self, fitted: Fit) -> tuple[Hypothesis, Array]:
-        """The hypothesis of a fit with it, and the x (n,) of its own parameters where it was seen."""
+        """The hypothesis of a fit with it, and the x (n,) of its own parameters, in prior standard deviations, where it
+        was seen."""
 
     @abstractmethod
     def history(self, fitted: Fit, observed: Observed) -> History:
-        """It over time as a fit that has it says."""
+        """It over time [s] as a fit that has it says, in the unit of its place."""
 
     @staticmethod
     def words(row: diagnosis.Place, known: Quantity, where: str, unit: str) -> str:
@@ -143,4 +150,4 @@ class LinearUnknown(Unknown):
 
     @abstractmethod
     def added_to(self, fitted: Fit, share: float = 1.0) -> tuple[Hypothesis, Array]:
-        """As :meth:`Unknown.added_to`, at a ``share`` of its size."""
+        """As :meth:`Unknown.added_to`, at a ``share`` [-] of its size."""

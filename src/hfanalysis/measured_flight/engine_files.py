@@ -17,7 +17,7 @@ from hfanalysis.rocket.aerodynamics import Shape
 from hfanalysis.rocket.vehicle import Vehicle
 
 SLENDER = 25.0
-"""Length over diameter of a rocket whose geometry is not known; only RocketPy's inertia follows it."""
+"""Length over diameter [-] of a rocket whose geometry is not known; only RocketPy's inertia follows it."""
 
 NO_LENGTH = "length: not known; the diameter stands in for it"
 
@@ -44,9 +44,9 @@ class Export:
         return rocksim.text(self.motor, self.points, self.comments, self.radii)
 
 
-def rocketpy(found: Launch, definition: TestDefinition, stable: Stability | str, motor: Export) -> str:
+def rocketpy(launched: Launch, definition: TestDefinition, stable: Stability | str, motor: Export) -> str:
     """The flight as a script for RocketPy; without a geometry the rocket has no surfaces and flies in still air."""
-    firing, weighed = found.firing, None if isinstance(stable, str) else stable
+    firing, weighed = launched.firing, None if isinstance(stable, str) else stable
     outside = shape(definition.rocket)
     known = outside if isinstance(outside, Shape) else None
     length = known.length if known is not None else SLENDER * 2.0 * float(np.sqrt(firing.vehicle.frontal_area / np.pi))
@@ -69,26 +69,26 @@ def rocketpy(found: Launch, definition: TestDefinition, stable: Stability | str,
     )
 
 
-def export(found: Launch, definition: TestDefinition, stable: Stability | str) -> Export:
+def export(launched: Launch, definition: TestDefinition, stable: Stability | str) -> Export:
     """The firing along its flight: thrust at the altitudes flown through, propellant that burns.
 
-    The engine's centre of gravity is that of ``stable``, where it is known.
+    The engine's center of gravity is that of ``stable``, where it is known.
     """
     center = None if isinstance(stable, str) else stable.engine_center
-    curve, trace = found.firing.curve, found.ascent
+    curve, trace = launched.firing.curve, launched.ascent
     time = curve.time
     thrust = np.interp(time, trace.column("time"), trace.column("thrust"))
     mass = np.maximum(curve.mass - curve.mass_after, 0.0)
     points = points_of(time, thrust, mass, center)
-    motor = _motor(found, definition, float(mass[0]), stable)
-    return Export(motor, points, _comments(found, definition), _radii(definition))
+    motor = _motor(launched, definition, float(mass[0]), stable)
+    return Export(motor, points, _comments(launched, definition), _radii(definition))
 
 
-def _motor(found: Launch, definition: TestDefinition, burnt: float, stable: Stability | str) -> Motor:
+def _motor(launched: Launch, definition: TestDefinition, burnt: float, stable: Stability | str) -> Motor:
     geometry = definition.rocket.geometry if definition.rocket is not None else None
     engine = geometry.engine_mass.value if geometry is not None and geometry.engine_mass is not None else 0.0
-    loaded = float(found.firing.propellant.total[0])
-    diameter, length = _size(definition, found.firing.vehicle)
+    loaded = float(launched.firing.propellant.total[0])
+    diameter, length = _size(definition, launched.firing.vehicle)
     length = length if isinstance(stable, str) else stable.place.length
     return Motor(definition.test.id, diameter, length, burnt, engine + loaded)
 
@@ -111,12 +111,12 @@ def _radii(definition: TestDefinition) -> tuple[float, float]:
     return (throat.value if throat else 0.0), (leave.value if leave else 0.0)
 
 
-def _comments(found: Launch, definition: TestDefinition) -> tuple[str, ...]:
+def _comments(launched: Launch, definition: TestDefinition) -> tuple[str, ...]:
     source = {"replica": "REPLICA, generated, not measured", "synthetic": "SYNTHETIC, generated, not measured"}
-    altitude = found.firing.vehicle.launch_altitude
+    altitude = launched.firing.vehicle.launch_altitude
     geometry = definition.rocket.geometry if definition.rocket is not None else None
     said = [f"{definition.test.id}: {source.get(definition.test.source, 'measured on the stand')}"]
-    said += [f"thrust {found.firing.thrust_is}, along the flight from {altitude:.0f} m"]
+    said += [f"thrust {launched.firing.thrust_is}, along the flight from {altitude:.0f} m"]
     said += [] if geometry is not None and geometry.engine_mass is not None else [BY_THEMSELVES]
     said += [] if definition.grain is not None and definition.grain.length is not None else [NO_LENGTH]
     return tuple(said)

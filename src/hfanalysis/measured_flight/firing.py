@@ -25,10 +25,10 @@ from hfanalysis.thermo import atmosphere, combustion
 RAW, CORRECTED = "as measured on the stand", "from the stand's ambient pressure to the altitude's"
 
 EQUILIBRIA = 60
-"""Over a burn; the gas changes slowly, and thrust hardly follows its heat capacity ratio."""
+"""Equilibria over a burn; the gas changes slowly, and thrust hardly follows its heat capacity ratio."""
 
 LIT = 1.3
-"""Chamber over ambient pressure from which on the gas is worth an equilibrium; below, the nearest one holds."""
+"""Chamber over ambient pressure [-] from which on the gas is worth an equilibrium; below, the nearest one holds."""
 
 
 @dataclass(frozen=True)

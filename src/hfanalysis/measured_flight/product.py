@@ -28,7 +28,8 @@ from hfanalysis.rocket.vehicle import gravity
 Progress = Callable[[str, float | None], None]
 
 LEAST_RAIL_DEPARTURE = 30.48
-"""[m/s]: 100 ft/s, which competitions recommend at least (report, section 3.2.4)."""
+"""Least speed at the rail's end [m/s]. Source: 100 ft/s, which competitions recommend at least (report, section
+3.2.4)."""
 
 UNITS = dict(zip(TRACE, ("s", "m", "m/s", "m/s^2", "N", "N", "kg", "1"), strict=True))
 
@@ -56,24 +57,24 @@ def launch(firing: Firing, rocket: Rocket, samples: int, seed: int, progress: Pr
                   samples, seed)  # fmt: skip
 
 
-def product(found: Launch, rocket: Rocket, stable: stability.Stability | str) -> products.Flight:
+def product(launched: Launch, rocket: Rocket, stable: stability.Stability | str) -> products.Flight:
     """The content of flight.json."""
-    firing = found.firing
+    firing = launched.firing
     flown = summary.quantities(
-        firing.vehicle, found.ascent, firing.rail_length, firing.canopies, found.dispersion.spreads()
+        firing.vehicle, launched.ascent, firing.rail_length, firing.canopies, launched.dispersion.spreads()
     )
     rail = rail_check(flown["rail_departure_velocity"])
-    drawn = {name: _drawn(given) for name, given in found.inputs.items()}
+    drawn = {name: _drawn(given) for name, given in launched.inputs.items()}
     about = {
         "checks": {"rail_departure_velocity": rail, **stability.checks(stable)},
         "thrust": firing.thrust_is,
         "drag": drag_from(rocket),
         "masses": dict(firing.propellant.how),
-        "dispersion": products.Dispersion(flights=found.samples, seed=found.seed, inputs=drawn),
+        "dispersion": products.Dispersion(flights=launched.samples, seed=launched.seed, inputs=drawn),
         "stability": stability.product(stable),
         "notes": firing.notes,
     }
-    return products.Flight.from_json({**flown, **_on_pad(found), **about})
+    return products.Flight.from_json({**flown, **_on_pad(launched), **about})
 
 
 def _drawn(given: Input) -> products.DispersionInput:
@@ -81,11 +82,11 @@ def _drawn(given: Input) -> products.DispersionInput:
     return products.DispersionInput(std=given.std, unit=given.unit, origin=origin, of=given.of)
 
 
-def _on_pad(found: Launch) -> dict[str, Quantity]:
-    firing = found.firing
-    propellant, dry = found.inputs["propellant"].std, found.inputs["dry_mass"].std
+def _on_pad(launched: Launch) -> dict[str, Quantity]:
+    firing = launched.firing
+    propellant, dry = launched.inputs["propellant"].std, launched.inputs["dry_mass"].std
     std = float(np.hypot(propellant, dry))
-    peak = float(found.ascent.column("thrust").max())
+    peak = float(launched.ascent.column("thrust").max())
     weight = firing.wet_mass * gravity(firing.vehicle.launch_altitude)
     return {
         "wet_mass": Quantity(firing.wet_mass, "kg", std),
@@ -107,38 +108,38 @@ def rail_check(speed: Quantity) -> products.Check:
 
 
 def write_histories(
-    path: Path, found: Launch, stable: stability.Stability | str, provenance: Mapping[str, Any]
+    path: Path, launched: Launch, stable: stability.Stability | str, provenance: Mapping[str, Any]
 ) -> None:
     """flight.h5: groups ``ascent``, ``bands``, the ways down, ``balance`` and ``stability``, in SI."""
     with h5py.File(path, "w") as file:
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
-        file.attrs["launch_altitude"] = found.firing.vehicle.launch_altitude
-        ascent = {name: found.ascent.column(name) for name in TRACE}
-        _write(file, "ascent", ascent | _drawn_on(found, ascent["time"]), UNITS | {"height": "m"} | MASSES)
+        file.attrs["launch_altitude"] = launched.firing.vehicle.launch_altitude
+        ascent = {name: launched.ascent.column(name) for name in TRACE}
+        _write(file, "ascent", ascent | _drawn_on(launched, ascent["time"]), UNITS | {"height": "m"} | MASSES)
         bands = {
             f"{name}_{side}": band[i]
-            for name, band in found.dispersion.bands.items()
+            for name, band in launched.dispersion.bands.items()
             for i, side in enumerate(("low", "median", "high"))
         }
         units = {name: {"h": "m", "s": "m/s", "a": "m/s^2"}[name[0]] for name in bands}
-        _write(file, "bands", {"time": found.dispersion.time} | bands, {"time": "s"} | units)
-        for name, leg in _legs(found).items():
+        _write(file, "bands", {"time": launched.dispersion.time} | bands, {"time": "s"} | units)
+        for name, leg in _legs(launched).items():
             columns = {
                 "time": leg.time,
-                "height": leg.altitude - found.firing.vehicle.launch_altitude,
+                "height": leg.altitude - launched.firing.vehicle.launch_altitude,
                 "speed": leg.speed,
             }
             _write(file, name, columns, {"time": "s", "height": "m", "speed": "m/s"})
         if not isinstance(stable, str):
-            _write_stability(file, found, stable)
+            _write_stability(file, launched, stable)
 
 
-def _write_stability(file: Any, found: Launch, stable: stability.Stability) -> None:
+def _write_stability(file: Any, launched: Launch, stable: stability.Stability) -> None:
     """Group ``balance`` over the burn, and ``stability/N`` for every wind."""
     weighed = stable.balance
     columns = {"mass": weighed.mass, "center_of_gravity": weighed.center, "pitch_inertia": weighed.inertia}
     units = {"time": "s", "mass": "kg", "center_of_gravity": "m", "pitch_inertia": "kg m^2"}
-    _write(file, "balance", {"time": found.firing.curve.time, **columns}, units)
+    _write(file, "balance", {"time": launched.firing.curve.time, **columns}, units)
     for i, margin in enumerate(stable.margins):
         series = {"time": margin.time, "margin_mean": margin.mean, "margin_std": margin.std}
         units = {"time": "s", "margin_mean": "1", "margin_std": "1", "angle_of_attack": "rad"}
@@ -149,10 +150,10 @@ def _write_stability(file: Any, found: Launch, stable: stability.Stability) -> N
 MASSES = {"oxidizer_mass": "kg", "fuel_mass": "kg"}
 
 
-def _drawn_on(found: Launch, time: Array) -> dict[str, Array]:
+def _drawn_on(launched: Launch, time: Array) -> dict[str, Array]:
     """Height above the pad and the propellant's masses at the flight's times."""
-    load = found.firing.propellant
-    height = found.ascent.column("altitude") - found.firing.vehicle.launch_altitude
+    load = launched.firing.propellant
+    height = launched.ascent.column("altitude") - launched.firing.vehicle.launch_altitude
     return {
         "height": height,
         "oxidizer_mass": np.interp(time, load.time, load.oxidizer),
@@ -160,9 +161,9 @@ def _drawn_on(found: Launch, time: Array) -> dict[str, Array]:
     }
 
 
-def _legs(found: Launch) -> dict[str, Leg]:
+def _legs(launched: Launch) -> dict[str, Leg]:
     """The ways down; each downwards negative in speed."""
-    firing, top = found.firing, found.ascent.end
+    firing, top = launched.firing, launched.ascent.end
     legs = {"ballistic": fall(firing.vehicle, 0.0, (top[0], top[1], 0.0), firing.vehicle.launch_altitude)}
     if isinstance(firing.canopies, str):
         return legs

@@ -30,12 +30,14 @@ from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.units import Value
 
 PARAFFIN_EXPONENT = 0.5
-"""Of the regression where neither test.toml nor a calibration has one; published values for paraffin lie about it."""
+"""Exponent of the regression [-] where neither test.toml nor a calibration has one. Source: published values for
+paraffin lie about it."""
 
 UNSTATED = 0.01
-"""Relative standard deviation of a mass that is stated without one."""
+"""Relative standard deviation [-] of a mass that is stated without one."""
 
 POINTS = 1001
+"""Times of the masses over the burn."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,7 @@ class Propellant:
 
     @property
     def total(self) -> Array:
-        """Oxidizer and fuel [kg]."""
+        """Oxidizer and fuel [kg], (n,)."""
         return np.asarray(self.oxidizer + self.fuel)
 
 
@@ -189,7 +191,7 @@ def _through_injector(
 
 
 def _nitrogen_density(tank: Array, left: float, volume: float, last: int, temperature: Array) -> Array:
-    """Of the purge gas in the tank [kg/m^3]: the pressure that the emptying vapour, held at t_v's, does not explain."""
+    """Of the purge gas in the tank [kg/m^3]: the pressure that the emptying vapor, held at t_v's, does not explain."""
     share = tank / tank[last]
     excess = np.maximum(share - np.minimum.accumulate(share), 0.0) * tank[last]
     return np.asarray(excess / (SPECIFIC_NITROGEN * temperature[last]))

@@ -24,12 +24,12 @@ from hfanalysis.thermo.nitrous import saturation
 Progress = Callable[[str, float | None], None]
 
 SLOW = 0.3
-"""Mach number at which slopes and the drag's parts are listed."""
+"""Mach number [-] at which slopes and the drag's parts are listed."""
 
 
 @dataclass(frozen=True)
 class Stability:
-    """Centre of gravity and inertia on the thrust curve's clock, the shape, the margins by wind, and remarks.
+    """Center of gravity and inertia on the thrust curve's clock, the shape, the margins by wind, and remarks.
 
     ``engine_center``: of the engine with its propellant [m from its front], None where it is not weighed apart.
     """
@@ -45,7 +45,7 @@ class Stability:
 def stability(
     firing: Firing, definition: TestDefinition, winds: Sequence[float], seeds: int, longest: float, progress: Progress
 ) -> Stability | str:
-    """Fly in every wind; or why there is no stability to tell."""
+    """Fly ``seeds`` times in every wind [m/s], ``longest`` [s] at most; or why there is no stability to tell."""
     rocket = definition.rocket
     outside = shape(rocket)
     if isinstance(outside, str) or rocket is None:
@@ -98,48 +98,48 @@ def _engine_center(firing: Firing, place: Masses, definition: TestDefinition) ->
     return np.asarray(balance([place.dry, *_load(firing, place, definition)]).center - place.front)
 
 
-def product(found: Stability | str) -> flight.Stability:
+def product(stable: Stability | str) -> flight.Stability:
     """What flight.json says of stability."""
-    if isinstance(found, str):
-        return flight.Stability(margin_at_rail_departure=Quantity.absent(found))
-    parts = components(found.outside, SLOW)
+    if isinstance(stable, str):
+        return flight.Stability(margin_at_rail_departure=Quantity.absent(stable))
+    parts = components(stable.outside, SLOW)
     slope, place = center_of_pressure(parts)
-    calmest = found.margins[0]
+    calmest = stable.margins[0]
     return flight.Stability(
         margin_at_rail_departure=Quantity(float(calmest.mean[0]), "", float(calmest.std[0]) or None),
-        static_margin_on_pad=Quantity((place - float(found.balance.center[0])) / found.outside.diameter),
+        static_margin_on_pad=Quantity((place - float(stable.balance.center[0])) / stable.outside.diameter),
         normal_force_slope=Quantity(slope, "1/rad"),
         center_of_pressure=Quantity(place, "m"),
-        center_of_gravity_loaded=Quantity(float(found.balance.center[0]), "m"),
-        center_of_gravity_empty=Quantity(float(found.balance.center[-1]), "m"),
+        center_of_gravity_loaded=Quantity(float(stable.balance.center[0]), "m"),
+        center_of_gravity_empty=Quantity(float(stable.balance.center[-1]), "m"),
         mach=SLOW,
         slopes={part.name: flight.Slope(slope=part.slope, position=part.position) for part in parts},
-        drag_parts=drag_parts(found.outside, SLOW, 0.0),
+        drag_parts=drag_parts(stable.outside, SLOW, 0.0),
         limits=(LOW, HIGH),
         gust_intensity=GUST_INTENSITY,
-        winds=tuple(m.product() for m in found.margins),
-        notes=found.notes,
+        winds=tuple(m.product() for m in stable.margins),
+        notes=stable.notes,
     )
 
 
-def checks(found: Stability | str) -> dict[str, flight.Check]:
+def checks(stable: Stability | str) -> dict[str, flight.Check]:
     """Whether the margin keeps within its limits, two standard deviations included, in every wind."""
     return {
-        "least_static_margin": _check(found, LOW, "at least", lambda m: m.least, lambda margin: margin >= LOW),
-        "largest_static_margin": _check(found, HIGH, "at most", lambda m: m.largest, lambda margin: margin <= HIGH),
+        "least_static_margin": _check(stable, LOW, "at least", lambda m: m.least, lambda margin: margin >= LOW),
+        "largest_static_margin": _check(stable, HIGH, "at most", lambda m: m.largest, lambda margin: margin <= HIGH),
     }
 
 
 def _check(
-    found: Stability | str,
+    stable: Stability | str,
     limit: float,
     side: str,
     extreme: Callable[[flight.WindMargin], float],
     holds: Callable[[float], bool],
 ) -> flight.Check:
-    result, why = "unknown", str(found)
-    if not isinstance(found, str):
-        said = [(extreme(m), m.wind) for m in (margin.product() for margin in found.margins)]
+    result, why = "unknown", str(stable)
+    if not isinstance(stable, str):
+        said = [(extreme(m), m.wind) for m in (margin.product() for margin in stable.margins)]
         words = ", ".join(f"{margin:.2f} in a wind of {wind:.1f} m/s" for margin, wind in said)
         result = "passed" if all(holds(margin) for margin, _ in said) else "failed"
         why = f"{words}; mean and two standard deviations"

@@ -16,16 +16,17 @@ from hfanalysis.sentences import said, text
 from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
 
 SPAN_SHARE = 0.25
-"""Part of the cell's accuracy that a tare does not take away: its error of span, as for the pressures."""
+"""Part of the cell's accuracy that a tare does not take away [-]: its error of span, as for the pressures."""
 
 UNSEEN_DRIFT = 0.01
-"""Of the peak thrust: standard deviation of a drift that no settled level after the burn shows."""
+"""Standard deviation of a drift that no settled level after the burn shows, of the peak thrust [-]."""
 
 SHAPE_OF_DRIFT = 12.0**-0.5
-"""Of the drift: standard deviation of how far along it a moment is, where all courses are as likely."""
+"""Standard deviation of how far along its drift a cell is at a moment [-]. Source: that of a uniform distribution, for
+all courses are as likely."""
 
 UNSTATED_GAIN = 0.01
-"""Standard deviation of a load cell's gain where nothing is said of its calibration."""
+"""Relative standard deviation of a load cell's gain [-] where nothing is said of its calibration."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class MeasuredThrust:
 
     @property
     def burn_time(self) -> float:
-        """[s]"""
+        """From the opening to the burn's end [s]."""
         return float(self.time[-1])
 
 
@@ -68,21 +69,23 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
     return MeasuredThrust(time, found.signal.at(time), *_spreads(channel, found, burn), notes)
 
 
-def _left(found: Thrust) -> float:
+def _left(thrust: Thrust) -> float:
     """What the corrected cell reads [N] with the chamber at ambient pressure; 0 where the log does not show it."""
-    return 0.0 if np.isnan(found.since) else found.signal.mean(found.since, found.since + FIRST)
+    return 0.0 if np.isnan(thrust.since) else thrust.signal.mean(thrust.since, thrust.since + FIRST)
 
 
-def _drift_taken(found: Thrust) -> tuple[str, ...]:
-    taken = found.error - _left(found)
+def _drift_taken(thrust: Thrust) -> tuple[str, ...]:
+    taken = thrust.error - _left(thrust)
     if abs(taken) < 0.5:
         return ()
     return (text("{taken} of the load cell's drift taken off over the burn", taken=said(taken, "N", ".0f")),)
 
 
 def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tuple[float, str]:
-    """When thrust ends [s after opening], and who says so: the engineer, else the later of chamber and fuel, else the
-    log."""
+    """When thrust ends [s after opening], and who says so; ``last``: where the log ends [s].
+
+    The engineer, else the later of chamber and fuel, else the log.
+    """
     observed = definition.observed.burn_time if definition.observed is not None else None
     if observed is not None and observed.value <= last:
         return observed.value, "[observed] burn_time"
@@ -94,11 +97,11 @@ def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tup
     return last, "the log's end"
 
 
-def _spreads(channel: Channel, found: Thrust, burn: Signal) -> tuple[float, float, float]:
+def _spreads(channel: Channel, thrust: Thrust, burn: Signal) -> tuple[float, float, float]:
     """Standard deviations of zero, drift [N] and gain; a drift that is seen but not taken off counts in full."""
     peak = float(np.max(np.abs(burn.value)))
     zero = channel.accuracy if channel.zero_std is None else channel.zero_std
-    seen = float(np.hypot(SHAPE_OF_DRIFT * found.error, _left(found)))
+    seen = float(np.hypot(SHAPE_OF_DRIFT * thrust.error, _left(thrust)))
     drift = UNSEEN_DRIFT * peak if seen == 0.0 else seen
     gain = SPAN_SHARE * channel.accuracy / peak if channel.accuracy_stated else UNSTATED_GAIN
     return float(zero), drift, max(float(gain), 1e-4)

@@ -125,7 +125,7 @@ class Calibration(TankConstants, FuelLaw, Product):
         return self.oxidizer_mass_fitted or self.oxidizer_mass
 
     def alone(self, name: str) -> Quantity:
-        """A constant as it is by itself, with the balance of the load as it was weighed closed."""
+        """A constant [SI] as it is by itself, with the balance of the load as it was weighed closed."""
         found = self.one_by_one.get(name) or getattr(self, name)
         assert isinstance(found, Quantity)
         return found

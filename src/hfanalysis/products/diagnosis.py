@@ -63,7 +63,7 @@ class Place(Part):
     beside: Annotated[bool, Is("whether it is open beside what is named")] = False
 
     def known_by(self, name: str) -> Quantity | None:
-        """A further quantity; None where it has none of that name."""
+        """A further quantity [SI]; None where it has none of that name."""
         return self.__pydantic_extra__.get(name)
 
 

@@ -19,7 +19,10 @@ TEMPORARY = ".tmp-"
 """How the temporary name of an unfinished product begins."""
 
 _CHUNK = 1 << 20
+"""Bytes read at a time [B]."""
 _SETTLED_NS = 2_000_000_000
+"""How old a file must be for its times to vouch for its content [ns]: file systems stamp no finer than 1 to 2 s.
+Source: FAT stamps every 2 s."""
 
 
 def temporary_path(path: Path) -> Path:

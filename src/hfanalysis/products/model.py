@@ -70,7 +70,7 @@ class Part(BaseModel):
 
     @property
     def quantities(self) -> dict[str, Quantity]:
-        """Its own quantities by name, in order; those of its parts are not among them."""
+        """Its own quantities [SI] by name, in order; those of its parts are not among them."""
         fields = ((name, getattr(self, name)) for name in type(self).model_fields)
         return {name: value for name, value in fields if isinstance(value, Quantity)}
 

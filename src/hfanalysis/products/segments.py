@@ -34,7 +34,10 @@ class Segments(Product):
 
     @classmethod
     def of(cls, t_open: Quantity, events: Mapping[str, Quantity], **about: Any) -> Segments:
-        """With the ``events`` by name, and their order; what ``about`` does not say is nothing special."""
+        """With the ``events`` [s after the opening] by name, and their order; ``t_open`` [s, log time].
+
+        What ``about`` does not say is nothing special.
+        """
         order = [name for _, name in sorted((q.value, name) for name, q in events.items() if q.value is not None)]
         usual = {"kind_reason": "", "misfire": False, "supercharged": False, "found_where_engineer_set": {}}
         said = {"engineer": (), "notes": (), "warnings": ()}
@@ -42,7 +45,7 @@ class Segments(Product):
 
     @property
     def events(self) -> dict[str, Quantity]:
-        """The events by name."""
+        """The events [s after the opening] by name."""
         return {name: getattr(self, name) for name in EVENTS}
 
     def time(self, name: str) -> float | None:

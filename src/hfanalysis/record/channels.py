@@ -69,12 +69,17 @@ ACCURACY: dict[str, AccuracyClass] = {
     "temperature": AccuracyClass(2.5),
     "dimensionless": AccuracyClass(0.0),
 }
-"""Dimension -> default accuracy."""
+"""Dimension -> default accuracy [Pa, N, kg, K]. Source: ordinary hardware: pressure transducers of 0.5 % of what they
+read, S-beam cells, bare thermocouples of tolerance class 2 (IEC 60584-1: 2.5 K up to 333 degC)."""
 
 OTHER_ACCURACY = AccuracyClass(0.0, 0.01)
 """For every other dimension: 1 % of the largest reading."""
 
 
 def default_accuracy(dimension: str, largest: float) -> float:
-    """The documented class default [SI] for a sensor of this dimension."""
+    """The documented class default [SI] for a sensor of this dimension whose ``largest`` reading is given [SI].
+
+    >>> default_accuracy("pressure", 60e5), default_accuracy("force", 3000.0)
+    (30000.0, 30.0)
+    """
     return ACCURACY.get(dimension, OTHER_ACCURACY).of(abs(largest))

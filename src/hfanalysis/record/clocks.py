@@ -62,7 +62,7 @@ def _no_stamps(spool: Spool, column: int, where: str) -> str:
 
 
 def stale_stamps(time: Array) -> Mask:
-    """Samples to leave out for the rest to increase strictly in time, as few as can be.
+    """Samples (n,) to leave out for the rest of ``time`` (n,) [s] to increase strictly, as few as can be.
 
     >>> stale_stamps(np.array([0.0, 1.0, 1.0, 2.0, 99.0, 3.0, 4.0]))
     array([False, False,  True, False,  True, False, False])

@@ -24,10 +24,13 @@ __all__ = ["ChannelSpec", "Exclusion", "FileSpec", "LogSpec", "TestDefinition", 
            "load_definition"]  # fmt: skip
 
 SCHEMA = 1
+"""Version of test.toml's form that this package reads. Source: definition."""
 STANDARD_PRESSURE = Value(101325.0, 2000.0)
-"""[Pa] where neither altitude nor ambient pressure is stated: sea level, give or take weather and terrain."""
+"""[Pa] where neither altitude nor ambient pressure is stated: sea level, give or take weather and terrain. Source:
+standard atmosphere (ISO 2533), 101325 Pa at sea level."""
 WEATHER = 1000.0
-"""[Pa] standard deviation of the ambient pressure about the altitude's mean."""
+"""[Pa] standard deviation of the ambient pressure about the altitude's mean. Source: weather changes the pressure at
+sea level by some 10 hPa from day to day at middle latitudes."""
 
 
 def check_version(found: Any) -> int:
@@ -176,7 +179,7 @@ def load_definition(path: Path) -> TestDefinition:
 
 
 def _odd_names(channels: Mapping[str, ChannelSpec]) -> tuple[str, ...]:
-    """A channel under its own name that looks like a misspelt canonical one is worth a word, not a refusal."""
+    """A channel under its own name that looks like a misspelled canonical one is worth a word, not a refusal."""
     absent = [name for name in CANONICAL if name not in channels]
     offers = {name: near(name, absent) for name in channels if name not in CANONICAL}
     return tuple(f"channel {name!r} is carried through under its own name{o}" for name, o in offers.items() if o)

@@ -14,29 +14,42 @@ from hfanalysis.compiled import compiled
 Flags = NDArray[np.uint8]
 
 DROPOUT, STUCK, SATURATED, SPIKE = np.uint8(1), np.uint8(2), np.uint8(4), np.uint8(8)
+"""The bits of :class:`hfanalysis.record.log.Flag`, as compiled code takes them. Source: definition."""
 
 CONTEXT = 30
-"""Runs looked at on either side to tell how long this channel usually repeats itself."""
+"""Runs looked at on either side to tell how long this channel usually repeats itself [runs]."""
 STUCK_RUN, STUCK_FACTOR = 20, 20.0
+"""Least run of equal readings that may be stuck [samples], and how many times longer than the channel's usual runs it
+is. Evidence: with looser rules quantized slow sensors and random dwells were flagged; test_flags.py has both, and a
+stalled logger, which is."""
 CLIPPED_RUN, CLIPPED_FACTOR = 4, 8.0
+"""The same for a run at the channel's exact extreme [samples], which needs less: noise does not meet its extreme often.
+Evidence: test_flags.py: a clipped plateau is saturated, noise alone is never flagged."""
 NOISE_BLOCK = 256
-"""Samples over which noise is estimated."""
+"""Samples over which noise is estimated [samples]. Evidence: test_flags.py: noise that changes in a log is measured
+block by block."""
 WINDOW = 8
-"""Samples on either side of a spike that say where the channel is without it."""
+"""Samples on either side of a spike that say where the channel is without it [samples]."""
 LONGEST_SPIKE = 3
+"""Samples that a spike has at most [samples]. Evidence: test_flags.py: a sharp pulse of many samples is no spike."""
 OUTLYING = 8.0
-"""Local standard deviations by which a spike stands out."""
+"""Local standard deviations by which a spike stands out. Evidence: test_flags.py: oscillation and a step with overshoot
+are no spikes."""
 JUMP = 6.0
 """Standard deviations by which a spike begins: a sample is worth a closer look only then."""
 ALONE = 16
-"""Samples around a spike in which there may be few others: many are a signal."""
+"""Samples around a spike in which there may be few others: many are a signal [samples]. Evidence: test_flags.py:
+regular pulses are a signal, not spikes."""
 COMMON = 0.02
 """Share of samples above which spikes are how this channel reads, not events."""
 
 
 @compiled(nogil=True)
 def nearest(readings: Array, level: float, flags: Flags) -> float:
-    """The distance from ``level`` to the nearest other value without a flag."""
+    """The distance from ``level`` to the nearest other value without a flag, in the unit of the readings.
+
+    ``readings`` and ``flags`` have shape (n,); infinite where there is no other value.
+    """
     least = np.inf
     for i in range(len(readings)):
         if not flags[i] and readings[i] != level:
@@ -69,7 +82,8 @@ def _median(ordered: Array, count: int) -> float:
 def detached(readings: Array, level: float, gap: float, edges: bool, flags: Flags) -> int:
     """Flags runs of exactly ``level`` entered and left by jumps of more than ``gap``; returns how many samples.
 
-    Runs at the log's ends have one neighbour only and count where ``edges``.
+    ``readings`` (n,), ``level`` and ``gap`` are in the channel's logged unit; ``flags`` (n,) is changed. Runs at the
+    log's ends have one neighbor only and count where ``edges``.
     """
     n, count, i = len(readings), 0, 0
     while i < n:
@@ -149,8 +163,9 @@ def _usual_step(values: Array, starts: NDArray[np.int64], first: int, last: int,
 def repeats(values: Array, low: float, high: float, flags: Flags) -> None:
     """Flags stuck runs, and clipped ones at the channel's exact extremes, against the runs around them.
 
-    A run needs enough others on both sides to be compared with: an idle channel before and after a firing is not
-    stuck. Nor is a channel whose noise its resolution swallows: its resolution is its least change.
+    ``values`` (n,), its least ``low`` and largest ``high`` are in the channel's logged unit; ``flags`` (n,) is changed.
+    A run needs enough others on both sides to be compared with: an idle channel before and after a firing is not stuck.
+    Nor is a channel whose noise its resolution swallows: its resolution is its least change.
     """
     if not _repeats_at_length(values, low, high):
         return
@@ -182,9 +197,11 @@ def repeats(values: Array, low: float, high: float, flags: Flags) -> None:
 
 
 def local_noise(values: Array) -> Array:
-    """Standard deviation of the noise, by blocks, from every fourth difference of neighbours.
+    """Standard deviation of the noise by blocks of NOISE_BLOCK samples, from every fourth difference of neighbors.
 
-    The median of a block is that of sorted numbers, which NumPy sorts faster than any code here picks it out.
+    ``values`` (n,) gives (ceil(n / NOISE_BLOCK),), in the same unit. The factor 1.0484 is 1 / (0.6745 sqrt(2)): the
+    median of |difference| of two normal samples to the deviation of one. The median of a block is that of sorted
+    numbers, which NumPy sorts faster than any code here picks it out.
     """
     steps = np.abs(values[1::4] - values[:-1:4])
     per = NOISE_BLOCK // 4
@@ -230,7 +247,11 @@ def _spike_length(values: Array, i: int, noise: float, ordered: Array) -> int:
 
 @compiled(nogil=True)
 def spikes(values: Array, noise: Array, quantum: float, flags: Flags) -> None:
-    """Flags groups of up to three samples that stand out of the level they return to, unless they are many."""
+    """Flags groups of up to three samples that stand out of the level they return to, unless they are many.
+
+    ``values`` (n,), ``noise`` (blocks,) of :func:`local_noise` and ``quantum``, the least change, are in the channel's
+    logged unit; ``flags`` (n,) is changed.
+    """
     n = len(values)
     places = np.empty(64, np.int64)
     lengths = np.empty(64, np.int64)

@@ -13,7 +13,7 @@ from hfanalysis.record.log import Flag, Flags
 
 
 @dataclass(frozen=True)
-class Found:
+class Flagged:
     """The samples that carry one flag in one file's channels: how many of how many, and a digest of which."""
 
     file: str
@@ -23,23 +23,23 @@ class Found:
     places: bytes
 
 
-def flagged(file: str, flags: Flags) -> Iterator[Found]:
+def flagged(file: str, flags: Flags) -> Iterator[Flagged]:
     """What a channel's flags hold. Time stamps that do not run are told of their clock, not of its channels."""
     met = int(np.bitwise_or.reduce(flags)) & ~Flag.TIME
     for flag in (flag for flag in Flag if met & flag):
         places = np.flatnonzero(flags & flag)
         name = str(flag.name).lower()
-        yield Found(file, name, len(places), len(flags), hashlib.sha256(places.tobytes()).digest())
+        yield Flagged(file, name, len(places), len(flags), hashlib.sha256(places.tobytes()).digest())
 
 
-def told(found: Iterable[tuple[str, Found]], channels: Counter[str]) -> Iterator[str]:
+def flag_warnings(found: Iterable[tuple[str, Flagged]], channels: Counter[str]) -> Iterator[str]:
     """One line for each set of flagged samples.
 
     Args:
         found: channel and what was found in it.
         channels: how many channels each file has.
     """
-    together: dict[Found, list[str]] = defaultdict(list)
+    together: dict[Flagged, list[str]] = defaultdict(list)
     for channel, what in found:
         together[what].append(channel)
     for what, names in together.items():
@@ -56,7 +56,7 @@ def with_flag(whose: str, flag: str) -> str:
     return f"{whose} flagged {flag}"
 
 
-def _whose(names: Sequence[str], what: Found, channels: Counter[str]) -> str:
+def _whose(names: Sequence[str], what: Flagged, channels: Counter[str]) -> str:
     samples = f"{what.count} of {what.samples} samples"
     if len(names) == 1:
         return of_one(names[0], samples)

@@ -1,6 +1,6 @@
 """Quality flags per sample. Nothing is repaired: a flag says why a reading is not to be trusted.
 
-The rules compare a channel with itself, so that a quantised, quiet or clamped channel is not flagged wholesale, and a
+The rules compare a channel with itself, so that a quantized, quiet or clamped channel is not flagged wholesale, and a
 fast step (valve opening, liquid depletion) or an oscillation is no spike. What is doubtful is left alone.
 """
 
@@ -15,15 +15,19 @@ from hfanalysis.record import flag_kernels
 from hfanalysis.record.log import Flag, Flags
 
 SENTINELS = (999.0, 9999.0, 999.9, 99999.0, -999.0, -9999.0, -99999.0, 32767.0, -32768.0, 65535.0)
-"""Readings that loggers write where there is none."""
+"""Readings that loggers write where there is none. Source: the ends of 16-bit numbers; rows of nines by custom."""
 DETACHED = 0.2
-"""Share of a channel's range by which an exact level must stand apart from its neighbours to be no reading."""
+"""Share of a channel's range by which an exact level must stand apart from its neighbors to be no reading. Evidence:
+test_flags.py: an open thermocouple drops out, zeros of a quantized cell at rest are readings."""
 IMPOSSIBLE = {"temperature": (1.0, 6000.0), "pressure": (-5e5, 1e9)}
-"""[SI] outside of which no sensor reads, however badly zeroed."""
+"""[SI] outside of which no sensor reads, however badly zeroed: 1 to 6000 K, -5 bar to 10,000 bar."""
 
 
 def flag_readings(readings: Array, dimension: str, missing: Sequence[float] = ()) -> Flags:
-    """The flags of a channel's readings as logged (before unit, zero and tare)."""
+    """The flags (n,) of a channel's readings (n,) as logged (before unit, zero and tare).
+
+    ``dimension`` is that of the channel, ``missing`` the readings that stand for none, in the unit of the log.
+    """
     flags = np.zeros(len(readings), dtype=np.uint8)
     if len(readings) and not np.isfinite(readings.min() + readings.max()):
         flags[~np.isfinite(readings)] = Flag.DROPOUT
@@ -37,7 +41,7 @@ def flag_readings(readings: Array, dimension: str, missing: Sequence[float] = ()
 
 
 def flag_impossible(values: Array, dimension: str, flags: Flags) -> None:
-    """Flags samples [SI] that no sensor of this dimension can read."""
+    """Flags samples [SI] that no sensor of this dimension can read; ``values`` and ``flags`` have shape (n,)."""
     if dimension in IMPOSSIBLE and len(values):
         low, high = IMPOSSIBLE[dimension]
         if not low <= np.nanmin(values) <= np.nanmax(values) <= high:
@@ -103,7 +107,7 @@ def _flag_live(readings: Array, flags: Flags) -> None:
 
 
 def _quantum(values: Array) -> float:
-    """The usual size of a change of reading, which for a quantised channel is its resolution."""
+    """The usual size of a change of reading, which for a quantized channel is its resolution."""
     steps = np.abs(np.diff(values[:20_000]))
     steps = steps[steps > 0]
     return float(np.percentile(steps, 10)) if len(steps) else 0.0

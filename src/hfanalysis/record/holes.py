@@ -10,13 +10,14 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.record.log import Channel, Flag
 
-LEAST = 0.1
+SHORTEST_HOLE = 0.1
 """[s] that a hole lasts at least."""
 
-STEPS = 10.0
-"""Usual steps between samples that it lasts at least."""
+HOLE_STEPS = 10.0
+"""Usual steps between samples that it lasts at least. Evidence: test_holes.py: a log without holes has none, whatever
+its rate."""
 
-TOLD = 3
+HOLES_TOLD = 3
 """Holes that a warning places; of more it gives the number."""
 
 
@@ -29,23 +30,23 @@ def holes(time: Array) -> Array:
     steps = np.diff(time)
     if not steps.size:
         return np.empty((0, 2))
-    places = np.flatnonzero(steps > max(LEAST, STEPS * float(np.median(steps))))
+    places = np.flatnonzero(steps > max(SHORTEST_HOLE, HOLE_STEPS * float(np.median(steps))))
     return np.column_stack([time[places], time[places + 1]])
 
 
-def unasked(channel: Channel) -> Array:
-    """The holes of a channel that are not stretches which the engineer excluded."""
+def not_excluded(channel: Channel) -> Array:
+    """The holes [s] (holes, 2) of a channel that are not stretches which the engineer excluded."""
     found = holes(channel.time[channel.good])
     left_out = channel.time[(channel.flags & Flag.EXCLUDED) != 0]
     asked = [bool(((left_out > start) & (left_out < end)).any()) for start, end in found]
     return found[~np.array(asked, dtype=bool)] if asked else found
 
 
-def told(found: Iterable[tuple[str, str, Array]], channels: dict[str, int]) -> Iterator[str]:
+def hole_warnings(found: Iterable[tuple[str, str, Array]], channels: dict[str, int]) -> Iterator[str]:
     """One line for every set of holes.
 
     Args:
-        found: file, channel, and the channel's holes.
+        found: file, channel, and the channel's holes [s], (holes, 2).
         channels: how many channels each file has.
     """
     together: dict[tuple[str, tuple[tuple[float, float], ...]], list[str]] = defaultdict(list)
@@ -54,7 +55,7 @@ def told(found: Iterable[tuple[str, str, Array]], channels: dict[str, int]) -> I
             together[file, tuple((round(a, 2), round(b, 2)) for a, b in places.tolist())].append(name)
     for (file, places_), names in together.items():
         whose = file if len(names) == channels[file] > 1 else ", ".join(names)
-        longest = sorted(sorted(places_, key=lambda hole: hole[0] - hole[1])[:TOLD])
+        longest = sorted(sorted(places_, key=lambda hole: hole[0] - hole[1])[:HOLES_TOLD])
         spans = ", ".join(f"{a:.2f} to {b:.2f} s" for a, b in longest)
-        more = f" and in {len(places_) - TOLD} shorter stretches" if len(places_) > TOLD else ""
+        more = f" and in {len(places_) - HOLES_TOLD} shorter stretches" if len(places_) > HOLES_TOLD else ""
         yield f"{whose}: no good samples from {spans} of log time{more}; what happens there is not known"

@@ -21,7 +21,7 @@ from hfanalysis.record import holes
 from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.record.clocks import Clock, read_clock
 from hfanalysis.record.definition import TestDefinition
-from hfanalysis.record.flag_notes import flagged, told
+from hfanalysis.record.flag_notes import flag_warnings, flagged
 from hfanalysis.record.log import Channel
 from hfanalysis.record.plan import Plan, make_plans, open_files
 from hfanalysis.record.quiet import REFERENCES, Firing, find_firing
@@ -33,7 +33,7 @@ from hfanalysis.version import __version__
 
 Progress = Callable[[str, float], None]
 """Called now and then with the file's name and the share of it that has been read."""
-SHORTEST = 0.5
+SHORTEST_LOG = 0.5
 """[s] of a log below which no firing fits into it."""
 WORKERS = 2
 """Channels converted at a time: bounds the memory."""
@@ -105,7 +105,7 @@ class _Ingest:
         clock = read_clock(spool, plan.stamps, plan.time, rows, str(path))
         self.warnings += clock.warnings
         span = float(np.ptp(clock.time))
-        if span < SHORTEST:
+        if span < SHORTEST_LOG:
             self.warnings.append(f"{path.name}: the whole log lasts {span:.3g} s: is the unit of its time right?")
         return clock
 
@@ -142,10 +142,10 @@ class _Ingest:
         for plan, (channel, warnings) in self._channels(firing):
             found += [(channel.name, what) for what in flagged(plan.file, channel.flags)]
             said += warnings
-            lacking.append((plan.file, channel.name, holes.unasked(channel)))
+            lacking.append((plan.file, channel.name, holes.not_excluded(channel)))
             store.channel(channel, names[plan.clock], LONG_NAMES.get(channel.name, channel.name))
         count = Counter(plan.file for plan in self.plans)
-        self.warnings += [*told(found, count), *holes.told(lacking, count), *said]
+        self.warnings += [*flag_warnings(found, count), *holes.hole_warnings(lacking, count), *said]
 
     def _channels(self, firing: Firing | None) -> Iterator[tuple[Plan, tuple[Channel, list[str]]]]:
         """Channels in order, a few of them at work."""

@@ -30,7 +30,7 @@ class Flag(IntFlag):
     SATURATED = 4
     """At the end of the sensor's or the logger's range."""
     SPIKE = 8
-    """One to three samples far from their neighbours on both sides."""
+    """One to three samples far from their neighbors on both sides."""
     TIME = 16
     """Its time stamp is not later than that of an earlier sample."""
     EXCLUDED = 32
@@ -64,7 +64,9 @@ class Channel:
 
     @property
     def good(self) -> NDArray[np.bool_]:
-        """Samples that carry no flag and are finite; their times increase strictly."""
+        """Samples that carry no flag and are finite, (n,) as ``values`` [``unit``]; their ``time`` [s] increases
+        strictly.
+        """
         good: NDArray[np.bool_] = (self.flags == 0) & np.isfinite(self.values)
         return good
 

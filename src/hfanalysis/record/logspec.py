@@ -93,7 +93,7 @@ Time = Annotated[TimeSpec, _under("column")]
 
 
 @section
-class Reading(Section):
+class ReadingOptions(Section):
     """How to read a log file; None is detected from the file."""
 
     _: KW_ONLY
@@ -110,14 +110,14 @@ class Reading(Section):
 
 
 @section
-class FileSpec(Reading):
+class FileSpec(ReadingOptions):
     """One log file and how to read it."""
 
     file: Text
 
 
 @section
-class LogSpec(Reading):
+class LogSpec(ReadingOptions):
     """[log]: the files; what is given beside ``files`` holds for every file that does not say otherwise."""
 
     files: ListOf[Annotated[FileSpec, _under("file")]]
@@ -131,7 +131,7 @@ class LogSpec(Reading):
         object.__setattr__(self, "files", tuple(self._completed(spec) for spec in self.files))
 
     def _completed(self, spec: FileSpec) -> FileSpec:
-        shared = (f for f in Reading.__dataclass_fields__ if getattr(spec, f) is None)
+        shared = (f for f in ReadingOptions.__dataclass_fields__ if getattr(spec, f) is None)
         return replace(spec, **{name: getattr(self, name) for name in shared})
 
     def named(self, file: str) -> FileSpec:
@@ -168,7 +168,9 @@ class ChannelSpec(Section):
 
     @property
     def factor(self) -> tuple[float, float]:
-        """(scale, offset) from the logged reading to SI (gauge pressures without the ambient pressure)."""
+        """(scale [SI per logged unit], offset [SI]): SI = scale x reading + offset (gauge pressures without the ambient
+        pressure).
+        """
         scale, offset = unit_factor(self.unit, self.dimension, self.name)
         return scale * self.scale, scale * self.offset + offset
 

@@ -18,11 +18,13 @@ from hfanalysis.record.signals import Signal, sample_noise
 REFERENCE_TIME = 20.0
 """Wander slower than this [s] counts as the sensor's bias, which the stated accuracy covers."""
 
-LONG = 1500
-"""Samples of a stretch from which on a cubic may be taken out without taking the wander with it."""
+LONG_STRETCH = 1500
+"""Samples of a stretch from which on a cubic may be taken out without taking the wander with it [samples]. Evidence: at
+200 Hz a liquid phase of fewer samples let the fall of the pressure itself pass for wander, and m got fifty times its
+deviation."""
 
-SHORTEST = 16
-"""Samples per block from which on the wander is looked for; below, white noise hides it."""
+SHORTEST_BLOCK = 16
+"""Samples per block from which on the wander is looked for; below, white noise hides it [samples]."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Noise:
         return cls(white, flicker, signal.step)
 
     def covariance(self, time: Array) -> Array:
-        """Covariance of samples (or of means over their spacing) at the given times [s]: shape (n, n)."""
+        """Covariance (n, n) [unit^2] of samples (or of means over their spacing) at the given times [s], shape (n,)."""
         spacing = float(np.median(np.diff(time))) if time.size > 1 else self.step
         lag = np.abs(time[:, None] - time[None, :])
         apart = np.log(REFERENCE_TIME / np.clip(lag, 0.5 * spacing, REFERENCE_TIME))
@@ -55,17 +57,20 @@ class Noise:
         return np.asarray(self.flicker * apart + white * np.eye(time.size))
 
     def std_of(self, weights: Array, time: Array) -> float:
-        """Standard deviation of a weighted sum of samples at the given times."""
+        """Standard deviation [unit] of a weighted sum of samples: ``weights`` (n,) at the times (n,) [s]."""
         return float(np.sqrt(max(float(weights @ self.covariance(time) @ weights), 0.0)))
 
     def common(self, weights: Array, time: Array, other_weights: Array, other_time: Array) -> float:
-        """Covariance of two weighted sums of samples that lie apart: only the wander is common to them."""
+        """Covariance [unit^2] of two weighted sums of samples that lie apart: only the wander is common to them.
+
+        ``weights`` (n,) at ``time`` (n,) [s], ``other_weights`` (k,) at ``other_time`` (k,) [s].
+        """
         lag = np.abs(time[:, None] - other_time[None, :])
         apart = np.log(REFERENCE_TIME / np.clip(lag, 5.0 * self.step, REFERENCE_TIME))
         return float(self.flicker * (weights @ apart @ other_weights))
 
     def difference_std(self, first: tuple[float, float], second: tuple[float, float]) -> float:
-        """Standard deviation of the difference between the means over two intervals [s]."""
+        """Standard deviation [unit] of the difference between the means over two intervals [s], each (start, end)."""
         wander = 2.0 * _mean_log(first, second) - _mean_log(first, first) - _mean_log(second, second)
         white = sum(self.white**2 * self.step / max(b - a, self.step) for a, b in (first, second))
         return float(np.sqrt(max(self.flicker * wander, 0.0) + white))
@@ -73,7 +78,7 @@ class Noise:
 
 def _detrended(signal: Signal) -> Array:
     x = (signal.time - signal.time.mean()) / max(float(np.ptp(signal.time)), 1e-9)
-    order = 3 if signal.value.size > LONG else 0
+    order = 3 if signal.value.size > LONG_STRETCH else 0
     return np.asarray(signal.value - np.polyval(np.polyfit(x, signal.value, order), x))
 
 
@@ -84,9 +89,9 @@ def pool(noises: Mapping[str, Noise]) -> dict[str, Noise]:
 
 
 def _flicker(quiet: Array, white: float) -> float:
-    """A from Allan variances at block lengths of SHORTEST samples and more, less what white noise leaves at each."""
+    """A from Allan variances at blocks of SHORTEST_BLOCK samples and more, less what white noise leaves at each."""
     estimates, weights = [], []
-    length = SHORTEST
+    length = SHORTEST_BLOCK
     while quiet.size >= 5 * length:
         blocks = quiet[: quiet.size // length * length].reshape(-1, length).mean(axis=1)
         allan = 0.5 * float(np.mean(np.diff(blocks) ** 2))

@@ -9,24 +9,26 @@ from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
 
-BLOCK = 0.02
+QUIET_BLOCK = 0.02
 """[s] over which samples are averaged to look for the firing."""
 SUSTAINED = 0.1
 """[s] that a departure must last to be one."""
 MARGIN = 0.2
 """[s] kept clear before the firing."""
-LONGEST = 30.0
+LONGEST_QUIET = 30.0
 """[s] of quiet time used at most, so that filling the tank does not count."""
-SHORTEST = 0.3
+SHORTEST_QUIET = 0.3
 """[s] of quiet time below which no zero is taken."""
 SETTLED = 1.0
 """[s] of settled level needed after the firing."""
 SETTLING = 0.5
 """[s] after the firing before a zero may be taken."""
 SHIFTED = 0.4
-"""Part of the range of a channel by which its level may be shifted between the beginning and the end of a log."""
-LEAST = {"thrust": 10.0}
-"""[SI] a departure must reach to be a firing (pressures: 0.3 bar)."""
+"""Part of the range of a channel by which its level may be shifted between the beginning and the end of a log.
+Evidence: a transducer that ignition shifted down rests lower in the end, and its beginning was taken for the firing
+(test_zero.py)."""
+LEAST_DEPARTURE = {"thrust": 10.0}
+"""[N] a departure must reach to be a firing; pressures: 0.3 bar."""
 REFERENCES = ("p_chamber", "thrust", "p_run", "p_tank")
 """Channels that say when the firing is, the most telling first."""
 
@@ -39,7 +41,7 @@ class Trace:
     values: Array
 
     def between(self, start: float, end: float) -> Trace:
-        """The samples in a window."""
+        """The samples in a window, from ``start`` to ``end`` [s], both included."""
         inside = (self.time >= start) & (self.time <= end)
         return Trace(self.time[inside], self.values[inside])
 
@@ -64,13 +66,13 @@ class Firing:
 
 def find_firing(name: str, trace: Trace) -> Firing | None:
     """The first sustained departure of a channel from rest; None where it shows none."""
-    found = _departure(trace, LEAST.get(name, 30e3))
+    found = _departure(trace, LEAST_DEPARTURE.get(name, 30e3))
     return Firing(*found, name) if found else None
 
 
 def _departure(trace: Trace, least: float) -> tuple[float, float] | None:
     """First and last time [s] a channel is away from rest; None where it never leaves by ``least`` [SI]."""
-    blocks = in_blocks(trace, BLOCK)
+    blocks = in_blocks(trace, QUIET_BLOCK)
     if len(blocks.time) < 10:
         return None
     low = float(np.percentile(blocks.values, 5))
@@ -98,7 +100,7 @@ def _threshold(base: float, top: float, noise: float) -> float:
 def _at_first(blocks: Trace, most: float, step: float) -> float:
     """The level that a log begins at, where it is one of rest, at ``most`` so high: a sensor that ignition has shifted
     down rests lower in the end. Minus infinity where it begins higher."""
-    level = float(np.median(blocks.values[: max(3, round(SHORTEST / step))]))
+    level = float(np.median(blocks.values[: max(3, round(SHORTEST_QUIET / step))]))
     return level if level < most else -np.inf
 
 
@@ -131,7 +133,11 @@ def _smoothed(values: Array) -> Array:
 
 
 def spread(values: Array) -> float:
-    """Robust standard deviation: 1.4826 times the median absolute deviation."""
+    """Robust standard deviation, in the unit of ``values`` (n,): 1.4826 times the median absolute deviation.
+
+    >>> round(spread(np.array([1.0, 2.0, 3.0, 4.0, 100.0])), 4)
+    1.4826
+    """
     return float(1.4826 * np.median(np.abs(values - np.median(values)))) if len(values) else 0.0
 
 
@@ -140,7 +146,7 @@ def level(trace: Trace) -> Level | None:
 
     The standard deviation is that of block means where it is the larger: neighbouring samples are not independent.
     """
-    if len(trace.time) < 5 or trace.time[-1] - trace.time[0] < SHORTEST:
+    if len(trace.time) < 5 or trace.time[-1] - trace.time[0] < SHORTEST_QUIET:
         return None
     limit = max(4.0 * spread(trace.values), 1e-12)
     near = np.abs(trace.values - np.median(trace.values)) <= limit
@@ -156,13 +162,13 @@ def _std_of_mean(values: Array) -> float:
 
 def before(trace: Trace, firing: Firing) -> Trace:
     """The quiet stretch before a firing, cut where the channel itself departs earlier."""
-    window = trace.between(firing.start - LONGEST, firing.start - MARGIN)
-    blocks = in_blocks(window, 5 * BLOCK)
+    window = trace.between(firing.start - LONGEST_QUIET, firing.start - MARGIN)
+    blocks = in_blocks(window, 5 * QUIET_BLOCK)
     if len(blocks.time) < 5:
         return window
     limit = 4.0 * max(spread(blocks.values), 1e-12)
     calm = np.flatnonzero(np.abs(blocks.values - np.median(blocks.values)) <= limit)
-    return window.between(-np.inf, float(blocks.time[calm[-1]]) + BLOCK)
+    return window.between(-np.inf, float(blocks.time[calm[-1]]) + QUIET_BLOCK)
 
 
 def after(trace: Trace, firing: Firing) -> Trace | None:
@@ -172,7 +178,7 @@ def after(trace: Trace, firing: Firing) -> Trace | None:
     largest = float(np.percentile(np.abs(trace.values - np.median(trace.values)), 99))
     start, end = firing.end + SETTLING, float(trace.time[-1])
     while end - start >= SETTLED:
-        window = trace.between(start, min(end, start + LONGEST))
+        window = trace.between(start, min(end, start + LONGEST_QUIET))
         if is_settled(window, largest):
             return window
         start += 0.25 * (end - start)
@@ -184,7 +190,7 @@ def is_settled(trace: Trace, largest: float) -> bool:
 
     Either the trend carried on for ten seconds is within 1 % of it, or it is within its own scatter and that is small.
     """
-    blocks = in_blocks(trace, 5 * BLOCK)
+    blocks = in_blocks(trace, 5 * QUIET_BLOCK)
     if len(blocks.time) < 5:
         return False
     reach = max(10.0, float(blocks.time[-1] - blocks.time[0]))

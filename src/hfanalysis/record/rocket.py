@@ -66,7 +66,7 @@ class Tail(Section):
 
 @section
 class Structure(Section):
-    """Everything but the engine: mass [kg] and centre of gravity [m from the nose tip]."""
+    """Everything but the engine: mass [kg] and center of gravity [m from the nose tip]."""
 
     mass: Mass
     center_of_gravity: Place

@@ -67,7 +67,7 @@ DERIVED = {"derived": True}
 
 @section
 class Section:
-    """What every section has: near misses for misspelt keys, and a place for checks across its keys."""
+    """What every section has: near misses for misspelled keys, and a place for checks across its keys."""
 
     @model_validator(mode="before")
     @classmethod
@@ -105,7 +105,7 @@ ANY = Range("", lambda x: True)
 
 
 def between(low: float, high: float, words: str) -> Range:
-    """A closed range in SI."""
+    """A closed range; ``low`` and ``high`` [SI]."""
     return Range(words, lambda x: low <= x <= high)
 
 

@@ -33,7 +33,8 @@ from hfanalysis.record.schema import (
 from hfanalysis.units import Value
 
 LIQUID_DENSITY_LIMIT = 1250.0
-"""[kg/m^3] above any liquid nitrous oxide that can be loaded (1230 at its normal boiling point)."""
+"""[kg/m^3] above any liquid nitrous oxide that can be loaded. Source: saturated liquid at its normal boiling point,
+1230 kg/m^3 (CoolProp)."""
 
 _DENSITY = between(100.0, 20e3, "between 100 and 20000 kg/m^3")
 _AMBIENT = between(20e3, 120e3, "an absolute ambient pressure, between 0.2 and 1.2 bar")

@@ -10,14 +10,18 @@ from hfanalysis.arrays import Array
 from hfanalysis.record.holes import holes
 from hfanalysis.record.log import Channel, TestLog
 
-SMOOTHING = 0.2
-"""Seconds through which a straight line gives the pressure at the full line."""
+LINE_FIT_TIME = 0.2
+"""Seconds through which a straight line gives the pressure at the full line. Evidence: the mean over the next 50 ms of
+a falling pressure put it 0.1 bar low."""
 MAD_TO_STD = 1.4826
+"""Standard deviation of a normal distribution over its median absolute deviation. Source: 1 / 0.6745."""
 ON_EDGE = 1e-3
-"""Of the time between samples, within which one counts as on the edge of a stretch."""
+"""Of the time between samples, within which one counts as on the edge of a stretch. Evidence: times counted from
+another origin are rounded anew, and means changed with the last digits of a log."""
 
 BRIDGE = 0.1
-"""[s] on either side of a hole over which a signal's mean is taken."""
+"""[s] on either side of a hole over which a signal's mean is taken. Evidence: an impulse across a hole hung on two
+single samples (test_performance.py)."""
 
 
 @dataclass(frozen=True)
@@ -50,12 +54,14 @@ class Signal:
         return self.time.size < 8 or float(np.ptp(self.value)) == 0.0
 
     def between(self, start: float, end: float) -> Signal:
-        """The samples with start <= time < end, whatever the time of one on an edge was rounded to."""
+        """The samples with start <= time < end [s], whatever the time of one on an edge was rounded to."""
         a, b = np.searchsorted(self.time, np.array([start, end]) - self._edge)
         return replace(self, time=self.time[a:b], value=self.value[a:b])
 
     def holes(self, start: float = -np.inf, end: float = np.inf) -> Array:
-        """From when to when [s] (holes, 2) it has no samples, of holes that reach into a stretch."""
+        """From when to when [s] (holes, 2) it has no samples, of holes that reach into a stretch from ``start`` to
+        ``end`` [s].
+        """
         found = holes(self.time)
         return found[(found[:, 1] > start) & (found[:, 0] < end)]
 
@@ -75,12 +81,13 @@ class Signal:
         return replace(self, time=time, value=np.insert(self.value, places, np.column_stack([before, after]).ravel()))
 
     def shifted(self, origin: float) -> Signal:
-        """The same samples with times counted from ``origin``."""
+        """The same samples with times [s] counted from ``origin`` [s]."""
         return replace(self, time=self.time - origin)
 
     def smooth(self, width: float) -> Array:
-        """Running mean over ``width`` seconds, centred on each sample and with those on its edges; narrower at the
-        ends."""
+        """Running mean (n,) in the channel's unit over ``width`` [s], centered on each sample and with those on its
+        edges; narrower at the ends.
+        """
         total = np.concatenate(([0.0], np.cumsum(self.value - self._level)))
         half = 0.5 * width + self._edge
         a = np.searchsorted(self.time, self.time - half, side="left")
@@ -88,16 +95,16 @@ class Signal:
         return np.asarray((total[b] - total[a]) / (b - a) + self._level)
 
     def at(self, times: Array) -> Array:
-        """Values at given times by linear interpolation between good samples."""
+        """Values (k,), in the channel's unit, at given times (k,) [s] by linear interpolation between good samples."""
         return np.interp(times, self.time, self.value)
 
     def mean(self, start: float, end: float) -> float:
-        """Mean over [start, end); NaN where there is no sample."""
+        """Mean over [start, end) [s], in the channel's unit; NaN where there is no sample."""
         part = self.between(start, end).value
         return float(part.mean()) if part.size else float("nan")
 
     def reduced(self, width: float) -> Signal:
-        """Block means over ``width`` seconds (the signal itself where its samples are no closer than that)."""
+        """Block means over ``width`` [s] (the signal itself where its samples are no closer than that)."""
         if self.time.size < 2 or self.step >= width:
             return self
         block = np.floor((self.time - self.time[0] + self._edge) / width).astype(np.int64)
@@ -124,7 +131,10 @@ def live_signals(log: TestLog) -> dict[str, Signal]:
 
 
 def sample_noise(value: Array) -> float:
-    """Standard deviation of a sample about a locally straight line, from second differences by their median."""
+    """Standard deviation of a sample about a locally straight line, from second differences by their median.
+
+    In the unit of ``value`` (n,); a second difference of white noise has six times its variance, hence sqrt(6).
+    """
     if value.size < 3:
         return 0.0
     second = np.diff(value, 2)
@@ -132,8 +142,8 @@ def sample_noise(value: Array) -> float:
 
 
 def line_at(signal: Signal, instant: float) -> float:
-    """Value of a signal at an instant, from a straight line through what follows."""
-    head = signal.between(instant, instant + SMOOTHING + 8.0 * signal.step)
+    """Value of a signal, in its unit, at an ``instant`` [s], from a straight line through what follows."""
+    head = signal.between(instant, instant + LINE_FIT_TIME + 8.0 * signal.step)
     if head.time.size > 3:
         return float(np.polyfit(head.time - instant, head.value, 1)[1])
     return signal.mean(instant, np.inf)

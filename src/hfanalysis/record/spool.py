@@ -20,11 +20,12 @@ from hfanalysis.arrays import Array
 from hfanalysis.record.readers import Source, Text
 
 IN_MEMORY = 1 << 30
-"""Bytes of one log file's columns that may stay in memory."""
+"""Bytes of one log file's columns that may stay in memory [B]."""
 WORKERS = 2
 """Threads that put columns away: most of it is waiting for the system to hand out memory."""
 BLOCK = 1 << 23
-"""Samples of a column kept together: so many that the system hands out memory in large pages, as it is touched."""
+"""Samples of a column kept together [samples]. Evidence: the system hands out memory for so many in large pages, as it
+is touched; small pages cost more than the reading."""
 
 
 @dataclass
@@ -35,7 +36,7 @@ class Growing:
     size: int = 0
 
     def append(self, part: Array) -> None:
-        """Add numbers at the end."""
+        """Add numbers (n,) at the end, in the unit of the log."""
         if not self.blocks:
             self.blocks, self.size = [part], len(part)
             return
@@ -54,7 +55,7 @@ class Growing:
             part, self.size = part[count:], self.size + count
 
     def parts(self) -> list[Array]:
-        """The numbers, in order."""
+        """The numbers, in order: arrays (k,) in the unit of the log."""
         return [*self.blocks[:-1], self.blocks[-1][: self.size - BLOCK * (len(self.blocks) - 1)]]
 
 
@@ -73,7 +74,9 @@ class Spool:
     _files: dict[int, IO[bytes]] = field(default_factory=dict)
 
     def fill(self, columns: Sequence[int], stamps: Sequence[int], progress: Callable[[float], None]) -> None:
-        """Read the columns of the file once."""
+        """Read the columns of the file once, in the unit of the log; ``progress`` is told the share [0 to 1] that has
+        been read.
+        """
         np.empty(31 << 17)  # 31 MB given back: from then on glibc keeps freed memory of this size at hand
         size, idle = 0, []
         with ThreadPoolExecutor(WORKERS) as pool:
@@ -88,7 +91,7 @@ class Spool:
                     size = 0
                 self._note(chunk.text)
                 self.written |= chunk.written
-        self.idle = _telling(np.concatenate(idle)) if idle and len(columns) > 1 else None
+        self.idle = _if_rare(np.concatenate(idle)) if idle and len(columns) > 1 else None
 
     def _append(self, numbers: Sequence[tuple[int, Array]]) -> int:
         """Keep the numbers of some columns; returns their bytes."""
@@ -115,7 +118,7 @@ class Spool:
         return on_disk + (self._columns[column].size if column in self._columns else 0)
 
     def look(self, column: int) -> Array:
-        """The numbers of a column, not to be changed."""
+        """The numbers (n,) of a column, in the unit of the log, not to be changed."""
         if column in self._files:
             return self._gathered(column)
         parts = self._columns[column].parts() if column in self._columns else []
@@ -132,7 +135,7 @@ class Spool:
         return numbers
 
     def take(self, column: int) -> Array:
-        """The numbers of a column, which are the caller's from now on."""
+        """The numbers (n,) of a column, in the unit of the log, which are the caller's from now on."""
         numbers = np.require(self.look(column), requirements="W")
         self._drop(column)
         return numbers
@@ -159,6 +162,6 @@ def _all_zero(columns: Sequence[Array]) -> NDArray[np.bool_]:
     return idle
 
 
-def _telling(idle: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
+def _if_rare(idle: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
     """Rows of zeros are a dropped-out logger only where they are rare."""
     return idle if 0 < np.count_nonzero(idle) < 0.05 * len(idle) else None

@@ -33,7 +33,7 @@ class Store:
         self._file.close()
 
     def clock(self, name: str, time: NDArray[np.float64]) -> None:
-        """A dimension: the stamps [s, log time] of the channels on it."""
+        """A dimension: the stamps (n,) [s, log time] of the channels on it."""
         data = self._dataset(name, time)
         data.attrs["units"] = "s"
         data.attrs["long_name"] = "log time"

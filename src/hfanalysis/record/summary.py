@@ -41,7 +41,12 @@ def channel_summary(channel: Channel) -> ChannelSummary:
 
 
 def rate(time: Array) -> float | None:
-    """Samples per second: the inverse of the median step between increasing stamps; None where there is none."""
+    """Samples per second [1/s]: the inverse of the median step between increasing stamps ``time`` (n,) [s]; None
+    without any.
+
+    >>> rate(np.array([0.0, 0.002, 0.004, 0.004, 0.006]))
+    500.0
+    """
     steps = np.diff(time)
     steps = steps[steps > 0.0]
     return float(f"{1.0 / np.median(steps):.4g}") if steps.size else None

@@ -12,8 +12,9 @@ from hfanalysis.record.quiet import Firing, Level, Trace, after, before, level
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value, si_unit
 
-FAR = 50e3
-"""[Pa] from ambient at which a quiet reading is no longer the open air, whatever the sensor's accuracy."""
+FAR_FROM_AMBIENT = 50e3
+"""[Pa] from ambient at which a quiet reading is no longer the open air, whatever the sensor's accuracy. Evidence:
+test_zero.py: a zero far from ambient is refused with a warning."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Zero:
     warnings: tuple[str, ...] = ()
 
     def at(self, time: Array) -> Array | float:
-        """What is subtracted at these times [s]."""
+        """What is subtracted at these times (n,) [s], in the channel's unit [SI]; one number where nothing drifts."""
         if len(self.times) < 2:
             return self.value
         curve: Array = np.interp(time, self.times, (self.value, self.value + self.drift))
@@ -39,12 +40,20 @@ class Zero:
 
 
 def ambient_zero(spec: ChannelSpec, trace: Trace, firing: Firing | None, ambient: Value, accuracy: float) -> Zero:
-    """The zero of a pressure that is open to the air before ignition."""
+    """The zero [Pa] of a pressure that is open to the air before ignition.
+
+    Args:
+        spec: the channel.
+        trace: its good samples [s], [Pa].
+        firing: when the log departs from rest; None where it does not.
+        ambient: pressure [Pa] that the open sensor should read.
+        accuracy: standard deviation of the sensor's bias [Pa].
+    """
     found, reason = _quiet_level(trace, firing)
     if found is None:
         return _none(f"channel {spec.name}: zero not taken: {reason}")
     error = found.value - ambient.value
-    if abs(error) > max(5.0 * accuracy, FAR):
+    if abs(error) > max(5.0 * accuracy, FAR_FROM_AMBIENT):
         return _none(
             text(
                 "channel {name}: zero not taken: it reads {level} in the quiet time, not ambient {ambient}",
@@ -63,7 +72,10 @@ def not_back(channel: str) -> str:
 
 
 def tare(spec: ChannelSpec, trace: Trace, firing: Firing | None, accuracy: float) -> Zero:
-    """The zero of a load cell: from before the firing, and after it where the cell is at rest again."""
+    """The zero [N or kg] of a load cell: from before the firing, and after it where the cell is at rest again.
+
+    ``trace`` holds its good samples [s], [SI]; ``accuracy`` is the standard deviation of its bias [SI].
+    """
     first, reason = _quiet_level(trace, firing)
     if first is None or firing is None:
         return _none(f"channel {spec.name}: tare not taken: {reason}")

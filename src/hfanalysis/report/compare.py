@@ -1,4 +1,4 @@
-"""Two tests laid over each other: the same charts in two colours, and their numbers side by side."""
+"""Two tests laid over each other: the same charts in two colors, and their numbers side by side."""
 
 from __future__ import annotations
 

@@ -81,7 +81,13 @@ def _reading(chart: Chart, one: Series, t: float) -> Markup:
 
 
 def near(time: Array, values: Array, t: float) -> float | None:
-    """The value of the sample nearest to ``t``; None outside the series and where there is no number."""
+    """The value, in the unit of ``values`` (n,), of the sample nearest to ``t`` [s]; None outside of ``time`` (n,) [s].
+
+    None also where there is no number.
+
+    >>> near(np.array([0.0, 1.0, 2.0]), np.array([5.0, 6.0, np.nan]), 0.7), near(np.array([0.0]), np.array([5.0]), 1.0)
+    (6.0, None)
+    """
     if not time.size or not time[0] <= t <= time[-1]:
         return None
     after = int(np.searchsorted(time, t))

@@ -17,7 +17,9 @@ _NEGATIVE, _POWER = re.compile(r"(?<![\w.)])-(?=\d)"), re.compile(r"(?<=[A-Za-z)
 
 
 def both(si: str, team: str, style: str = "", value: float | None = None, unit: str = "") -> Markup:
-    """Text in both systems of units: SI's shows, the page's script changes it. ``value`` is the number in SI."""
+    """Text in both systems of units: SI's shows, the page's script changes it. ``value`` is the number in ``unit``
+    [SI].
+    """
     if si == team and value is None and not style:
         return escape(si)
     known = "" if value is None else Markup(' data-value="{}" data-unit="{}"').format(repr(float(value)), unit)
@@ -27,7 +29,7 @@ def both(si: str, team: str, style: str = "", value: float | None = None, unit: 
 
 
 def amount(value: float | None, unit: str, digits: int = 4, difference: bool = False) -> Markup:
-    """A number without uncertainty, with its unit; ``difference`` for those that no zero point concerns."""
+    """A ``value`` without uncertainty, in ``unit`` [SI]; ``difference`` for those that no zero point concerns."""
     if value is None:
         return Markup("–")
     texts = []
@@ -72,7 +74,7 @@ def _converted(shown: str, piece: str, quantity: Quoted) -> Markup:
 
 
 def value(quantity: Quantity, name: str = "", std_last: bool = False) -> Markup:
-    """A quantity with its standard deviation and unit; ``std_last`` puts the deviation behind the unit."""
+    """A quantity [SI] with its standard deviation and unit; ``std_last`` puts the deviation behind the unit."""
     si, team = _shown(quantity, name)
     number = both(si.value, team.value, "number", quantity.value, quantity.unit)
     std = Markup(" ") + both(f"± {si.std}", f"± {team.std}", "std") if si.std else Markup()
@@ -84,7 +86,7 @@ def value(quantity: Quantity, name: str = "", std_last: bool = False) -> Markup:
 
 
 def interval(quantity: Quantity, name: str = "") -> Markup:
-    """Its 95 % interval."""
+    """Its 95 % interval [SI], shown in both systems of units."""
     si, team = _shown(quantity, name)
     return both(si.interval, team.interval)
 
@@ -116,7 +118,7 @@ def symbol_and_words(name: str) -> Markup:
 
 
 MARKS = {"good": "✓", "open": "?", "bad": "✕", "sensor": "!"}
-"""Signs that say without colour what a colour says."""
+"""Signs that say without color what a color says."""
 
 
 def mark(verdict: str) -> str:
@@ -125,7 +127,7 @@ def mark(verdict: str) -> str:
 
 
 def verdict(text: str) -> Markup:
-    """A verdict as a badge: sign, word and colour."""
+    """A verdict as a badge: sign, word and color."""
     if not text:
         return Markup()
     kind = mark(text)
@@ -171,5 +173,5 @@ def bullets(texts: Iterable[str | Markup], style: str) -> Markup:
 
 
 def seconds(time: float, decimals: int = 2) -> str:
-    """An instant of a chart."""
+    """An instant [s] of a chart."""
     return f"{fixed(time, decimals)} s"

@@ -11,7 +11,7 @@ from hfanalysis.products.disk import atomic
 from hfanalysis.report.page import SUMMARY, render
 
 _HEAD = 64_000
-"""Characters from the start of a page within which its summary ends."""
+"""Characters from the start of a page within which its summary ends [characters]."""
 
 _EMPTY: dict[str, Any] = {"kind": "", "date": "", "source": "measured", "sentence": "", "numbers": [], "spark": {}}
 

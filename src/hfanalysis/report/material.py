@@ -24,7 +24,7 @@ from hfanalysis.wording.numbers import adopted_in_words
 
 P = TypeVar("P", bound=Product)
 _BEFORE, _AFTER = 2.0, 3.0
-"""[s] shown before the opening and after the last event."""
+"""[s] shown before the opening and after the last event; as :mod:`hfanalysis.validate.histories` has them."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def event_list(material: Material) -> list[Event]:
 
 
 def phase_list(material: Material) -> list[Phase]:
-    """What flows between one event and the next: the line filling, liquid, vapour, nitrogen; they may overlap."""
+    """What flows between one event and the next: the line filling, liquid, vapor, nitrogen; they may overlap."""
     end = material.event("t_end")
     if not material.fired or end is None:
         return []
@@ -170,7 +170,10 @@ def _column(item: Any) -> Column:
 
 
 def required(table: Table, *names: str) -> list[Array]:
-    """Variables of one table; raises :class:`AbsentError` naming one that it has not."""
+    """Variables of one table, each (n,) in the unit that the table has for it.
+
+    Raises :class:`AbsentError` naming one that it has not.
+    """
     for name in names:
         if name not in table or not np.isfinite(table[name].values).any():
             raise AbsentError(f"the products hold no {name.replace('_', ' ')}")

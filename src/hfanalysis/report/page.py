@@ -117,7 +117,7 @@ def _source_words(source: str) -> str:
 
 
 def kind(material: Material) -> str:
-    """What kind of test it was, as recognised, else as stated."""
+    """What kind of test it was, as recognized, else as stated."""
     segments = material.get(Segments)
     found = segments.kind if segments is not None else material.definition.test.kind
     return wording.KINDS.get(found, found)

@@ -15,7 +15,9 @@ from hfanalysis.charts.colours import COLOURS
 from hfanalysis.products.disk import atomic
 
 _BINS = 2000
+"""Points across a picture: more than its 1500 pixels."""
 _INCHES = 10.0
+"""Width of a picture [in]."""
 _LIGHT = {name: pair[0] for name, pair in COLOURS.items()} | {
     "noise": COLOURS["soft"][0],
     "zero": COLOURS["soft"][0],

@@ -11,12 +11,14 @@ from hfanalysis.report.material import Material, window
 from hfanalysis.report.time_charts import of_channel
 
 WIDTH, HEIGHT = 240.0, 44.0
+"""Of the box that the line is drawn in [px]."""
 _BINS = 80
+"""Points of the line: one in three pixels."""
 _CHANNELS = ("p_chamber", "thrust", "p_tank", "m_tank")
 
 
 def spark(material: Material) -> dict[str, Any]:
-    """The path of the line in a box of WIDTH by HEIGHT, what it is, and its colour; empty where there is nothing."""
+    """The path of the line in a box of WIDTH by HEIGHT, what it is, and its color; empty where there is nothing."""
     for name in _CHANNELS:
         channel = material.log.get(name)
         path = "" if channel is None else _path(material, name)

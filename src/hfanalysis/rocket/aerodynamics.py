@@ -1,4 +1,4 @@
-"""Normal force, centre of pressure and drag of a rocket from its geometry.
+"""Normal force, center of pressure and drag of a rocket from its geometry.
 
 Barrowman (1967) for the slopes of the normal force and where it acts, Galejs for the body's lift at an angle of attack,
 and the drag build-up of Niskanen (2009), who follows Hoerner: skin friction, pressure and base drag. Subsonic; between
@@ -19,10 +19,10 @@ from hfanalysis.thermo.atmosphere import temperature
 NoseKind = Literal["cone", "ogive", "von_karman", "ellipsoid"]
 
 REGULAR_PAINT = 60e-6
-"""[m] roughness of an ordinary coat of paint (Niskanen 2009, table 3.2)."""
+"""Roughness of an ordinary coat of paint [m]. Source: Niskanen 2009, table 3.2."""
 
 BODY_LIFT = 1.1
-"""Galejs: a body lifts as K A_plan/A_ref sin^2(alpha); he gives K = 1 to 1.1."""
+"""K of a body that lifts as K A_plan/A_ref sin^2(alpha) [-]. Source: Galejs gives K = 1 to 1.1."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Fins:
 
     @property
     def cos_sweep(self) -> float:
-        """Cosine of the sweep of the line through the chords' middles."""
+        """Cosine [-] of the sweep of the line through the chords' middles."""
         across = self.sweep + 0.5 * (self.tip - self.root)
         return self.span / sqrt(self.span**2 + across**2)
 
@@ -118,14 +118,22 @@ def _ogive_volume(length: float, radius: float) -> float:
 
 
 def compressibility(mach: float) -> float:
-    """Prandtl and Glauert's sqrt(|1 - M^2|), held at Mach 0.8's from 0.8 to 1.1."""
+    """Prandtl and Glauert's sqrt(|1 - M^2|) [-], held at Mach 0.8's from 0.8 to 1.1.
+
+    >>> round(compressibility(0.5), 4)
+    0.866
+    """
     if mach < 0.8:
         return sqrt(1.0 - mach * mach)
     return 0.6 if mach < 1.1 else sqrt(mach * mach - 1.0)
 
 
 def components(shape: Shape, mach: float) -> list[Component]:
-    """What carries normal force at small angles of attack: nose, boat tail, fins in the presence of the body."""
+    """What carries normal force [1/rad] at small angles of attack and where [m]: nose, boat tail, fins in the presence
+    of the body.
+
+    ``mach`` [-] (Barrowman 1967).
+    """
     found = [Component("nose", 2.0, nose_center(shape.nose, 0.5 * shape.diameter))]
     if shape.tail is not None:
         found.append(_tail(shape, shape.tail))
@@ -191,9 +199,10 @@ def wetted_area(shape: Shape) -> float:
 
 
 def friction(length: float, roughness: float, mach: float, altitude: float) -> float:
-    """Skin friction coefficient of a turbulent boundary layer, smooth or rough whichever is more.
+    """Skin friction coefficient [-] of a turbulent boundary layer, smooth or rough whichever is more.
 
-    1/(1.5 ln Re - 5.6)^2 (1 - 0.1 M^2) and 0.032 (R_s/L)^0.2 (1 - 0.1 M^2) below Mach 1 (Niskanen 2009, eq. 3.81ff).
+    ``length`` and ``roughness`` [m], ``altitude`` above sea level [m]. 1/(1.5 ln Re - 5.6)^2 (1 - 0.1 M^2) and 0.032
+    (R_s/L)^0.2 (1 - 0.1 M^2) below Mach 1 (Niskanen 2009, eq. 3.81ff).
     """
     _, rho, sound = air(altitude)
     reynolds = max(rho * mach * sound * length / viscosity(temperature(altitude)), 1e4)
@@ -214,12 +223,19 @@ def viscosity(t: float) -> float:
 
 
 def base_drag(mach: float) -> float:
-    """Coefficient on the area of a blunt base: 0.12 + 0.13 M^2, 0.25/M above Mach 1 (Hoerner)."""
+    """Coefficient [-] on the area of a blunt base: 0.12 + 0.13 M^2, 0.25/M above Mach 1 (Hoerner).
+
+    >>> round(base_drag(0.5), 4)
+    0.1525
+    """
     return 0.12 + 0.13 * mach**2 if mach < 1.0 else 0.25 / mach
 
 
 def drag_parts(shape: Shape, mach: float, altitude: float = 0.0) -> dict[str, float]:
-    """Drag coefficient at no angle of attack, by part, on the body's cross-section; the engine is not burning."""
+    """Drag coefficient [-] at no angle of attack, by part, on the body's cross-section; the engine is not burning.
+
+    ``altitude`` above sea level [m] of the air that it flies through (Niskanen 2009).
+    """
     cf, base = friction(shape.length, shape.roughness, mach, altitude), base_drag(mach)
     slender = shape.length / shape.diameter
     found = {
@@ -262,6 +278,6 @@ def _fin_drag(shape: Shape, fins: Fins, cf: float, base: float, mach: float) -> 
 
 
 def drag_table(shape: Shape, altitude: float = 0.0) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Mach numbers and drag coefficients of the build-up, from Mach 0.05 to 0.95."""
+    """Mach numbers and drag coefficients [-] of the build-up, from Mach 0.05 to 0.95, at an ``altitude`` [m]."""
     machs = tuple(float(round(mach, 2)) for mach in np.arange(0.05, 0.96, 0.05))
     return machs, tuple(sum(drag_parts(shape, mach, altitude).values()) for mach in machs)

@@ -1,6 +1,6 @@
-"""Centre of gravity and pitch inertia of the rocket over the burn: CG_total(t) of the report (section 3.2.5).
+"""Center of gravity and pitch inertia of the rocket over the burn: CG_total(t) of the report (section 3.2.4).
 
-Liquid and vapour lie over each other in the tank; grain, chamber gas, empty engine and structure stay where they are.
+Liquid and vapor lie over each other in the tank; grain, chamber gas, empty engine and structure stay where they are.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from hfanalysis.arrays import Array
 
 @dataclass(frozen=True)
 class Part:
-    """Mass [kg], centre of gravity [m from the nose tip] and length [m] of a part, each over time or constant."""
+    """Mass [kg], center of gravity [m from the nose tip] and length [m] of a part, each over time or constant."""
 
     mass: Array | float
     center: Array | float
@@ -24,7 +24,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Balance:
-    """Mass [kg], centre of gravity [m from the nose tip], pitch inertia about it [kg m^2] over time."""
+    """Mass [kg], center of gravity [m from the nose tip], pitch inertia about it [kg m^2] over time."""
 
     mass: Array
     center: Array
@@ -32,7 +32,10 @@ class Balance:
 
 
 def balance(parts: Iterable[Part]) -> Balance:
-    """Of parts taken as slender rods: CG = sum m x / sum m, I = sum m (L^2/12 + (x - CG)^2)."""
+    """Mass [kg], CG [m] and pitch inertia [kg m^2], (n,), of parts taken as slender rods (report, eq. 3.60).
+
+    CG = sum m x / sum m, I = sum m (L^2/12 + (x - CG)^2).
+    """
     known = list(parts)
     mass = sum((np.asarray(p.mass, dtype=np.float64) for p in known), np.zeros(1))
     center = sum((np.asarray(p.mass) * p.center for p in known), np.zeros(1)) / mass
@@ -50,9 +53,9 @@ class TankPlace:
 
 
 def oxidizer(place: TankPlace, liquid: Array, vapor: Array, liquid_volume: Array) -> list[Part]:
-    """The tank's content: ``liquid`` and ``vapor`` [kg] over time, the liquid's specific volume [m^3/kg].
+    """The tank's content: ``liquid`` and ``vapor`` [kg] over time, the liquid's specific volume [m^3/kg], (n,) each.
 
-    The liquid fills the tank from below; each phase has its centre in the middle of the length it takes.
+    The liquid fills the tank from below; each phase has its center in the middle of the length it takes.
     """
     height = np.clip(liquid * liquid_volume / place.volume, 0.0, 1.0) * place.length
     bottom = place.top + place.length

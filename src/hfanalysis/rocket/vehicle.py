@@ -11,7 +11,10 @@ from hfanalysis.compiled import compiled
 from hfanalysis.thermo.air import air
 
 EARTH_RADIUS = 6_371_000.0
+"""Mean radius of the Earth [m]. Source: IUGG, 6371.0 km."""
+
 STANDARD_GRAVITY = 9.80665
+"""g at sea level [m/s^2]. Source: standard gravity, by definition."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,7 @@ class Vehicle:
 
     @property
     def drag_table(self) -> Array:
-        """What :func:`drag_coefficient` reads: rows of Mach numbers and of coefficients; one column for a constant."""
+        """What :func:`drag_coefficient` reads, (2, n): Mach numbers and coefficients [-]; one column for a constant."""
         if self.drag_mach is None or self.drag_values is None:
             return np.array([[0.0], [self.drag_coefficient]])
         return np.array([self.drag_mach, self.drag_values])
@@ -40,10 +43,11 @@ class Vehicle:
 
 @compiled
 def drag_coefficient(mach: float, table: Array) -> float:
-    """C_d at a Mach number: linear between the table's columns (Mach numbers, coefficients), its ends held.
+    """C_d [-] at a Mach number: linear between the columns of ``table`` (2, n) (Mach numbers, coefficients), its ends
+    held.
 
-    >>> drag_coefficient(0.5, np.array([[0.0, 1.0], [0.5, 0.75]]))
-    0.625
+    >>> round(drag_coefficient(0.4, np.array([[0.3, 0.5], [0.40, 0.42]])), 6)
+    0.41
     """
     last = table.shape[1] - 1
     if mach <= table[0, 0]:
@@ -57,11 +61,18 @@ def drag_coefficient(mach: float, table: Array) -> float:
 
 @compiled
 def drag(altitude: float, speed: float, area: float, table: Array) -> float:
-    """D = 1/2 C_d A rho v |v| [N] on the frontal area [m^2], against the speed [m/s]."""
+    """D = 1/2 C_d A rho v |v| [N] (report, eq. 2.19), against the ``speed`` [m/s].
+
+    ``altitude`` above sea level [m], frontal ``area`` [m^2], ``table`` (2, n) of :func:`drag_coefficient`.
+    """
     _, rho, sound = air(altitude)
     return 0.5 * drag_coefficient(abs(speed) / sound, table) * area * rho * speed * abs(speed)
 
 
 def gravity(altitude: float) -> float:
-    """g = (r_E / (r_E + z))^2 g_SL [m/s^2] at an altitude above sea level [m]."""
+    """g = (r_E / (r_E + z))^2 g_SL [m/s^2] at an altitude above sea level [m] (report, eq. 2.21).
+
+    >>> round(gravity(10000.0), 4)
+    9.7759
+    """
     return STANDARD_GRAVITY * (EARTH_RADIUS / (EARTH_RADIUS + altitude)) ** 2

@@ -23,7 +23,8 @@ RELAXATIONS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.008, 0.013, 0.02, 0.03, 0.05, 
 
 
 SHAPE = 0.3
-"""Part of the sample interval that the shape of an onset leaves open, whatever the noise."""
+"""Part of the sample interval that the shape of an onset leaves open, whatever the noise. Evidence: without it onsets
+of other shapes were dated too surely (test_breaks.py)."""
 
 WANDER_POINTS = 120
 """Block means over a window that are enough to carry the wander into the instant."""
@@ -59,7 +60,7 @@ def kink(order: int = 2, before: int | None = None) -> Design:
 
 
 def rounded_kink(width: float) -> Design:
-    """One parabola on which the slope changes, not at once but evenly over ``width`` seconds about the break."""
+    """One parabola on which the slope changes, not at once but evenly over ``width`` [s] about the break."""
 
     def columns(time: Array, instant: float) -> Array:
         x = time - instant
@@ -91,9 +92,9 @@ def find_break(
     constants: Sequence[float] = (0.0,),
     noise: Noise | None = None,
 ) -> Break:
-    """The most likely instant of a break in a signal (a window around it), over the candidate instants.
+    """The most likely instant [s] of a break in a signal (a window around it), over the candidate instants (k,) [s].
 
-    ``designs`` are the shapes tried; each instant takes its best. ``constants`` are their time constants, for the
+    ``designs`` are the shapes tried; each instant takes its best. ``constants`` are their time constants [s], for the
     record. ``noise`` is the sensor's, with its slow wander, which the residuals of so short a window do not show.
     """
     sums = np.array([[_sum_of_squares(signal, design, c) for c in candidates] for design in designs])
@@ -116,7 +117,10 @@ def find_break(
 
 
 def combine(breaks: Sequence[Break], step: float) -> Break:
-    """One instant from several signals that break together: their profiles multiply (same candidates)."""
+    """One instant [s] from several signals that break together: their profiles multiply (same candidates).
+
+    ``step`` [s] is the finest sampling among them.
+    """
     if len(breaks) == 1:
         return breaks[0]
     total = np.sum([b.log_likelihood for b in breaks], axis=0)
@@ -171,9 +175,10 @@ def _noise_variance(signal: Signal, design: Design, instant: float) -> float:
 
 
 def memory_length(residual: Array) -> float:
-    """Integrated autocorrelation of a noise series in samples (1 for white noise): initial positive sequence.
+    """Integrated autocorrelation of a noise series (n,) [samples] (1 for white noise): initial positive sequence.
 
-    Geyer's rule: pairs of lags are added while their sum is positive, which keeps the far, noisy lags out.
+    Pairs of lags are added while their sum is positive, which keeps the far, noisy lags out (Geyer, Statistical Science
+    7, 1992, 473-483).
     """
     n = residual.size
     if n < 8:

@@ -8,15 +8,18 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 
 CRITICAL_RATIO = 1.80
-"""p_c / p_a at which a nozzle unchokes, ((gamma + 1)/2)^(gamma/(gamma - 1)): 1.77 to 1.83 for gamma of 1.2 to 1.3."""
+"""p_c / p_a [-] at which a nozzle unchokes: 1.77 to 1.83 for gamma of 1.2 to 1.3. Source: ((gamma + 1)/2)^(gamma/(gamma
+- 1)), the isentropic flow of a convergent throat."""
 
 RATIO_STD = 0.02
+"""Standard deviation of that ratio [-]. Source: its range for gamma of 1.2 to 1.3, over sqrt(12)."""
 
 
 def find_unchoking(chamber: Signal, ambient: float, t_feed: float, offset: float = 0.0) -> tuple[float, float] | str:
-    """t_end [s] and its standard deviation from the chamber pressure with time from the opening; else the reason.
+    """t_end [s] and its standard deviation [s] from the chamber pressure with time from the opening; else the reason.
 
-    ``offset`` [Pa] is how far the open chamber read from ambient.
+    ``ambient`` [Pa] is the air's, ``t_feed`` [s] from when on it is looked for, ``offset`` [Pa] how far the open
+    chamber read from ambient.
     """
     part = chamber.between(max(t_feed, 0.0), np.inf)
     if part.time.size < 8:

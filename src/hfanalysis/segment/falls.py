@@ -7,32 +7,35 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.record.signals import Signal
 
-WINDOW = 0.03
-"""Seconds over which the level is taken before and after a fall."""
+FALL_WINDOW = 0.03
+"""Seconds over which the level is taken before and after a fall. Evidence: two falls of the chamber, of liquid and
+fuel, confused the date of t_v; test_events.py tells them apart from 0.08 s on."""
 
 RELAXATION = 0.02
 """Seconds in which most of a fall is over: the chamber has emptied to what still feeds it."""
 
 LEAST_FALL = 0.15
-"""Part of the level above ``floor`` that an abrupt fall takes; ripple of a rough fire is less over WINDOW."""
+"""Part of the level above ``floor`` that an abrupt fall takes; ripple of a rough fire is less over FALL_WINDOW."""
 
-LASTING = 0.5
-"""Part of a fall that must still be there at the next fall, or ten windows later: a swing comes back."""
+LASTING_PART = 0.5
+"""Part of a fall that must still be there at the next fall, or ten windows later: a swing comes back. Evidence:
+test_events.py: a tail or a swing is no fall."""
 
 STEADY = 0.5
-"""Largest part of a fall that may go on within the window before it: the tail of an earlier fall is no second one."""
+"""Largest part of a fall that may go on within the window before it. Evidence: test_events.py: the tail of an earlier
+fall is no second one."""
 
-CLEAR = 8.0
+CLEAR_OF_NOISE = 8.0
 """Least size of a fall in standard deviations of a window's mean."""
 
 
 def abrupt_falls(signal: Signal, floor: float, start: float, end: float) -> list[float]:
-    """Instants [s] in [start, end] at which a signal falls at once and stays down, in order of time.
+    """Instants [s] in [``start``, ``end``] [s] at which a signal falls at once and stays down, in order of time.
 
-    ``floor`` is the value of the signal where nothing drives it. Falls closer than WINDOW + RELAXATION count as one;
-    where the samples are few, a window holds four of them.
+    ``floor`` is the value of the signal, in its unit, where nothing drives it. Falls closer than FALL_WINDOW +
+    RELAXATION count as one; where the samples are few, a window holds four of them.
     """
-    width = max(WINDOW, 4.0 * signal.step)
+    width = max(FALL_WINDOW, 4.0 * signal.step)
     times = signal.between(start, end).time
     before = _levels(signal, times - width, times) - floor
     after = _levels(signal, times + RELAXATION, times + RELAXATION + width) - floor
@@ -62,4 +65,4 @@ def _is_step(signal: Signal, time: float, size: float, following: float, width: 
     until = max(min(time + 10.0 * width, following), time + RELAXATION + 0.5 * width)
     left = level - signal.mean(time + RELAXATION, until)
     error = signal.noise * np.sqrt(2.0 * signal.step / width)
-    return bool(size > CLEAR * error and going_on < STEADY * size and left > LASTING * size)
+    return bool(size > CLEAR_OF_NOISE * error and going_on < STEADY * size and left > LASTING_PART * size)

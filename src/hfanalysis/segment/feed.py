@@ -7,19 +7,21 @@ import numpy as np
 from hfanalysis.record.signals import Signal
 
 FULL = 0.98
-SMOOTHING = 0.06
+"""Part of the run line's largest smoothed pressure [-] at which the line counts as full (docs/phases.md)."""
+RUN_SMOOTHING = 0.06
 """Running mean [s] that takes the sensor noise out of the maximum."""
 
 
 def find_line_full(run: Signal, t_v: float) -> tuple[float, float] | str:
-    """t_feed [s] and its standard deviation, from the run-line pressure with time counted from the opening.
+    """t_feed [s] and its standard deviation [s], from the run-line pressure [Pa] with time counted from the opening.
 
-    Where the line is full at once (as fast as the smoothing can see) there is no filling, and the reason is returned.
+    ``t_v`` [s]: until when it is looked for. Where the line is full at once (as fast as the smoothing can see) there is
+    no filling, and the reason is returned.
     """
     part = run.between(0.0, t_v)
     if part.time.size < 8:
         return "too few good samples of p_run before the liquid is gone"
-    width = max(SMOOTHING, 3.0 * run.step)
+    width = max(RUN_SMOOTHING, 3.0 * run.step)
     smooth = part.smooth(width)
     base = _ambient(run)
     top = float(smooth.max())

@@ -25,37 +25,48 @@ GAP = 0.04
 """Seconds left out on either side of it: the chamber empties and the smoothing spreads within these."""
 
 SUDDEN_FALL = 0.3
-"""Least part of the chamber's response that has to go at once."""
+"""Least part of the chamber's response that has to go at once. Evidence: test_fuel_bounds.py: a fall of a fifth is no
+end of the fuel; without fire the response is two to five times smaller."""
 
 SMALLEST_FALL = 0.1e5
-"""Least size of a sudden fall [Pa]: near ambient the wander of the sensor looks the same."""
+"""Least size of a sudden fall [Pa]: near ambient the wander of the sensor looks the same. Evidence:
+test_fuel_bounds.py: a fall of a twentieth of a bar is the wander of a sensor."""
 
 SUDDEN = 0.2
-"""A sudden fall is over within this time [s]."""
+"""A sudden fall is over within this time [s]. Evidence: test_events.py: a chamber that empties slowly after the liquid
+is no end of the fuel."""
 
 RESIDENCE = 0.006
-"""Standard deviation [s] of how far the pressure lags the end of the fuel: the chamber has to flush first."""
+"""Standard deviation [s] of how far the pressure lags the end of the fuel: the chamber has to flush first. Evidence:
+the residence time of a chamber is milliseconds (docs/validation.md)."""
 
 SHARPLY_DATED = 0.01
-"""Standard deviation [s] within which a sudden fall has to be dated: a chamber that nears ambient bends, no more."""
+"""Standard deviation [s] within which a sudden fall has to be dated. Evidence: the bend where the chamber nears ambient
+was taken for an end of the fuel (test_events.py)."""
 
 CLOSE = 0.012
-"""Seconds left out before a fall, and before t_v, where the two are close and the pressure is hardly smoothed."""
+"""Seconds left out before a fall, and before t_v, where the two are close and the pressure is hardly smoothed.
+Evidence: test_events.py: the two are told apart from 0.08 s on."""
 
 CLOSE_FALL = 0.2
-"""Least part of the response, and of the thrust, that has to go at once close to t_v."""
+"""Least part of the response, and of the thrust, that has to go at once close to t_v. Evidence: test_events.py: near
+the end of the liquid too the thrust has to fall with the chamber."""
 
 SHORT = 0.03
-"""Least length [s] of what is seen between t_v and a fall close to it."""
+"""Least length [s] of what is seen between t_v and a fall close to it. Evidence: test_events.py: from 0.08 s on fuel
+and liquid are told apart."""
 
 OUT_LEVEL, OUT_AFTER = 0.06, 0.15
-"""Seconds over which the chamber's level is taken before a fire goes out, and after it."""
+"""Seconds [s] over which the chamber's level is taken before a fire goes out, and after it."""
 
 OUT = 0.5
-"""Least part of the chamber's level, and of the thrust, that goes at once where a fire goes out."""
+"""Least part of the chamber's level, and of the thrust, that goes at once where a fire goes out. Evidence:
+test_events.py: a fire that fades is dated where what is left of it goes out, one that fades to its end at no
+instant."""
 
 FEED_FALLS, FEED_RISES = 0.12, 0.02
-"""Parts of the feed's pressure by which it may change meanwhile: a tank empties by some per cent in OUT_AFTER."""
+"""Parts of the feed's pressure by which it may change meanwhile: a tank empties by some percent in OUT_AFTER. Evidence:
+test_events.py: where the feed ends, a fire goes out with fuel left."""
 
 AT_ONCE = 0.05
 """Seconds within which the chamber of a fire that goes out has flushed."""
@@ -67,9 +78,10 @@ FADE_FALL = 0.3
 """Least fall of ln of the response over a fade in the liquid phase."""
 
 FADE_THRUST = 0.1
-"""Least part of the thrust that has to go with it: a third of the pressure's, for the cell drifts with heat."""
+"""Least part of the thrust that has to go with it: a third of the pressure's, for the cell drifts with heat. Evidence:
+a chamber that fades while the thrust does not is no end of the fuel (test_events.py)."""
 
-CLEAR = 0.08e5
+LOWEST_EXCESS = 0.08e5
 """Chamber pressure above ambient [Pa] below which nothing can be said of the fire."""
 
 
@@ -99,6 +111,13 @@ def find_fuel_end(
     The chamber's response to the feed is (p_c - p_a) / sqrt(p_run - p_c): steady while the fire burns, two to five
     times smaller without it. At the end of the liquid (``t_v``) the feed itself changes, and windows do not reach
     across; from 0.08 s on either side of it a sudden fall is told from that of the liquid.
+
+    Args:
+        signals: p_chamber and p_run [Pa], thrust [N] where it is measured.
+        ambient: pressure [Pa] as the chamber's sensor reads it.
+        t_feed: the line is full [s].
+        t_v: the liquid is gone [s]; None where that is not known.
+        end: until when it is looked for [s].
     """
     if "p_run" not in signals:
         return "without p_run a fall of the chamber pressure cannot be told from one of the feed"
@@ -129,7 +148,7 @@ def _response(signals: Mapping[str, Signal], ambient: float, end: float, width: 
     grid = np.arange(0.1, min(end, chamber.time[-1], run.time[-1]), step)
     excess = np.interp(grid, chamber.time, chamber.smooth(width)) - ambient
     drop = np.interp(grid, run.time, run.smooth(width)) - ambient - excess
-    fire = (excess > CLEAR) & (drop > 0.2e5)
+    fire = (excess > LOWEST_EXCESS) & (drop > 0.2e5)
     if fire.sum() < 20:
         return None
     stop = min(int(np.flatnonzero(fire)[-1]) + round(WINDOW / step), grid.size)
@@ -290,7 +309,7 @@ def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> Fu
 def _fade(response: _Response, t_feed: float, t_v: float) -> FuelEnd | None:
     """The fuel thins out before the liquid is gone: level, then a fall that goes on to t_v."""
     part = (response.time > t_feed + 0.2) & (response.time < t_v - 0.1)
-    t, y = response.time[part], np.log(np.maximum(response.value[part], CLEAR))
+    t, y = response.time[part], np.log(np.maximum(response.value[part], LOWEST_EXCESS))
     if t.size < 30:
         return None
     level = float(np.median(y[: t.size // 3]))

@@ -11,10 +11,12 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 
 COLDEST_FIRE = 700.0
-"""Apparent c* [m/s] below which nothing burns: cold nitrous oxide gives 250 to 400, poor combustion 1000 and more."""
+"""Apparent c* [m/s] below which nothing burns: cold nitrous oxide gives 250 to 400, poor combustion 1000 and more.
+Source: c* = sqrt(R T / W) / Gamma(gamma) of nitrous oxide gas is 273 to 359 m/s at 180 to 300 K (CoolProp)."""
 
 BRIEFEST_FIRE = 1.0
-"""Seconds that a fire lasts at least whose fuel is gone early in the liquid phase; an igniter is out before."""
+"""Seconds that a fire lasts at least whose fuel is gone early in the liquid phase; an igniter is out before. Evidence:
+test_events.py: a fire that is out early in the liquid phase is one, an igniter is none."""
 
 COLD_PRESSURE_SHARE = 0.18
 """Chamber over run-line pressure, above ambient, below which the flow is cold, where the geometry is unknown."""

@@ -1,6 +1,6 @@
 """t_v: the liquid is gone. The knee of the tank pressure, where it agrees with mass and energy of a saturated tank.
 
-While liquid boils off, the tank pressure falls slowly; once only vapour is left the same valve empties it several times
+While liquid boils off, the tank pressure falls slowly; once only vapor is left the same valve empties it several times
 faster. Valve openings, rebounds of late boiling, nitrogen and the end of the fuel bend the pressure too, so that every
 downward knee is a candidate and is weighed against the pressure at which an adiabatic saturated tank of this volume and
 load runs dry.
@@ -22,7 +22,8 @@ from hfanalysis.segment.refine import refine_knee, refine_step
 from hfanalysis.thermo.saturation import Saturation
 
 STEEPER = 1.25
-"""A knee is a fall at least this much steeper after than before, and more where mass and energy do not expect it."""
+"""A knee is a fall at least this much steeper after than before, and more where mass and energy do not expect it.
+Evidence: test_events.py: of two knees the one at the dry pressure is taken, a tank without a knee shows none."""
 
 LEAST_LOSS = 0.05
 """By the end of the liquid a tank has lost at least this part of its pressure."""
@@ -31,36 +32,39 @@ DRY_PRESSURE_SPREAD = 0.2
 """Standard deviation of ln(p) about the adiabatic value at which real tanks run dry: heat, mass, stratification."""
 
 WIDE_KNEE = 0.9
-"""Seconds on either side of a knee that only the tank pressure shows."""
+"""Seconds on either side of a knee that only the tank pressure shows. Evidence: on public records the last liquid
+leaves as froth, 0.1 to 0.2 s apart in tank and run line."""
 
 LINE_REACH = 0.15
 """Seconds over which the run line's slope is taken on either side of its fall."""
 
 SHARP = 0.04
-"""Chamber and thrust count as sharp, and then date the event, where they relax faster than this [s]."""
+"""Chamber and thrust count as sharp, and then date the event, where they relax faster than this [s]. Evidence:
+test_events.py: they fall with the liquid and date it best."""
 
 
 STEP_AFTER = 0.15
 """Seconds after a fall of chamber pressure or thrust that are looked at, and how far from the knee it may be."""
 
-BESIDE = 0.04
+BESIDE_FALL = 0.04
 """Seconds that a fall of chamber pressure or thrust takes, and within which it is found."""
 
 
 @dataclass(frozen=True)
 class LiquidEnd:
-    """t_v [s] with its standard deviation, the channels that date it, and what other channels say (seen apart)."""
+    """t_v [s] with its standard deviation [s], the channels that date it, and the ``other_times`` [s] others show."""
 
     time: float
     std: float
     channels: tuple[str, ...]
-    apart: dict[str, float]
+    other_times: dict[str, float]
 
 
 def dry_pressure(saturation: Saturation, volume: float, mass: float, pressure: float) -> float | None:
     """Tank pressure [Pa] at which an adiabatic saturated tank runs out of liquid (None where it cannot be saturated).
 
-    ``pressure`` [Pa] is that of the full tank; found by following the blowdown upwards from trial end temperatures.
+    ``volume`` [m^3] holds ``mass`` [kg]; ``pressure`` [Pa] is that of the full tank. Found by following the blowdown
+    upwards from trial end temperatures.
     """
     start = float(saturation.temperature(pressure))
     if not np.isfinite(start) or split(saturation, volume, mass, start).vapor < 0.0:
@@ -91,11 +95,11 @@ def find_liquid_end(signals: Mapping[str, Signal], end: float, expected: float |
     dated = _dated_by_steps(signals, knee, half)
     if dated.channels != ("p_tank",):
         return dated
-    return _rounded(signals, knee, min(WIDE_KNEE, 0.8 * rough), noise, dated.apart)
+    return _rounded(signals, knee, min(WIDE_KNEE, 0.8 * rough), noise, dated.other_times)
 
 
 def _rounded(
-    signals: Mapping[str, Signal], knee: Break, wide: float, noise: Noise, apart: dict[str, float]
+    signals: Mapping[str, Signal], knee: Break, wide: float, noise: Noise, other_times: dict[str, float]
 ) -> LiquidEnd:
     """A knee without a sharp step: the last liquid leaves as froth, and tank and run line show it 0.1 to 0.2 s apart.
 
@@ -106,11 +110,11 @@ def _rounded(
     line = _run_line_fall(signals["p_run"], knee.time, wide) if "p_run" in signals else None
     if line is None:
         found = refine_knee(tank, knee.time, wide, wide, 0.5 * wide, noise) or knee
-        return LiquidEnd(found.time, found.std, ("p_tank",), apart)
+        return LiquidEnd(found.time, found.std, ("p_tank",), other_times)
     near = max(0.35, 8.0 * tank.step)
     found = refine_knee(tank, line, 2.0 * near, 2.0 * near, near, noise) or knee
     std = max(found.std, 0.5 * abs(found.time - line), 0.5 * LINE_REACH)
-    return LiquidEnd(0.5 * (found.time + line), std, ("p_tank", "p_run"), {**apart, "p_run": line})
+    return LiquidEnd(0.5 * (found.time + line), std, ("p_tank", "p_run"), {**other_times, "p_run": line})
 
 
 def _run_line_fall(run: Signal, about: float, wide: float) -> float | None:
@@ -158,7 +162,7 @@ def _slope(signal: Signal, start: float, end: float) -> float:
 def _dated_by_steps(signals: Mapping[str, Signal], knee: Break, half: float) -> LiquidEnd:
     """Chamber pressure and thrust fall within milliseconds when the liquid ends: where they do, they date it best."""
     steps: list[Break] = []
-    apart: dict[str, float] = {}
+    other_times: dict[str, float] = {}
     for name in ("p_chamber", "thrust"):
         found = _sudden_fall(signals[name], knee, half) if name in signals else None
         if found is None:
@@ -166,11 +170,11 @@ def _dated_by_steps(signals: Mapping[str, Signal], knee: Break, half: float) -> 
         if found.relaxation <= SHARP and abs(found.time - knee.time) < 4.0 * np.hypot(knee.std, found.std) + 0.06:
             steps.append(found)
         else:
-            apart[name] = found.time
+            other_times[name] = found.time
     if not steps:
-        return LiquidEnd(knee.time, knee.std, ("p_tank",), apart)
+        return LiquidEnd(knee.time, knee.std, ("p_tank",), other_times)
     best = _weighted(steps)
-    return LiquidEnd(best[0], best[1], ("p_tank", *(s.channels[0] for s in steps)), apart)
+    return LiquidEnd(best[0], best[1], ("p_tank", *(s.channels[0] for s in steps)), other_times)
 
 
 def _weighted(steps: list[Break]) -> tuple[float, float]:
@@ -203,6 +207,6 @@ def _own_fall(signal: Signal, knee: Break, half: float) -> Break | None:
     earlier = [own - t for t in falls if t < own]
     later = [t - own for t in falls if t > own]
     least = 4.0 * signal.step
-    before = max(min([half, *(gap - 0.5 * BESIDE for gap in earlier)]), least)
-    after = max(min([STEP_AFTER, *(gap - 0.25 * BESIDE for gap in later)]), least)
-    return refine_step([signal], own, before, after, min(0.5 * before, 0.5 * after, BESIDE))
+    before = max(min([half, *(gap - 0.5 * BESIDE_FALL for gap in earlier)]), least)
+    after = max(min([STEP_AFTER, *(gap - 0.25 * BESIDE_FALL for gap in later)]), least)
+    return refine_step([signal], own, before, after, min(0.5 * before, 0.5 * after, BESIDE_FALL))

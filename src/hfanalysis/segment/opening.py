@@ -12,8 +12,10 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.segment.refine import refine_step
 
 COARSE_STEP = 0.02
+"""Spacing of the first look for the opening [s]."""
 RISE_TIME = 0.6
-"""Over this time [s] the first response to the valve is looked for: filling the line takes 0.1 to 0.9 s."""
+"""Over this time [s] the first response to the valve is looked for: filling the line takes 0.1 to 0.9 s. Evidence:
+test_opening.py: filling the tank and settling, which are slower, are no opening valve."""
 
 SMALLEST_CHANGE = {"p_run": 3e5, "p_chamber": 0.5e5, "p_tank": 1e5, "thrust": 50.0}
 """Changes within RISE_TIME below these [Pa, N] are not an opening valve, whatever the noise."""

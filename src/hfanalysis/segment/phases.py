@@ -19,7 +19,7 @@ from hfanalysis.segment.kind import Kind, recognise
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
-from hfanalysis.segment.sanity import BESIDE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
+from hfanalysis.segment.sanity import BESIDE_HOLE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation
 
@@ -30,7 +30,8 @@ LONGEST_RUN = 120.0
 """Seconds after the opening in which events are looked for."""
 
 SATURATION_MARGIN = 8.0
-"""Kelvin by which the top of a heated tank may be hotter than its thermometer says."""
+"""Kelvin by which the top of a heated tank may be hotter than its thermometer says [K]. Evidence: on real stands it is
+often the thermometer that is wrong (docs/phases.md)."""
 
 FROM_THE_START = 0.3
 """Nitrogen that flows within this time [s] of the opening presses on the liquid, not on what it leaves."""
@@ -153,7 +154,7 @@ class _Search:
 
     def _seconds(self, name: str, time: float, std: float) -> Quantity:
         """An event's instant, no surer than the hole of its channel that it was found in or beside."""
-        for start, end in self._holes(name, time - BESIDE, time + BESIDE):
+        for start, end in self._holes(name, time - BESIDE_HOLE, time + BESIDE_HOLE):
             time, std = anywhere_in(time, std, start, end)
             self.warnings.append(lies_in_hole(name, SHOWN_BY[name], start, end))
         return Quantity(time, "s", float(np.hypot(std, self.opening_std)))
@@ -181,7 +182,7 @@ class _Search:
             return (
                 "the tank pressure shows no knee: it never falls faster than before, as it does when the liquid is gone"
             )
-        for name, time in found.apart.items():
+        for name, time in found.other_times.items():
             self.notes.append(f"{name} falls {time - found.time:+.2f} s from the tank's knee")
         return found.time, found.std
 
@@ -249,7 +250,7 @@ class _Search:
         span = (self._time("t_feed") or 0.0, t_v if t_v is not None else min(self.last, 5.0))
         flow = None
         if t_v and tank is not None and tank.oxidizer_mass is not None:
-            flow = 0.8 * tank.oxidizer_mass.value / t_v  # about a fifth of a load is still there as vapour
+            flow = 0.8 * tank.oxidizer_mass.value / t_v  # about a fifth of a load is still there as vapor
         area = (
             np.pi * nozzle.throat_radius.value**2 if nozzle is not None and nozzle.throat_radius is not None else None
         )

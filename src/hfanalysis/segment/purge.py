@@ -12,22 +12,25 @@ from hfanalysis.segment.refine import refine_kink
 from hfanalysis.sentences import said, text
 
 SMALLEST_SAG = 0.01
-"""The line has to lose at least this part of its pressure before a sag is believed."""
+"""The line has to lose at least this part of its pressure before a sag is believed. Evidence: test_events.py: a line
+that keeps its pressure lets no nitrogen in."""
 
-LASTING = 0.4
-"""Seconds over which a sag must go on: valve hammer and electrical spikes do not."""
+SAG_LASTS = 0.4
+"""Seconds over which a sag must go on. Evidence: test_events.py: valve hammer is no nitrogen."""
 
 KNEE_AWAY = 0.05
-"""Seconds between two corners of the line from which on they are told apart."""
+"""Seconds between two corners of the line from which on they are told apart. Evidence: the corner at the end of the
+liquid took t_purge along by up to 0.15 s (test_events.py)."""
 
 
 def find_nitrogen(
     purge: Signal, end: float, tank: Signal | None, knee: float | None = None
 ) -> tuple[float, float] | str:
-    """t_purge [s] and its standard deviation, time counted from the opening, searched up to ``end``; else the reason.
+    """t_purge [s] and its standard deviation [s], time counted from the opening, searched up to ``end`` [s]; else the
+    reason.
 
-    ``tank`` is the tank pressure: the check valve cannot have opened while the tank stands above the purge line. At
-    ``knee`` [s], the end of the liquid, the tank's fall has a corner of its own, and with it the line's.
+    ``purge`` and ``tank`` are pressures [Pa]: the check valve cannot have opened while the tank stands above the purge
+    line. At ``knee`` [s], the end of the liquid, the tank's fall has a corner of its own, and with it the line's.
     """
     quiet = purge.between(-3.0, -0.02)
     if quiet.time.size < 8:
@@ -63,7 +66,7 @@ def _before_knee(purge: Signal, found: Break, knee: float, window: float, reach:
 
 def _start_of_sag(coarse: Signal, level: float, drop: float) -> float | None:
     low = coarse.value < level - drop
-    lasting = max(round(LASTING / coarse.step), 2)
+    lasting = max(round(SAG_LASTS / coarse.step), 2)
     for i in np.flatnonzero(low & (coarse.time > 0.0)):
         if low[i : i + lasting].mean() > 0.9:
             return _traced_back(coarse, int(i), level, drop)

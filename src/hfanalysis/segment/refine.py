@@ -13,9 +13,11 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.segment.breaks import RELAXATIONS, Break, Design, combine, find_break, kink, relaxation, rounded_kink
 
 COARSE, FINE = 41, 61
+"""Instants tried over the reach of a search, and around the best of them."""
 
 ROUNDINGS = (0.05, 0.1, 0.2, 0.35, 0.5, 0.7)
-"""Seconds over which a real knee may spread: the last liquid leaves as froth."""
+"""Seconds over which a real knee may spread: the last liquid leaves as froth. Evidence: test_breaks.py: a rounded knee
+is dated at its middle with its width as doubt."""
 
 
 def refine_kink(
@@ -27,19 +29,21 @@ def refine_kink(
     flat: bool = False,
     noise: Noise | None = None,
 ) -> Break | None:
-    """A change of slope near ``rough`` [s]: window [rough - before, rough + after], searched within ``reach`` of rough.
+    """A change of slope near ``rough`` [s]: window [rough - ``before``, rough + ``after``], searched within ``reach``
+    [s].
 
-    ``flat`` says that the signal is constant before the break; ``noise`` is that of its sensor. None where the window
-    holds too few samples.
+    All in seconds [s] of the signal's time. ``flat`` says that the signal is constant before the break; ``noise`` is
+    that of its sensor. None where the window holds too few samples.
     """
     design = kink(order=2, before=0 if flat else 2)
     return _search([signal], rough, before, after, reach, [design], (0.0,), noise)
 
 
 def refine_knee(signal: Signal, rough: float, before: float, after: float, reach: float, noise: Noise) -> Break | None:
-    """A change of slope that may take its time: sharp, or spread over one of ROUNDINGS seconds.
+    """A change of slope near ``rough`` [s] that may take its time: sharp, or spread over one of ROUNDINGS seconds.
 
-    The break's ``relaxation`` is that time; the instant is its middle and its deviation grows with it.
+    Looked for within ``reach`` [s] in [rough - ``before``, rough + ``after``] [s]. The break's ``relaxation`` [s] is
+    that time; the instant is its middle and its deviation grows with it.
     """
     designs = [kink(order=2), *(rounded_kink(w) for w in ROUNDINGS)]
     found = _search([signal], rough, before, after, reach, designs, (0.0, *ROUNDINGS), noise)
@@ -51,7 +55,11 @@ def refine_knee(signal: Signal, rough: float, before: float, after: float, reach
 def refine_step(
     signals: Sequence[Signal], rough: float, before: float, after: float, reach: float, order: int = 1
 ) -> Break | None:
-    """A sudden change that relaxes, in one or several signals at the same instant; ``order`` of the curve before it."""
+    """A sudden change that relaxes, in one or several signals at the same instant; ``order`` of the curve before it.
+
+    Looked for within ``reach`` [s] of ``rough`` [s] in [rough - ``before``, rough + ``after``] [s]. None where the
+    window holds too few samples.
+    """
     designs = [relaxation(c, before=order) for c in RELAXATIONS]
     return _search(signals, rough, before, after, reach, designs, RELAXATIONS)
 

@@ -14,17 +14,18 @@ from hfanalysis.sentences import said, text
 SHOWN_BY = {"t_feed": "p_run", "t_v": "p_tank", "t_purge": "p_purge", "t_fuel_out": "p_chamber", "t_end": "p_chamber"}
 """The channel that an event is looked for in first."""
 
-BESIDE = 0.1
-"""[s] before or after a hole of that channel in which an event found may be the hole's edge."""
+BESIDE_HOLE = 0.1
+"""[s] before or after a hole of that channel in which an event found may be the hole's edge (test_holes.py)."""
 
 IN_TANKS = (8e5, 130e5)
-"""Pressure [Pa] of any tank of nitrous oxide at rest, supercharged or not; another one is another unit's."""
+"""Pressure [Pa] of any tank of nitrous oxide at rest, supercharged or not; another one is another unit's. Source: it
+saturates at 8 to 72 bar from -45 to 36 degC (CoolProp); above, a tank is supercharged."""
 
 
 def beside_hole(opening: Opening, signals: Mapping[str, Signal]) -> tuple[Opening, list[str]]:
     """The opening, no surer than the hole of a channel that it was found in or beside; and what there is to say."""
     for name in opening.channels:
-        found = signals[name].holes(opening.time - BESIDE, opening.time + BESIDE) if name in signals else ()
+        found = signals[name].holes(opening.time - BESIDE_HOLE, opening.time + BESIDE_HOLE) if name in signals else ()
         for start, end in found:
             time, std = anywhere_in(opening.time, opening.std, start, end)
             return replace(opening, time=time, std=std), [lies_in_hole("t_open", name, start, end)]
@@ -32,7 +33,7 @@ def beside_hole(opening: Opening, signals: Mapping[str, Signal]) -> tuple[Openin
 
 
 def anywhere_in(time: float, std: float, start: float, end: float) -> tuple[float, float]:
-    """An instant [s] that may lie anywhere in a hole, and its standard deviation.
+    """An instant [s] that may lie anywhere in a hole from ``start`` to ``end`` [s], and its standard deviation [s].
 
     >>> anywhere_in(1.9, 0.01, 2.0, 3.2)[0]
     2.6
@@ -42,7 +43,7 @@ def anywhere_in(time: float, std: float, start: float, end: float) -> tuple[floa
 
 
 def lies_in_hole(event: str, channel: str, start: float, end: float) -> str:
-    """What is said of an event in a hole of its channel."""
+    """What is said of an event in a hole of its channel, from ``start`` to ``end`` [s]."""
     return f"{event} lies in a hole of {channel}, which has no good samples from {start:.2f} to {end:.2f} s"
 
 

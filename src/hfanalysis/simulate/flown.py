@@ -16,7 +16,8 @@ from hfanalysis.rocket.vehicle import Vehicle
 
 
 def curve_of(engine: Engine, burnt: Burn) -> Curve:
-    """Thrust at the altitudes of the burn, and the rocket's mass; it coasts with its dry mass, as the report does."""
+    """Thrust [N] at the altitudes of the burn, and the rocket's mass [kg]; it coasts with its dry mass, as the report
+    does."""
     vehicle = flying(engine)
     later = np.flatnonzero(np.diff(burnt.time, prepend=-1.0) > 0.0)
     time, impulse = burnt.time[later], burnt.state("impulse")[later]
@@ -31,14 +32,14 @@ def flying(engine: Engine) -> Vehicle:
 
 
 def mass(engine: Engine, burnt: Burn) -> Array:
-    """Of the rocket over the burn [kg]: dry mass, tank, grain, and the gas in the chamber."""
+    """Of the rocket over the burn [kg], (n,): dry mass, tank, grain, and the gas in the chamber (report, eq. 3.47)."""
     grain = engine.grain.fuel(burnt.state("port_radius"))
     stored = burnt.state("chamber_oxidizer") + burnt.state("chamber_fuel")
     return np.asarray(flying(engine).dry_mass + burnt.state("tank_mass") + grain + stored)
 
 
 def ascend(engine: Engine, burnt: Burn, rail_length: float | None = None) -> Ascent:
-    """From ignition to apogee.
+    """From ignition to apogee; ``rail_length`` [m] (None: there is no rail to leave).
 
     Raises ValueError for a rocket that stays on its pad or leaves the atmosphere model.
     """
@@ -48,7 +49,10 @@ def ascend(engine: Engine, burnt: Burn, rail_length: float | None = None) -> Asc
 def flight(
     engine: Engine, burnt: Burn, rail_length: float | None, canopies: tuple[Parachute, Parachute] | str
 ) -> dict[str, Quantity]:
-    """The quantities of a flight; each that cannot be had says why."""
+    """The quantities of a flight, each with its unit [m, s, m/s, m/s^2]; each that cannot be had says why.
+
+    ``rail_length`` [m] (None: not known).
+    """
     try:
         flown = ascend(engine, burnt, rail_length)
     except ValueError as error:

@@ -21,7 +21,7 @@ _ALONE = "svg { font-family: system-ui, sans-serif; background: var(--paper); }"
 
 @dataclass(frozen=True)
 class Curve:
-    """A named line; ``style`` picks its colour, else it takes the next one."""
+    """A named line; ``style`` picks its color, else it takes the next one."""
 
     x: Array
     y: Array
@@ -30,7 +30,8 @@ class Curve:
 
 
 def simulation(table: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
-    """File names and plots of a burn; ``table`` holds its histories by column."""
+    """File names and plots of a burn; ``table`` holds its histories (n,) by column, named with their units ("time
+    [s]")."""
     time = table["time [s]"]
 
     def curve(column: str, factor: float, name: str) -> Curve:

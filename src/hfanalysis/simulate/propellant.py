@@ -14,11 +14,11 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import Needs
 from hfanalysis.simulate.flown import ascend
 
-STEP = 1.15
-"""By which the load is raised or lowered until the target lies between two apogees."""
+LOAD_STEP = 1.15
+"""Factor by which the load is raised or lowered until the target lies between two apogees [-]."""
 
-STEPS = 8
-"""How often: to three times or a third of the file's load."""
+LOAD_STEPS = 8
+"""How often it is raised or lowered: to three times or a third of the file's load."""
 
 
 def for_apogee(needs: Needs, engine: Engine, target: float) -> dict[str, Quantity]:
@@ -53,8 +53,8 @@ def apogee(engine: Engine) -> float:
 def _root(miss: Callable[[float], float]) -> float:
     """The factor at which ``miss`` is zero: outwards from 1 in steps, then bisected; ValueError where none is."""
     near, here = 1.0, miss(1.0)
-    step = 1.0 / STEP if here > 0.0 else STEP
-    for _ in range(STEPS):
+    step = 1.0 / LOAD_STEP if here > 0.0 else LOAD_STEP
+    for _ in range(LOAD_STEPS):
         far = near * step
         there = miss(far)
         if here * there <= 0.0:

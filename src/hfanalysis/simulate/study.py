@@ -12,16 +12,16 @@ from hfanalysis.simulate.steady_run import Task, solve
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 
 FLOWS = np.linspace(0.4, 1.6, 13)
-"""Oxidizer flows, over the design's."""
+"""Oxidizer flows, over the design's [-]."""
 
 LENGTHS = (0.75, 1.0, 4.0 / 3.0)
-"""Grain lengths, over the design's."""
+"""Grain lengths, over the design's [-]."""
 
 PRESSURES = (0.5, 1.0, 1.5, 2.0)
-"""Chamber pressures, over the design's."""
+"""Chamber pressures, over the design's [-]."""
 
 RATIOS = np.linspace(2.0, 12.0, 81)
-"""O/F ratios."""
+"""O/F ratios [-]."""
 
 
 @dataclass(frozen=True)

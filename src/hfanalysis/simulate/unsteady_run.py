@@ -18,8 +18,8 @@ from hfanalysis.simulate import flown, heading, propellant
 
 COMMAND = "hfa simulate"
 
-LONGEST = 600.0
-"""Seconds after which no stand runs on."""
+LONGEST_RUN = 600.0
+"""Longest run that can be asked for [s]: no stand runs on for longer."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Simulation:
 
 
 def simulate(file: EngineFile, until: float | None = None) -> Simulation:
-    """Run the unsteady model of an engine file, to burn-out or on through cold gas ``until`` so many seconds.
+    """Run the unsteady model of an engine file, to burn-out or on through cold gas ``until`` [s].
 
     Raises :class:`InputError` where the file lacks what the model needs, or states an engine that cannot be run.
     """
@@ -58,9 +58,9 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
 
 
 def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:
-    """The burn; an engine that cannot be lit or integrated is refused with the reason."""
-    if until is not None and not 0.0 < until <= LONGEST:
-        raise InputError(f"--until {until:g}: expected seconds between 0 and {LONGEST:g}")
+    """The burn, ``until`` [s]; an engine that cannot be lit or integrated is refused with the reason (InputError)."""
+    if until is not None and not 0.0 < until <= LONGEST_RUN:
+        raise InputError(f"--until {until:g}: expected seconds between 0 and {LONGEST_RUN:g}")
     try:
         return unsteady.burn(engine) if until is None else unsteady.burn(engine, until, run_on=True)
     except (ValueError, ArithmeticError) as error:
@@ -88,7 +88,7 @@ def _engine(engine: Engine, burnt: Burn, hot: Array) -> dict[str, Quantity]:
 
 
 def _implied(burnt: Burn) -> dict[str, Quantity]:
-    """Heat that the polytropic vapour and the quasi-steady chamber would need: what the model leaves open."""
+    """Heat that the polytropic vapor and the quasi-steady chamber would need: what the model leaves open."""
     power, stored = closure.vapor_heat(burnt), closure.chamber_energy(burnt)
     none = "there is no vapour phase within the burn"
     return {

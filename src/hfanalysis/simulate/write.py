@@ -40,37 +40,37 @@ OUTPUTS = {
 """Histories of a simulation, with units."""
 
 
-def simulation(out: Path, found: Simulation) -> None:
+def simulation(out: Path, simulation: Simulation) -> None:
     """simulate.json, histories.csv (on the solver's steps) and plots."""
-    write_json(out / "simulate.json", found.product)
-    table = histories(found)
+    write_json(out / "simulate.json", simulation.product)
+    table = histories(simulation)
     write_table(out / "histories.csv", list(table), np.column_stack(list(table.values())).tolist())
     for name, text in plots.simulation(table):
         write_text(out / name, text)
 
 
-def histories(found: Simulation) -> dict[str, Array]:
-    """Columns of the histories, named with their units."""
-    burnt = found.burnt
+def histories(simulation: Simulation) -> dict[str, Array]:
+    """Columns of the histories, (n,) each, named with their units ("time [s]")."""
+    burnt = simulation.burnt
     return {
         "time [s]": burnt.time,
         **{f"{name} [{unit}]": burnt.state(name) for name, unit in STATES.items()},
         **{f"{name} [{unit}]": burnt.output(name) for name, unit in OUTPUTS.items()},
-        "chamber_temperature [K]": found.chamber_temperature,
+        "chamber_temperature [K]": simulation.chamber_temperature,
     }
 
 
-def design(out: Path, file: EngineFile, found: Design) -> None:
+def design(out: Path, file: EngineFile, designed: Design) -> None:
     """design.json, the study's two tables and their plots, and ID.eng of the constant thrust."""
-    write_json(out / "design.json", found.product)
-    flows = study.over_flow_and_length(found.task)
-    mixtures = list(study.over_mixture(found.task.requirement))
+    write_json(out / "design.json", designed.product)
+    flows = study.over_flow_and_length(designed.task)
+    mixtures = list(study.over_mixture(designed.task.requirement))
     write_table(out / "study_flow_length.csv", FLOW_COLUMNS, map(_flow_row, flows))
     write_table(out / "study_mixture.csv", MIXTURE_COLUMNS, map(_mixture_row, mixtures))
     for name, text in plots.study(flows, mixtures):
         write_text(out / name, text)
     name = re.sub(r"[^\w.-]+", "-", file.engine.id).strip(".-") or "engine"
-    write_text(out / f"{name}.eng", engine_file(file, found))
+    write_text(out / f"{name}.eng", engine_file(file, designed))
 
 
 FLOW_COLUMNS = [
@@ -105,9 +105,9 @@ def _mixture_row(point: MixturePoint) -> list[object]:
     return [point.chamber_pressure, point.of_ratio, point.specific_impulse, point.specific_impulse_propep]
 
 
-def engine_file(file: EngineFile, found: Design) -> str:
+def engine_file(file: EngineFile, designed: Design) -> str:
     """The constant thrust as a RASP engine file; the rocket's dry mass holds the empty engine."""
-    engine, grain = found.engine, found.task.grain
+    engine, grain = designed.engine, designed.task.grain
     propellant = engine.oxidizer_mass + engine.fuel_mass
     tank = file.tank.inner_diameter
     motor = rasp.Motor(

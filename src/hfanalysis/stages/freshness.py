@@ -19,9 +19,6 @@ from hfanalysis.stages import base, way_to
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.version import __version__
 
-DISTRIBUTIONS = {"sksundae": "scikit-sundae"}
-"""Libraries that are installed under another name than they are imported by: asking for all names takes long."""
-
 STATE = ".state"
 
 
@@ -49,14 +46,14 @@ def code_hash(files: frozenset[Path]) -> str:
 @functools.cache
 def library_versions(files: frozenset[Path]) -> dict[str, str]:
     """The versions of the libraries that sources import."""
-    return {DISTRIBUTIONS.get(name, name): _version(name) for name in libraries(files)}
+    return {name: _version(name) for name in libraries(files)}
 
 
 @functools.cache
 def _version(name: str) -> str:
     """That of the library imported by this name, be it of a distribution of another name."""
     try:
-        return importlib.metadata.version(DISTRIBUTIONS.get(name, name))
+        return importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
         return ", ".join(importlib.metadata.version(found) for found in _distributions().get(name, [])) or "none"
 

@@ -30,6 +30,7 @@ from hfanalysis.version import __version__
 RUN_LOG = "run.log"
 _REFUSED = {errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOSPC, errno.EDQUOT}
 _ATTEMPTS = 3
+"""Starts of a run whose products somebody removes meanwhile."""
 
 
 def run_to(name: str, context: Context, *, force: bool = False, whole: bool = False) -> Context:

@@ -9,6 +9,7 @@ from hfanalysis.thermo.atmosphere import HIGHEST
 from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
 
 AIR_GAMMA = 1.4
+"""Heat capacity ratio of air [-]. Source: a diatomic ideal gas has 7/5."""
 
 
 @compiled

@@ -7,7 +7,7 @@ import math
 from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
 
 HIGHEST = 30_000.0
-"""Upper end of the model [m]."""
+"""Upper end of the model [m]. Source: report, appendix A.2; above 25 km the model's temperature rises without end."""
 
 
 def temperature(altitude: float) -> float:

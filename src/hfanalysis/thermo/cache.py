@@ -23,7 +23,7 @@ def cache_directory() -> Path:
 
 
 def cached(name: str, shape: tuple[int, ...], make: Callable[[], Array]) -> Array:
-    """The array of that name and shape, from the cache where it is there and finite, else made and kept.
+    """The array of that name and shape (any unit [-]), from the cache where it is there and finite, else made and kept.
 
     ``name`` has to say what determines the array and is not in the sources of ``make``: versions of libraries, nodes.
     """

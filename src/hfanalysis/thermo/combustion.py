@@ -18,18 +18,23 @@ import numpy as np
 from hfanalysis.thermo.constants import GAS_CONSTANT, OXIDIZER_MOLAR_MASS
 
 FUEL_MOLAR_MASS = 282.5475
-"""n-eicosane [kg/kmol]."""
+"""n-eicosane [kg/kmol]. Source: C20H42 by standard atomic weights."""
 
 FUEL_ENTHALPY = -554e6 / FUEL_MOLAR_MASS
-"""Heat of formation of liquid n-eicosane at 298.15 K [J/kg]; the report prints +557 MJ/kmol."""
+"""Heat of formation of liquid n-eicosane at 298.15 K [J/kg]. Evidence: the report prints +557 MJ/kmol, a slip of the
+sign."""
 
 PROPEP_OXIDIZER_ENTHALPY = 82.05e6 / OXIDIZER_MOLAR_MASS
-"""What PROPEP, and with it the report, takes for nitrous oxide: the ideal gas at 298.15 K [J/kg]."""
+"""Enthalpy of nitrous oxide as PROPEP, and with it the report, takes it [J/kg]. Source: heat of formation of the ideal
+gas at 298.15 K, 82.05 MJ/kmol."""
 
 FORMATION_OFFSET = 61.385e6 / OXIDIZER_MOLAR_MASS
-"""Formation scale less that of the saturation properties [J/kg], which is 0 for the liquid at its boiling point."""
+"""Formation scale less that of the saturation properties [J/kg], which is 0 for the liquid at its boiling point.
+Source: heat of formation of the ideal gas at 298.15 K, 82.05 MJ/kmol, less its enthalpy over that liquid (CoolProp:
+20.665 MJ/kmol)."""
 
 REFERENCE_TEMPERATURE = 298.15
+"""Of the heats of formation [K]. Source: 25 degC, by convention."""
 
 
 @dataclass(frozen=True)
@@ -57,9 +62,9 @@ class Gas:
 def equilibrium(
     pressure: float, of_ratio: float, oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY, nitrogen_share: float = 0.0
 ) -> Gas:
-    """Equilibrium at constant enthalpy and pressure [Pa].
+    """Equilibrium at constant enthalpy and ``pressure`` [Pa].
 
-    ``of_ratio`` counts all that comes through the injector, of which ``nitrogen_share`` by mass is nitrogen at
+    ``of_ratio`` [-] counts all that comes through the injector, of which ``nitrogen_share`` by mass is nitrogen at
     298.15 K; ``oxidizer_enthalpy`` is that of the nitrous oxide entering, on the formation scale [J/kg]. Raises
     ArithmeticError where the equilibrium does not converge, ValueError for a pressure or ratio that is not positive.
 
@@ -76,7 +81,8 @@ def equilibrium(
 
 
 def condensed_carbon(pressure: float, of_ratio: float, oxidizer_enthalpy: float, nitrogen_share: float) -> float:
-    """Mass fraction of graphite in the equilibrium of the same name's arguments."""
+    """Mass fraction of graphite [-] in :func:`equilibrium` at the same ``pressure`` [Pa], mixture and enthalpy
+    [J/kg]."""
     equilibrium(pressure, of_ratio, oxidizer_enthalpy, nitrogen_share)
     return _solver().carbon
 

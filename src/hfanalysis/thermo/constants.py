@@ -4,13 +4,13 @@ Source: the technical report's appendix A (gas constant, molar weight of air) an
 """
 
 GAS_CONSTANT = 8314.5
-"""Universal gas constant as the report uses it [J/(kmol K)]."""
+"""Universal gas constant [J/(kmol K)]. Source: report, appendix A."""
 
 OXIDIZER_MOLAR_MASS = 44.0128
-"""Molar mass of nitrous oxide [kg/kmol]."""
+"""Molar mass of nitrous oxide [kg/kmol]. Source: NIST."""
 
 AIR_MOLAR_MASS = 28.9647
-"""Molar mass of air [kg/kmol]."""
+"""Molar mass of air [kg/kmol]. Source: report, appendix A."""
 
 NITROGEN_MOLAR_MASS = 28.0134
-"""Molar mass of nitrogen [kg/kmol]."""
+"""Molar mass of nitrogen [kg/kmol]. Source: standard atomic weights."""

@@ -15,8 +15,13 @@ from hfanalysis.thermo.cache import cached
 from hfanalysis.thermo.saturation import NODES, Property, Saturation
 
 CRITICAL_TEMPERATURE = 309.5207
+"""T_c in theta [K]. Source: Lemmon and Span 2006, as CoolProp has it."""
+
 T_MIN = 182.34
+"""Lower end of the table [K]. Source: the triple point, 182.33 K (CoolProp)."""
+
 T_MAX = 309.50
+"""Upper end of the table [K]. Source: just below the critical point, 309.52 K, where both phases meet."""
 
 
 def build() -> Saturation:
@@ -28,7 +33,8 @@ def build() -> Saturation:
 
 
 def sample(theta: Array) -> Array:
-    """All properties at the given theta, straight from CoolProp: shape (properties, len(theta)), specific SI units."""
+    """All properties at the given theta (n,), straight from CoolProp: shape (properties, n), specific SI units ([Pa],
+    [m^3/kg], [J/kg], [J/(kg K)]; logarithms where Property says so)."""
     from CoolProp import CoolProp
 
     state = CoolProp.AbstractState("HEOS", "NitrousOxide")

@@ -1,7 +1,7 @@
 """Saturated nitrous oxide as the technical report has it (appendix A.1, after Green & Perry 2008).
 
 Two slips of the printed appendix are corrected: the sign of d(nu_l)/dT (liquid expands on heating) never enters because
-the derivative is that of the spline; c_v of the vapour at 250 K is 0.034798, not 0.043798 kJ/(mol K), as its neighbours
+the derivative is that of the spline; c_v of the vapor at 250 K is 0.034798, not 0.043798 kJ/(mol K), as its neighbours
 and every finite difference of them show. The pressure correlation and the table come from different sources: the
 correlation lies 1.4 % above the equation of state behind the table at 298 K.
 """
@@ -16,12 +16,16 @@ from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.saturation import NODES, Property, Saturation
 
 CRITICAL_TEMPERATURE = 309.57
-"""T_c of the liquid volume correlation [K]; the table ends at 309.52 K, where both phases meet."""
+"""T_c of the liquid volume correlation [K]; the table ends at 309.52 K, where both phases meet. Source: report,
+appendix A.1."""
 
 PRESSURE = (96.512, -4045.0, -12.277, 2.886e-5, 2.0)
-LIQUID_VOLUME = (2.781, 0.27244, 309.57, 0.2882)
+"""c1 to c5 of the saturation pressure, in Pa and K. Source: report, appendix A.1 (Green and Perry 2008)."""
 
-# T [K], nu_v [m^3/kmol], u_l, h_l, u_v, h_v [kJ/mol], c_v, c_p of the vapour [kJ/(mol K)]
+LIQUID_VOLUME = (2.781, 0.27244, 309.57, 0.2882)
+"""c1 to c4 of the liquid's molar volume, in kmol/m^3 and K. Source: report, appendix A.1 (Green and Perry 2008)."""
+
+# T [K], nu_v [m^3/kmol], u_l, h_l, u_v, h_v [kJ/mol], c_v, c_p of the vapor [kJ/(mol K)]
 _TABLE = """
     182.33 16.823 -0.18142 -0.17830 14.931 16.411 0.025545 0.034993
     185 14.503 0.020258 0.023954 14.984 16.481 0.025844 0.035439
@@ -52,10 +56,14 @@ _TABLE = """
     309.52 0.097371 12.745 13.450 12.745 13.450 nan nan
 """
 TABLE = np.array(_TABLE.split(), dtype=np.float64).reshape(-1, 8)
+"""T [K], nu_v [m^3/kmol], energies and enthalpies [kJ/mol], heat capacities [kJ/(mol K)]. Source: report, appendix A.1,
+with c_v at 250 K corrected."""
 
 
 def saturation_pressure(temperature: Array | float) -> Array:
-    """Saturation pressure [Pa] at a temperature [K]: exp(c1 + c2/T + c3 ln T + c4 T^c5).
+    """Saturation pressure [Pa] at a temperature [K]: exp(c1 + c2/T + c3 ln T + c4 T^c5) (report, appendix A.1).
+
+    A number, or an array of any shape, which the result has too.
 
     >>> round(float(saturation_pressure(298.15)) / 1e5, 2)
     57.29
@@ -66,14 +74,17 @@ def saturation_pressure(temperature: Array | float) -> Array:
 
 
 def saturation_pressure_slope(temperature: Array | float) -> Array:
-    """dp_sat/dT [Pa/K], analytic."""
+    """dp_sat/dT [Pa/K] at a temperature [K], analytic; of the shape of ``temperature``."""
     _, c2, c3, c4, c5 = PRESSURE
     t = np.asarray(temperature, dtype=np.float64)
     return np.asarray(saturation_pressure(t) * (-c2 / t**2 + c3 / t + c4 * c5 * t ** (c5 - 1.0)))
 
 
 def liquid_molar_volume(temperature: Array | float) -> Array:
-    """Molar volume of the saturated liquid [m^3/kmol]: c2^(1 + (1 - T/c3)^c4) / c1.
+    """Molar volume of the saturated liquid [m^3/kmol] at a temperature [K]: c2^(1 + (1 - T/c3)^c4) / c1 (report,
+    appendix A.1).
+
+    A number, or an array of any shape, which the result has too.
 
     >>> round(float(liquid_molar_volume(298.15)) * 1e3, 1)
     59.3
@@ -84,7 +95,8 @@ def liquid_molar_volume(temperature: Array | float) -> Array:
 
 
 def liquid_molar_volume_slope(temperature: Array | float) -> Array:
-    """d(nu_l)/dT [m^3/(kmol K)]: -(c4/c3) ln(c2) nu_l (1 - T/c3)^(c4 - 1), with the sign that the report lost."""
+    """d(nu_l)/dT [m^3/(kmol K)] at a temperature [K], of its shape: -(c4/c3) ln(c2) nu_l (1 - T/c3)^(c4 - 1), with the
+    sign that the report lost."""
     _, c2, c3, c4 = LIQUID_VOLUME
     t = np.asarray(temperature, dtype=np.float64)
     return np.asarray(-(c4 / c3) * np.log(c2) * liquid_molar_volume(t) * (1.0 - t / c3) ** (c4 - 1.0))
@@ -113,7 +125,7 @@ def build() -> Saturation:
 
 
 def _grueneisen(theta: Array, t: Array, samples: dict[Property, Array]) -> Array:
-    """G = (dp/dT)_v v / c_v of the vapour, from its energy along saturation: du = c_v dT + (T (dp/dT)_v - p) dv.
+    """G = (dp/dT)_v v / c_v of the vapor, from its energy along saturation: du = c_v dT + (T (dp/dT)_v - p) dv.
 
     With p v = h - u, which is the table's own.
     """

@@ -19,7 +19,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 
 NODES = 512
-"""Table nodes; at this number the spline errors are below 1e-7 relative (tests/thermo)."""
+"""Table nodes. Evidence: at this number the spline errors are below 1e-7 relative (tests/thermo)."""
 
 
 class Property(IntEnum):
@@ -38,8 +38,13 @@ class Property(IntEnum):
 
 
 LN_PRESSURE, LIQUID_VOLUME, LN_VAPOR_VOLUME = 0, 1, 2
+"""Rows of the table, as in :class:`Property`."""
+
 LIQUID_ENERGY, VAPOR_ENERGY, LIQUID_ENTHALPY, VAPOR_ENTHALPY = 3, 4, 5, 6
+"""Rows of the table, as in :class:`Property`."""
+
 LN_VAPOR_CV, LN_VAPOR_CP, VAPOR_GRUENEISEN = 7, 8, 9
+"""Rows of the table, as in :class:`Property`."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +69,10 @@ class Saturation:
     def from_samples(
         cls, source: str, theta: Array, properties: Mapping[Property, Array], critical_temperature: float
     ) -> Saturation:
-        """Splines through samples of all properties on a uniform theta grid (falling temperature)."""
+        """Splines through samples (n,) of all properties [SI] on a uniform theta grid (n,) (falling temperature).
+
+        ``critical_temperature`` [K].
+        """
         rows = [CubicSpline(theta, properties[p]).c[::-1].T for p in Property]
         t = critical_temperature * (1.0 - theta**3)
         return cls(
@@ -78,7 +86,8 @@ class Saturation:
         )
 
     def samples(self) -> tuple[Array, dict[Property, Array]]:
-        """The nodes in theta and all properties there, of which :meth:`from_samples` makes the same table again."""
+        """The nodes in theta [-], (n,), and all properties there [SI], (n,), of which :meth:`from_samples` makes the
+        same table again."""
         step, last = self.theta_step, self.coefficients[:, -1]
         end = last[:, 0] + step * (last[:, 1] + step * (last[:, 2] + step * last[:, 3]))
         values = np.column_stack([self.coefficients[:, :, 0], end])
@@ -87,7 +96,8 @@ class Saturation:
 
     @property
     def kernel_table(self) -> tuple[Array, float, float, float]:
-        """What the compiled functions of this module read."""
+        """What the compiled functions of this module read: coefficients (properties, intervals, 4), start and step of
+        theta, T_c [K]."""
         return (self.coefficients, self.theta_start, self.theta_step, self.critical_temperature)
 
     def _evaluate(self, prop: Property, temperature: ArrayLike) -> tuple[Array, Array]:
@@ -97,54 +107,69 @@ class Saturation:
         return np.where(inside, value.reshape(t.shape), np.nan), np.where(inside, slope.reshape(t.shape), np.nan)
 
     def pressure(self, temperature: ArrayLike) -> Array:
-        """Saturation pressure [Pa]."""
+        """Saturation pressure [Pa] at a ``temperature`` [K], of its shape."""
         return np.asarray(np.exp(self._evaluate(Property.LN_PRESSURE, temperature)[0]))
 
     def pressure_slope(self, temperature: ArrayLike) -> Array:
-        """dp_sat/dT [Pa/K]."""
+        """dp_sat/dT [Pa/K] at a ``temperature`` [K], of its shape."""
         value, slope = self._evaluate(Property.LN_PRESSURE, temperature)
         return np.asarray(np.exp(value) * slope)
 
     def liquid_density(self, temperature: ArrayLike) -> Array:
-        """Density of the saturated liquid [kg/m^3]."""
+        """Density of the saturated liquid [kg/m^3] at a ``temperature`` [K], of its shape."""
         return 1.0 / self._evaluate(Property.LIQUID_VOLUME, temperature)[0]
 
     def liquid_volume(self, temperature: ArrayLike) -> tuple[Array, Array]:
-        """Specific volume of the saturated liquid [m^3/kg] and its slope [m^3/(kg K)] (positive: liquid expands)."""
+        """Specific volume of the saturated liquid [m^3/kg] and its slope [m^3/(kg K)] (positive: liquid expands).
+
+        At a ``temperature`` [K], of its shape.
+        """
         return self._evaluate(Property.LIQUID_VOLUME, temperature)
 
     def vapor_density(self, temperature: ArrayLike) -> Array:
-        """Density of the saturated vapour [kg/m^3]."""
+        """Density of the saturated vapor [kg/m^3] at a ``temperature`` [K], of its shape."""
         return np.asarray(np.exp(-self._evaluate(Property.LN_VAPOR_VOLUME, temperature)[0]))
 
     def vapor_volume(self, temperature: ArrayLike) -> tuple[Array, Array]:
-        """Specific volume of the saturated vapour [m^3/kg] and its slope [m^3/(kg K)]."""
+        """Specific volume of the saturated vapor [m^3/kg] and its slope [m^3/(kg K)] at a ``temperature`` [K], of its
+        shape."""
         value, slope = self._evaluate(Property.LN_VAPOR_VOLUME, temperature)
         return np.exp(value), np.exp(value) * slope
 
     def energy(self, prop: Property, temperature: ArrayLike) -> tuple[Array, Array]:
-        """Specific internal energy or enthalpy [J/kg] of a phase and its slope along saturation [J/(kg K)]."""
+        """Specific internal energy or enthalpy [J/kg] of a phase and its slope along saturation [J/(kg K)].
+
+        At a ``temperature`` [K], of its shape; ``prop`` says which (heat capacities and volumes have properties of
+        their own).
+        """
         return self._evaluate(prop, temperature)
 
     def heat_capacities(self, temperature: ArrayLike) -> tuple[Array, Array]:
-        """c_v and c_p of the saturated vapour [J/(kg K)]."""
+        """c_v and c_p of the saturated vapor [J/(kg K)] at a ``temperature`` [K], of its shape."""
         cv = self._evaluate(Property.LN_VAPOR_CV, temperature)[0]
         cp = self._evaluate(Property.LN_VAPOR_CP, temperature)[0]
         return np.exp(cv), np.exp(cp)
 
     def grueneisen(self, temperature: ArrayLike) -> Array:
-        """Grueneisen's parameter V (dp/dU)_V [-] of the saturated vapour: heat Q raises its pressure by this Q/V."""
+        """Grueneisen's parameter V (dp/dU)_V [-] of the saturated vapor: heat Q raises its pressure by this Q/V.
+
+        At a ``temperature`` [K], of its shape.
+        """
         return self._evaluate(Property.VAPOR_GRUENEISEN, temperature)[0]
 
     def isentropic_exponent(self, temperature: ArrayLike) -> Array:
-        """(d ln p/d ln rho)_s of the saturated vapour [-]: c_p/c_v times (d ln p/d ln rho)_T, which follows from c_p -
-        c_v = -T (dp/dT)_v^2 / (dp/dv)_T with (dp/dT)_v = G c_v / v."""
+        """(d ln p/d ln rho)_s of the saturated vapor [-] at a ``temperature`` [K], of its shape.
+
+        c_p/c_v times (d ln p/d ln rho)_T, which follows from c_p - c_v = -T (dp/dT)_v^2 / (dp/dv)_T with (dp/dT)_v = G
+        c_v / v.
+        """
         cv, cp = self.heat_capacities(temperature)
         by_heat = self.grueneisen(temperature) ** 2 * cv * np.asarray(temperature, dtype=np.float64)
         return np.asarray(cp / (cp - cv) * by_heat / (self.pressure(temperature) * self.vapor_volume(temperature)[0]))
 
     def temperature(self, pressure: ArrayLike) -> Array:
-        """Saturation temperature [K] at a pressure [Pa]: the inverse of :meth:`pressure`; NaN outside the range."""
+        """Saturation temperature [K] at a ``pressure`` [Pa], of its shape: the inverse of :meth:`pressure`; NaN outside
+        the range."""
         p = np.asarray(pressure, dtype=np.float64)
         low, high = self.pressure_range
         inside = (p >= low) & (p <= high)
@@ -161,7 +186,11 @@ class Saturation:
 def evaluate(
     table: Array, theta_start: float, theta_step: float, critical: float, row: int, temperature: float
 ) -> tuple[float, float]:
-    """Value of one table row and its derivative by temperature; the ends are held by their last cubic."""
+    """Value [SI] of one table row and its derivative by temperature [SI/K] at a ``temperature`` [K].
+
+    The first four arguments are :attr:`Saturation.kernel_table`: coefficients (properties, intervals, 4), theta's start
+    and step, T_c [K]. The ends are held by their last cubic.
+    """
     k, x, by_temperature = place(table, theta_start, theta_step, critical, temperature)
     return row_at(table, row, k, x, by_temperature)
 
@@ -170,7 +199,8 @@ def evaluate(
 def place(
     table: Array, theta_start: float, theta_step: float, critical: float, temperature: float
 ) -> tuple[int, float, float]:
-    """Where a temperature lies in the table: interval, distance from its node, and d theta/dT, for :func:`row_at`."""
+    """Where a ``temperature`` [K] lies in the table (properties, intervals, 4): interval, distance from its node in
+    theta, and d theta/dT [1/K], for :func:`row_at`."""
     theta = max(1.0 - temperature / critical, 1e-9) ** (1.0 / 3.0)
     k = min(max(int((theta - theta_start) / theta_step), 0), table.shape[1] - 1)
     return k, theta - (theta_start + k * theta_step), -1.0 / (3.0 * critical * theta * theta)
@@ -178,7 +208,8 @@ def place(
 
 @compiled
 def row_at(table: Array, row: int, k: int, x: float, by_temperature: float) -> tuple[float, float]:
-    """Value and derivative by temperature of one table row at a :func:`place`; many rows share one place."""
+    """Value [SI] and derivative by temperature [SI/K] of one row of the table (properties, intervals, 4) at a
+    :func:`place`; many rows share one place."""
     c = table[row, k]
     value = c[0] + x * (c[1] + x * (c[2] + x * c[3]))
     return value, (c[1] + x * (2.0 * c[2] + x * 3.0 * c[3])) * by_temperature
@@ -195,7 +226,11 @@ def saturation_temperature(
     t_min: float,
     t_max: float,
 ) -> float:
-    """T at which p_sat(T) = p, by Newton's method on ln p (which is nearly linear in 1/T) kept inside the range."""
+    """T [K] at which p_sat(T) = ``pressure`` [Pa], by Newton's method on ln p (which is nearly linear in 1/T).
+
+    It is kept inside ``t_min`` to ``t_max`` [K]; ``guess`` [K]; the first four arguments are
+    :attr:`Saturation.kernel_table`: coefficients (properties, intervals, 4), theta's start and step, T_c [K].
+    """
     target = np.log(pressure)
     t = guess
     for _ in range(30):

@@ -21,7 +21,7 @@ from hfanalysis.validate.residuals import Residual, compared
 def run_chamber_forced(
     log: TestLog, segments: Segments, full: FullRun, flows: Flows, ambient: float, end: float
 ) -> list[Residual]:
-    """Measured and modelled thrust from the opening to ``end`` [s], as the cell reads it; ``ambient`` [Pa].
+    """Measured and modeled thrust from the opening to ``end`` [s], as the cell reads it; ``ambient`` [Pa].
 
     What effects make of throat and thrust is that of the ``full`` run. Raises AbsentError where the log has no thrust
     or no chamber pressure.

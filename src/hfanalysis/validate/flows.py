@@ -25,7 +25,7 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.validate.tank_free import TankAlone
 
-STEP = 0.02
+HISTORY_STEP = 0.02
 """[s] of the histories: block means over this time."""
 
 LEAST_FLOW = 1e-4
@@ -47,13 +47,13 @@ class Flows:
 
     @property
     def of_ratio(self) -> Array:
-        """Oxidizer over fuel."""
+        """Oxidizer over fuel flow [-], (n,) at ``time``."""
         burning = (self.fuel > LEAST_FLOW) & (self.oxidizer > LEAST_FLOW)
         return np.where(burning, self.oxidizer / np.where(burning, self.fuel, 1.0), np.nan)
 
     @property
     def total(self) -> Array:
-        """Through the nozzle, the chamber's filling apart [kg/s]."""
+        """Through the nozzle, the chamber's filling apart [kg/s], (n,)."""
         return self.oxidizer + self.fuel
 
 
@@ -61,12 +61,16 @@ def oxidizer_flow(
     log: TestLog, segments: Segments, calibration: TankConstants, definition: TestDefinition, alone: TankAlone,
     time: Array,
 ) -> Array:  # fmt: skip
-    """[kg/s] at given times: from the measured pressures while there is liquid, then from the tank alone."""
+    """[kg/s], (n,), at given times (n,) [s]: from the measured pressures while there is liquid, then from the tank
+    alone.
+
+    The injector's flow is that of the report, eq. 3.2.
+    """
     origin = segments.t_open.value or 0.0
-    tank, run = (Signal.of(log[name]).shifted(origin).reduced(STEP).at(time) for name in ("p_tank", "p_run"))
+    tank, run = (Signal.of(log[name]).shifted(origin).reduced(HISTORY_STEP).at(time) for name in ("p_tank", "p_run"))
     chamber = np.full(time.size, definition.ambient_pressure.value)
     if "p_chamber" in log:
-        chamber = Signal.of(log["p_chamber"]).shifted(origin).reduced(STEP).at(time)
+        chamber = Signal.of(log["p_chamber"]).shifted(origin).reduced(HISTORY_STEP).at(time)
     source = saturation_of(definition.model.properties)
     density = source.liquid_density(source.temperature(np.clip(tank, *source.pressure_range)))
     flow = mass_flows(effective_area(definition, calibration), density, run - chamber)
@@ -78,7 +82,11 @@ def oxidizer_flow(
 
 
 def burn_fuel(engine: Engine, law: Regression, time: Array, oxidizer: Array, factor: Array | float = 1.0) -> Flows:
-    """The fuel that this oxidizer flow [kg/s] burns, at ``factor`` times the rate of the law."""
+    """The fuel that this oxidizer flow [kg/s], (n,) at ``time`` [s], burns, at ``factor`` [-] times the rate of the
+    law.
+
+    r = a G^n, integrated in closed form for a given flow (report, 4.3.1).
+    """
     steps = np.diff(time, prepend=time[0])
     flowing = oxidizer > 0.0
     summed = np.cumsum(factor * steps * np.where(flowing, oxidizer, 1.0) ** law.n * flowing)
@@ -102,9 +110,10 @@ class Nozzle:
 def nozzle_along(
     engine: Engine, pressure: Array, of_ratio: Array, ambient: float, throat_factor: Array | float = 1.0
 ) -> Nozzle:
-    """What the nozzle does with gas of this mixture at this pressure [Pa]; NaN where there is no mixture.
+    """What the nozzle does with gas of this mixture ``of_ratio`` [-] at this ``pressure`` [Pa], both (n,), into
+    ``ambient`` [Pa].
 
-    ``throat_factor``: of the throat's area.
+    ``throat_factor`` [-]: of the throat's area. NaN where there is no mixture (report, eq. 3.37 to 3.43).
     """
     enthalpy = engine.oxidizer_enthalpy
     assert enthalpy is not None

@@ -12,7 +12,8 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.validate.residuals import Residual, compared
 
 TANK_CELL = 0.05
-"""Part of the loaded mass by which the tank's cell may be off at rest and still be compared."""
+"""Part of the loaded mass by which the tank's cell may be off at rest and still be compared. Evidence:
+test_sensor_bounds.py."""
 
 
 def compare_full(log: TestLog, segments: Segments, full: FullRun) -> list[Residual]:

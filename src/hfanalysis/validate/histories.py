@@ -20,7 +20,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO
-from hfanalysis.validate.flows import STEP, Flows, nozzle_along
+from hfanalysis.validate.flows import HISTORY_STEP, Flows, nozzle_along
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import FORMAT
 from hfanalysis.validate.thrust import thrust_of
@@ -28,7 +28,7 @@ from hfanalysis.validate.thrust import thrust_of
 BEFORE, AFTER = 2.0, 3.0
 """[s] shown before the opening and after the burn."""
 
-WIDTH = 0.2
+EFFICIENCY_WIDTH = 0.2
 """[s] of the running mean from which efficiencies are taken: a ratio of noisy values is noisier than either."""
 
 ABOUT = {
@@ -63,21 +63,21 @@ class Histories:
 
 
 def clock(log: TestLog, segments: Segments, end: float) -> Array:
-    """Times of the histories [s after the opening]."""
+    """Times of the histories [s after the opening], (n,), to the burn's ``end`` [s] and AFTER it."""
     origin = segments.t_open.value or 0.0
     name = next((n for n in ("thrust", "p_chamber", "p_tank") if n in log), next(iter(log.channels)))
     signal = Signal.of(log[name]).shifted(origin)
     first, last = max(float(signal.time[0]), -BEFORE), min(float(signal.time[-1]), end + AFTER)
-    return np.arange(np.ceil(first / STEP), np.floor(last / STEP) + 1.0) * STEP
+    return np.arange(np.ceil(first / HISTORY_STEP), np.floor(last / HISTORY_STEP) + 1.0) * HISTORY_STEP
 
 
 def measured_histories(log: TestLog, segments: Segments, definition: TestDefinition, time: Array) -> dict[str, Array]:
-    """Thrust, raw and corrected, and chamber pressure, as far as they are logged."""
+    """Thrust [N], raw and corrected, and chamber pressure [Pa], (n,) at ``time`` (n,) [s]; those that are logged."""
     out = {}
     if "thrust" in log:
         channel = log["thrust"]
         out["thrust_raw"] = _on(channel, segments, time, channel.raw)
-        out["thrust_corrected"] = thrust_of(log, segments, definition).signal.reduced(STEP).at(time)
+        out["thrust_corrected"] = thrust_of(log, segments, definition).signal.reduced(HISTORY_STEP).at(time)
     if "p_chamber" in log:
         out["p_chamber"] = _on(log["p_chamber"], segments, time, None)
     return out
@@ -91,11 +91,11 @@ def _on(channel: Channel, segments: Segments, time: Array, raw: Array | None) ->
     signal = Signal.of(shown).shifted(segments.t_open.value or 0.0)
     if signal.time.size < 2:
         return np.full(time.size, np.nan)
-    return signal.reduced(STEP).at(time)
+    return signal.reduced(HISTORY_STEP).at(time)
 
 
 def flow_histories(flows: Flows) -> dict[str, Array]:
-    """Flows, regression and mixture; NaN before the opening."""
+    """Flows [kg/s], regression [m/s], port radius [m] and mixture [-], each (n,); NaN before the opening."""
     lit = flows.time >= 0.0
     found = {
         "oxidizer_flow": flows.oxidizer,
@@ -110,14 +110,16 @@ def flow_histories(flows: Flows) -> dict[str, Array]:
 def efficiencies(
     measured: Mapping[str, Array], flows: Flows, engine: Engine, ambient: float, fire: Fire, purge: float | None
 ) -> dict[str, Array]:
-    """c* and thrust coefficient with their efficiencies, where the nozzle is choked and both propellants flow.
+    """c* [m/s] and thrust coefficient [-] with their efficiencies [-], where the nozzle is choked and both propellants
+    flow.
 
-    c* ends when nitrogen enters, at ``purge`` [s]: it passes the throat and is in none of the flows, so that p_c A_t
-    over them would rise without bound.
+    All (n,) at the times of ``flows``. c* = p_c A_t / mdot ends when nitrogen enters, at ``purge`` [s]: it passes the
+    throat and is in none of the flows, so that p_c A_t over them would rise without bound. ``ambient`` [Pa] is the
+    air's.
     """
     if "p_chamber" not in measured:
         return {}
-    width = round(WIDTH / STEP)
+    width = round(EFFICIENCY_WIDTH / HISTORY_STEP)
     pressure, oxidizer, fuel = (_smooth(x, width) for x in (measured["p_chamber"], flows.oxidizer, flows.fuel))
     burning = (flows.time > 0.0) & (flows.time < fire.end) & (pressure > CRITICAL_RATIO * ambient) & (fuel > 1e-4)
     ratio = np.where(burning & (oxidizer > 1e-4), oxidizer / np.where(fuel > 1e-4, fuel, 1.0), np.nan)

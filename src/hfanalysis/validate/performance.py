@@ -1,4 +1,4 @@
-"""The performance table of a hot fire (report, table 4.6), measured and modelled."""
+"""The performance table of a hot fire (report, table 4.6), measured and modeled."""
 
 from __future__ import annotations
 
@@ -26,10 +26,12 @@ NAMES = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressur
          "oxidizer_mass", "fuel_mass")  # fmt: skip
 
 SMOOTHING = 0.1
-"""[s] of the running mean of which a peak is the largest value: longer than a period of the chamber's oscillation."""
+"""[s] of the running mean of which a peak is the largest value: longer than a period of the chamber's oscillation.
+Evidence: test_performance_errors.py: one cycle of a rough chamber is no peak, an overshoot of 0.25 s is."""
 
 SPAN = 0.25
-"""Part of a cell's accuracy that a tare does not take away, and of its drift that a straight line may miss."""
+"""Part of a cell's accuracy that a tare does not take away, and of its drift that a straight line may miss. Evidence:
+test_performance_errors.py: a tare takes away three quarters of what a cell may be off by."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,9 @@ def fire_of(segments: Segments, definition: TestDefinition) -> Fire | str:
 def measured(
     log: TestLog, segments: Segments, definition: TestDefinition, calibration: Calibration | None
 ) -> dict[str, Quantity]:
-    """The measured column, and ``total_impulse_of_file``: the raw integral over the whole file."""
+    """The measured column [s, N s, Pa, N, kg], and ``total_impulse_of_file`` [N s]: the raw integral over the whole
+    file.
+    """
     fire = fire_of(segments, definition)
     if isinstance(fire, str):
         none = {name: Quantity.absent(fire) for name in NAMES}
@@ -220,7 +224,7 @@ def _less(loaded: Value, after: Value | None) -> Quantity:
 
 @dataclass(frozen=True)
 class _Column:
-    """The modelled numbers of one run, in the order of NAMES."""
+    """The modeled numbers of one run, in the order of NAMES."""
 
     values: Array
 
@@ -236,7 +240,7 @@ _UNITS = ("s", "N s", "s", "Pa", "N", "N", "kg", "kg")
 
 
 def modelled(full: FullRun, calibration: Calibration) -> dict[str, Quantity]:
-    """The model's column, with what the calibrated constants' uncertainties make of it."""
+    """The model's column [s, N s, Pa, N, kg], with what the calibrated constants' uncertainties make of it."""
     engine = full.engine
     nominal = _Column.of(full, full.burnt, engine.oxidizer_mass, engine.fuel_mass).values
     errors = np.zeros(len(NAMES))

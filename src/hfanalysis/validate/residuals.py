@@ -21,7 +21,7 @@ FORMAT = ("v108", "v110")
 """HDF5 versions that MATLAB and older tools read."""
 
 PHASES = ("before", "filling", "liquid", "vapor", "nitrogen")
-"""Phases by their number in ``residuals.h5``: before the opening, line filling, liquid, pure vapour, with nitrogen."""
+"""Phases by their number in ``residuals.h5``: before the opening, line filling, liquid, pure vapor, with nitrogen."""
 
 LONG_NAMES = {
     "time": "time after the valve opening",
@@ -47,14 +47,19 @@ class Residual:
 
     @property
     def residual(self) -> Array:
-        """Measured minus model."""
+        """Measured minus model, (n,) [``unit``]."""
         return self.measured - self.model
 
 
 def compared(
     log: TestLog, segments: Segments, name: str, time: Array, model: Array, notes: tuple[str, ...] = ()
 ) -> Residual:
-    """A channel's good samples between the first and the last of ``time``, against a model given there."""
+    """A channel's good samples between the first and the last of ``time`` (n,) [s], against a ``model`` (n,) given
+    there.
+
+    ``model`` is in the channel's unit [SI]; times count from the opening. Raises :class:`AbsentError` without the
+    channel.
+    """
     origin = segments.t_open.value or 0.0
     signal = Signal.of(log[name]).shifted(origin)
     part = signal.between(time[0], time[-1] + 1e-9)
@@ -65,7 +70,12 @@ def compared(
 
 
 def phases_of(time: Array, t_feed: float, t_v: float | None, t_purge: float | None) -> NDArray[np.int8]:
-    """The phase of each sample; nitrogen counts from t_purge, also where the liquid is not gone yet."""
+    """The phase (n,) of each sample at ``time`` (n,) [s]; nitrogen counts from ``t_purge`` [s], also where liquid is
+    left.
+
+    >>> phases_of(np.array([-1.0, 0.1, 2.0, 6.0, 9.0]), 0.5, 5.0, 8.0).tolist()
+    [0, 1, 2, 3, 4]
+    """
     phase = np.where(time < 0.0, 0, np.where(time < t_feed, 1, 2))
     if t_v is not None:
         phase = np.where(time >= t_v, 3, phase)

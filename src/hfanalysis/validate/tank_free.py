@@ -28,7 +28,7 @@ from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 from hfanalysis.validate.residuals import Residual, compared
 
-LONGEST = 60.0
+LONGEST_COMPARED = 60.0
 """Seconds after the opening up to which the model is compared."""
 
 
@@ -41,7 +41,7 @@ class TankAlone:
     """A run of the tank alone at the times of ``measured`` p_tank; ``chamber`` and ``run_pressure`` [Pa], ``flow``
     through the injector [kg/s], ``mass`` [kg], liquid gone at ``t_v`` [s] (NaN: not).
 
-    ``start`` is where it starts [s after the opening], ``exponent`` the calibrated one of the vapour (None: there is
+    ``start`` is where it starts [s after the opening], ``exponent`` the calibrated one of the vapor (None: there is
     none); ``factor``: what effects make of the injector's flow; ``nitrogen``: its share of it.
     """
 
@@ -74,7 +74,7 @@ def run_tank_alone(
     saturation = saturation_of(definition.model.properties)
     tank = Signal.of(log["p_tank"]).shifted(segments.t_open.value or 0.0)
     start = segments.time("t_feed") or 0.0
-    part = tank.between(start, LONGEST)
+    part = tank.between(start, LONGEST_COMPARED)
     if part.time.size < 8:
         raise AbsentError("too few good samples of p_tank after t_feed")
     assert definition.tank is not None
@@ -123,7 +123,7 @@ def run_tank_free(
     definition: TestDefinition,
     effects: Sequence[Active] = (),
 ) -> list[Residual]:
-    """Measured and modelled tank and run-line pressure from t_feed on, as their sensors read them.
+    """Measured and modeled tank and run-line pressure from t_feed on, as their sensors read them.
 
     Raises AbsentError where C_i cannot be had. Where m is not identified the run ends with the liquid.
     """

@@ -18,19 +18,21 @@ from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 
 AT_AMBIENT = 0.04
-"""Chamber pressure above ambient, relative, below which the thrust is nothing: a nozzle gives 0.1 p_a A_t or less."""
+"""Chamber pressure above ambient, relative, below which the thrust is nothing. Source: a nozzle that is not choked
+gives 0.1 p_a A_t or less."""
 
 LONG_ENOUGH = 0.5
 """[s] at ambient pressure from which on the cell's reading counts."""
 
 FIRST = 2.0
-"""[s] from then on over which the cell's error is read."""
+"""[s] from the return to ambient pressure on, over which the cell's error is read."""
 
-SMOOTHING = 0.5
+CELL_SMOOTHING = 0.5
 """[s] of the running mean of the cell after the burn."""
 
 NOTICEABLE = 0.02
-"""Part of the largest thrust from which on a reading without chamber pressure is the cell's error."""
+"""Part of the largest thrust from which on a reading without chamber pressure is the cell's error. Evidence:
+test_thrust.py: a cell that reads next to nothing is left alone."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class Thrust:
 
 
 def thrust_of(log: TestLog, segments: Segments, definition: TestDefinition) -> Thrust:
-    """The thrust without the cell's drift. Raises AbsentError where the log has none."""
+    """The thrust [N] without the cell's drift. Raises AbsentError where the log has none."""
     channel, origin = log["thrust"], segments.t_open.value or 0.0
     signal = Signal.of(channel).shifted(origin)
     since = _at_ambient(log, segments, definition)
@@ -65,7 +67,7 @@ def thrust_of(log: TestLog, segments: Segments, definition: TestDefinition) -> T
 
 def _drift(signal: Signal, rest: Signal, since: float) -> Array:
     """What is left in the cell: linear from the opening to where the chamber is at ambient, then as it reads."""
-    smooth = rest.smooth(max(SMOOTHING, 3.0 * rest.step))
+    smooth = rest.smooth(max(CELL_SMOOTHING, 3.0 * rest.step))
     time = np.concatenate(([0.0, since], rest.time[rest.time > since]))
     value = np.concatenate(([0.0, smooth[0]], smooth[rest.time > since]))
     return np.interp(signal.time, time, value, left=0.0)
@@ -79,7 +81,7 @@ def _at_ambient(log: TestLog, segments: Segments, definition: TestDefinition) ->
     chamber = Signal.of(channel).shifted(segments.t_open.value or 0.0).between(0.0, np.inf)
     if chamber.time.size < 8:
         return None
-    smooth = chamber.smooth(max(SMOOTHING, 3.0 * chamber.step))
+    smooth = chamber.smooth(max(CELL_SMOOTHING, 3.0 * chamber.step))
     fire = np.flatnonzero(smooth > (1.0 + AT_AMBIENT) * definition.ambient_pressure.value)
     if not fire.size or fire[-1] >= smooth.size - 8:
         return None

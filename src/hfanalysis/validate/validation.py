@@ -30,7 +30,7 @@ from hfanalysis.validate.residuals import Residual, gaps
 from hfanalysis.validate.sensor_faults import ZERO, findings
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 MODES = ("tank_free", "chamber_forced", "full")
 FLOW_NAMES = ("oxidizer_flow", "fuel_flow", "regression_rate", "port_radius", "of_ratio")
 RATIO_NAMES = ("c_star", "c_star_efficiency", "thrust_coefficient", "thrust_coefficient_efficiency")
@@ -123,7 +123,7 @@ class _Work:
             raise AbsentError(str(self.uncalibrated))
         return self._calibration
 
-    def _try(self, name: str, work: Callable[[], Found]) -> Found | None:
+    def _try(self, name: str, work: Callable[[], Result]) -> Result | None:
         try:
             _ = self.calibration
             return work()

@@ -73,11 +73,12 @@ SOURCES: dict[str, str] = {
 KINDS: dict[str, str] = {"hot_fire": "hot fire", "cold_flow": "cold flow"}
 
 _FINEST: dict[str, int] = {"s": 4}
-"""Decimals beyond which nobody reads."""
+"""Unit: decimals beyond which nobody reads; a log's stamps are no finer than 0.1 ms."""
 _KILOWATTS = 500.0
 """[W] from which on a power reads better in kW."""
 
 _NOTHING = 1e-200
+"""Size [any unit] below which a number is zero: it has no power of ten to take out."""
 MINUS = "\N{MINUS SIGN}"
 
 
@@ -99,13 +100,17 @@ class Shown:
 
 
 def people_unit(unit: str) -> tuple[float, str]:
-    """(factor, unit): multiply an SI value to have it in the unit people at a test stand use."""
+    """(factor [unit / SI], unit): multiply an SI value to have it in the unit people at a test stand use.
+
+    >>> people_unit("Pa")
+    (1e-05, 'bar')
+    """
     found = scale(unit)
     return found.factor, found.unit
 
 
 def shown(quantity: Quantity, system: str = "si", name: str = "", difference: bool = False) -> Shown:
-    """A quantity as people read it in one of the systems of units.
+    """A quantity [SI] as people read it in one of the systems of units.
 
     Args:
         quantity: of a product.
@@ -136,14 +141,23 @@ def shown(quantity: Quantity, system: str = "si", name: str = "", difference: bo
 
 
 def exponent_of(size: float) -> int:
-    """The power of ten to take out of numbers that are awkward to read: 0 for most."""
+    """The power of ten to take out of numbers of a ``size`` [any unit] that are awkward to read: 0 for most.
+
+    >>> exponent_of(6.4e8), exponent_of(12.0)
+    (8, 0)
+    """
     if size < _NOTHING or 1e-3 <= size < 1e5:
         return 0
     return math.floor(math.log10(size))
 
 
 def decimals_for(value: float, std: float) -> int:
-    """Decimals that show two digits of the standard deviation, or four digits of a value that has none."""
+    """Decimals that show two digits of the standard deviation, or four digits of a value that has none [both in one
+    unit].
+
+    >>> decimals_for(12.345, 0.21), decimals_for(1.2345, 0.0)
+    (2, 3)
+    """
     scale = std if std > 0.0 else abs(value) * 1e-2
     if not (scale > 0.0 and math.isfinite(scale)):
         return 3
@@ -151,7 +165,7 @@ def decimals_for(value: float, std: float) -> int:
 
 
 def fixed(value: float, decimals: int) -> str:
-    """The number with a true minus sign.
+    """The number [any unit] with a true minus sign.
 
     >>> fixed(-1.25, 1)
     '−1.2'
@@ -161,7 +175,7 @@ def fixed(value: float, decimals: int) -> str:
 
 
 def tidy(value: float, digits: int = 4) -> str:
-    """A number without uncertainty, to a few digits.
+    """A number [any unit] without uncertainty, to a few digits.
 
     >>> tidy(-0.001234567)
     '−0.001235'
@@ -212,7 +226,7 @@ def in_words(name: str) -> str:
 
 
 def said_of(quantity: Quantity, unit: str, form: str = ".3g", std_form: str = ".2g", sign: float = 1.0) -> Text:
-    """A quantity with its deviation in a sentence, shown in ``unit``; ``sign`` -1 turns it."""
+    """A quantity [SI] with its deviation in a sentence, shown in ``unit``; ``sign`` [-] of -1 turns it."""
     return said(sign * (quantity.value or 0.0), unit, form, quantity.std or 0.0, std_form)
 
 

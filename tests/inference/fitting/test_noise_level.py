@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tests.inference import made
 
 from hfanalysis.inference.fitting.fit import fit
-from hfanalysis.inference.fitting.noise_level import FARTHEST, louder_or_quieter
+from hfanalysis.inference.fitting.noise_level import FARTHEST_FACTOR, louder_or_quieter
 from hfanalysis.inference.observations.noise import MOST_SHARE, SlowNoise
 from hfanalysis.inference.observations.observed import Observed
 
@@ -45,7 +45,7 @@ def fitted(data: Array) -> tuple[Array, Array]:
 
 def exact(data: Array) -> float:
     """The gain in log evidence, integrated over the factor on a fine grid with dense covariances."""
-    logs = np.linspace(-FARTHEST, FARTHEST, 241)
+    logs = np.linspace(-FARTHEST_FACTOR, FARTHEST_FACTOR, 241)
     slow = WHITENING @ SLOW @ WHITENING.T
     evidences = []
     for log_factor in (*logs, 0.0):

@@ -15,7 +15,7 @@ from hfanalysis.effects import effect, library
 from hfanalysis.effects.load_cell_drift import heat_clock
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.inference.fitting.fit import fit
-from hfanalysis.inference.fitting.hypothesis import FARTHEST, M_RANGE, Free, Hypothesis, free_parameters
+from hfanalysis.inference.fitting.hypothesis import FARTHEST_PARAMETER, M_RANGE, Free, Hypothesis, free_parameters
 from hfanalysis.inference.fitting.predict import predict, readings, signatures
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import PLACES
@@ -167,7 +167,7 @@ def test_a_signature_is_what_an_effect_adds() -> None:
     shape=some.sampled_from(("normal", "positive", "wide")),
     center=some.floats(1e-6, 1e6),
     relative=some.floats(0.01, 3.0),
-    x=some.floats(-FARTHEST, FARTHEST),
+    x=some.floats(-FARTHEST_PARAMETER, FARTHEST_PARAMETER),
 )
 def test_a_place_is_where_the_parameter_has_its_value(shape, center: float, relative: float, x: float) -> None:  # type: ignore[no-untyped-def]
     free = Free("p", center, relative if shape == "positive" else relative * center, shape)

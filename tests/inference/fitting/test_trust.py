@@ -108,12 +108,12 @@ def test_a_fit_follows_a_valley_that_bends(monkeypatch: pytest.MonkeyPatch, bend
     def residual(x: Array) -> Array:
         return np.array([100.0 * (x[1] - bend * x[0] ** 2), 5.0 * (1.0 - x[0])])
 
-    def run(_: object, __: object, x: Array, tangents: bool) -> Prediction:
+    def run(_: object, __: object, x: Array, tangents: bool, accuracy: float = 0.0) -> Prediction:
         runs.append(x)
         there = Prediction(residual(x), None, burnt)
         return with_slopes(hypothesis, observed, x, there) if tangents else there
 
-    def with_slopes(_: object, __: object, x: Array, there: Prediction) -> Prediction:
+    def with_slopes(_: object, __: object, x: Array, there: Prediction, accuracy: float = 0.0) -> Prediction:
         slopes.append(x)
         out = np.zeros((2, x.size))
         out[:, :2] = [[-200.0 * bend * x[0], 100.0], [-5.0, 0.0]]

@@ -13,7 +13,14 @@ from tests.inference import logged, made
 from hfanalysis.diagnose.answer.effect_source import acting
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
-from hfanalysis.inference.fitting.fade import FARTHEST, abrupt_end, bounded, fade_misfit, fade_slope, with_abrupt_end
+from hfanalysis.inference.fitting.fade import (
+    FARTHEST_MISFIT,
+    abrupt_end,
+    bounded,
+    fade_misfit,
+    fade_slope,
+    with_abrupt_end,
+)
 from hfanalysis.inference.fitting.fit import fit
 from hfanalysis.inference.observations.burn_out import LAG, UNSURE, fade_of
 from hfanalysis.inference.observations.observed import FADE
@@ -119,7 +126,7 @@ def test_slopes_of_a_fade_are_its_derivatives(depth: float, width: float, tail: 
 @given(some.floats(-50.0, 50.0))
 def test_a_slow_fall_says_only_so_much(misfit: float) -> None:
     held, slope = bounded(misfit)
-    assert abs(held) <= min(abs(misfit), FARTHEST)
+    assert abs(held) <= min(abs(misfit), FARTHEST_MISFIT)
     step = 1e-4
     assert slope == pytest.approx((bounded(misfit + step)[0] - bounded(misfit - step)[0]) / (2.0 * step), abs=1e-6)
     assert bounded(0.1)[0] == pytest.approx(0.1, rel=1e-3)

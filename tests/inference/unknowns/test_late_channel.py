@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.inference.logged import seen
 
 from hfanalysis.effects.chamber_tap_lag import lagged
-from hfanalysis.inference.unknowns.late_channel import CLEAR, LEAST, LateChannel
+from hfanalysis.inference.unknowns.late_channel import CLEAR, SHORTEST_DELAY, LateChannel
 from hfanalysis.record.signals import Signal
 
 STEP = 1e-3
@@ -63,4 +63,4 @@ def test_it_takes_both_channels() -> None:
 
 def test_noise_alone_is_no_delay() -> None:
     assert seen(LateChannel, start(noise=30.0)) is None
-    assert LEAST > 4.0 * STEP
+    assert SHORTEST_DELAY > 4.0 * STEP

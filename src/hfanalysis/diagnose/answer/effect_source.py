@@ -25,14 +25,15 @@ POINTS = 120
 """Instants at which a source is given."""
 
 SHAPE_ERROR = 0.25
-"""By how much, relative to itself, a source may be wrong where the effect has another shape than its closure."""
+"""By how much, relative to itself, a source may be wrong where the effect has another shape than its closure. Evidence:
+as of LEAST_ERROR."""
 
 LEAST_ERROR = 0.05
-"""The least deviation of a source, relative to its largest value. Both are chosen on the calibration split, whose cover
-`python -m benchmarks.blind table --split calibration` prints."""
+"""The least deviation of a source, relative to its largest value. Evidence: chosen on the calibration split, as
+SHAPE_ERROR is; `python -m benchmarks.blind table --split calibration` prints how many sources the bands cover."""
 
-STEP = 0.02
-"""Of x, for the slopes of a source."""
+SLOPE_STEP = 0.02
+"""Of x, in prior standard deviations, for the slopes of a source."""
 
 FADE_ERROR, FLOW_ERROR = 0.5, 0.2
 """By how much the flow of fading fuel may be wrong, relative to itself and to the flow before."""
@@ -55,7 +56,8 @@ UNITS = {
 
 @dataclass(frozen=True)
 class Acting:
-    """A source at ``time`` [s] in an equation: ``mean`` and ``std`` in ``unit``; the sensor's ``channel`` if in one."""
+    """A source at ``time`` [s] in an equation: ``mean`` and ``std`` in ``unit``; the sensor's ``channel`` if in one.
+    Arrays (n,)."""
 
     equation: str
     unit: str
@@ -66,7 +68,7 @@ class Acting:
 
 
 def acting(found: Fit, name: str, observed: Observed) -> Acting:
-    """The source that an effect of a fit is.
+    """The source over time [s after the opening] that an effect of a fit is, in the unit of its equation (UNITS).
 
     Its band holds what is uncertain of all constants of the fit, at the states of its run, and of the effect's shape.
     """
@@ -175,8 +177,8 @@ class _Course:
     def slope(self, effect: Effect, number: int, here: Array) -> Array:
         """Of the source with one of the fit's x, by a difference that stays within bounds."""
         step = np.zeros(self.found.x.size)
-        inside = self.found.x[number] + STEP <= self.found.hypothesis.bounds[1][number]
-        step[number] = STEP if inside else -STEP
+        inside = self.found.x[number] + SLOPE_STEP <= self.found.hypothesis.bounds[1][number]
+        step[number] = SLOPE_STEP if inside else -SLOPE_STEP
         return np.asarray((self.source(effect, self.found.x + step) - here) / step[number])
 
 

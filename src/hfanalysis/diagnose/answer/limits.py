@@ -17,7 +17,7 @@ from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
 
 Z95 = 1.645
-"""One-sided 95 % of a normal distribution, in standard deviations."""
+"""One-sided 95 % of a normal distribution, in standard deviations. Source: its quantile."""
 
 
 def limits(
@@ -25,7 +25,7 @@ def limits(
 ) -> dict[str, tuple[float | None, str]]:
     """For every effect but those that were ``added``: the size [SI] that it stays below with 95 % probability, linear.
 
-    None where that is as large as it can be at all.
+    None where that is as large as it can be at all. With its SI unit; one-sided, by the curvature of the objective.
     """
     observed = bench.at(chosen.form)
     visible = {
@@ -62,7 +62,8 @@ def _limit(parent: Fit, made: Hypothesis, observed: Observed) -> tuple[float, fl
 
 
 def inserted(parent: Fit, made: Hypothesis) -> Array:
-    """The parent's parameters in a hypothesis with more effects: those come after its own and before its sources."""
+    """The parent's parameters in a hypothesis with more effects (parameters,), in prior standard deviations: those come
+    after its own and before its sources."""
     own = len(parent.hypothesis.free)
     new = np.zeros(len(made.free) - own)
     return np.concatenate([parent.x[:own], new, parent.x[own:]])

@@ -17,6 +17,7 @@ STEEPNESS = 3.0
 """Log of the odds lost per squared e-fold beyond the limit."""
 
 MOST_LOST = 15.0
+"""Log of the odds that a size loses at most."""
 
 
 def _parameter(active: Active) -> str:
@@ -28,13 +29,13 @@ def _parameter(active: Active) -> str:
 
 
 def excess(active: Active) -> float:
-    """The size of an effect over the largest believable one; 0 where nothing is known of it."""
+    """The size of an effect over the largest believable one [-]; 0 where nothing is known of it."""
     limit = active.effect.believable
     return 0.0 if limit is None else abs(active.strengths[_parameter(active)]) / limit.most
 
 
 def lost(active: Active) -> float:
-    """Log of the odds that an effect loses by its size."""
+    """Log of the odds that an effect loses by its size [natural log]."""
     beyond = excess(active)
     return 0.0 if beyond <= 1.0 else min(STEEPNESS * log(beyond) ** 2 + 1.0, MOST_LOST)
 

@@ -25,29 +25,32 @@ SET = 0.9
 
 
 ABOVE_CHANCE = {"named": 5.0, "unknown": 10.0}
-"""Log evidence of which, where no label has it, unknown is taken to be no more probable than none. Of 214 simulated
-tests that hide nothing (docs/blind.md names the runs) `benchmarks.blind calibrate` prints 7.8, 7.6, 4.8 and 4.1 as the
-largest of names, and 6.8, 6.4, 6.3 and 6.1 as those of unknown sources. Those need more, for a source that explains
-little is what two tables of nitrous oxide differ by."""
+"""Log evidence of which, where no label has it, unknown is taken to be no more probable than none. Evidence: of 214
+tests of the calibration split that hide nothing (docs/blind.md names the runs) `benchmarks.blind calibrate` prints 7.8,
+7.6, 4.8 and 4.1 as the largest of names, and 6.8, 6.4, 6.3 and 6.1 as those of unknown sources. Those need more, for a
+source that explains little is what two tables of nitrous oxide differ by: with 8.5 a practice case without an effect
+(P03) was claimed."""
 
 
 LEAST_EVIDENCE = 9.0
-"""Log evidence that a label needs itself to be claimed: more than any has of those 214 tests."""
+"""Log evidence that a label needs itself to be claimed. Evidence: more than any has of those 214 tests."""
 
 
 POOR_FIT = 2.0
 """Chi-square per observation that the best name leaves, at the model-form error that it asks for, beyond which model
-and test are further apart than in any of the tests by which probabilities were fitted. Of the 1,498 scored tests one
-leaves more, S001267, and what it is stated as is wrong."""
+and test are further apart than in any of the tests by which probabilities were fitted. Evidence: none of the 650 tests
+of the calibration split leaves more (probabilities.json, docs/diagnosis.md)."""
 
 
 def poor_fit(leftover: float) -> bool:
-    """Whether no model comes near a test of which the best name leaves so much."""
+    """Whether no model comes near a test of which the best name leaves so much (``leftover``: chi-square per
+    observation [-])."""
     return leftover > POOR_FIT
 
 
 def share_kept(leftover: float) -> float:
-    """The part of its probability that a label keeps whose model leaves so much; the rest is that of unknown.
+    """The part [-] of its probability that a label keeps whose model leaves so much (``leftover``: chi-square per
+    observation [-]); the rest is that of unknown.
 
     >>> share_kept(1.3), share_kept(8.0)
     (1.0, 0.25)
@@ -78,9 +81,13 @@ class Scale:
     def probabilities(
         self, evidences: Mapping[str, float], leftover: float, elsewhere: float | None = None
     ) -> dict[str, float]:
-        """Of every label of ``evidences``; they sum to one.
+        """Of every label of ``evidences`` [natural log]; they sum to one. ``leftover``: chi-square per observation [-].
 
         ``elsewhere``: log evidence of the best unknown source in another equation than the best name's.
+
+        >>> found = Scale().probabilities({"none": 0.0, "tank_heat": 12.0, "unknown": 0.0}, 1.0)
+        >>> round(found["tank_heat"], 3)
+        1.0
         """
         heat, labels = self.heat(leftover), list(evidences)
         kinds, counted = detailed_kinds(evidences), beyond_closures(evidences, self.unexplained, elsewhere)
@@ -99,7 +106,7 @@ class Scale:
         return dict(zip(labels, mixed.tolist(), strict=True))
 
     def heat(self, leftover: float) -> float:
-        """The temperature that evidences are divided by."""
+        """The temperature [-] that evidences are divided by; ``leftover``: chi-square per observation [-]."""
         return self.temperature * (1.0 + self.temperature_per_leftover * max(0.0, leftover - 1.0))
 
     def _log(self, of: str, evidence: float, heat: float) -> float:
@@ -110,7 +117,8 @@ class Scale:
 
 
 def above_chance(evidences: Mapping[str, float]) -> bool:
-    """Whether any label has as much evidence as hardly a test shows that hides nothing, that of none being 0.
+    """Whether any label has as much evidence [natural log] as hardly a test shows that hides nothing, that of none
+    being 0.
 
     >>> above_chance({"none": 0.0, "tank_heat": 5.2, "unknown": 9.8})
     True
@@ -121,7 +129,7 @@ def above_chance(evidences: Mapping[str, float]) -> bool:
 
 
 def unclaimable(evidences: Mapping[str, float]) -> bool:
-    """Whether no label has the evidence that a claim needs (LEAST_EVIDENCE), that of none being 0."""
+    """Whether no label has the evidence [natural log] that a claim needs (LEAST_EVIDENCE), that of none being 0."""
     return all(e < LEAST_EVIDENCE for label, e in evidences.items() if label != "none")
 
 
@@ -147,7 +155,8 @@ def detailed_kinds(evidences: Mapping[str, float]) -> dict[str, str]:
 def beyond_closures(
     evidences: Mapping[str, float], unexplained: float, elsewhere: float | None = None
 ) -> dict[str, float]:
-    """The evidences, that of unknown without what closures leave ``unexplained``, by the root of the best name's.
+    """The evidences [natural log], that of unknown without what closures leave ``unexplained`` [-], by the root of the
+    best name's.
 
     A source ``elsewhere`` keeps all that it has.
 
@@ -175,7 +184,8 @@ def scale() -> Scale:
 
 
 def evidences_of(found: Naming) -> dict[str, float]:
-    """Log evidence of every label, that of none being 0. A set counts for its first name, which explains most."""
+    """Log evidence [natural log] of every label, that of none being 0. A set counts for its first name, which explains
+    most."""
     zero = found.base.log_evidence
     out = {"none": 0.0}
     for candidate in (*found.singles, *found.sets):
@@ -190,7 +200,7 @@ def evidences_of(found: Naming) -> dict[str, float]:
 
 
 def partners_of(first: str, found: Naming) -> dict[str, float]:
-    """Probability of each further effect if the first is there, by all explanations that it is part of."""
+    """Probability [-] of each further effect if the first is there, by all explanations that it is part of."""
     with_first = [c for c in (*found.singles, *found.sets) if first in c.names]
     out: dict[str, float] = {}
     for candidate, weight in zip(with_first, weights_of(with_first, found), strict=True):
@@ -201,7 +211,7 @@ def partners_of(first: str, found: Naming) -> dict[str, float]:
 
 
 def weights_of(candidates: Sequence[Candidate], found: Naming) -> list[float]:
-    """Probabilities of explanations of which one is taken to be right."""
+    """Probabilities (candidates,) [-] of explanations of which one is taken to be right."""
     logs = np.array([c.log_evidence for c in candidates]) / scale().heat(found.named.leftover)
     weights = np.exp(logs - logs.max())
     return list((weights / weights.sum()).tolist())
@@ -220,7 +230,11 @@ def counts_as_unknown(candidate: Candidate, found: Naming) -> bool:
 
 
 def smallest_set(probabilities: Mapping[str, float], share: float = SET) -> list[str]:
-    """The fewest labels that hold a share of the probability, the most probable first."""
+    """The fewest labels that hold a ``share`` [-] of the probability, the most probable first.
+
+    >>> smallest_set({"none": 0.05, "tank_heat": 0.7, "n2_purge": 0.25}, 0.9)
+    ['tank_heat', 'n2_purge']
+    """
     out, total = [], 0.0
     for label, p in sorted(probabilities.items(), key=lambda item: (-item[1], item[0])):
         out.append(label)

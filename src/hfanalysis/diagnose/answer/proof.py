@@ -30,7 +30,7 @@ class OtherTest:
 
 @dataclass(frozen=True)
 class Proof:
-    """Parts of the gap that are closed, by arm; None where an arm could not be had, and why in ``notes``."""
+    """Parts of the gap [-] that are closed, by arm; None where an arm could not be had, and why in ``notes``."""
 
     fractions: dict[str, float | None]
     other: diagnosis.OtherTest | None

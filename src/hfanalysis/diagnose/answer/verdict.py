@@ -140,7 +140,8 @@ def _chosen(found: Naming, top: str) -> Candidate:
 
 
 def effects_product(verdict: Verdict) -> tuple[NamedEffect, ...]:
-    """What was added to the model: name, probability, equation, parameters, and how large that is."""
+    """What was added to the model: name, probability [-], equation, parameters in their SI units, and how large that
+    is."""
     if verdict.label not in ("named", "ambiguous"):
         return ()
     found = verdict.chosen.fit
@@ -174,7 +175,8 @@ def _within(parameter: Parameter, value: float, std: float) -> Quantity:
 
 
 def places(verdict: Verdict, found: Naming) -> tuple[Place, ...]:
-    """Where, when and how much: the source of every named effect, or the unknown one."""
+    """Where, when [s after the opening] and how much, in the unit of its equation: the source of every named effect, or
+    the unknown one."""
     observed, chosen = found.bench.observed, verdict.chosen
     if verdict.label == "none":
         return ()
@@ -214,7 +216,10 @@ def _of_candidate(candidate: Candidate, found: Naming) -> Place:
 
 
 def of_unknown(history: History, gain: float, phases: Mapping[str, float]) -> Place:
-    """A row for an unknown source."""
+    """A row for an unknown source, in the unit of its place.
+
+    ``gain``: log evidence for it [natural log]; ``phases``: where each begins [s after the opening].
+    """
     place = history.place
     made = Acting(place.equation, place.unit, history.time, history.mean, history.std, place.sensor)
     row = of_acting(place.name, made, gain, phases, history.blur, history.stretch)
@@ -229,18 +234,27 @@ FULL = 0.9
 
 AVERAGED = 0.75
 """Part of a source's deviation that is left in its mean over the time in which it acts: what its shape is wrong by does
-not all go to one side. Chosen on the calibration split, as the bands are (docs/blind.md)."""
+not all go to one side. Evidence: chosen on the calibration split, where 0.875 of 120 intervals of sizes hold with it
+(docs/blind.md)."""
 
 Z90 = 1.6449
+"""Half-width of the 90 % interval of a normal distribution, in standard deviations. Source: its quantile of 95 %."""
 
 
 def of_acting(
     name: str, source: Acting, gain: float, phases: Mapping[str, float],
     blur: float | None = None, stretch: tuple[float, float] | None = None,
 ) -> Place:  # fmt: skip
-    """A row of the localisation: equation, phase, from when to when, how much, with bands.
+    """A row of the localization: equation, phase, from when to when [s after the opening], how much [unit of the
+    source], with bands of 90 %.
 
-    ``stretch``: from when to when it acts [s], where its size does not tell.
+    Args:
+        name: of the effect or the place.
+        source: what acts, over time.
+        gain: log evidence for it [natural log].
+        phases: where each phase begins [s after the opening].
+        blur: standard deviation of its beginning and end [s], of an unknown source.
+        stretch: from when to when it acts [s after the opening], where its size does not tell.
     """
     size = np.abs(source.mean)
     there = size > SEEN * size.max()
@@ -301,7 +315,7 @@ def _phase(time: Array, source: Array, phases: Mapping[str, float]) -> str:
 
 
 def upper_limits(verdict: Verdict, found: Naming, catalogue: Catalogue) -> dict[str, Quantity]:
-    """The size below which each effect that is not in the model stays with 95 % probability."""
+    """The size below which each effect that is not in the model stays with 95 % probability, in its SI unit."""
     return {
         name: Quantity.absent(UNLIMITED)
         if value is None

@@ -17,8 +17,9 @@ ORIFICES = "injector", "feed"
 
 
 def elsewhere(found: Naming) -> float | None:
-    """Log evidence, that of none being 0, of the best unknown source alone that acts in no equation of the best name's
-    effects, nor in one like it: it is no part of these that their closures get wrong. None without one."""
+    """Log evidence [natural log], that of none being 0, of the best unknown source alone that acts in no equation of
+    the best name's effects, nor in one like it: it is no part of these that their closures get wrong. None without
+    one."""
     taken = {e for name in found.named.names for e in _with_alike(found.equations[name], found.bench.observed)}
     apart = [c for c in found.unknown if len(c.names) == 1 and c.source is not None and not c.source.equations & taken]
     best = max((c.log_evidence for c in apart), default=None)
@@ -31,7 +32,7 @@ def _with_alike(equation: str, observed: Observed) -> set[str]:
 
 
 def by_equation(posterior: Mapping[str, float], found: Naming) -> dict[str, float]:
-    """Probability that the first of what is missing is in an equation; the most probable first.
+    """Probability [-] that the first of what is missing is in an equation; the most probable first.
 
     That of ``unknown`` goes to the equation of its likeliest source.
     """

@@ -22,7 +22,7 @@ def dropped(found: Candidate, bench: Bench) -> Candidate:
             continue
         names = list(found.names)
         names.remove(name)  # its first: the site of a source, which stays, may be called like an effect
-        less = bench.told(candidate(tuple(names), again, found.form, found.source))
+        less = bench.judged(candidate(tuple(names), again, found.form, found.source))
         if less.log_evidence > found.log_evidence:
             found = less
     return found

@@ -135,7 +135,7 @@ def _fitted(
     racing = [c for c in found if c.log_evidence > rival - HOPELESS]
     if not racing and found[0].log_evidence > rival - BEYOND:
         racing = found[:1]
-    return [*each(bench.told, racing), *found[len(racing) :]]
+    return [*each(bench.judged, racing), *found[len(racing) :]]
 
 
 def _seen(parent: Candidate, bench: Bench) -> list[LinearUnknown]:

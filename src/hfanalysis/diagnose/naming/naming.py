@@ -14,8 +14,12 @@ from hfanalysis.diagnose.naming.singles import singles_of
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.inference.candidate import Bench, Candidate
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
+from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.progress import Progress, silent
+
+RIVAL = 10.0
+"""Log evidence behind the best up to which the numbers of a candidate may be told."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,12 @@ class Naming:
         return (self.base, *self.singles, *self.sets, *self.unknown)
 
 
+def _told(candidates: list[Candidate], best: float, bench: Bench) -> list[Candidate]:
+    """Candidates, the best first, with the fits of those whose numbers may be told brought to their end."""
+    ended = each(lambda c: bench.told(c) if c.log_evidence > best - RIVAL else c, candidates)
+    return sorted(ended, key=lambda c: -c.log_evidence)
+
+
 def name_effects(
     hypothesis: Hypothesis,
     observed: Observed,
@@ -61,5 +71,7 @@ def name_effects(
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
     unknown = unknown_sources(base, valleys, named, bench)
+    best = max(c.log_evidence for c in (named, *unknown))
+    singles, sets, unknown = (_told(some, best, bench) for some in (singles, sets, unknown))
     equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations)

@@ -27,7 +27,7 @@ def _with(parent: Candidate, named: Candidate, source: Unknown, bench: Bench) ->
     found = attempted(made, bench.at(parent.form), np.concatenate([parent.fit.x, own]), SHORT)
     if found is None:
         return None
-    told = bench.told(candidate((*parent.names, source.place.name), found, parent.form, source))
+    told = bench.told(bench.judged(candidate((*parent.names, source.place.name), found, parent.form, source)))
     if source.also_by in named.names:
         return told
     return replace(told, log_evidence=told.log_evidence + source.log_evidence)

@@ -44,11 +44,12 @@ def score_tests(
     settings: Settings,
     shape_starts: Sequence[float] = (),
 ) -> tuple[Hypothesis, list[list[Test]]]:
-    """The parent with an effect more, and for each form the starts with the gain that they promise, the best first.
+    """The parent with an effect more, and for each form the starts (parameters,), in prior standard deviations, with
+    the gain [natural log] that they promise, the best first.
 
-    ``slopes`` (observations, parameters) of the parent at each form, which hardly change by a small effect. The starts
-    are those of the shape (each of its parameters at ``shape_starts``, in standard deviations of its prior, where they
-    are given), the strengths as the score test sees them.
+    ``slopes`` (observations, parameters), whitened, of the parent at each form, which hardly change by a small effect.
+    The starts are those of the shape (each of its parameters at ``shape_starts``, in standard deviations of its prior,
+    where they are given), the strengths as the score test sees them.
     """
     made = catalogue.add(parent.hypothesis, name)
     least, most = made.bounds
@@ -82,9 +83,11 @@ def score_tests(
 def score(
     slopes: Array, residual: Array, x: Array, own: slice, bounds: tuple[Array, Array], projection: bool = True
 ) -> tuple[float, Array]:
-    """Gain in log probability by strengths ``own``, with the parameters before them projected out, and the strengths.
+    """Gain in log probability [natural log] by strengths ``own``, with the parameters before them projected out, and
+    the strengths (strengths,) in prior standard deviations.
 
-    ``slopes`` (observations, parameters) of the residual at ``x``, whose prior is N(0, 1).
+    ``slopes`` (observations, parameters) of the whitened ``residual`` (observations,) at ``x`` (parameters,), whose
+    prior is N(0, 1); ``bounds``: least and most of x (parameters,).
     """
     a, b = slopes[:, : own.start], slopes[:, own]
     still = residual - b @ x[own]

@@ -26,12 +26,14 @@ ASKED = 2.5
 """Gain in log probability that a score test must promise for a further effect to be fitted."""
 
 FAR = 3.0
-"""Log evidence that a single effect gains from the constants of a pair before sets are tried anew."""
+"""Log evidence that a single effect gains from the constants of a pair before sets are tried anew. Evidence: a practice
+case was wrong while a single effect did not go on from where a pair led (docs/diagnosis.md)."""
 
 PARTNERS = 4
 """Effects that are tried as a further one, by their score, on either side that can be finer."""
 
 MOST_EFFECTS = 4
+"""Effects that a set has at most."""
 
 
 def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[list[Candidate], list[Candidate]]:
@@ -79,7 +81,7 @@ def _shown_the_way(pairs: list[Candidate], singles: list[Candidate], bench: Benc
 
     def alone(pair: Candidate) -> Candidate | None:
         again = without(pair, pair.names[1], bench.at(pair.form))
-        return None if again is None else bench.told(candidate(pair.names[:1], again, pair.form))
+        return None if again is None else bench.judged(candidate(pair.names[:1], again, pair.form))
 
     known = {c.names: c.log_evidence for c in singles}
     return [c for c in each(alone, pairs) if c is not None and c.log_evidence > known[c.names] + FAR]
@@ -88,7 +90,7 @@ def _shown_the_way(pairs: list[Candidate], singles: list[Candidate], bench: Benc
 def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
     """Candidates of one kind, all as much more probable as slack makes the first of them.
 
-    Among themselves they are compared without slack, which would make neighbours alike.
+    Among themselves they are compared without slack, which would make neighbors alike.
     """
     if not candidates:
         return []
@@ -133,7 +135,7 @@ def _partners(front: list[Candidate], search: Search, tried: set[frozenset[str]]
             found = attempted(asked_from[0], observed, asked_from[1])
         return None if found is None else candidate((*parent.names, name), found, parent.form)
 
-    return each(bench.told, _in_the_running([c for c in each(grown, jobs) if c is not None]))
+    return each(bench.judged, _in_the_running([c for c in each(grown, jobs) if c is not None]))
 
 
 def _in_the_running(grown: list[Candidate]) -> list[Candidate]:
@@ -191,4 +193,4 @@ def _in_place(found: Candidate, pair: tuple[str, str], search: Search) -> Candid
     again = attempted(made, observed, tests[0][1]) if tests else None
     if again is None:
         return None
-    return search.bench.told(candidate(tuple(twin if n == name else n for n in found.names), again, found.form))
+    return search.bench.judged(candidate(tuple(twin if n == name else n for n in found.names), again, found.form))

@@ -56,7 +56,8 @@ LOW = -1.5
 """Where n starts besides (as x) with a strength far from nothing: the base model's n has grown to take its place."""
 
 ELSEWHERE = (-1.0, 1.0)
-"""How far from the base model's n effects are looked for besides, in standard deviations of its prior."""
+"""How far from the base model's n effects are looked for besides, in standard deviations of its prior. Evidence: an
+effect of the nozzle was none while a and n were bent to it."""
 
 CHAMBER_SIDE = ("grain", "chamber_mass", "chamber_energy", "nozzle")
 """Equations whose effects a and n may be bent to."""
@@ -87,7 +88,7 @@ def _no_worse(child: Candidate, parent: Candidate, bench: Bench) -> Candidate:
     again = attempted(child.fit.hypothesis, bench.at(parent.form), start)
     if again is None:
         return child
-    return max(child, bench.converged(candidate(child.names, again, child.form)), key=lambda c: c.log_evidence)
+    return max(child, candidate(child.names, again, child.form), key=lambda c: c.log_evidence)
 
 
 def _first_children(base: Candidate, valleys: list[Candidate], search: Search, names: list[str]) -> list[Candidate]:

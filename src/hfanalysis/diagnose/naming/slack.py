@@ -26,7 +26,8 @@ SHAPE_TIME = 1.5
 
 
 def slack_gain(found: Candidate, bench: Bench) -> float:
-    """By how much slack in its effects makes the data more probable for a candidate, at the form that suits it then.
+    """By how much slack in its effects makes the data more probable for a candidate [natural log], at the form that
+    suits it then.
 
     Slack is linear, and moves the other constants little: no run is needed.
     """

@@ -43,17 +43,17 @@ class Reading(Protocol):
 
     @property
     def time(self) -> Array:
-        """Instants [s after the opening]."""
+        """Instants (blocks,) [s after the opening]."""
         ...
 
     @property
     def value(self) -> Array:
-        """Values [SI]."""
+        """Values (blocks,) [SI]."""
         ...
 
     @property
     def covariance(self) -> Array:
-        """Of the values, without model-form error."""
+        """Of the values (blocks, blocks) [SI squared], without model-form error."""
         ...
 
 
@@ -67,20 +67,20 @@ class Readings(Protocol):
 
     @property
     def phases(self) -> Mapping[str, float]:
-        """Where each phase begins [s]."""
+        """Where each phase begins [s after the opening]."""
         ...
 
     @property
     def end(self) -> float:
-        """Where the comparison ends [s]."""
+        """Where the comparison ends [s after the opening]."""
         ...
 
 
 @dataclass(frozen=True)
 class Cells:
-    """Cells from the opening on: their middles and widths [s], and how many lie before the end of the liquid.
+    """Cells from the opening on: their middles and widths (cells,) [s], and how many lie before the end of the liquid.
 
-    ``liquid_out`` [s]: None where no vapour phase is long enough.
+    ``liquid_out`` [s after the opening]: None where no vapor phase is long enough.
     """
 
     time: Array
@@ -90,7 +90,7 @@ class Cells:
 
     @property
     def end(self) -> float:
-        """Of the last cell [s]."""
+        """Of the last cell [s after the opening]."""
         return float(self.time[-1] + 0.5 * self.width[-1])
 
     @property
@@ -101,7 +101,7 @@ class Cells:
 
 
 def cells_of(readings: Readings, window: float) -> Cells:
-    """Cells for test functions of a length [s]."""
+    """Cells for test functions of a length ``window`` [s]; their middles and widths [s]."""
     end, gone = readings.end, readings.phases.get("vapor")
     if gone is not None and not 0.0 < gone < end - window:
         end, gone = min(end, gone) if gone > 0.0 else end, None
@@ -127,18 +127,20 @@ class Sampled:
     covered: Mask
 
     def covariance(self, reading: Reading, kept: Mask) -> Array:
-        """Of the readings on cells."""
+        """Of the readings on cells and at the end of the liquid, (cells + 1, cells + 1) [SI squared]; ``kept``: the
+        blocks that are read."""
         first = self.weights @ reading.covariance[np.ix_(kept, kept)]
         return np.asarray((self.weights @ first.T).T)
 
 
 def within(reading: Reading, end: float) -> Mask:
-    """The blocks of a channel that are compared."""
+    """The blocks (blocks,) of a channel that are compared: up to ``end`` [s after the opening]."""
     return np.asarray((reading.time >= 0.0) & (reading.time <= end))
 
 
 def sample(time: Array, cells: Cells) -> Sampled | None:
-    """How a channel with blocks at ``time`` [s] is read on cells; None where a phase has too few of them."""
+    """How a channel with blocks at ``time`` (blocks,) [s after the opening] is read on cells; None where a phase has
+    too few of them."""
     weights = np.zeros((cells.time.size + 1, time.size))
     covered = np.zeros(cells.time.size, dtype=bool)
     gone = np.inf if cells.liquid_out is None else cells.liquid_out
@@ -196,7 +198,8 @@ def _line(time: Array, at: float) -> Array:
 
 
 def columns(covariances: Sequence[Array]) -> list[Array]:
-    """Slopes of groups of numbers, each with its covariance, with independent N(0, 1) numbers of their own."""
+    """Slopes (numbers of a group, all columns) [SI] of groups of numbers, each with its covariance (numbers, numbers)
+    [SI squared], with independent N(0, 1) numbers of their own."""
     factors = []
     for covariance in covariances:
         # in units of the deviations: constants differ by twenty orders of magnitude
@@ -212,20 +215,23 @@ def columns(covariances: Sequence[Array]) -> list[Array]:
 
 @dataclass(frozen=True)
 class Windows:
-    """Test functions: middles [s], weights of cell means (``mean``) and of what is stored, whose slope it gives."""
+    """Test functions: middles (functions,) [s after the opening], weights (functions, cells) of cell means (``mean``
+    [-]) and of what is stored, whose slope it gives (``slope`` [1/s])."""
 
     time: Array
     mean: Array
     slope: Array
 
     def of(self, rate: History | None, stored: History | None) -> History:
-        """Mean of a rate and of the slope of what is stored, the derivative moved onto the test function."""
+        """Mean (functions,) of a rate [unit/s] and of the slope of what is stored [unit], the derivative moved onto the
+        test function."""
         parts = [h.weighted(w) for h, w in ((rate, self.mean), (stored, self.slope)) if h is not None]
         return parts[0] if len(parts) == 1 else parts[0] + parts[1]
 
 
 def windows(cells: Cells, part: slice, covered: Mask, length: float) -> Windows:
-    """Test functions (1 - s^2)^3 of a ``length`` [s], half of it apart, that stay inside a phase and out of gaps."""
+    """Test functions (1 - s^2)^3 of a ``length`` [s], half of it apart, that stay inside a phase and out of gaps.
+    Integrating by parts against them takes no derivative of noisy data."""
     width, count = float(cells.width[part][0]), part.stop - part.start
     reach = max(round(0.5 * length / width) - 1, FEWEST)
     s = np.arange(-reach, reach + 1) / (reach + 1.0)
@@ -256,5 +262,5 @@ class Piece:
 
 
 def by_phase(cells: Cells, rate: History, stored: History | None = None) -> list[Piece]:
-    """An equation over all cells, phase by phase."""
+    """An equation over all cells, phase by phase: ``rate`` (cells,) [unit/s] and what is ``stored`` (cells,) [unit]."""
     return [Piece(part, rate[part], None if stored is None else stored[part]) for part in cells.phases]

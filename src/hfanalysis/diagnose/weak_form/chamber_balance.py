@@ -32,9 +32,10 @@ LEAST_FLOW = 1e-9
 
 @dataclass(frozen=True)
 class ChamberBalance:
-    """Balances behind the injector: ``flow`` of oxidizer [kg/s] and its ``enthalpy`` on the formation scale [J/kg].
+    """Balances behind the injector: ``flow`` of oxidizer (cells,) [kg/s] and its ``enthalpy`` (cells,) on the formation
+    scale [J/kg].
 
-    ``channels`` on cells; ``constants``: the engine's numbers by name, each a single value.
+    ``channels`` (cells,) [SI] on cells; ``constants``: the engine's numbers [SI] by name, each a single value.
     """
 
     engine: Engine

@@ -14,8 +14,10 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 
-STEP = 1e-5
-"""Relative to the largest value of a history: by how much it is moved to find a derivative."""
+DIFFERENCE_STEP = 1e-5
+"""Relative to the largest value of a history: by how much it is moved to either side to find a derivative. Source:
+about the cube root of a double's relative precision, at which a central difference errs least (Press et al., Numerical
+Recipes, section 5.7)."""
 
 
 @dataclass(frozen=True)
@@ -36,51 +38,65 @@ class History:
         return History(self.value * other.value, slopes)
 
     def times(self, factor: float) -> History:
-        """The same in another unit."""
+        """The same in another unit: ``factor`` of it."""
         return History(factor * self.value, factor * self.slopes)
 
     def __getitem__(self, part: slice) -> History:
         return History(self.value[part], self.slopes[part])
 
     def spread(self, count: int) -> History:
-        """A single value, held over ``count`` instants."""
+        """A single value, held over ``count`` instants: (count,) [its unit]."""
         return History(np.repeat(self.value, count), np.repeat(self.slopes, count, axis=0))
 
     def weighted(self, weights: Array) -> History:
-        """Weighted sums over the instants; ``weights`` (sums, n)."""
+        """Weighted sums (sums,) over the instants [the value's unit times that of the weights]; ``weights`` (sums,
+        n)."""
         return History(weights @ self.value, weights @ self.slopes)
 
     @property
     def covariance(self) -> Array:
-        """Of the values, (n, n)."""
+        """Of the values, (n, n) [the value's unit squared]."""
         return np.asarray(self.slopes @ self.slopes.T)
 
 
 def joined(parts: Sequence[History]) -> History:
-    """One history after the other."""
+    """One history after the other, all in one unit [any]."""
     return History(np.concatenate([p.value for p in parts]), np.concatenate([p.slopes for p in parts]))
 
 
 def integral(rate: History, width: Array) -> History:
-    """Integral up to the middle of each cell of a history of cell means; ``width`` [s] of the cells."""
+    """Integral (n,) [unit of the rate times s] up to the middle of each cell of a history of cell means; ``width`` (n,)
+    [s] of the cells.
+
+    >>> integral(History(np.array([2.0, 4.0]), np.zeros((2, 0))), np.array([0.5, 0.5])).value.tolist()
+    [0.5, 2.0]
+    """
     value, slopes = rate.value * width, rate.slopes * width[:, None]
     return History(np.cumsum(value) - 0.5 * value, np.cumsum(slopes, axis=0) - 0.5 * slopes)
 
 
 def total(rate: History, width: Array) -> History:
-    """Integral over all cells, as a single value."""
+    """Integral over all cells, as a single value [unit of the rate times s]; ``width`` (n,) [s] of the cells.
+
+    >>> total(History(np.array([2.0, 4.0]), np.zeros((2, 0))), np.array([0.5, 0.5])).value.tolist()
+    [3.0]
+    """
     return rate.weighted(width[None, :])
 
 
 def through_all(formula: Callable[..., tuple[Array, ...]], *inputs: History) -> tuple[History, ...]:
-    """What a formula that acts at each instant by itself makes of histories; it gives several."""
+    """What a formula that acts at each instant by itself makes of histories (n,) [any units]; it gives several, all
+    (n,).
+
+    Slopes are by central differences, to first order.
+    """
     values = [h.value for h in inputs]
     results = formula(*values)
     slopes = [np.zeros((results[0].size, inputs[0].slopes.shape[1])) for _ in results]
     for i, given in enumerate(inputs):
         if not given.slopes.any():
             continue
-        step = STEP * max(float(np.abs(given.value).max()), 1e-300)
+        step = DIFFERENCE_STEP * max(float(np.abs(given.value).max()), 1e-300)
         up, down = (formula(*values[:i], values[i] + s, *values[i + 1 :]) for s in (step, -step))
         for slope, high, low in zip(slopes, up, down, strict=True):
             slope += ((high - low) / (2.0 * step))[:, None] * given.slopes
@@ -88,5 +104,11 @@ def through_all(formula: Callable[..., tuple[Array, ...]], *inputs: History) -> 
 
 
 def through(formula: Callable[..., Array], *inputs: History) -> History:
-    """What a formula that acts at each instant by itself makes of histories."""
+    """What a formula that acts at each instant by itself makes of histories (n,), of any units; slopes to first order.
+
+    >>> two, three = History(np.array([2.0]), np.eye(1)), History(np.array([3.0]), np.zeros((1, 1)))
+    >>> out = through(lambda p, t: p * t, two, three)
+    >>> float(out.value[0]), round(float(out.slopes[0, 0]), 6)
+    (6.0, 3.0)
+    """
     return through_all(lambda *values: (formula(*values),), *inputs)[0]

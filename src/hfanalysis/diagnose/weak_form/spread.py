@@ -24,7 +24,8 @@ KNOWN = (
 
 @dataclass(frozen=True)
 class Spread:
-    """``covariance`` of the constants ``names`` (of KNOWN) [SI]; others count as exact."""
+    """``covariance`` (names, names) of the constants ``names`` (of KNOWN) [SI]; others count as exact. Raises
+    ValueError for a name that is not in KNOWN."""
 
     names: tuple[str, ...]
     covariance: Array
@@ -45,21 +46,22 @@ class Spread:
 
     @classmethod
     def of_fit(cls, fitted: Fit) -> Spread:
-        """That of a fit's constants; parameters of effects and of sources are left out."""
+        """That of a fit's constants [SI]; parameters of effects and of sources are left out."""
         names = fitted.hypothesis.names
         kept = [i for i, name in enumerate(names) if name in KNOWN]
         slopes = fitted.hypothesis.jacobian(fitted.x)[kept]
         return cls(tuple(names[i] for i in kept), slopes @ fitted.covariance @ slopes.T)
 
     def matrix(self) -> Array:
-        """Covariance of all of KNOWN."""
+        """Covariance (KNOWN, KNOWN) [SI] of all of KNOWN."""
         out = np.zeros((len(KNOWN), len(KNOWN)))
         where = [KNOWN.index(name) for name in self.names]
         out[np.ix_(where, where)] = self.covariance
         return out
 
     def constants(self, engine: Engine, slopes: Array) -> dict[str, History]:
-        """The engine's constants by name, each a single value; ``slopes`` (KNOWN, k)."""
+        """The engine's constants [SI] by name, each a single value; ``slopes`` (KNOWN, k) [SI] with k independent N(0,
+        1) numbers."""
         rows = slopes if slopes.size else np.zeros((len(KNOWN), slopes.shape[1]))
         values = _values(engine)
         return {name: History(np.array([values[name]]), rows[i : i + 1]) for i, name in enumerate(KNOWN)}

@@ -18,7 +18,8 @@ from hfanalysis.engine.injector import mass_flows
 from hfanalysis.engine.tank import COLDEST_VAPOR, WARMEST_VAPOR, internal_energy, mass_along, polytropic
 from hfanalysis.thermo.saturation import Property
 
-BAR, LITRE = 1e5, 1e-3
+BAR, LITER = 1e5, 1e-3
+"""A bar [Pa] and a liter [m^3]. Source: definition."""
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,8 @@ class TankBalance(TankFlow):
     def tank_energy(self) -> list[Piece]:
         """Heat that the tank's content receives [W], the injector's flow taken as right.
 
-        Liquid: dU/dt + mdot h_l. Vapour: (V dp/dt + k mdot p V/M)/G, the heat beside a polytropic exponent k, of which
-        Grueneisen's G tells what it does to the pressure; p V = Z R M T.
+        Liquid: dU/dt + mdot h_l (report, eq. 3.9, with a heat term). Vapor: (V dp/dt + k mdot p V/M)/G, the heat beside
+        a polytropic exponent k, of which Grueneisen's G tells what it does to the pressure; p V = Z R M T.
         """
         source = self.engine.saturation
         energy = through(self._energy, self.constant("volume", self.wet), self.wet_mass, self.temperature)
@@ -53,7 +54,7 @@ class TankBalance(TankFlow):
 
     @property
     def _compressible_constant(self) -> float:
-        """Z R of the vapour that is left at the end of the liquid [J/(kg K)]."""
+        """Z R of the vapor that is left at the end of the liquid [J/(kg K)]."""
         source, temperature = self.engine.saturation, float(self.vapor_start[1].value[0])
         return float(source.pressure(temperature) * source.vapor_volume(temperature)[0]) / temperature
 
@@ -81,8 +82,8 @@ class TankBalance(TankFlow):
     def tank_volume(self) -> list[Piece]:
         """Volume of the tank that its content does not fill [L], mass and energy taken from the injector's flow.
 
-        Liquid: m_l + m_v = M and m_l u_l + m_v u_v = U give V - m_l v_l - m_v v_v. Vapour: V (1 - p_k / p) with the
-        polytropic p_k = p_v (M/M_v)^k.
+        Liquid: m_l + m_v = M and m_l u_l + m_v u_v = U give V - m_l v_l - m_v v_v (report, eq. 3.5). Vapor: V (1 - p_k
+        / p) with the polytropic p_k = p_v (M/M_v)^k (report, eq. 3.11).
         """
         start = through(
             self._energy, *(self.constants[name] for name in ("volume", "oxidizer_mass", "temperature"))
@@ -92,14 +93,14 @@ class TankBalance(TankFlow):
         def unfilled(volume: Array, mass: Array, energy: Array, temperature: Array) -> Array:
             v_l, v_v, u_l, u_v = self._phases(temperature)
             vapor = (energy - mass * u_l) / (u_v - u_l)
-            return (volume - (mass - vapor) * v_l - vapor * v_v) / LITRE
+            return (volume - (mass - vapor) * v_l - vapor * v_v) / LITER
 
         wet = through(unfilled, self.constant("volume", self.wet), self.wet_mass, held, self.temperature)
         pieces = [Piece(self.wet, wet)]
         if self.dry is not None:
             start_mass = self.vapor_start[0].spread(self.dry_mass.value.size)
             empty = through(
-                lambda v, k, p, p0, m, m0: v * (1.0 - polytropic(p0, m0, k, m) / p) / LITRE,
+                lambda v, k, p, p0, m, m0: v * (1.0 - polytropic(p0, m0, k, m) / p) / LITER,
                 self.constant("volume", self.dry), self.exponent,
                 self.channels["p_tank"][self.dry], self.dry_edge, self.dry_mass, start_mass,
             )  # fmt: skip

@@ -1,7 +1,7 @@
 """What the tank holds and what passes the injector, from measured pressures and the injector's constants.
 
 The flow is the injector's (report, eq. 3.2); without p_run the feed line's quadratic loss is
-added to the injector's. The tank's mass is not measured: it is integrated from the flow. With the vapour's density M/V
+added to the injector's. The tank's mass is not measured: it is integrated from the flow. With the vapor's density M/V
 that gives sqrt(M) = sqrt(M_v) - int mdot / (2 sqrt(M)) dt, in which mdot / sqrt(M) does not depend on M.
 """
 
@@ -25,10 +25,10 @@ from hfanalysis.thermo.saturation import Property
 
 @dataclass(frozen=True)
 class TankFlow:
-    """What an engine's tank holds and passes, from ``channels`` on cells.
+    """What an engine's tank holds and passes, from ``channels`` (cells,) [SI] on cells.
 
-    ``constants``: the engine's numbers by name, each a single value; ``edge``: the tank's pressure at the end of the
-    liquid, where there is one.
+    ``constants``: the engine's numbers [SI] by name, each a single value; ``edge``: the tank's pressure [Pa] at the end
+    of the liquid, where there is one.
     """
 
     engine: Engine
@@ -48,7 +48,7 @@ class TankFlow:
         return self.cells.phases[1] if len(self.cells.phases) > 1 else None
 
     def constant(self, name: str, part: slice | None = None) -> History:
-        """One of the constants, held over a phase (default: all cells)."""
+        """One of the constants [SI], held over a phase (default: all cells); (cells,)."""
         part = part or slice(0, self.cells.time.size)
         return self.constants[name].spread(part.stop - part.start)
 
@@ -71,7 +71,7 @@ class TankFlow:
 
     @property
     def constant_loss(self) -> Array | float:
-        """The report's constant feed losses by phase [Pa]; 0 where the loss is quadratic."""
+        """The report's constant feed losses by phase (cells,) [Pa]; 0 where the loss is quadratic."""
         losses = self.engine.feed.constant_losses
         if losses is None:
             return 0.0
@@ -79,24 +79,24 @@ class TankFlow:
 
     @cached_property
     def temperature(self) -> History:
-        """Of the saturated tank [K], while there is liquid."""
+        """Of the saturated tank (wet cells,) [K], while there is liquid, from its pressure."""
         return through(self.engine.saturation.temperature, self.channels["p_tank"][self.wet])
 
     @cached_property
     def wet_flow(self) -> History:
-        """Oxidizer flow [kg/s] while there is liquid."""
+        """Oxidizer flow (wet cells,) [kg/s] while there is liquid (report, eq. 3.2)."""
         area = self._resistance.spread(self.cells.wet)
         density = self.engine.saturation.liquid_density
         return through(lambda a, t, x: mass_flows(a, density(t), x), area, self.temperature, self._drop[self.wet])
 
     @cached_property
     def wet_mass(self) -> History:
-        """What the tank holds [kg] while there is liquid."""
+        """What the tank holds (wet cells,) [kg] while there is liquid: the load less the integral of the flow."""
         return self.constant("oxidizer_mass", self.wet) - integral(self.wet_flow, self.cells.width[self.wet])
 
     @cached_property
     def vapor_start(self) -> tuple[History, History]:
-        """Mass [kg] and temperature [K] of the vapour that is left at the end of the liquid."""
+        """Mass [kg] and temperature [K] of the vapor that is left at the end of the liquid, each a single value."""
         assert self.edge is not None
         source = self.engine.saturation
         temperature = through(source.temperature, self.edge)
@@ -104,7 +104,10 @@ class TankFlow:
 
     @cached_property
     def dry_mass(self) -> History:
-        """What the tank holds [kg] after the end of the liquid."""
+        """What the tank holds (dry cells,) [kg] after the end of the liquid.
+
+        sqrt(M) = sqrt(M_v) - int mdot / (2 sqrt(M)) dt, for the flow at the density M/V is sqrt(M) times that at 1/V.
+        """
         assert self.dry is not None
         count = self.dry.stop - self.dry.start
         area, volume = self._resistance.spread(count), self.constant("volume", self.dry)
@@ -118,7 +121,8 @@ class TankFlow:
 
     @cached_property
     def exponent(self) -> History:
-        """Polytropic exponent of the vapour; c_p/c_v at the end of the liquid where the engine states none."""
+        """Polytropic exponent of the vapor (dry cells,) [-]; c_p/c_v at the end of the liquid where the engine states
+        none."""
         count = self.dry_mass.value.size
         if self.engine.polytropic_exponent is not None:
             return self.constants["polytropic_exponent"].spread(count)
@@ -131,7 +135,7 @@ class TankFlow:
 
     @cached_property
     def dry_flow(self) -> History:
-        """Oxidizer flow [kg/s] after the end of the liquid."""
+        """Oxidizer flow (dry cells,) [kg/s] after the end of the liquid."""
         assert self.dry is not None
         area = self._resistance.spread(self.dry_mass.value.size)
         return through(
@@ -144,12 +148,12 @@ class TankFlow:
 
     @cached_property
     def flow(self) -> History:
-        """Oxidizer flow through the injector [kg/s]."""
+        """Oxidizer flow through the injector (cells,) [kg/s]."""
         return joined([self.wet_flow, self.dry_flow]) if self.dry is not None else self.wet_flow
 
     @cached_property
     def dry_temperature(self) -> History:
-        """Of the vapour [K], from pressure and mass."""
+        """Of the vapor (dry cells,) [K], from pressure and mass."""
         assert self.dry is not None
         count = self.dry_mass.value.size
         mass, temperature = (h.spread(count) for h in self.vapor_start)
@@ -164,12 +168,16 @@ class TankFlow:
 
     @property
     def dry_edge(self) -> History:
-        """The tank's pressure at the end of the liquid [Pa], held over the cells behind it."""
+        """The tank's pressure at the end of the liquid [Pa], held over the cells behind it (dry cells,)."""
         assert self.edge is not None
         return self.edge.spread(self.dry_mass.value.size)
 
     def closing_mass(self) -> History | None:
-        """What the injector's flow leaves in the tank at the end of the liquid, less the vapour that fits it [kg]."""
+        """What the injector's flow leaves in the tank at the end of the liquid, less the vapor that fits it [kg], a
+        single value.
+
+        None where there is no end of the liquid.
+        """
         if self.dry is None:
             return None
         passed = total(self.wet_flow, self.cells.width[self.wet])
@@ -177,7 +185,7 @@ class TankFlow:
 
     @cached_property
     def enthalpy(self) -> Array:
-        """Of the oxidizer entering [J/kg], on the formation scale."""
+        """Of the oxidizer entering (cells,) [J/kg], on the formation scale."""
         e = self.engine
         if e.oxidizer_enthalpy is not None:
             return np.full(self.cells.time.size, e.oxidizer_enthalpy)

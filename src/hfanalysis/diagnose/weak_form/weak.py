@@ -71,7 +71,7 @@ class WeakResidual:
     ``time`` [s after the opening]: middles of the test functions; ``value`` and ``std`` [``unit``]; ``covariance`` of
     the values; ``phases``: the phase of each; ``explained``: what the engine's own effects leave in the same residual
     (zero for an engine without any). ``closing`` [kg]: for tank_volume, what the injector's flow leaves in the tank at
-    the end of the liquid less the vapour that fits it, with its standard deviation.
+    the end of the liquid less the vapor that fits it, with its standard deviation.
     """
 
     equation: str
@@ -93,17 +93,18 @@ class WeakResidual:
 
     @property
     def left(self) -> Array:
-        """What the engine with its effects does not explain."""
+        """What the engine with its effects does not explain (n,) [``unit``]."""
         return self.value - self.explained
 
 
 def weak_residuals(
     readings: Readings, engine: Engine, spread: Spread | None = None, window: float = WINDOW
 ) -> tuple[WeakResidual, ...]:
-    """The residual of every equation of UNITS, in that order.
+    """The residual of every equation of UNITS, in that order, each in its unit there.
 
     ``readings``: an ``Observed``; ``engine``: that of the test, or of a fitted hypothesis; ``spread``: how well its
-    constants are known (default: exactly); ``window``: length of the test functions [s].
+    constants are known (default: exactly); ``window``: length of the test functions [s]. A residual that cannot be had
+    says why.
     """
     measured = _Measured.of(readings, window)
     balances = _balances(measured, engine, spread or Spread.none())

@@ -11,7 +11,7 @@ from hfanalysis.products.diagnosis import ChiSquare, Lacking
 from hfanalysis.quantity import Quantity
 
 Z90 = 1.6449
-"""Half-width of the 90 % interval of a normal distribution."""
+"""Half-width of the 90 % interval of a normal distribution, in standard deviations. Source: its quantile of 95 %."""
 
 SEEN = 2.0
 """Standard deviations from which on something counts as lacking."""
@@ -75,7 +75,8 @@ def _where(residual: WeakResidual) -> dict[str, Quantity | str | None]:
 
 
 def significance(residual: WeakResidual) -> ChiSquare:
-    """Chi-square of what is left against zero, with its degrees of freedom."""
+    """Chi-square [-] of what is left against zero, with its degrees of freedom; directions of no variance of their own
+    are left out."""
     scaled = residual.covariance / np.outer(residual.std, residual.std)
     values, vectors = np.linalg.eigh(scaled)
     new = values > SAME

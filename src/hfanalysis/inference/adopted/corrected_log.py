@@ -18,11 +18,13 @@ from hfanalysis.engine.observe import CHANNELS, distorted
 from hfanalysis.record.log import Channel, TestLog
 
 TURNS = 2
-"""Times that what a distortion changes is taken at the truth as far as it is known."""
+"""Times that what a distortion changes is taken at the truth as far as it is known: the second takes a lag off to
+second order."""
 
 
 def corrected(log: TestLog, origin: float, effects: Sequence[Active]) -> TestLog:
-    """The log without the distortions among ``effects``; ``origin``: log time of the opening [s].
+    """The log without the distortions among ``effects``, in the units that it has; ``origin``: log time of the opening
+    [s].
 
     The same log where none distorts a channel that it has.
     """

@@ -47,7 +47,8 @@ class Adopted:
         return tuple(active for active in self.effects if not active.idle)
 
     def product(self) -> tuple[AdoptedEffect, ...]:
-        """As products have it: name, file, and every parameter as a quantity."""
+        """As products have it: name, file, and every parameter as a quantity in its own unit, with its standard
+        deviation where stated."""
         named = ((active, active.effect.name) for active in self.effects)
         return tuple(AdoptedEffect(name=name, file=self.file, parameters=self._quantities(a)) for a, name in named)
 
@@ -70,7 +71,8 @@ def read_adopted(root: Path, definition: Any) -> Adopted:
 
 
 def read_effects(path: Path, known: Mapping[str, Effect]) -> Adopted:
-    """The effects of one file; those there can be are ``known``. Raises InputError as :func:`read_adopted`."""
+    """The effects of one file; those there can be are ``known``. Raises InputError as :func:`read_adopted`. Values come
+    out in SI."""
     _, content = read_toml(path)
     stated = {name: _values(path, name, table, known) for name, table in sorted(content.items())}
     return _adopted(stated, known, path.name)
@@ -125,7 +127,8 @@ def _dimension(parameter: Parameter) -> str | None:
 
 
 def of_diagnosis(effects: Sequence[NamedEffect], known: Mapping[str, Effect]) -> Adopted:
-    """The effects that a diagnosis.json names. Raises InputError for what a file of them could not hold."""
+    """The effects that a diagnosis.json names. Raises InputError for what a file of them could not hold. Values in and
+    out are in the units of the effects (SI)."""
     stated = {}
     for found in sorted(effects, key=lambda e: e.name):
         name = found.name

@@ -13,19 +13,20 @@ from hfanalysis.arrays import Array
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.noise_level import louder_or_quieter
-from hfanalysis.inference.fitting.predict import Prediction, predict, with_slopes
+from hfanalysis.inference.fitting.predict import ACCURACY, FINE, Prediction, predict, with_slopes
 from hfanalysis.inference.fitting.size import of_any_size
-from hfanalysis.inference.fitting.trust import box_about, grown, length_of, shrunk, step_within
+from hfanalysis.inference.fitting.trust import box_about, grown, learnt, length_of, shrunk, step_within
 from hfanalysis.inference.observations.observed import Observed
 
 ITERATIONS = 25
+"""Steps that a fit makes at most, unless it is asked for more."""
 CONVERGED, ENDED = 0.02, 1e-5
 """Change of the objective below which a fit that looks around is done, and one whose numbers are told, in units of log
 probability: within 0.02 of its most probable value a parameter may be a fifth of its deviation away, within 1e-5 by
-half a percent of it."""
+half a percent of it. Source: the log of a normal density falls by half the square of a deviation."""
 
-LAST_STEPS = 8
-"""Steps by slopes alone in which a fit comes to its end, if it does."""
+NEAR, LAST_STEPS = 0.5, 12
+"""Log probability that steps by slopes alone may promise, and steps in which a fit comes to its end by them."""
 
 STEEPEST = 1e8
 """Standard deviations of an observation per one of a parameter beyond which a slope is none."""
@@ -62,19 +63,19 @@ class Fit:
 
     @property
     def values(self) -> dict[str, float]:
-        """Parameters by name [SI]."""
+        """Parameters by name, each in its SI unit."""
         return self.hypothesis.values(self.x)
 
     @property
     def stds(self) -> dict[str, float]:
-        """Standard deviations of :attr:`values`."""
+        """Standard deviations of :attr:`values`, each in its SI unit; linear about ``x``."""
         jacobian = self.hypothesis.jacobian(self.x)
         spread = np.sqrt(np.maximum(np.diag(jacobian @ self.covariance @ jacobian.T), 0.0))
         return dict(zip(self.hypothesis.names, spread.tolist(), strict=True))
 
     @property
     def objective(self) -> float:
-        """Minus the log of posterior density, up to a constant."""
+        """Minus the log of posterior density [natural log], up to a constant."""
         return 0.5 * float(self.residual @ self.residual + self.x @ self.x)
 
 
@@ -87,8 +88,9 @@ def fit(
 ) -> Fit:
     """The most probable parameters: Gauss-Newton steps, damped where one does not lower the objective.
 
-    At ``most`` so many steps, and no more once one changes the objective by less than ``within``. Raises ValueError or
-    ArithmeticError where the start cannot be run.
+    ``start`` (parameters,) in prior standard deviations; 0 by default. At ``most`` so many steps, and no more once one
+    changes the objective by less than ``within`` [natural log]. Raises ValueError or ArithmeticError where the start
+    cannot be run.
     """
     least, highest = hypothesis.bounds
     x = np.clip(np.zeros(hypothesis.size) if start is None else np.asarray(start, dtype=np.float64), least, highest)
@@ -98,7 +100,8 @@ def fit(
 def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATIONS, within: float = CONVERGED) -> Fit:
     """A fit to ``before`` gone on with, to the same data with another model-form error if that is asked for.
 
-    Where it ended its slopes are known: no run is needed to begin with. Raises as :func:`fit`.
+    Where it ended its slopes are known: no run is needed to begin with. Raises as :func:`fit`. ``within``: change of
+    the objective [natural log].
     """
     residual, slopes = found.residual, found.slopes
     if observed is not before:
@@ -106,7 +109,15 @@ def fit_on(found: Fit, before: Observed, observed: Observed, most: int = ITERATI
     return _fitted(found.hypothesis, observed, found.x, Prediction(residual, slopes, found.burnt), most, within)
 
 
-def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Prediction, most: int, within: float) -> Fit:
+def _fitted(
+    hypothesis: Hypothesis,
+    observed: Observed,
+    x: Array,
+    here: Prediction,
+    most: int,
+    within: float,
+    accuracy: float = ACCURACY,
+) -> Fit:
     """From ``x``, where the prediction is ``here``."""
     if not usable(here):
         raise ArithmeticError("the model has no slopes where its fit starts")
@@ -119,7 +130,7 @@ def _fitted(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
         for _ in range(TRIALS):
             step = step_within(radius, gradient, curvature, box)
             expected = _expected(here, x, step)
-            trial = _try(hypothesis, observed, x + step)
+            trial = _try(hypothesis, observed, x + step, accuracy)
             part = np.nan if trial is None else (before - _objective(trial, x + step)) / max(expected, 1e-300)
             length = length_of(step, curvature)
             if trial is not None and part > TRUST:
@@ -150,38 +161,54 @@ def _fit_at(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predicti
     return Fit(hypothesis, x, covariance, here.residual, here.slopes, here.burnt, evidence, within)
 
 
-def brought_to_end(found: Fit, observed: Observed) -> Fit:
-    """A fit that is near its end, taken there by slopes alone; one that does not get there is as it was.
+def brought_to_end(found: Fit, observed: Observed, most: int = ITERATIONS) -> Fit:
+    """A fit that is near its end, taken there with finer runs: by slopes, and where these do not lead there as before.
 
-    What a run errs by moves the objective by some hundredths, which is the square of what it moves the most probable
-    parameters by: so near by, whether a step is better the slopes tell, not the objective. Raises as :func:`fit`.
+    An objective is rounded by as much as its residual is, many times over; the square of that is what it moves the most
+    probable parameters by. So near by, slopes tell whether a step is better. At a knee they leap, and do not. Raises
+    as :func:`fit`.
     """
     hypothesis, x = found.hypothesis, found.x
-    here = with_slopes(hypothesis, observed, x, Prediction(found.residual, None, found.burnt))  # its own may lag behind
+    here = predict(hypothesis, observed, x, tangents=True, accuracy=FINE)
+    for within in (CONVERGED, ENDED):
+        if (ended := _by_slopes(hypothesis, observed, x, here)) is not None:
+            return ended
+        near = _fitted(hypothesis, observed, x, here, most, within, FINE)
+        x, here = near.x, with_slopes(hypothesis, observed, near.x, Prediction(near.residual, None, near.burnt))
+    return _by_slopes(hypothesis, observed, x, here) or near
+
+
+def _by_slopes(hypothesis: Hypothesis, observed: Observed, x: Array, here: Prediction) -> Fit | None:
+    """The fit to whose end whole steps by the slopes lead from ``x``; None where they lead elsewhere.
+
+    Where much is left open the squares of slopes are not the curvature: it is learnt on the way.
+    """
+    curvature, step, before = None, np.zeros(x.size), np.zeros(x.size)
     for _ in range(LAST_STEPS):
         if not usable(here):
-            break
-        step = _whole_step(hypothesis, here, x)
-        expected = _expected(here, x, step)
-        if expected < ENDED:
+            return None
+        assert here.slopes is not None
+        gradient = here.slopes.T @ here.residual + x
+        if curvature is None:
+            curvature = here.slopes.T @ here.slopes + np.eye(x.size)
+        else:
+            curvature = learnt(curvature, step, gradient - before)
+        step, before = step_within(np.inf, gradient, curvature, box_about(x, *hypothesis.bounds)), gradient
+        promise = -float(gradient @ step + 0.5 * step @ curvature @ step)
+        if promise < ENDED:
             return _fit_at(hypothesis, observed, x, here, ENDED)
-        if expected > CONVERGED:
-            break
-        here, x = predict(hypothesis, observed, x + step, tangents=True), x + step
-    return found
-
-
-def _whole_step(hypothesis: Hypothesis, here: Prediction, x: Array) -> Array:
-    """The step to the lowest point by the slopes, within bounds."""
-    assert here.slopes is not None
-    gradient, curvature = here.slopes.T @ here.residual + x, here.slopes.T @ here.slopes + np.eye(x.size)
-    return step_within(np.inf, gradient, curvature, box_about(x, *hypothesis.bounds))
+        if promise > NEAR:
+            return None
+        here, x = predict(hypothesis, observed, x + step, tangents=True, accuracy=FINE), x + step
+    return None
 
 
 def log_evidence(residual: Array, slopes: Array, x: Array, observed: Observed, hypothesis: Hypothesis) -> float:
-    """Log of the probability of the data, by Laplace's approximation about the most probable ``x``.
+    """Log of the probability of the data [natural log], by Laplace's approximation about the most probable ``x``.
 
-    Strengths of effects are of any size there; ``x`` may go on beyond the parameters of the hypothesis.
+    ``residual`` (observations,) whitened; ``slopes`` (observations, parameters) of it with ``x`` (parameters,), in
+    prior standard deviations. Strengths of effects are of any size there; ``x`` may go on beyond the parameters of the
+    hypothesis.
     """
     curvature = slopes.T @ slopes + np.eye(x.size)
     objective = 0.5 * float(residual @ residual + x @ x)
@@ -201,10 +228,11 @@ def _of_any_size(curvature: Array, x: Array, hypothesis: Hypothesis) -> float:
 
 
 def promised(found: Fit, observed: Observed, other: Observed, slack: Array | None = None) -> float:
-    """The log evidence that a fit to ``observed`` has at the model-form error of ``other``, if its slopes hold.
+    """The log evidence [natural log] that a fit to ``observed`` has at the model-form error of ``other``, if its slopes
+    hold.
 
-    ``slack`` (blocks of all channels, columns): what may be added to what the sensors read besides, each column times
-    an N(0, 1) number.
+    ``slack`` (blocks of all channels, columns) [SI]: what may be added to what the sensors read besides, each column
+    times an N(0, 1) number.
     """
     residual, slopes = (other.rewhitened(rows, observed) for rows in (found.residual, found.slopes))
     x = found.x
@@ -233,9 +261,9 @@ def _objective(prediction: Prediction, x: Array) -> float:
     return 0.5 * float(prediction.residual @ prediction.residual + x @ x)
 
 
-def _try(hypothesis: Hypothesis, observed: Observed, x: Array) -> Prediction | None:
+def _try(hypothesis: Hypothesis, observed: Observed, x: Array, accuracy: float) -> Prediction | None:
     try:
-        found = predict(hypothesis, observed, x, tangents=False)
+        found = predict(hypothesis, observed, x, tangents=False, accuracy=accuracy)
     except (ValueError, ArithmeticError):
         return None
     return found if np.isfinite(found.residual).all() else None

@@ -1,6 +1,6 @@
 """Model-form error: what a candidate leaves open, as large as the data ask for.
 
-Tank and chamber are idealised in ways of their own, and a test may be well described on one side and badly on the
+Tank and chamber are idealized in ways of their own, and a test may be well described on one side and badly on the
 other: each side has its own step.
 """
 
@@ -11,7 +11,7 @@ from typing import NamedTuple
 from hfanalysis.inference.observations.channel import CHAMBER_FORM, FORM_ERROR
 
 STEPS, RATIO = 7, 3.0
-"""Sizes that a model-form error may have, and the ratio of neighbours."""
+"""Sizes that a model-form error may have, and the ratio of neighbors."""
 
 
 class Form(NamedTuple):
@@ -27,7 +27,7 @@ class Form(NamedTuple):
 
     @property
     def errors(self) -> tuple[float, float]:
-        """As parts of a channel's range."""
+        """Standard deviations as parts of a channel's range [-]: of the tank's channels, and of chamber and thrust."""
         return FORM_ERROR * RATIO**self.tank, CHAMBER_FORM * FORM_ERROR * RATIO**self.chamber
 
     @property
@@ -54,3 +54,5 @@ class Form(NamedTuple):
 
 
 FINEST, COARSEST = Form(0, 0), Form(STEPS - 1, STEPS - 1)
+"""The least and the largest model-form error on either side. Evidence: that fits begin at the coarsest was changed
+after a practice case was wrong (docs/diagnosis.md)."""

@@ -25,22 +25,23 @@ from hfanalysis.inference.splines import Splines
 from hfanalysis.products.calibration import Calibration
 
 M_RANGE = 2.0
-"""Standard deviations that the polytropic exponent may be off: 0.95 to 1.35 bounds what nitrous oxide can do near
-saturation. What a calibration found beyond that is an effect, and has to be found as one."""
+"""Standard deviations that the polytropic exponent may be off. Source: 0.95 to 1.35 bounds what nitrous oxide can do
+near saturation; what a calibration found beyond that is an effect, and has to be found as one."""
 
 USUAL_N = (0.45, 0.2)
-"""Flux exponent of hybrid fuels and its spread (Karabeyoglu et al. find 0.62 for paraffin with oxygen; small engines
-show as little as 0.2)."""
+"""Flux exponent of hybrid fuels and its spread [-]. Source: Karabeyoglu et al., J. Propulsion and Power 20(6), 2004,
+find 0.62 for paraffin with oxygen; small engines show as little as 0.2."""
 
 
 LEAST_MASS_ERROR = 0.01
-"""Least part of the loaded mass that it may be off, however well it was weighed. This has a price: were the 10 g that
-are stated believed, heat into the tank would gain 0.6 to 7.3 in log evidence (calibration cases C010007, C010031,
-C020032, C020118). But a practice case without an effect (P03), from another generator, then has 10.7 for an unknown
-source, and would be claimed: what a tank of that mass does goes by the table of nitrous oxide as well."""
+"""Least part of the loaded mass that it may be off, however well it was weighed. Evidence: a practice case without an
+effect (P03), from another generator, has 10.7 for an unknown source where the 10 g that are stated are believed, and
+would be claimed: what a tank of that mass does goes by the table of nitrous oxide as well. The price: without it heat
+into the tank would gain 0.6 to 7.3 in log evidence (calibration cases C010007, C010031, C020032, C020118)."""
 
 N_RANGE = 2.5
-"""Standard deviations that n may be off: a flux exponent below 0 or above 1 is no regression law of a fuel."""
+"""Standard deviations that n may be off. Source: -0.05 to 0.95, for a flux exponent below 0 or above 1 is no regression
+law of a fuel."""
 
 
 TABLE = "table: "
@@ -64,19 +65,24 @@ class Free:
     unsure: bool = True
 
     def value(self, x: float) -> float:
-        """The parameter [SI] at ``x``."""
+        """The parameter [SI] at ``x`` (in prior standard deviations)."""
         if self.shape == "positive":
             return self.center * exp(self.std * x)
         return self.center + self.std * (sinh(x) if self.shape == "wide" else x)
 
     def slope(self, x: float) -> float:
-        """Derivative of :meth:`value`."""
+        """Derivative of :meth:`value` [SI] with ``x``."""
         if self.shape == "positive":
             return self.value(x) * self.std
         return self.std * (cosh(x) if self.shape == "wide" else 1.0)
 
     def place(self, value: float) -> float:
-        """The x at which the parameter has a value [SI]."""
+        """The x at which the parameter has a value [SI], in prior standard deviations.
+
+        >>> heat = Free("tank_heat.power", 0.0, 1000.0, "wide")
+        >>> round(heat.value(2.0)), round(heat.place(heat.value(2.0)), 6)
+        (3627, 2.0)
+        """
         if self.shape == "positive":
             return log(value / self.center) / self.std
         scaled = (value - self.center) / self.std
@@ -99,21 +105,26 @@ def free_parameters(effect: Effect) -> tuple[Free, ...]:
             free = Free(name, p.center, p.typical)
         least = free.place(p.low) if np.isfinite(p.low) and (free.shape != "positive" or p.low > 0) else -np.inf
         most = free.place(p.high) if np.isfinite(p.high) else np.inf
-        out.append(replace(free, least=max(least, -FARTHEST), most=min(most, FARTHEST), unsure=not p.given))
+        out.append(
+            replace(free, least=max(least, -FARTHEST_PARAMETER), most=min(most, FARTHEST_PARAMETER), unsure=not p.given)
+        )
     return tuple(out)
 
 
 MEASURED = 0.15
 """Of the spread that a parameter of an effect has among stands, what is left where the test itself states it."""
 
-FARTHEST = 5.0
+FARTHEST_PARAMETER = 5.0
 """Standard deviations of its prior that a parameter may be off."""
 
 
 @dataclass(frozen=True)
 class Block:
-    """Coefficients of an unknown source: ``matrix`` times independent N(0, 1) numbers; ``sensor`` names a channel whose
-    reading it adds to, else the coefficients are parameters of an effect of the engine."""
+    """Coefficients of an unknown source: ``matrix`` (coefficients, numbers) times independent N(0, 1) numbers.
+
+    ``sensor`` names a channel whose reading it adds to [SI], else the coefficients are parameters of an effect of the
+    engine.
+    """
 
     names: tuple[str, ...]
     matrix: Array
@@ -159,14 +170,14 @@ class Hypothesis:
         return out
 
     def values(self, x: Array) -> dict[str, float]:
-        """Parameters by name [SI]."""
+        """Parameters by name, each in its SI unit, at ``x`` (parameters,) in prior standard deviations."""
         found = {f.name: f.value(float(v)) for f, v in zip(self.free, x, strict=False)}
         for block, place in self.places():
             found.update(zip(block.names, (block.matrix @ x[place]).tolist(), strict=True))
         return found
 
     def at(self, x: Array) -> Engine:
-        """The engine with its parameters at ``x``."""
+        """The engine with its parameters at ``x`` (parameters,), in prior standard deviations."""
         engine_names = set(self.of_engine)
         values = {n: v for n, v in self.values(x).items() if n in engine_names}
         feed: dict[str, Any] = {n: values.pop(n) for n in ("volume", "area", "loss_factor") if n in values}
@@ -185,7 +196,8 @@ class Hypothesis:
         return out
 
     def offset(self, channel: str, x: Array, times: Array) -> Array:
-        """What unknown sources add to a sensor's reading."""
+        """What unknown sources add to a sensor's reading [SI], at ``times`` (n,) [s after the opening] and ``x``
+        (parameters,); shape (n,)."""
         total = np.zeros(times.size)
         for block, place in self.places():
             if block.sensor == channel:
@@ -194,7 +206,7 @@ class Hypothesis:
 
     @property
     def bounds(self) -> tuple[Array, Array]:
-        """Least and most of x."""
+        """Least and most of x (parameters,), in prior standard deviations."""
         loose = np.full(self.size - len(self.free), np.inf)
         least, most = ([getattr(f, side) for f in self.free] for side in ("least", "most"))
         return np.concatenate([least, -loose]), np.concatenate([most, loose])

@@ -18,8 +18,8 @@ from scipy.linalg import cho_solve, cholesky, solve_triangular
 from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.noise import SlowNoise
 
-FARTHEST = 1.2
-"""Log of a factor beyond which none is thought of."""
+FARTHEST_FACTOR = 1.2
+"""Log of a factor of the slow noise [natural log] beyond which none is thought of."""
 
 STEPS, STRIDE, CONVERGED = 12, 0.5, 1e-2
 """Of Fisher's scoring: its steps, the longest of them, and the shortest that is worth one, in logs of factors: what is
@@ -27,12 +27,13 @@ left beyond it is worth some 1e-3 of log evidence."""
 
 
 def louder_or_quieter(residual: Array, slopes: Array, x: Array, noise: SlowNoise) -> float:
-    """What the log evidence gains where the slow noise of each channel is as large as the residual asks for.
+    """What the log evidence gains [natural log] where the slow noise of each channel is as large as the residual asks
+    for.
 
     Args:
         residual: whitened (observations,), about the most probable parameters; blocks come first.
         slopes: of the residual (observations, parameters).
-        x: the parameters (parameters,), whose priors are N(0, 1).
+        x: the parameters (parameters,) in prior standard deviations, whose priors are N(0, 1).
         noise: what of the whitened noise is slow.
     """
     if noise.shares.size == 0:
@@ -53,9 +54,9 @@ def louder_or_quieter(residual: Array, slopes: Array, x: Array, noise: SlowNoise
         step *= min(1.0, STRIDE / max(float(np.abs(step).max()), 1e-12))
         moved = None
         while moved is None and float(np.abs(step).max()) > CONVERGED:
-            trial = level.at(np.clip(log_factor + step, -FARTHEST, FARTHEST))
+            trial = level.at(np.clip(log_factor + step, -FARTHEST_FACTOR, FARTHEST_FACTOR))
             if trial.gain > here.gain:
-                log_factor, moved = np.clip(log_factor + step, -FARTHEST, FARTHEST), trial
+                log_factor, moved = np.clip(log_factor + step, -FARTHEST_FACTOR, FARTHEST_FACTOR), trial
             step = 0.3 * step
         if moved is None:
             break

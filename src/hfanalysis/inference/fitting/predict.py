@@ -29,8 +29,9 @@ AFTER = 1.0
 TICK = 1e-5
 """Seconds over which a channel's speed is a difference: a chamber that empties halves in some milliseconds."""
 
-ACCURACY = 3e-5
-"""Relative tolerance of the runs."""
+ACCURACY, FINE = 3e-5, 1e-7
+"""Relative tolerances of the runs of a search, and of those that a fit ends by: what the former err by moves the most
+probable parameters by up to a tenth of their deviation."""
 
 THROAT_GROWTH = "throat_growth"
 """The own state that a throat's radius after the test tells of."""
@@ -38,9 +39,10 @@ THROAT_GROWTH = "throat_growth"
 
 @dataclass(frozen=True)
 class Prediction:
-    """A run of a hypothesis: whitened residuals (measured less model) and, if asked for, their slopes with ``x``.
+    """A run of a hypothesis: whitened ``residual`` (observations,), measured less model, and, if asked for, its
+    ``slopes`` (observations, parameters) with ``x``.
 
-    ``true``: the channels without any distortion on the common grid, where they are at hand.
+    ``true``: the channels (grid,) [SI] without any distortion on the common grid, where they are at hand.
     """
 
     residual: Array
@@ -50,14 +52,20 @@ class Prediction:
 
 
 def predict(
-    hypothesis: Hypothesis, observed: Observed, x: Array, tangents: bool, only: slice | None = None
+    hypothesis: Hypothesis,
+    observed: Observed,
+    x: Array,
+    tangents: bool,
+    only: slice | None = None,
+    accuracy: float = ACCURACY,
 ) -> Prediction:
-    """Run a hypothesis; ``only``: slopes with these of its free parameters, which costs the less the fewer they are.
+    """Run a hypothesis at ``x`` (parameters,), in prior standard deviations; residual and slopes are whitened.
 
-    Raises ValueError or ArithmeticError for an engine that cannot be run.
+    ``only``: slopes with these of its free parameters, which costs the less the fewer they are. Raises ValueError or
+    ArithmeticError for an engine that cannot be run.
     """
     engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
-    burnt = burn(engine, observed.longest + AFTER, ACCURACY, run_on=True, keep_idle=True)
+    burnt = burn(engine, observed.longest + AFTER, accuracy, run_on=True, keep_idle=True)
     true = true_readings(observed, burnt)
     there = Prediction(residuals(hypothesis, observed, x, burnt, true), None, burnt, true)
     return with_slopes(hypothesis, observed, x, there, only) if tangents else there
@@ -66,7 +74,8 @@ def predict(
 def with_slopes(
     hypothesis: Hypothesis, observed: Observed, x: Array, there: Prediction, only: slice | None = None
 ) -> Prediction:
-    """A prediction that was made at ``x`` with its slopes, all of them or ``only`` some: the run need not be anew."""
+    """A prediction that was made at ``x`` (parameters,) with its slopes (observations, parameters), whitened, all of
+    them or ``only`` some: the run need not be anew."""
     if only is not None:
         free = hypothesis.free[only]
         found = tangents_of(there.burnt, [f.name for f in free])
@@ -88,7 +97,11 @@ def with_spare_fuel(engine: Engine, fuel_out: float | None = None) -> Engine:
 
 
 def all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> Array:
-    """Slopes with all parameters [SI]: the engine's, those of the sensors' sources, and those of its table."""
+    """Whitened slopes (observations, parameters) with all parameters [1/SI]: the engine's, those of the sensors'
+    sources, and those of its table.
+
+    ``of_engine`` (observations, parameters of the engine) [1/SI].
+    """
     names, out = hypothesis.of_engine, np.zeros((of_engine.shape[0], hypothesis.size))
     column = {name: i for i, name in enumerate(hypothesis.names)}
     out[:, [column[name] for name in names]] = of_engine
@@ -101,7 +114,8 @@ def all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> 
 
 
 def table_slopes(observed: Observed, count: int) -> Array:
-    """Slopes of the residuals with the departures of the table of nitrous oxide."""
+    """Whitened slopes (observations, ``count``) of the residuals with the departures of the table of nitrous oxide, in
+    their standard deviations."""
     blocks = [np.zeros((c.time.size, count)) if c.tables is None else c.tables for c in observed.channels]
     scalars = np.zeros((len(observed.events) + len(observed.stated), count))
     if observed.later is not None and "t_v" in observed.events:
@@ -110,7 +124,8 @@ def table_slopes(observed: Observed, count: int) -> Array:
 
 
 def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
-    """Slopes of the residuals with the coefficients of what is added to a sensor's reading."""
+    """Whitened slopes (observations, coefficients) of the residuals with the coefficients [1/SI] of what is added to a
+    sensor's reading."""
     rows = [np.zeros((c.time.size, splines.count)) for c in observed.channels]
     for i, channel in enumerate(observed.channels):
         if channel.name == sensor:
@@ -125,7 +140,11 @@ def sensor_slopes(observed: Observed, sensor: str, splines: Splines) -> Array:
 def residuals(
     hypothesis: Hypothesis, observed: Observed, x: Array, burnt: Burn, true: Mapping[str, Array] | None = None
 ) -> Array:
-    """Whitened measured less model: the channels one after the other, then the events, then what was stated."""
+    """Whitened measured less model (observations,): the channels one after the other, then the events, then what was
+    stated.
+
+    ``x`` (parameters,) in prior standard deviations; ``true``: :func:`true_readings`, if they are at hand.
+    """
     read = readings(observed, burnt, true)
     parts = []
     for channel in observed.channels:
@@ -152,18 +171,19 @@ def residuals(
 
 
 def true_readings(observed: Observed, burnt: Burn) -> dict[str, Array]:
-    """The channels of a run on the common grid, without any distortion."""
+    """The channels (grid,) [SI] of a run on the common grid, without any distortion."""
     return _with_purge_line(true_channels(burnt, aligned(observed, burnt, observed.grid)))
 
 
 def readings(observed: Observed, burnt: Burn, true: Mapping[str, Array] | None = None) -> dict[str, Array]:
-    """What the sensors read on the common grid; ``true``: :func:`true_readings`, if they are at hand."""
+    """What the sensors read (grid,) [SI] on the common grid; ``true``: :func:`true_readings`, if they are at hand."""
     channels = _resting(observed, true_readings(observed, burnt) if true is None else true)
     return _with_its_zero(observed, channels, distorted(channels, observed.grid, burnt.steps.engine.effects))
 
 
 def misread(observed: Observed, burnt: Burn, name: str) -> dict[str, Array]:
-    """What the sensors read too much on the common grid for an effect of theirs in a run."""
+    """What the sensors read too much (grid,) [SI] on the common grid for an effect of theirs, called ``name``, in a
+    run."""
     engine = burnt.steps.engine
     others = tuple(a for a in engine.effects if a.effect.name != name)
     without = readings(observed, replace(burnt, steps=replace(burnt.steps, engine=replace(engine, effects=others))))
@@ -185,7 +205,8 @@ def _with_its_zero(observed: Observed, true: Mapping[str, Array], read: dict[str
 
 
 def added(hypothesis: Hypothesis, observed: Observed, x: Array, channel: Channel) -> Array:
-    """What unknown sources and another table of nitrous oxide add to a channel's blocks."""
+    """What unknown sources and another table of nitrous oxide add to a channel's blocks (blocks,) [SI], at ``x``
+    (parameters,)."""
     own = hypothesis.offset(channel.name, x, channel.time)
     if channel.tables is not None and (tables := hypothesis.of_tables):
         own = own + channel.tables @ x[tables]
@@ -201,8 +222,10 @@ def _resting(observed: Observed, channels: Mapping[str, Array]) -> dict[str, Arr
 
 
 def aligned(observed: Observed, burnt: Burn, times: Array) -> Array:
-    """Instants of the model that correspond to measured ones: stretched so that its liquid ends when the measured
-    does."""
+    """Instants of the model that correspond to measured ones, both (n,) [s after the opening].
+
+    They are stretched so that the model's liquid ends when the measured does.
+    """
     seen, gone = observed.events.get("t_v"), burnt.liquid_out
     moved = times
     if seen is not None and gone is not None:
@@ -213,7 +236,7 @@ def aligned(observed: Observed, burnt: Burn, times: Array) -> Array:
 def slopes_of(
     hypothesis: Hypothesis, observed: Observed, found: Tangents, true: Mapping[str, Array] | None = None
 ) -> Array:
-    """Derivatives (residuals, parameters) of :func:`residuals` with the parameters of ``found`` [SI]."""
+    """Whitened derivatives (residuals, parameters) of :func:`residuals` with the parameters of ``found`` [1/SI]."""
     read = _slopes_of_readings(observed, found, true_readings(observed, found.burn) if true is None else true)
     white = -observed.whiten(np.concatenate([c.averaged(read[c.name]) for c in observed.channels]))
     rows = []
@@ -234,7 +257,8 @@ def slopes_of(
 
 
 def signatures(hypothesis: Hypothesis, observed: Observed, x: Array) -> Array:
-    """What each effect's strengths add to the blocks of all channels, linear: (blocks, strengths)."""
+    """What each effect's strengths add to the blocks of all channels [SI], linear: (blocks, strengths); ``x``
+    (parameters,)."""
     engine = with_spare_fuel(hypothesis.at(x), observed.fuel_out)
     names = [
         f"{a.effect.name}.{p.name}" for a in engine.effects for p in a.effect.parameters[: a.effect.strengths]
@@ -280,7 +304,8 @@ LEAST_REGRESSION = 1e-5
 
 
 def last_regression(burnt: Burn, gone: float) -> float:
-    """The regression shortly before the fuel is gone [m/s]: late in a firing well below the mean."""
+    """The regression shortly before the fuel is ``gone`` [s after the opening], in [m/s]: late in a firing well below
+    the mean."""
     first, last = (max(gone - ahead, 0.0) for ahead in LAST)
     at = np.minimum([first, last], burnt.steps.times[-1, 1])
     radius = burnt.steps.at(at)[0][:, RADIUS]
@@ -288,7 +313,8 @@ def last_regression(burnt: Burn, gone: float) -> float:
 
 
 def faded(observed: Observed, burnt: Burn, engine: Engine) -> float:
-    """Log of the measured over the time in which the fire of an engine goes out that burns as ``burnt`` until then."""
+    """Log of the measured over the time [-] in which the fire of an engine goes out that burns as ``burnt`` until
+    then."""
     speed = last_regression(burnt, observed.events["t_fuel_out"][0])
     return fade_misfit(observed.stated[FADE][0], abrupt(observed, engine), engine, speed)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array, Integers
 from hfanalysis.inference.observations.channel import averaged
 from hfanalysis.inference.observations.frame import AROUND_CHANGE, BLOCK, Frame
-from hfanalysis.inference.observations.recorded import LONGEST
+from hfanalysis.inference.observations.recorded import LONGEST_RECORD
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
 
@@ -19,11 +19,11 @@ MERGED, NEAR = 5, 0.4
 """Blocks that are merged into one farther than NEAR [s] from any change: the noise there is coherent anyway."""
 
 TANK_AT_REST, TANK_REST = ("p_tank", "m_tank"), 1.2
-"""Channels that show the tank at rest before the opening, and the seconds of it that are looked at: a tank is filled
+"""Channels that show the tank at rest before the opening, and the time of it that is looked at [s]: a tank is filled
 before, and warms."""
 
 STEADY, JUMP = 3.0, 4.5
-"""Standard deviations that the halves of a rest may differ by, and neighbouring blocks of it: an igniter may burn."""
+"""Standard deviations that the halves of a rest may differ by, and neighboring blocks of it: an igniter may burn."""
 
 AT_REST = ("p_chamber", "thrust")
 """Channels whose true value is known once the flow has ended."""
@@ -34,6 +34,8 @@ class Blocks:
     """Block means of a signal: the points of the grid (``first``, ``count``) that each averages.
 
     ``fine`` means of all blocks while something flows, ``good`` ones among them or not.
+
+    ``time`` (blocks,) [s after the opening]; ``value`` (blocks,) and ``fine`` in the signal's SI unit.
     """
 
     signal: Signal
@@ -46,7 +48,7 @@ class Blocks:
 
 
 def blocks_of(signal: Signal, frame: Frame, zeroed: bool, start: float = 0.0) -> Blocks | None:
-    """The block means of a signal whose times [s] count from the opening; None where too few are left.
+    """The block means (blocks,) of a signal [SI] whose times [s] count from the opening; None where too few are left.
 
     Blocks without enough samples, and those near a change of phase, are left out. ``zeroed``: what it reads before the
     opening is known to be nothing, or the open air. ``start`` [s]: nothing is compared before.
@@ -99,7 +101,7 @@ def _stands(signal: Signal, frame: Frame, rows: Integers) -> bool:
     """Whether a sensor's reading stands still from the first to the last of these blocks."""
     begin, end = (frame.grid[rows] + side * frame.width[rows] for side in (-0.5, 0.5))
     half = float(0.5 * (begin[0] + end[-1]))
-    noise = Noise.of(signal, signal.between(-LONGEST, half))
+    noise = Noise.of(signal, signal.between(-LONGEST_RECORD, half))
 
     def same(one: tuple[float, float], two: tuple[float, float], most: float) -> bool:
         return abs(signal.mean(*one) - signal.mean(*two)) <= most * noise.difference_std(one, two)

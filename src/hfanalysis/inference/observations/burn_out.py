@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hfanalysis.inference.observations.recorded import LONGEST, TOGETHER
+from hfanalysis.inference.observations.recorded import LONGEST_RECORD, TOGETHER
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.signals import Signal
 
@@ -19,7 +19,7 @@ BEFORE, AFTER, CLEAR = 0.3, 0.5, 0.05
 """Seconds looked at before and after the end of the fuel, and kept clear of the end of the liquid."""
 
 EARLIEST, LATEST, INSTANTS = -0.06, 0.14, 41
-"""Where a fall may begin [s after the fuel's end as it was segmented], and how many instants are tried."""
+"""Where a fall may begin, after the fuel's end as it was segmented [s], and how many instants are tried."""
 
 DURATIONS = np.geomspace(1e-3, 0.5, 28)
 """Seconds that a fall may take."""
@@ -39,12 +39,12 @@ is between the chamber and both sensors may slow a fall, the line to the one and
 
 
 def fade_of(signals: Mapping[str, Signal], segments: Segments) -> tuple[float, float] | None:
-    """Seconds in which chamber pressure and thrust fall as the fuel ends, and the standard deviation of their log.
+    """Time [s] in which chamber pressure and thrust fall as the fuel ends, and the standard deviation of its log [-].
 
     None where that does not show. ``signals``: with times after the opening [s].
     """
     gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
-    if gone is None or gone > LONGEST or segments.std("t_fuel_out") > SHARP or not set(TOGETHER) <= set(signals):
+    if gone is None or gone > LONGEST_RECORD or segments.std("t_fuel_out") > SHARP or not set(TOGETHER) <= set(signals):
         return None
     read = [signals[name].between(*about(gone, t_v)) for name in TOGETHER]
     found = [fall_of(part, gone) for part in read]
@@ -56,7 +56,8 @@ def fade_of(signals: Mapping[str, Signal], segments: Segments) -> tuple[float, f
 
 
 def about(gone: float, liquid_out: float | None) -> tuple[float, float]:
-    """What is looked at about the end of the fuel, clear of that of the liquid: from and to [s]."""
+    """What is looked at about the end of the fuel ``gone``, clear of that of the liquid: from and to; all [s after the
+    opening]."""
     start, end = gone - BEFORE, gone + AFTER
     if liquid_out is None:
         return start, end
@@ -64,7 +65,8 @@ def about(gone: float, liquid_out: float | None) -> tuple[float, float]:
 
 
 def fall_of(part: Signal, gone: float) -> float | None:
-    """Seconds of the ramp between two straight lines that fits best about ``gone``; None where it is not resolved."""
+    """Duration [s] of the ramp between two straight lines that fits best about ``gone`` [s after the opening]; None
+    where it is not resolved."""
     starts = gone + np.linspace(EARLIEST, LATEST, INSTANTS)
     if (part.time < starts[0]).sum() < SHORTEST or (part.time > starts[-1]).sum() < SHORTEST:
         return None

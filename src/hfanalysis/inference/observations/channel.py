@@ -11,13 +11,14 @@ from hfanalysis.arrays import Array, Integers
 from hfanalysis.inference.observations.recorded import TOGETHER
 
 FORM_ERROR, FORM_TIME = 7e-5, 1.0
-"""The finest model-form error: part of a channel's range, and the time [s] over which it is coherent."""
+"""The finest model-form error: part of a channel's range [-], and the time over which it is coherent [s]."""
 
 CHAMBER_FORM = 4.0
-"""How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealised further."""
+"""How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealized further."""
 
 SHARE = 0.7071
-"""Part of a stated accuracy that is the zero's error; as much is the span's: squares add up to the whole."""
+"""Part of a stated accuracy that is the zero's error; as much is the span's. Source: 1/sqrt(2), for squares add up to
+the whole."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,8 @@ class Channel:
     of its amplitude; None where there is none. ``span``: the range that the model-form error is a part of, where it is
     not the channel's own. ``tables`` (blocks, departures): what a model would read more if the table of nitrous oxide
     departed by a standard deviation; None where that was not asked.
+
+    Arrays are (blocks,), the covariances (blocks, blocks) [SI squared].
     """
 
     name: str
@@ -49,7 +52,7 @@ class Channel:
     tables: Array | None = None
 
     def only(self, rows: Integers) -> Channel:
-        """The same with some of its blocks."""
+        """The same with some of its blocks; ``rows`` (kept,): their numbers."""
         picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
         slow = None if self.slow is None else self.slow[np.ix_(rows, rows)]
         tables = None if self.tables is None else self.tables[rows]
@@ -63,32 +66,48 @@ class Channel:
         return replace(self, covariance=shared + np.diag(self.noise_std**2), coherence=1.0, slow=None)
 
     def form_covariance(self, errors: tuple[float, float]) -> Array:
-        """Covariance of a model-form error, given as part of the range of tank channels, and of chamber and thrust."""
+        """Covariance (blocks, blocks) [SI squared] of a model-form error.
+
+        ``errors``: its standard deviations as parts of the range of tank channels, and of chamber and thrust.
+        """
         return form_covariance(self.time, self.form_size(errors))
 
     def form_size(self, errors: tuple[float, float]) -> Array:
-        """Standard deviation of a model-form error in each block."""
+        """Standard deviation (blocks,) [SI] of a model-form error; ``errors`` as in :meth:`form_covariance`."""
         span = range_of(self.time, self.value) if self.span is None else self.span
         return np.where(self.resting, 0.0, errors[self.name in TOGETHER] * span)
 
     def averaged(self, rows: Array) -> Array:
-        """Block means of rows (grid, ...) on the common grid."""
+        """Block means (blocks, ...) of rows (grid, ...) on the common grid [the rows' unit]."""
         return averaged(rows, self.first, self.count)
 
 
 def form_covariance(time: Array, size: Array) -> Array:
-    """Covariance of a model-form error of this ``size`` in blocks at these times: it is smooth (Matern, 3/2)."""
+    """Covariance (blocks, blocks) of a model-form error of this ``size`` (blocks,) [SI] in blocks at ``time`` (blocks,)
+    [s].
+
+    It is smooth: the Matern covariance of order 3/2 (Rasmussen and Williams, Gaussian Processes, eq. 4.17) over
+    FORM_TIME.
+
+    >>> form_covariance(np.array([0.0, 1.0]), np.array([2.0, 2.0])).round(2).tolist()
+    [[4.0, 1.93], [1.93, 4.0]]
+    """
     smooth = np.sqrt(3.0) * np.abs(time[:, None] - time[None, :]) / FORM_TIME
     return np.asarray((1.0 + smooth) * np.exp(-smooth) * np.outer(size, size))
 
 
 def range_of(time: Array, value: Array) -> float:
-    """The range of a channel, from its largest value to the least since the opening: the open air is no part of it."""
+    """The range of a channel [SI], from its largest ``value`` (n,) to the least since the opening: the open air is no
+    part of it. ``time`` (n,) [s after the opening]."""
     return float(value.max() - value[time >= 0.0].min())
 
 
 def averaged(rows: Array, first: Integers, count: Integers) -> Array:
-    """Means over ``count`` rows (grid, ...) from ``first`` on."""
+    """Means (blocks, ...) over ``count`` (blocks,) rows (grid, ...) from ``first`` (blocks,) on [the rows' unit].
+
+    >>> averaged(np.array([1.0, 3.0, 5.0]), np.array([0, 2]), np.array([2, 1])).tolist()
+    [2.0, 5.0]
+    """
     total = np.concatenate([np.zeros((1, *rows.shape[1:])), np.cumsum(rows, axis=0)])
     shape = (-1, *([1] * (rows.ndim - 1)))
     return np.asarray((total[first + count] - total[first]) / count.reshape(shape))

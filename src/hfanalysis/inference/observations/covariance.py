@@ -19,13 +19,14 @@ from hfanalysis.inference.observations.channel import SHARE, Channel, averaged, 
 from hfanalysis.inference.observations.flow_end import WITHOUT_FIRE
 from hfanalysis.inference.observations.frame import BLOCK, Frame
 from hfanalysis.inference.observations.oscillation import oscillation
-from hfanalysis.inference.observations.recorded import LONGEST, TOGETHER, accuracy_of
+from hfanalysis.inference.observations.recorded import LONGEST_RECORD, TOGETHER, accuracy_of
 from hfanalysis.inference.observations.wander import Wander, roughness, wander_of
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.signals import sample_noise
 
 FILLING_ERROR, FILLING_TIME = 0.1, 0.1
-"""Model-form error while the line fills, as part of a channel's range, and the seconds over which it is coherent."""
+"""Model-form error while the line fills, as part of a channel's range [-], and the time over which it is coherent
+[s]."""
 
 UNSTEADY_ZERO = 0.03
 """Part of its accuracy by which the zero of a sensor may move within a test, beside the wander that its quiet time
@@ -34,7 +35,8 @@ shows. A zero that moves further is an effect, and has to be found as one."""
 LEAST_SHIFT = 1e-3
 """Least standard deviation [s] of the instants on which a run is laid over the measurement, the opening and the seen
 end of the liquid: a sample of a fast log. By how much a model's liquid may end at another instant is a matter of that
-instant, not of the channels."""
+instant, not of the channels. Evidence: without it two of 150 calibration tests that hide nothing had 9.2 in log
+evidence for a line that fills; with it they have 3.3 at most."""
 
 SPEED_ORDER = 3
 """Order of the polynomials whose slope is a channel's speed on either side of the knee."""
@@ -46,7 +48,7 @@ def channel_of(
     """The channel of these blocks with the covariance of their noise.
 
     ``shaken`` (grid, grid): covariance of an oscillation that it shows; ``sensor`` (blocks, blocks): that of the
-    sensor's zero and span.
+    sensor's zero and span. Covariances [SI squared].
     """
     name, resting = blocks.signal.name, frame.resting[blocks.first]
     accuracy = accuracy_of(definition, name, blocks.value)
@@ -62,14 +64,21 @@ def channel_of(
 
 
 def of_the_model(blocks: Blocks, frame: Frame) -> Array:
-    """What a channel differs by (blocks, errors) if the opening or the end of the liquid was seen a standard deviation
-    late, and if more flows without fire than the model says."""
+    """What a channel differs by (blocks, errors) [SI] if the opening or the end of the liquid was seen a standard
+    deviation late, and if more flows without fire than the model says."""
     moved = _moved_by_opening(blocks, frame), _moved_by_knee(blocks, frame)
     return np.stack([*moved, *_without_fire(blocks, frame)], axis=1)
 
 
 def coherence_of(own: Array) -> float:
-    """Blocks that are worth one independent value in the mean square of noise of this covariance (blocks, blocks)."""
+    """Blocks that are worth one independent value in the mean square of noise of this covariance (blocks, blocks) [SI
+    squared].
+
+    For a Gaussian the mean square has the variance 2 sum(C_ij^2)/n^2, against 2 (tr C)^2/n^3 of n independent ones.
+
+    >>> coherence_of(np.eye(4)), coherence_of(np.ones((4, 4)))
+    (1.0, 4.0)
+    """
     return float(own.shape[0] * np.sum(own**2) / np.trace(own) ** 2)
 
 
@@ -94,11 +103,11 @@ def _of_blocks(covariance: Array, blocks: Blocks) -> Array:
 
 
 def zero_and_span(blocks: Blocks, definition: TestDefinition, frame: Frame, zero_std: float | None) -> Array:
-    """Covariance of blocks by an error of the zero and by one of the span, which shows under load alone; a filled tank
-    is a load.
+    """Covariance (blocks, blocks) [SI squared] by an error of the zero and by one of the span, which shows under load
+    alone; a filled tank is a load.
 
     What a sensor reads at rest before the opening tells its zero, where that is compared; else the zero that was taken
-    there leaves its own error (``zero_std``, SI), and what moves it under load.
+    there leaves its own error (``zero_std`` [SI]), and what moves it under load.
     """
     resting, accuracy = frame.resting[blocks.first], accuracy_of(definition, blocks.signal.name, blocks.value)
     at_rest = resting if blocks.signal.name not in TANK_AT_REST else np.zeros_like(resting)
@@ -181,7 +190,8 @@ LOST = 0.25
 
 
 def oscillations(blocks: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, str], Array]:
-    """Covariance (grid, grid) of the burn's oscillation, and of the shaking of the tank's cell, by pair of channels."""
+    """Covariance (grid, grid) [SI squared] of the burn's oscillation, and of the shaking of the tank's cell, by pair of
+    channels."""
     found: dict[tuple[str, str], Array] = {}
     for group in (TOGETHER, ("m_tank",)):
         shaken = {name: r for name, r in blocks.items() if name in group}
@@ -191,7 +201,11 @@ def oscillations(blocks: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, 
 
 
 def common_of(blocks: Mapping[str, Blocks], shaken: Mapping[tuple[str, str], Array]) -> Array | None:
-    """Covariance of the blocks of the first of TOGETHER with those of the second; None where one of them is missing."""
+    """Covariance (blocks of the first, blocks of the second) [SI] of the first of TOGETHER with the second; None where
+    one of them is missing.
+
+    ``shaken`` (grid, grid): :func:`oscillations`.
+    """
     found = shaken.get(TOGETHER)
     if found is None:
         return None
@@ -205,7 +219,7 @@ def _shaken(shaken: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, str],
     guide = next(iter(shaken.values()))
     if guide.signal.name in TOGETHER:
         level = np.interp(frame.grid[~frame.resting], guide.time, guide.value)
-        quiet = guide.signal.between(-LONGEST, -0.05).value
+        quiet = guide.signal.between(-LONGEST_RECORD, -0.05).value
         zero = float(quiet.mean()) if quiet.size else float(guide.value.min())
         level = np.maximum(level - zero, 0.0) / max(float(guide.value.max()) - zero, 1e-300)
     else:

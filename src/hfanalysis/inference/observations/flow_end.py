@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
-from hfanalysis.inference.observations.recorded import LONGEST, accuracy_of, signal_of
+from hfanalysis.inference.observations.recorded import LONGEST_RECORD, accuracy_of, signal_of
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
@@ -33,9 +33,10 @@ AFTER_CHANGE = 0.1
 
 WITHOUT_FIRE = 0.1
 """Part of the flow into a chamber without fire by which that of a model may be wrong: nobody knows what pressure the
-walls of the chamber make of what still enters."""
+walls of the chamber make of what still enters. Evidence: in a test without an effect the pressure of a cold chamber was
+taken for a choked vapor."""
 
-STEP, SPAN = 0.05, 0.5
+LOOK_STEP, SPAN = 0.05, 0.5
 """Seconds between the instants that are looked at, and over which a change is sudden."""
 
 LONGEST_GAP = 0.2
@@ -66,7 +67,8 @@ EMPTY = 0.3e5
 def flow_end_without_fuel(log: TestLog, segments: Segments, definition: TestDefinition, origin: float) -> float | None:
     """Until when the tank goes on emptying after the end of the fuel [s]; None where that is not worth following.
 
-    What was noted at the stand is the end of the fuel. Where it is clearly later, it may be that of the flow.
+    What was noted at the stand is the end of the fuel. Where it is clearly later, it may be that of the flow. Times [s
+    after the opening]; ``origin`` [s of the log].
     """
     gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
     if gone is None or segments.std("t_fuel_out") > AT_ONCE or not {"p_tank", "p_run"} <= set(log.channels):
@@ -83,11 +85,11 @@ def flow_end_without_fuel(log: TestLog, segments: Segments, definition: TestDefi
     noted = noted_flow_end(definition, 0.0)
     if end is not None and noted > gone + AROUND_END:
         end = min(end, noted)
-    return end if end is not None and min(end - AROUND_END, LONGEST) > gone + WORTH_IT else None
+    return end if end is not None and min(end - AROUND_END, LONGEST_RECORD) > gone + WORTH_IT else None
 
 
 def noted_flow_end(definition: TestDefinition, end: float) -> float:
-    """Until when something flowed, as noted at the stand [s], but not before ``end``."""
+    """Until when something flowed, as noted at the stand, but not before ``end``; both [s after the opening]."""
     seen = definition.observed.burn_time if definition.observed is not None else None
     return max(float(seen.value), end) if seen is not None else end
 
@@ -95,18 +97,18 @@ def noted_flow_end(definition: TestDefinition, end: float) -> float:
 def find_flow_end(
     tank: Signal, run: Signal, after: float, ambient: float, accuracy: float, t_purge: float | None = None
 ) -> float | None:
-    """The earliest instant [s] ``after`` fuel and liquid at which the flow may have ended; None where none can be told.
+    """The earliest instant ``after`` fuel and liquid at which the flow may have ended; None where none can be told.
 
     ``tank`` and ``run``: the tank's pressure and that ahead of the injector [Pa], with times after the opening, and the
-    ``accuracy`` of their difference [Pa]. The flow ends where one of them is no longer logged, where p_run falls away
-    from the tank's pressure (a valve ahead of it), where it rises to it or the tank stops emptying (a valve behind it),
-    or where the tank is empty. Nitrogen that enters from ``t_purge`` on may hold the tank's pressure as well, but
-    raises it only when nothing leaves.
+    ``accuracy`` of their difference [Pa]; ``ambient`` [Pa]; instants [s after the opening]. The flow ends where one of
+    them is no longer logged, where p_run falls away from the tank's pressure (a valve ahead of it), where it rises to
+    it or the tank stops emptying (a valve behind it), or where the tank is empty. Nitrogen that enters from ``t_purge``
+    on may hold the tank's pressure as well, but raises it only when nothing leaves.
     """
     start = after + AFTER_CHANGE
     last = min(_logged(signal, start) for signal in (tank, run))
-    times = np.arange(start, last - 0.5 * STEP, STEP)
-    if times.size < 2 * round(SPAN / STEP) + 1:
+    times = np.arange(start, last - 0.5 * LOOK_STEP, LOOK_STEP)
+    if times.size < 2 * round(SPAN / LOOK_STEP) + 1:
         return None
     p_tank, p_run = (_means(signal, times) - ambient for signal in (tank, run))
     ended = (p_tank < EMPTY) | _drains(p_tank, p_run) | _no_loss(p_tank, p_run, CLEAR_LOSS * accuracy)
@@ -126,8 +128,8 @@ def _logged(signal: Signal, start: float) -> float:
 
 
 def _means(signal: Signal, times: Array) -> Array:
-    """Means over STEP about instants; between samples that lie farther apart, by interpolation."""
-    found = np.array([signal.mean(t - 0.5 * STEP, t + 0.5 * STEP) for t in times])
+    """Means over LOOK_STEP about instants; between samples that lie farther apart, by interpolation."""
+    found = np.array([signal.mean(t - 0.5 * LOOK_STEP, t + 0.5 * LOOK_STEP) for t in times])
     missing = ~np.isfinite(found)
     found[missing] = signal.at(times[missing])
     return found
@@ -135,13 +137,13 @@ def _means(signal: Signal, times: Array) -> Array:
 
 def _earlier(values: Array) -> Array:
     """What a history was SPAN before; at first, what it began with."""
-    back = round(SPAN / STEP)
+    back = round(SPAN / LOOK_STEP)
     return np.concatenate([np.full(back, values[0]), values[:-back]])
 
 
 def _drains(p_tank: Array, p_run: Array) -> NDArray[np.bool_]:
     part = p_run / np.maximum(p_tank, EMPTY)
-    first = float(np.median(part[: round(SPAN / STEP)]))
+    first = float(np.median(part[: round(SPAN / LOOK_STEP)]))
     return np.asarray((part < CLOSED_BEFORE * _earlier(part)) | (part < DRAINED * first))
 
 
@@ -153,7 +155,7 @@ def _no_loss(p_tank: Array, p_run: Array, clear: float) -> NDArray[np.bool_]:
 
 def _stands(p_tank: Array, clear: float) -> NDArray[np.bool_]:
     """Where the tank begins to stand: its fall over the next SPAN against that over the last."""
-    ahead = round(SPAN / STEP)
+    ahead = round(SPAN / LOOK_STEP)
     fell = _earlier(p_tank) - p_tank
     falls = np.concatenate([p_tank[:-ahead] - p_tank[ahead:], np.full(ahead, np.inf)])
     return np.asarray((falls < STANDS * fell) & (fell > clear))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.flow_end import AROUND_END, flow_end_without_fuel, noted_flow_end
-from hfanalysis.inference.observations.recorded import LONGEST, log_end, log_start
+from hfanalysis.inference.observations.recorded import LONGEST_RECORD, log_end, log_start
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
@@ -30,9 +30,9 @@ TANK_SIDE = ("p_tank", "p_run", "m_tank", "p_purge")
 """Channels that go on telling when the nozzle has unchoked."""
 
 EVENT_STD = 0.005
-"""Least standard deviation [s] of the instant of a phase change. It is found better than that (by a millisecond in
-blind cases), but that a model's liquid ends as sharply is not known: where another generator than the blind cases'
-made a test without an effect, 2 ms asked for heat in the tank."""
+"""Least standard deviation of the instant of a phase change [s]. It is found better than that, but that a model's
+liquid ends as sharply is not known. Evidence: with 2 ms a practice case without an effect, from another generator,
+asked for heat in the tank."""
 
 FUEL_STD = 0.05
 """Least standard deviation [s] of the end of the fuel, which fades rather than stops."""
@@ -44,7 +44,8 @@ REST_BLOCKS = 4
 """Blocks that such a rest is cut into."""
 
 BEFORE_BLOCKS, BEFORE_BLOCK, BEFORE_END = 8, 0.5, 0.1
-"""The rest before the opening: at most so many blocks of so many seconds, the last of which ends so long before it."""
+"""The rest before the opening: at most so many blocks of such a length [s], the last of which ends so long before it
+[s]."""
 
 LEAST_BEFORE = 0.1
 """Seconds of a shorter block where a log begins shortly before the opening; a still shorter rest tells nothing."""
@@ -103,7 +104,7 @@ def frame_of(log: TestLog, segments: Segments, definition: TestDefinition, origi
     if flow_end is None:
         fuel_out = None
     else:
-        ends["tank"] = min(flow_end - AROUND_END, LONGEST)
+        ends["tank"] = min(flow_end - AROUND_END, LONGEST_RECORD)
     changes = {
         name: (value, segments.std(name))
         for name in ("t_v", "t_fuel_out")
@@ -151,7 +152,7 @@ def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | Non
     if last - first < SHORTEST_REST:
         return None
     half = 0.5 * (first + last)
-    noise = Noise.of(signal, signal.between(-LONGEST, -0.1))
+    noise = Noise.of(signal, signal.between(-LONGEST_RECORD, -0.1))
     fall = signal.mean(first, half) - signal.mean(half, last)
     if not abs(fall) <= 3.0 * noise.difference_std((first, half), (half, last)):
         return None
@@ -162,7 +163,7 @@ def _tank_end(segments: Segments, definition: TestDefinition, end: float) -> flo
     """The tank goes on emptying after the nozzle has unchoked, until the end of the flow that was seen at the stand."""
     if segments.time("t_fuel_out") is not None:
         return end
-    return min(max(noted_flow_end(definition, end) - AROUND_END, end), LONGEST)
+    return min(max(noted_flow_end(definition, end) - AROUND_END, end), LONGEST_RECORD)
 
 
 def _end(segments: Segments) -> float:
@@ -170,27 +171,30 @@ def _end(segments: Segments) -> float:
     known = [(segments.time(name), segments.std(name)) for name in ("t_fuel_out", "t_end")]
     # where the fuel fades, its fading is to be seen: no wide berth for a wide deviation
     given = [t - AROUND_CHANGE - min(2.0 * deviation, AROUND_CHANGE) for t, deviation in known if t is not None]
-    return min([*given, LONGEST])
+    return min([*given, LONGEST_RECORD])
 
 
 def events_of(segments: Segments, end: float) -> dict[str, tuple[float, float]]:
-    """The instants [s] of the changes of phase that are observations, with their standard deviations.
+    """The instants of the changes of phase that are observations [s after the opening], with their standard deviations
+    [s].
 
-    ``end``: where the comparison of the tank ends.
+    ``end`` [s]: where the comparison of the tank ends.
     """
     t_v = segments.time("t_v")
     events = {}
     if t_v is not None and t_v < end - AROUND_CHANGE:
         events["t_v"] = (t_v, max(segments.std("t_v"), EVENT_STD))
     gone = segments.time("t_fuel_out")
-    if gone is not None and gone < LONGEST:
+    if gone is not None and gone < LONGEST_RECORD:
         events["t_fuel_out"] = (gone, max(segments.std("t_fuel_out"), FUEL_STD))
     return events
 
 
 def phases_of(segments: Segments, end: float) -> dict[str, float]:
-    """Where each phase begins [s], one after the other: nitrogen that could enter before the liquid is gone makes no
-    phase of its own up to there."""
+    """Where each phase begins [s after the opening], one after the other, up to ``end`` [s].
+
+    Nitrogen that could enter before the liquid is gone makes no phase of its own up to there.
+    """
     found = {"filling": 0.0, "liquid": segments.time("t_feed") or 0.0}
     t_v, t_purge = segments.time("t_v"), segments.time("t_purge")
     if t_v is not None:

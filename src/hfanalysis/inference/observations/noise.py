@@ -55,7 +55,8 @@ class Group:
         return errors[self.channels[0].name in TOGETHER]
 
     def whitening(self, errors: tuple[float, float]) -> Array:
-        """The inverse Cholesky factor of their covariance."""
+        """The inverse Cholesky factor (blocks, blocks) [1/SI] of their covariance at a model-form error (parts of a
+        range)."""
         key = self._error(errors)
         if key not in self._whitening:
             own = [c.covariance for c in self.channels]
@@ -72,7 +73,7 @@ class Group:
 
     def slow(self, errors: tuple[float, float]) -> tuple[Array, Array]:
         """Orthonormal patterns (blocks, patterns) of the whitened noise, and the share (channels, patterns) of the
-        variance in each that is the slow noise of each channel."""
+        variance in each that is the slow noise of each channel. ``errors``: model-form error (parts of a range)."""
         key = self._error(errors)
         if key not in self._slow:
             self._slow[key] = self._slow_patterns(self.whitening(errors))
@@ -92,7 +93,8 @@ class Group:
 
 
 def groups_of(channels: Sequence[Channel], common: Array | None, alike: Array | None) -> Iterator[Group]:
-    """The channels, one by one or, where two of them have a ``common`` covariance or are ``alike``, together."""
+    """The channels, one by one or, where two of them have a ``common`` covariance or are ``alike``, together.
+    Covariances (blocks of the first, blocks of the second) [SI]."""
     shared, at, i = {TOGETHER[0]: common, ALIKE[0]: alike}, 0, 0
     while i < len(channels):
         name = channels[i].name
@@ -104,7 +106,7 @@ def groups_of(channels: Sequence[Channel], common: Array | None, alike: Array | 
 
 
 def slow_noise(groups: Sequence[Group], errors: tuple[float, float]) -> SlowNoise:
-    """What of the whitened noise of all groups is slow."""
+    """What of the whitened noise of all groups is slow. ``errors``: model-form error (parts of a range)."""
     found = [group.slow(errors) for group in groups]
     number = sum(clear.shape[1] for clear, _ in found)
     patterns = np.zeros((groups[-1].place.stop, number))

@@ -37,11 +37,12 @@ class Observed:
     every model ends. ``stated``: what was measured outside the log (SI), or in it beside the blocks (FADE), with
     standard deviations, by name. ``common``: covariance of the first and second of TOGETHER, if both are there;
     ``alike``: the same of ALIKE, which come one after the other; ``line_zero`` [s]: when the zero of the second was
-    taken of the first.
-    ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and thrust. ``unknowns``:
-    those that the samples show without a model. ``abrupt``: the seconds that FADE would be if the fire were out at
-    once, where a model was asked. ``later`` [s]: by how much a model's liquid ends later for every departure of the
-    table of nitrous oxide, where it was asked (as the channels' ``tables``).
+    taken of the first. ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and
+    thrust. ``unknowns``: those that the samples show without a model. ``abrupt``: the seconds that FADE would be if the
+    fire were out at once, where a model was asked. ``later`` [s]: by how much a model's liquid ends later for every
+    departure of the table of nitrous oxide, where it was asked (as the channels' ``tables``).
+
+    ``grid``: (points,); ``ambient``: pressure [Pa].
     """
 
     channels: tuple[Channel, ...]
@@ -63,7 +64,8 @@ class Observed:
     later: Array | None = None
 
     def with_errors(self, tank: float, chamber: float) -> Observed:
-        """The same with another model-form error."""
+        """The same with another model-form error: parts [-] of the range of the tank's channels, and of chamber and
+        thrust."""
         made = replace(self, errors=(tank, chamber))
         vars(made)["_groups"] = self._groups  # the same channels: what is made once for an error serves all
         return made
@@ -81,7 +83,7 @@ class Observed:
         return replace(self, channels=kept, common=common, alike=alike)
 
     def without(self, left_out: Mapping[str, NDArray[np.bool_]]) -> Observed:
-        """The same without some blocks of each channel."""
+        """The same without some blocks of each channel: ``left_out`` (blocks,) by channel."""
         keep = {c.name: np.flatnonzero(~left_out[c.name]) for c in self.channels}
         common, alike = (
             None if shared is None else shared[np.ix_(*(keep[name] for name in pair))]
@@ -91,13 +93,17 @@ class Observed:
 
     @cached_property
     def log_size(self) -> float:
-        """Log of the determinant of the covariance's root, of the instants in units of their own deviations."""
+        """Log of the determinant of the covariance's root [natural log of SI], of the instants in units of their own
+        deviations."""
         of_blocks = -float(sum(np.linalg.slogdet(factor)[1] for _, factor in self._factors))
         return of_blocks + sum(log(self.spread(name) / deviation) for name, (_, deviation) in self.events.items())
 
     def spread(self, event: str) -> float:
-        """Standard deviation of measured less modelled instant [s]: what a form gets wrong of the tank moves the end of
-        its liquid by as large a part, and what nobody knows of a flow without fire moves it besides."""
+        """Standard deviation of measured less modelled instant [s] of an event.
+
+        What a form gets wrong of the tank moves the end of its liquid by as large a part, and what nobody knows of a
+        flow without fire moves it besides.
+        """
         at, deviation = self.events[event]
         if event != "t_v":
             return deviation
@@ -120,8 +126,8 @@ class Observed:
         return slow_noise(self._groups, self.errors)
 
     def whiten(self, rows: Array) -> Array:
-        """Rows (blocks of all channels one after the other, ...) in units in which the noise is white and of size
-        one."""
+        """Rows (blocks of all channels one after the other, ...) [SI], in units in which the noise is white and of size
+        one [-]."""
         return np.concatenate([factor @ rows[place] for place, factor in self._factors])
 
     def rewhitened(self, rows: Array, other: Observed) -> Array:
@@ -137,7 +143,8 @@ class Observed:
         return out
 
     def left_open(self, residual: Array) -> tuple[float, float]:
-        """Mean square of a whitened residual over the tank's channels, and over chamber and thrust; 0 without any."""
+        """Mean square [-] of a whitened residual (observations,) over the tank's channels, and over chamber and thrust;
+        0 without any."""
         together = np.concatenate([np.full(c.time.size, c.name in TOGETHER) for c in self.channels])
         square = residual[: together.size] ** 2
         tank, chamber = (float(square[side].mean()) if side.any() else 0.0 for side in (~together, together))
@@ -145,13 +152,13 @@ class Observed:
 
     @property
     def longest(self) -> float:
-        """The last instant that anything is known of [s]."""
+        """The last instant that anything is known of [s after the opening]."""
         weighed = self.flow_end if "fuel_mass_after" in self.stated else self.end
         return max([weighed, self.last, *(at for at, _ in self.events.values())])
 
     @property
     def last(self) -> float:
-        """The last point of the grid while something flows [s]."""
+        """The last point of the grid while something flows [s after the opening]."""
         return float(self.grid[~self.resting][-1])
 
     @property

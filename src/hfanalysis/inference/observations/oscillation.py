@@ -21,13 +21,16 @@ SMOOTHED, ORDER = 25, 3
 """Blocks over which the smooth course is a polynomial, and its order."""
 
 KEPT = 1.0 - float(savgol_coeffs(SMOOTHED, ORDER)[SMOOTHED // 2])
-"""Part of the variance of noise that is left of it beside the smooth course, which follows some of it."""
+"""Part of the variance of noise that is left of it beside the smooth course, which follows some of it. Source: Savitzky
+and Golay, Analytical Chemistry 36, 1964: the smooth course takes its middle weight. Evidence: without it the variance
+came out too small by a tenth."""
 
 LAGS = 12
 """Blocks over which the oscillation is coherent at most."""
 
 UNEVEN = 0.1
-"""Part of the oscillation that its neighbours and the other channel do not foretell: it grows and fades."""
+"""Part of the oscillation that its neighbors and the other channel do not foretell: it grows and fades. Evidence:
+chosen with the residuals of the practice cases P01 to P03 in view (docs/diagnosis.md)."""
 
 WILD = 5.0
 """Standard deviations beyond which a block is no oscillation."""
@@ -36,11 +39,13 @@ WILD = 5.0
 def oscillation(
     blocks: Mapping[str, Array], level: Array, usable: NDArray[np.bool_], own: Mapping[str, float]
 ) -> dict[tuple[str, str], Array]:
-    """Covariance (blocks, blocks) of the oscillation, for every pair of channels.
+    """Covariance (blocks, blocks) [SI squared] of the oscillation, for every pair of channels.
 
-    ``blocks``: means of each channel on a uniform grid; ``level`` (blocks,): what it is proportional to, 0 to 1;
-    ``usable``: blocks without gaps and changes of phase nearby; ``own``: standard deviation of a block's mean that each
-    sensor has by itself.
+    Args:
+        blocks: means (blocks,) [SI] of each channel on a uniform grid.
+        level: what it is proportional to (blocks,), 0 to 1.
+        usable: blocks (blocks,) without gaps and changes of phase nearby.
+        own: standard deviation [SI] of a block's mean that each sensor has by itself.
     """
     stretches = [s for s in _stretches(usable) if s.stop - s.start > SMOOTHED]
     rough = {name: _rough(values, stretches) for name, values in blocks.items()}

@@ -60,13 +60,14 @@ class PurgeLine:
     own_span: float
 
     def zero_and_span(self, value: Array) -> Array:
-        """Covariance (blocks, blocks) of the line's blocks of these values by errors of both sensors."""
+        """Covariance (blocks, blocks) [Pa^2] of the line's blocks of these values (blocks,) [Pa] by errors of both
+        sensors."""
         changed = self.own_span * (value - self.at_first)
         return np.asarray(self._zero**2 + self.read_std**2 + np.outer(changed, changed))
 
     def with_tank(self, tank: Array, line: Array) -> Array:
-        """Covariance (blocks of the tank, blocks of the line) by errors of the tank's sensor, of blocks of these
-        values."""
+        """Covariance (blocks of the tank, blocks of the line) [Pa^2] by errors of the tank's sensor, of blocks of these
+        values [Pa]."""
         spanned = self.tank_span**2 * self.at_first * tank
         return np.asarray((self.zero_std**2 + spanned)[:, np.newaxis] * np.ones(line.size))
 
@@ -79,7 +80,8 @@ class PurgeLine:
 def purge_line(
     log: TestLog, segments: Segments, definition: TestDefinition, origin: float, end: float
 ) -> PurgeLine | None:
-    """The purge line up to ``end`` [s]; None where it does not follow the tank."""
+    """The purge line up to ``end`` [s after the opening]; None where it does not follow the tank. ``origin`` [s of the
+    log]."""
     t_purge = segments.time("t_purge")
     if t_purge is None or not set(ALIKE) <= set(log.channels):
         return None

@@ -2,7 +2,7 @@
 
 Whether a sensor wanders over seconds (1/f) or forgets within tenths of a second decides how small a slow departure of
 the model can be seen. The variances of the processes, each correlated exponentially, come from the periodogram of the
-quiet time (Whittle's likelihood); between neighbouring time constants they change smoothly, so that what is slower than
+quiet time (Whittle's likelihood); between neighboring time constants they change smoothly, so that what is slower than
 the quiet time is carried on from what it shows. Their level is the mean of all that the quiet time leaves possible.
 """
 
@@ -23,7 +23,7 @@ TIMES = np.array([0.02, 0.06, 0.18, 0.54, 1.6, 4.9, 15.0])
 """Time constants [s] of the processes."""
 
 ROUGH = 1.0
-"""Standard deviation of the log of the ratio of neighbouring variances."""
+"""Standard deviation of the log of the ratio of neighboring variances."""
 
 USUAL = -3.0, 2.0
 """Log of the variance of a process over that of a block's white noise, and how far sensors differ in it.
@@ -40,22 +40,22 @@ LEVELS = np.linspace(-6.0, 6.0, 49)
 SLOW = 0.15
 """Time constant [s] from which on a process is slow: a quiet time of seconds holds few of its swings."""
 
-FARTHEST = 40.0
-"""By how much the log of a variance may differ from that of the whole reading's."""
+FARTHEST_VARIANCE = 40.0
+"""By how much the log of a variance [natural log] may differ from that of the whole reading's."""
 
 NARROW = 1e-3
 """Of a process's time constant: a narrower mean is its value."""
 
-LEAST = 60
+FEWEST_BLOCKS = 60
 """Blocks of quiet time from which on it is analysed."""
 
-MOST = 6000
+MOST_BLOCKS = 6000
 """Blocks of it that are analysed at most, the last ones."""
 
 UNSURE, LEAST_UNSURE = 0.65, 0.15
 """Standard deviation of the log of the slow noise's amplitude after a second of quiet, which falls with the root of its
-length, and what no length takes away: a spectrum is not quite of any form that is thought of. Simulated sensors hold it
-(tests/inference/observations/test_noise.py)."""
+length, and what no length takes away: a spectrum is not quite of any form that is thought of. Evidence: simulated
+sensors hold it (tests/inference/observations/test_noise.py)."""
 
 STILL = 1e-9
 """Part of a reading by which it has to move to have a spectrum: a coarse converter may stand on one count."""
@@ -63,9 +63,10 @@ STILL = 1e-9
 
 @dataclass(frozen=True)
 class Wander:
-    """``variances`` of processes with TIMES, and ``white``: the standard deviation of a block's white noise.
+    """``variances`` (processes,) [SI squared] of processes with TIMES, and ``white`` [SI]: the standard deviation of a
+    block's white noise.
 
-    ``unsure``: standard deviation of the log of the slow processes' amplitude.
+    ``unsure``: standard deviation of the log of the slow processes' amplitude [-].
     """
 
     variances: Array
@@ -73,14 +74,18 @@ class Wander:
     unsure: float = UNSURE
 
     def covariance(self, time: Array, width: Array | float = 0.0) -> Array:
-        """Of means about given times (n,): the wander's alone, without white noise.
+        """Covariance (n, n) [SI squared] of means about given times (n,) [s]: the wander's alone, without white noise.
 
         ``width`` [s], one or (n,): of the means, which do not overlap; 0 where they are those that it was fitted to.
+
+        >>> one = Wander(np.where(TIMES == 0.54, 4.0, 0.0), 0.0)
+        >>> one.covariance(np.array([0.0, 0.54])).round(2).tolist()
+        [[4.0, 1.47], [1.47, 4.0]]
         """
         return self._of(time, width, TIMES > 0.0)
 
     def slow(self, time: Array, width: Array | float = 0.0) -> Array:
-        """The part of :meth:`covariance` that is of slow processes."""
+        """The part (n, n) [SI squared] of :meth:`covariance` that is of slow processes; arguments as there."""
         return self._of(time, width, TIMES >= SLOW)
 
     def _of(self, time: Array, width: Array | float, which: NDArray[np.bool_]) -> Array:
@@ -102,21 +107,22 @@ def _correlation(time: Array, width: Array, tau: float) -> Array:
 
 
 def roughness(wander: Wander, block: float) -> float:
-    """What the wander adds to the squared noise of blocks that second differences show."""
+    """What the wander adds to the squared noise [SI squared] of blocks of a length [s] that second differences show."""
     one, two = np.exp(-block / TIMES), np.exp(-2.0 * block / TIMES)
     return float(wander.variances @ (6.0 - 8.0 * one + 2.0 * two) / 6.0)
 
 
 def wander_of(signal: Signal, block: float) -> Wander:
-    """From the quiet time before the opening (negative times), in blocks of so many seconds."""
+    """From the quiet time before the opening (negative times [s]), in blocks of so many seconds; in the signal's SI
+    unit."""
     quiet = signal.between(-np.inf, -0.1)
     noise = Noise.of(signal, quiet)
     blocks = quiet.reduced(block)
     white = float(noise.white * np.sqrt(min(noise.step / block, 1.0)))
     still = float(np.ptp(blocks.value)) <= STILL * float(np.abs(blocks.value).max()) if blocks.time.size else True
-    if blocks.time.size < LEAST or still:
+    if blocks.time.size < FEWEST_BLOCKS or still:
         return Wander(np.full(TIMES.size, noise.flicker * np.log(3.0)), white)
-    values = blocks.value[-MOST:]
+    values = blocks.value[-MOST_BLOCKS:]
     return _fitted(values - values.mean(), float(np.median(np.diff(blocks.time))), white, noise.flicker)
 
 
@@ -145,7 +151,7 @@ def _fitted(values: Array, step: float, white: float, flicker: float) -> Wander:
         return float(np.sum(np.log(model) + power / model)) + 0.5 * prior
 
     start = np.log(np.r_[np.full(TIMES.size, max(flicker, 1e-3 * level)), max(white**2, 1e-3 * level)])
-    bounds = [(np.log(level) - FARTHEST, np.log(level) + FARTHEST)] * start.size
+    bounds = [(np.log(level) - FARTHEST_VARIANCE, np.log(level) + FARTHEST_VARIANCE)] * start.size
     best = minimize(cost, start, method="L-BFGS-B", bounds=bounds, options={"maxiter": 60}).x
     costs = np.array([cost(np.r_[best[:-1] + shift, best[-1]]) for shift in LEVELS])
     weights = np.exp(costs.min() - costs)

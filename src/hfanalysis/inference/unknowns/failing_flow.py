@@ -46,7 +46,7 @@ UNEVEN = 0.02
 """Part of itself by which a channel departs from a straight course and a straight fall at any instant."""
 
 LEAST_GAIN = 8.0
-"""Log evidence from which on a fall is plain."""
+"""Log evidence [natural log] from which on a fall is plain."""
 
 HIDDEN = 0.05
 """Seconds before the end of the liquid in which every sample has to be good."""
@@ -56,7 +56,7 @@ SHARE, LIQUID = range(2)
 SURE = 0.25
 """Standard deviation of what fails, and of the liquid that is then left, relative to what the samples show."""
 
-MOST = 0.95
+LARGEST_SHARE = 0.95
 """Part of the flow that fails at most."""
 
 STEADY = 0.05
@@ -67,7 +67,7 @@ STEADY = 0.05
 def _failing(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
     """The flow falls in proportion to the liquid that is left."""
     if hook == AT_FLOW and env[IS_LIQUID] > 0.0 and env[M_LIQUID] < p[LIQUID]:
-        site[INJECTOR_FACTOR] *= 1.0 - min(p[SHARE], MOST) * (1.0 - env[M_LIQUID] / p[LIQUID])
+        site[INJECTOR_FACTOR] *= 1.0 - min(p[SHARE], LARGEST_SHARE) * (1.0 - env[M_LIQUID] / p[LIQUID])
 
 
 @switch
@@ -94,8 +94,8 @@ SHARE_OF_FLOW, LIQUID_LEFT = (f"{EFFECT.name}.{p.name}" for p in EFFECT.paramete
 
 @dataclass(frozen=True)
 class FailingFlow(Unknown):
-    """The flow begins to fail ``seconds`` before the end of the liquid at ``t_v`` [s], when chamber pressure and thrust
-    have lost a ``share`` of themselves."""
+    """The flow begins to fail ``seconds`` [s] before the end of the liquid at ``t_v`` [s after the opening], when
+    chamber pressure and thrust have lost a ``share`` [-] of themselves."""
 
     t_v: float
     seconds: float
@@ -106,7 +106,8 @@ class FailingFlow(Unknown):
 
     @classmethod
     def in_samples(cls, samples: Samples) -> FailingFlow | None:
-        """How long before the end of the liquid chamber pressure and thrust fall."""
+        """How long [s] before the end of the liquid chamber pressure and thrust fall; None where they do not, or it
+        does not show."""
         signals, segments = samples.signals, samples.segments
         t_v, gone = segments.time("t_v"), segments.time("t_fuel_out")
         if t_v is None or segments.std("t_v") > DATED or "p_tank" not in signals or not set(TOGETHER) <= set(signals):
@@ -129,17 +130,19 @@ class FailingFlow(Unknown):
 
     @property
     def hides(self) -> float:
+        """The time [s] that the flow takes to fail."""
         return self.seconds
 
     def added_to(self, fitted: Fit) -> tuple[Hypothesis, Array]:
         # what is left behind a ramp of the flow is less than what a whole flow would take along
         liquid = flow_before(fitted, self.t_v, self.seconds) * self.seconds * (1.0 - 0.5 * self.share)
         lost = Free(SHARE_OF_FLOW, self.share, SURE, "positive")
-        free = (replace(lost, most=lost.place(MOST)), Free(LIQUID_LEFT, liquid, SURE, "positive"))
+        free = (replace(lost, most=lost.place(LARGEST_SHARE)), Free(LIQUID_LEFT, liquid, SURE, "positive"))
         return fitted.hypothesis.with_active(EFFECT.at(share=self.share, liquid=liquid), free), np.zeros(2)
 
     def history(self, fitted: Fit, observed: Observed) -> History:
-        """What the flow lacks as the last liquid leaves, with points enough for it."""
+        """What the flow lacks [kg/s] over time [s after the opening] as the last liquid leaves, with points enough for
+        it."""
         share, liquid = (fitted.values[name] for name in (SHARE_OF_FLOW, LIQUID_LEFT))
         flow = flow_before(fitted, self.t_v, self.seconds)
         seconds = liquid / (flow * (1.0 - 0.5 * share))
@@ -156,13 +159,14 @@ class FailingFlow(Unknown):
         return text(
             "In the last {within} of the liquid the injector's flow fails, by {lost} on average: chamber pressure and "
             "thrust fall before the tank's shows the end of the liquid, as where gas comes in with it.",
-            within=said_of(known, "ms", ".2g", ".1g"),
-            lost=said_of(row.source, unit, ".2g", ".1g", -1.0),
+            within=said_of(known, "ms", ".0f", ".0f"),
+            lost=said_of(row.source, unit, ".3g", ".2g", -1.0),
         )
 
 
 def flow_before(fitted: Fit, t_v: float, seconds: float) -> float:
-    """The flow of a fit shortly before it begins to fail [kg/s]."""
+    """The flow [kg/s] of a fit shortly before it begins to fail, ``seconds`` [s] before the end of the liquid at
+    ``t_v`` [s after the opening]."""
     gone = fitted.burnt.liquid_out if fitted.burnt.liquid_out is not None else t_v
     outputs = fitted.burnt.steps.at(np.array([max(gone - seconds - STEADY, 0.0)]))[1]
     return max(float(outputs[0, O_OXIDIZER_FLOW]), 1e-6)
@@ -186,7 +190,12 @@ def _lost(signal: Signal, t_v: float, time: Array) -> Array | None:
 
 
 def fallen(time: Array, seconds: float) -> Array:
-    """What of a fall has come about at ``time`` (n,) [s after the end of the liquid]."""
+    """What part of a fall of so many ``seconds`` [s] has come about at ``time`` (n,) [s after the end of the liquid];
+    (n,) [-].
+
+    >>> fallen(np.array([-0.2, -0.05, 0.0]), seconds=0.1).tolist()
+    [0.0, 0.5, 1.0]
+    """
     return np.asarray(np.clip(1.0 + time / seconds, 0.0, 1.0))
 
 

@@ -32,17 +32,18 @@ CHANNEL = "thrust"
 BEFORE, AFTER = 0.05, 0.45
 """Seconds before and after the opening between which thrust is laid over the chamber's pressure."""
 
-MOST, LEAST = 0.2, 5e-3
+LONGEST_DELAY, SHORTEST_DELAY = 0.2, 5e-3
 """The largest delay that is looked for, and the least that is one [s]."""
 
-FINEST = 1e-3
+FINEST_DELAY = 1e-3
 """Seconds between delays that are tried."""
 
 FEWEST = 40
 """Samples of that stretch from which on a delay shows."""
 
 CLEAR = 6.0
-"""Times that thrust lies closer to the delayed pressure than to the other: a slow rise, or a lag, stays below 6."""
+"""Times that thrust lies closer to the delayed pressure than to the other. Evidence: a slow rise, or a lag, stays below
+6 (tests/inference/unknowns/test_late_channel.py)."""
 
 BLOCK = 0.02
 """Seconds of samples that count as one observation: their noise goes together."""
@@ -73,7 +74,7 @@ DELAY = f"{EFFECT.name}.delay"
 
 @dataclass(frozen=True)
 class LateChannel(Unknown):
-    """``seconds`` by which a channel is read later than another."""
+    """``seconds`` [s] by which a channel is read later than another."""
 
     seconds: float
     log_evidence: float
@@ -82,20 +83,20 @@ class LateChannel(Unknown):
 
     @classmethod
     def in_samples(cls, samples: Samples) -> LateChannel | None:
-        """By how much thrust is read later than the chamber's pressure; None where it is not, or does not show."""
+        """By how much [s] thrust is read later than the chamber's pressure; None where it is not, or does not show."""
         signals = samples.signals
         if not {CHANNEL, "p_chamber"} <= set(signals):
             return None
         thrust, chamber = signals[CHANNEL], signals["p_chamber"]
-        step = max(thrust.step, chamber.step, FINEST)
+        step = max(thrust.step, chamber.step, FINEST_DELAY)
         time = np.arange(-BEFORE, AFTER, step)
-        delays = step * np.arange(round(MOST / step) + 1)
+        delays = step * np.arange(round(LONGEST_DELAY / step) + 1)
         if time.size < FEWEST or thrust.between(-BEFORE, AFTER).time.size < FEWEST:
             return None
         read = thrust.at(time)
         apart = np.array([_misfit(read, chamber.at(time - delay)) for delay in delays])
         best = int(np.argmin(apart))
-        if not LEAST <= delays[best] < MOST - step or apart[0] < CLEAR * apart[best]:
+        if not SHORTEST_DELAY <= delays[best] < LONGEST_DELAY - step or apart[0] < CLEAR * apart[best]:
             return None
         closer = apart[0] / max(apart[best], 1e-12 * apart[0])
         return LateChannel(float(delays[best]), 0.5 * (BEFORE + AFTER) / BLOCK * float(np.log(closer)))
@@ -105,7 +106,8 @@ class LateChannel(Unknown):
         return fitted.hypothesis.with_active(active, (free,)), np.array([free.place(self.seconds)])
 
     def history(self, fitted: Fit, observed: Observed) -> History:
-        """What the channel reads too much, but for the start, where the model leaps.
+        """What the channel reads too much [SI] over time [s after the opening], but for the start, where the model
+        leaps.
 
         It is late all the time, though that shows where its reading changes; what it lacks at the start is in the mean.
         """

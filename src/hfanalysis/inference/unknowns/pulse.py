@@ -36,7 +36,7 @@ SHORTEST = 0.15
 FINE = 200
 """Instants at which pulses are laid over the splines."""
 
-STEP = 1e-3
+SLOPE_STEP = 1e-3
 """Of x, for the slopes of its history."""
 
 
@@ -101,6 +101,7 @@ class Pulse(LinearUnknown):
         return made, np.clip(start, [f.least for f in free], [f.most for f in free])
 
     def history(self, fitted: Fit, observed: Observed) -> History:
+        """The pulse over time [s after the opening], in the unit of its place; its deviation to first order."""
         time = np.linspace(0.0, observed.last, POINTS)
         names = [f"{PREFIX}{self.place.name}.{own}" for own in OWN]
         own = [fitted.hypothesis.names.index(name) for name in names]
@@ -111,7 +112,9 @@ class Pulse(LinearUnknown):
             return np.asarray(0.5 * size * (np.tanh((time - start) / edge) - np.tanh((time - start - duration) / edge)))
 
         mean = pulse(fitted.x)
-        slopes = np.column_stack([(pulse(fitted.x + STEP * np.eye(fitted.x.size)[k]) - mean) / STEP for k in own])
+        slopes = np.column_stack(
+            [(pulse(fitted.x + SLOPE_STEP * np.eye(fitted.x.size)[k]) - mean) / SLOPE_STEP for k in own]
+        )
         std = spread_of(slopes, fitted.covariance[np.ix_(own, own)])
         whole = self.place.whole(fitted, time, observed)
         return History(self.place, time, mean, std, fitted.stds[names[START]], whole=whole)

@@ -28,14 +28,15 @@ from hfanalysis.wording.numbers import said_of
 BEFORE, AFTER = 0.15, 0.6
 """Seconds before and after the opening between which the run line's pressure is looked at."""
 
-FINEST = 1e-3
+FINEST_SAMPLE = 1e-3
 """Seconds between samples that are looked at."""
 
 GRADUAL = 3
 """Samples that the first part of the rise (EARLY) takes at least where it is gradual: a leap takes one or two."""
 
 EARLY = 0.05, 0.2
-"""Parts of the rise between which it tells a gradual opening: a line that fills begins with its steepest rise."""
+"""Parts of the rise between which it tells a gradual opening. Evidence: a line that fills begins with its steepest rise
+(tests/inference/unknowns/test_slow_valve.py)."""
 
 NEARLY = 0.95
 """Part of the rise at which the valve counts as open."""
@@ -90,7 +91,7 @@ PARAMETER = f"{EFFECT.name}.seconds"
 
 @dataclass(frozen=True)
 class SlowValve(Unknown):
-    """``seconds`` from the first rise of the run line's pressure until the valve is open."""
+    """``seconds`` [s] from the first rise of the run line's pressure until the valve is open."""
 
     seconds: float
     log_evidence: float
@@ -100,12 +101,12 @@ class SlowValve(Unknown):
 
     @classmethod
     def in_samples(cls, samples: Samples) -> SlowValve | None:
-        """How long the valve takes; None where it opens at once, or where that does not show."""
+        """How long [s] the valve takes; None where it opens at once, or where that does not show."""
         signals = samples.signals
         if "p_run" not in signals or not signals["p_run"].step <= SLOW_LOG:
             return None
         line = signals["p_run"]
-        step = max(line.step, FINEST)
+        step = max(line.step, FINEST_SAMPLE)
         time = np.arange(-BEFORE, AFTER, step)
         still, open_ = line.between(-5.0 * BEFORE, -BEFORE).value, line.between(0.7 * AFTER, AFTER).value
         if min(still.size, open_.size) < GRADUAL:
@@ -129,7 +130,7 @@ class SlowValve(Unknown):
         return fitted.hypothesis.with_active(EFFECT.at(seconds=self.seconds), (free,)), np.zeros(1)
 
     def history(self, fitted: Fit, observed: Observed) -> History:
-        """What the valve takes of the pressure while it opens."""
+        """What the valve takes of the pressure [Pa] over time [s after the opening] while it opens."""
         seconds, std = fitted.values[PARAMETER], fitted.stds[PARAMETER]
         ends = (1.5 * seconds, observed.last)
         time = np.unique(np.concatenate([np.linspace(0.0, end, POINTS // 2) for end in ends]))
@@ -147,7 +148,14 @@ class SlowValve(Unknown):
 
 
 def loss_share(times: Array, seconds: float) -> Array:
-    """Part of the feed's loss that is the valve's at each of ``times`` [s]."""
+    """Part (n,) [-] of the feed's loss that is the valve's at ``times`` (n,) [s after the opening], if it is open after
+    ``seconds`` [s].
+
+    Its area grows evenly, and the loss of a flow goes with the square of the area's inverse.
+
+    >>> loss_share(np.array([0.1, 0.2]), seconds=0.2).tolist()
+    [0.75, 0.0]
+    """
     return np.asarray(1.0 - np.clip(times / seconds, JAR, 1.0) ** 2)
 
 

@@ -41,7 +41,10 @@ GONE, ONE_SIDED = 0.2, 0.4
 
 @dataclass(frozen=True)
 class SmoothSource(LinearUnknown):
-    """``coefficients`` (n,) of splines and their ``scale``; ``correlation``: splines over which it is coherent."""
+    """``coefficients`` (n,) of splines and their ``scale``; ``correlation``: splines over which it is coherent.
+
+    ``coefficients`` and ``scale`` are in the unit of the place; ``nuisances`` in prior standard deviations.
+    """
 
     place: Place
     log_evidence: float
@@ -80,6 +83,7 @@ class SmoothSource(LinearUnknown):
         return fitted.hypothesis.with_block(block, active), start
 
     def history(self, fitted: Fit, observed: Observed) -> History:
+        """The source over time [s after the opening], in the unit of its place."""
         time = np.linspace(0.0, observed.last, POINTS)
         block, own = next(it for it in fitted.hypothesis.places() if it[0].names == self._names)
         basis = block.splines.at(time) @ block.matrix
@@ -95,14 +99,14 @@ class SmoothSource(LinearUnknown):
 
 
 def sensor_place(observed: Observed, name: str) -> Place:
-    """A sensor as a place: an offset over time."""
+    """A sensor as a place: an offset over time, with the size [SI] that is typical of it."""
     accuracy = next(c.accuracy for c in observed.channels if c.name == name)
     typical = LOAD_CELL_DRIFT if name == "thrust" else BEYOND_ACCURACY * accuracy
     return Place(OFFSET + name, "sensor", unit_of(name), typical, sensor=name)
 
 
 def seen_at(place: Place, mean: Array, std: Array) -> Place:
-    """The place of a source by its history (n,).
+    """The place of a source by its history: ``mean`` and ``std`` (n,) in the unit of the place.
 
     What the thrust departs by to one side and is gone, or not seen any more, as the flow ends is the nozzle's: a cell
     that has drifted does not come back at that instant, and gusts blow to and fro.
@@ -115,7 +119,11 @@ def seen_at(place: Place, mean: Array, std: Array) -> Place:
 
 
 def smooth_prior(count: int, correlation: float) -> Array:
-    """Covariance of the coefficients of a source of size one that is coherent over so many splines."""
+    """Covariance (count, count) [-] of the coefficients of a source of size one that is coherent over so many splines.
+
+    >>> smooth_prior(2, 1.5).round(3).tolist()
+    [[1.0, 0.801], [0.801, 1.0]]
+    """
     lag = np.arange(count)[:, None] - np.arange(count)[None, :]
     return np.asarray(np.exp(-0.5 * (lag / correlation) ** 2) + 1e-6 * np.eye(count))
 

@@ -30,7 +30,7 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import text
 from hfanalysis.wording.numbers import said_of
 
-STEP = 5e-3
+SAMPLE_STEP = 5e-3
 """Seconds over which samples are averaged first."""
 
 SLOWEST, FASTEST = 2.0, 25.0
@@ -42,15 +42,18 @@ SMOOTH = 0.25
 WINDOWS = 1.0, 2.0, 4.0
 """Seconds that are looked at at once; each begins a quarter of that after the last."""
 
-NEIGHBOURS = 12.0
-"""Over the length of a window: hertz about a frequency whose median is the background. A peak takes a third of them."""
+NEIGHBORS = 12.0
+"""Over the length of a window: frequencies [Hz] about one whose median is the background. A peak takes a third of
+them."""
 
 EACH = 6.0
-"""Times the background that the power in run line and chamber has to reach, each: one in 400 does by chance, both at
-once one in 160,000."""
+"""Times the background that the power in run line and chamber has to reach, each. Source: the power of noise in a
+spectrum is exponentially distributed; exp(-6) is one in 400 by chance, and both at once are one in 160,000."""
 
 LOUD = 3.0
-"""Times the background that the chamber's power reaches half of the time where its combustion swings by itself."""
+"""Times the background that the chamber's power reaches half of the time where its combustion swings by itself.
+Evidence: without it, what the run line did for a moment at the combustion's frequency was a swing of the flow
+(tests/inference/unknowns/test_swing.py)."""
 
 TURNS = 4.0
 """That a swing takes at least; what comes and goes at once has a broad spectrum of its own."""
@@ -65,7 +68,7 @@ WILD = 10.0
 """Times the usual distance from the median of three from which on a mean is wild."""
 
 LEAST_LOSS = 1e4
-"""Pascals across feed and injector below which their loss says nothing of the flow."""
+"""Loss across feed and injector [Pa] below which it says nothing of the flow."""
 
 LEAD_IN = 0.3
 """Seconds after the opening that are left out."""
@@ -130,19 +133,19 @@ class Swing(Unknown):
 
     @classmethod
     def in_samples(cls, samples: Samples) -> Swing | None:
-        """The oscillation that run line and chamber share before ``end`` [s]; None where they share none."""
+        """The oscillation [Hz] that run line and chamber share while the flow is steady; None where they share none."""
         signals, end = samples.signals, samples.steady
-        time = np.arange(LEAD_IN, end, STEP)
-        if not {"p_tank", "p_run", "p_chamber"} <= set(signals) or time.size * STEP < WINDOWS[0]:
+        time = np.arange(LEAD_IN, end, SAMPLE_STEP)
+        if not {"p_tank", "p_run", "p_chamber"} <= set(signals) or time.size * SAMPLE_STEP < WINDOWS[0]:
             return None
-        if max(signals["p_run"].step, signals["p_chamber"].step) > STEP:
+        if max(signals["p_run"].step, signals["p_chamber"].step) > SAMPLE_STEP:
             return None
         rough = {name: _rough(signals[name], time) for name in ("p_run", "p_chamber", "thrust") if name in signals}
         combustion = _combustion(rough)
         found: list[_Peak] = []
         trials = 0
         for length in WINDOWS:
-            count = round(length / STEP)
+            count = round(length / SAMPLE_STEP)
             if count <= time.size:
                 frequency, spectra = _spectra(rough, count)
                 trials += spectra["p_run"].power.size
@@ -162,7 +165,8 @@ class Swing(Unknown):
         return fitted.hypothesis.with_active(active, free), np.zeros(2)
 
     def history(self, fitted: Fit, observed: Observed) -> History:
-        """What the flow swings by, with points enough for its frequency."""
+        """What the flow swings by [-], as part of it, over time [s after the opening], with points enough for its
+        frequency."""
         end, share, phase = observed.last, fitted.values[SHARE_OF_SWING], fitted.values[PHASE_OF_SWING]
         time = np.linspace(0.0, end, max(POINTS, round(POINTS_A_TURN * self.frequency * end)))
         std = SURE * np.abs(self._at(time, share, phase + 0.5 * np.pi))
@@ -208,7 +212,7 @@ class _Peak(NamedTuple):
 def _combustion(rough: Mapping[str, Array]) -> Array:
     """Frequencies [Hz] at which the chamber swings most of the time and the run line does not: what that does there by
     chance, for a moment, is no swing of the flow."""
-    frequency, spectra = _spectra(rough, round(WINDOWS[0] / STEP))
+    frequency, spectra = _spectra(rough, round(WINDOWS[0] / SAMPLE_STEP))
     line, chamber = (np.median(spectra[name].power, axis=0) for name in ("p_run", "p_chamber"))
     return np.asarray(frequency[(chamber > LOUD) & (line < LOUD)])
 
@@ -234,19 +238,19 @@ def _peaks(
 
 
 def _rough(signal: Signal, time: Array) -> Array:
-    """A signal less its smooth course; a single wild mean gets the median of its neighbours."""
-    values = signal.reduced(STEP).at(time)
+    """A signal less its smooth course; a single wild mean gets the median of its neighbors."""
+    values = signal.reduced(SAMPLE_STEP).at(time)
     middle = median_filter(values, 3, mode="nearest")
     off = np.abs(values - middle)
     values = np.where(off > WILD * np.mean(off), middle, values)
-    return np.asarray(values - gaussian_filter1d(values, SMOOTH / STEP, mode="nearest"))
+    return np.asarray(values - gaussian_filter1d(values, SMOOTH / SAMPLE_STEP, mode="nearest"))
 
 
 def _spectra(rough: Mapping[str, Array], count: int) -> tuple[Array, dict[str, _Spectrum]]:
     """Frequencies [Hz], and the spectrum of every window of so many samples."""
-    frequency: Array = np.asarray(np.fft.rfftfreq(2 * count, STEP), dtype=np.float64)
+    frequency: Array = np.asarray(np.fft.rfftfreq(2 * count, SAMPLE_STEP), dtype=np.float64)
     inside = (frequency >= SLOWEST) & (frequency <= FASTEST)
-    wide = 2 * round(0.5 * NEIGHBOURS / (count * STEP) / float(frequency[1])) + 1
+    wide = 2 * round(0.5 * NEIGHBORS / (count * SAMPLE_STEP) / float(frequency[1])) + 1
     out = {}
     for name, values in rough.items():
         starts = np.arange(0, values.size - count + 1, count // 4)
@@ -267,7 +271,9 @@ def _swing_at(line: Array, time: Array, peak: _Peak, by_pascal: float, price: fl
     window[inside] = hann(int(inside.sum()))
     strength = [abs(np.sum((line * window) * np.exp(-2j * np.pi * f * time))) for f in near]
     frequency = float(near[int(np.argmax(strength))])
-    turning = gaussian_filter1d(2.0 * line * np.exp(-2j * np.pi * frequency * time), BLUR / STEP, mode="constant")
+    turning = gaussian_filter1d(
+        2.0 * line * np.exp(-2j * np.pi * frequency * time), BLUR / SAMPLE_STEP, mode="constant"
+    )
     mean = complex(np.mean(turning[inside]))
     size = np.real(turning * np.conj(mean)) / abs(mean)
     strong = size > 0.5 * float(size[inside].max())

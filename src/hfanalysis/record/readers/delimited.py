@@ -21,8 +21,9 @@ from hfanalysis.record.readers.dialect import WHITESPACE, Dialect, detect
 from hfanalysis.record.readers.stamps import StampParser
 
 SEGMENT = 1_000_000
-"""Bytes of text parsed at a time: small enough for memory to be used again rather than asked for anew."""
+"""Bytes of text parsed at a time [B]: small enough for memory to be used again rather than asked for anew."""
 WORKERS = 2
+"""Segments parsed at a time: bounds the memory."""
 CHUNK = 20_000
 """Rows read at a time where text cannot be cut into segments."""
 

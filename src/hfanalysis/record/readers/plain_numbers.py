@@ -19,15 +19,22 @@ Unsigned = Any
 """numpy.uint64: a place in the text, or what is counted from it."""
 
 NEWLINE, RETURN, SPACE, TAB = 10, 13, 32, 9
+"""Characters. Source: ASCII."""
 PLUS, MINUS, ZERO, NINE, LARGE_E, SMALL_E = 43, 45, 48, 57, 69, 101
+"""Characters. Source: ASCII."""
 START, ONE, NINE_MORE, TEN, FIGURE_ZERO = (np.uint64(x) for x in (0, 1, 9, 10, 48))
+"""Places and counts without a sign. Evidence: places that may be counted from the end make parsing take three times as
+long."""
 EXACT = np.uint64(2**53)
-"""Whole numbers up to this are exact in a double, and so is their product with a power of ten up to 22."""
-LONGEST = np.uint64(18)
-"""Digits that fit a 64-bit integer whatever they are."""
+"""Whole numbers up to this are exact in a double, and so is their product with a power of ten up to 22. Source: IEEE
+754: a double has 53 bits; 10^22 = 2^22 5^22 and 5^22 < 2^53."""
+MOST_DIGITS = np.uint64(18)
+"""Digits that fit a 64-bit integer whatever they are. Source: 10^18 - 1 < 2^63."""
 DECLINED = -1
+"""Number of rows that stands for none: a cell was no plain number."""
 SIGNED: Any = np.int64
 POWERS = 10.0 ** np.arange(23)
+"""Powers of ten that are exact in a double. Source: IEEE 754 (as EXACT)."""
 
 
 def parse(
@@ -35,7 +42,8 @@ def parse(
 ) -> Array | None:
     """The wanted columns, shape (wanted, rows), NaN where a cell is empty; None where a cell is not a plain number.
 
-    ``slots``: for each column of the text the row of the result, -1 where it is not wanted.
+    ``slots`` (columns,): for each column of the text the row of the result, -1 where it is not wanted. Numbers are as
+    logged, in whatever unit the log has.
     """
     data = np.frombuffer(text if text[-1] == NEWLINE else bytes(text) + b"\n", dtype=np.uint8)
     out = np.empty((wanted, _count(data, NEWLINE)))
@@ -106,7 +114,7 @@ def _plain(data: Bytes, i: Unsigned, delimiter: int, decimal: int) -> tuple[Unsi
         places = i - start
     digits += places
     ended = data[i] == delimiter or data[i] == NEWLINE or data[i] == RETURN
-    if not ended or digits == START or digits > LONGEST or mantissa > EXACT:
+    if not ended or digits == START or digits > MOST_DIGITS or mantissa > EXACT:
         return START, 0.0
     value = np.float64(mantissa) / POWERS[places]
     return i, -value if negative else value

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 DAY = 86400.0
+"""[s]. Source: definition."""
 _FORMATS = ("ISO8601", "%m/%d/%Y %H:%M:%S.%f", "%m/%d/%Y %H:%M:%S", "%d.%m.%Y %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S",
             "%d/%m/%Y %H:%M:%S.%f", "%m/%d/%Y %I:%M:%S.%f %p", "%m/%d/%Y %I:%M:%S %p")  # fmt: skip
 _CLOCK = r"^\s*(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d+)?))?\s*$"
@@ -31,7 +32,7 @@ class StampParser:
     days: float = 0.0
 
     def seconds(self, cells: pd.Series[Any]) -> Array:
-        """Seconds, NaN where a cell is no stamp."""
+        """Time [s], shape (n,), of ``cells`` (n,) of text; NaN where a cell is no stamp."""
         text = cells.astype("string")
         clock = text.str.extract(_CLOCK)
         if clock[0].notna().sum() * 2 >= text.notna().sum() and clock[0].notna().any():

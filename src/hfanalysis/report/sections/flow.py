@@ -17,6 +17,7 @@ from hfanalysis.report.time_charts import over_time
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 
 MOLES_TO_KG = 1e-3 * OXIDIZER_MOLAR_MASS
+"""Mass of a mole of nitrous oxide [kg/mol]. Source: its molar mass, in g/mol."""
 
 
 def render(material: Material) -> Iterator[Block]:

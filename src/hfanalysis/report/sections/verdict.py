@@ -32,7 +32,7 @@ def render(material: Material) -> Iterator[Block]:
     yield _diagnosed(material)
     if material.adopted:
         yield html.paragraph(material.adopted)
-    for stage, reason in spoken_absences(material).items():
+    for stage, reason in absence_reasons(material).items():
         absent = Markup('<p class="absent"><strong>{}:</strong> {}</p>')
         yield absent.format(stage, html.switchable(reason))
     yield _numbers(key_numbers(material))
@@ -47,7 +47,7 @@ def _diagnosed(material: Material) -> Markup | None:
     return words.format(html.switchable(said)) if said else None
 
 
-def spoken_absences(material: Material) -> dict[str, str]:
+def absence_reasons(material: Material) -> dict[str, str]:
     """Why there are no phases or no calibration, each reason once."""
     told: dict[str, str] = {}
     for name, words in (("segments", "phases"), ("calibration", "calibration"), ("validation", "validation")):
@@ -57,7 +57,7 @@ def spoken_absences(material: Material) -> dict[str, str]:
 
 
 def key_numbers(material: Material) -> dict[str, Quantity]:
-    """The measured numbers that come first; where there are none, what the calibration has instead."""
+    """The measured numbers [SI] that come first; where there are none, what the calibration has instead."""
     validation, calibration = material.get(Validation), material.get(Calibration)
     if validation is not None:
         measured = validation.performance.measured.quantities
@@ -107,7 +107,7 @@ def _of_channels(fault: Finding) -> str:
 
 
 def by_mark(material: Material) -> dict[str, dict[str, Quantity]]:
-    """What a calibration is asked for first, by how far it can be trusted."""
+    """What a calibration is asked for first [SI], by how far it can be trusted."""
     calibration = material.get(Calibration)
     out: dict[str, dict[str, Quantity]] = {"good": {}, "bad": {}, "open": {}}
     found = calibration.quantities if calibration is not None else {}
