@@ -49,8 +49,14 @@ def main() -> None:
 
 
 def anew(page: str) -> str:
-    """The page with its tables as the types are now."""
+    """The page with its tables as the types are now; a product that has none yet gets one at the end."""
+    page += "".join(_place(file) for file in ALL if f"<!-- fields of {file} (" not in page)
     return BLOCK.sub(lambda found: f"{found[1]}\n{_table(ALL[found['file']])}\n\n{found[3]}", page)
+
+
+def _place(file: str) -> str:
+    """Where the table of a product stands."""
+    return f"\n### {file}\n\n<!-- fields of {file} (written by `make readme`) -->\n<!-- end of fields -->\n"
 
 
 def schemas() -> dict[str, str]:

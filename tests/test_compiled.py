@@ -40,7 +40,9 @@ SHOW = "from thrust.nozzle import twice; twice(1.0); print(twice(1.0), sum(twice
 
 def shown(folder: Path) -> tuple[float, int]:
     """What a new process computes, and how often it found it in the cache."""
-    done = subprocess.run([sys.executable, "-c", SHOW], cwd=folder, capture_output=True, text=True, check=True)
+    beside_its_sources = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    command = [sys.executable, "-c", SHOW]
+    done = subprocess.run(command, cwd=folder, env=beside_its_sources, capture_output=True, text=True, check=True)
     value, hits = done.stdout.split()
     return float(value), int(hits)
 

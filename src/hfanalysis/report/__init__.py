@@ -1,1 +1,1 @@
-"""What people read: wording and numbers, charts, and the page of a test."""
+"""The page of a test: its sections, tables and figures; two tests over each other; the index."""
