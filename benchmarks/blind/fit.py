@@ -21,7 +21,14 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
-from hfanalysis.diagnose.answer.posterior import BEFORE, Scale, above_chance, detailed_kinds, share_kept, unclaimable
+from hfanalysis.diagnose.answer.posterior import (
+    BEFORE,
+    EvidenceScale,
+    above_chance,
+    detailed_kinds,
+    share_kept,
+    unclaimable,
+)
 
 Array = NDArray[np.float64]
 
@@ -82,13 +89,13 @@ class Constants:
         return self.scale.probabilities(evidences, leftover, elsewhere)
 
     @property
-    def scale(self) -> Scale:
+    def scale(self) -> EvidenceScale:
         """The constants as the diagnosis takes them."""
         offsets = {"none": 0.0, "named": self.named, "unknown": self.unknown}
         special = {name: getattr(self, name.replace(" ", "_")) for name in OFFSETS[2:]}
         offsets |= {k: v for k, v in special.items() if v is not None}
         rest = {name: getattr(self, name) for name in REST}
-        return Scale(self.temperature, self.per_leftover, offsets, **rest)
+        return EvidenceScale(self.temperature, self.per_leftover, offsets, **rest)
 
 
 def sample(product: Mapping[str, Any], truth: str, group: str) -> Sample | None:

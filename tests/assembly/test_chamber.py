@@ -14,11 +14,11 @@ from hfanalysis.assembly.engine import engine, tank
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import Needs, load_engine
-from hfanalysis.record.sections import Chamber, Grain
+from hfanalysis.record.sections import Chamber, GrainSection
 from hfanalysis.units import Value
 
 PRE, POST = 0.218e-3, 0.885e-3
-GRAIN = Grain(mass=Value(1.6), length=Value(0.61), density=Value(900.0), outer_radius=Value(39.5e-3))
+GRAIN = GrainSection(mass=Value(1.6), length=Value(0.61), density=Value(900.0), outer_radius=Value(39.5e-3))
 
 
 def test_of_a_test() -> None:

@@ -10,7 +10,15 @@ from numpy.typing import NDArray
 from tests.inference import logged
 from tests.segment.stand import channel
 
-from hfanalysis.diagnose.model_free import BAR, LEAST_FALL, LEAST_FLOW, Sign, fall_at_opening, open_check_valve, signs
+from hfanalysis.diagnose.model_free import (
+    BAR,
+    LEAST_FALL,
+    LEAST_FLOW,
+    Sign,
+    fall_at_opening,
+    open_check_valve,
+    signs_of,
+)
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
 
@@ -46,7 +54,7 @@ def behind_valve(line: Array) -> TestLog:
 
 
 def test_a_saturated_tank_shows_nothing() -> None:
-    assert signs(logged.log(), logged.segments()) == []
+    assert signs_of(logged.log(), logged.segments()) == []
 
 
 @given(some.floats(3.0, 20.0), some.floats(0.1, 0.8))
@@ -73,7 +81,7 @@ def test_what_falls_too_low_is_vapor_made_late(depth: float, size: float) -> Non
 
 def test_a_supercharged_tank_and_one_whose_liquid_does_not_end_are_not_judged() -> None:
     log = tank(layer(8.0 * BAR))
-    assert signs(log, logged.segments().but(supercharged=True)) == []
+    assert signs_of(log, logged.segments().but(supercharged=True)) == []
     unseen = logged.segments(t_v=Quantity.absent("the log ends before"))
     assert fall_at_opening(log, unseen) is None
     assert fall_at_opening(log, logged.segments(t_purge=Quantity(0.2, "s", 0.05))) is None

@@ -19,7 +19,7 @@ from hfanalysis.effects import library
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.inference.fitting.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.inference.fitting.predict import readings, with_spare_fuel
-from hfanalysis.inference.observations.channel import Channel
+from hfanalysis.inference.observations.channel import ObservedChannel
 from hfanalysis.inference.observations.frame import EVENT_STD
 from hfanalysis.inference.observations.observed import Observed
 
@@ -50,10 +50,10 @@ def full() -> Observed:
     return replace(empty, channels=tuple(_channel(n, grid[rows], read[n][rows], rows) for n in NOISE))
 
 
-def _channel(name: str, time: np.ndarray, value: np.ndarray, rows: np.ndarray) -> Channel:
+def _channel(name: str, time: np.ndarray, value: np.ndarray, rows: np.ndarray) -> ObservedChannel:
     std, none = np.full(time.size, NOISE[name]), np.zeros(time.size, dtype=bool)
     covariance = NOISE[name] ** 2 * (1.0 + np.eye(time.size))
-    return Channel(name, time, value, rows, np.ones_like(rows), none, std, NOISE[name], covariance)
+    return ObservedChannel(name, time, value, rows, np.ones_like(rows), none, std, NOISE[name], covariance)
 
 
 @cache

@@ -13,7 +13,7 @@ from hfanalysis.flight.curve import Curve
 from hfanalysis.flight.margin import margin
 from hfanalysis.flight.pitch import ATTACK, ATTITUDE, HEIGHT, MARGIN, PITCH_STEP, SPEED, Flights, aero, fly_in_wind
 from hfanalysis.rocket.aerodynamics import center_of_pressure, components
-from hfanalysis.rocket.balance import Part, TankPlace, balance, oxidizer
+from hfanalysis.rocket.balance import MassPart, TankPlace, balance, oxidizer
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo.air import air
 
@@ -35,13 +35,13 @@ def flights(wind: float, seeds: int = 1, angle: float = 0.0, center: float = HAL
 
 
 def test_the_center_of_gravity_is_the_mean_weighed_by_mass() -> None:
-    found = balance([Part(3.0, 1.0), Part(1.0, 2.0)])
+    found = balance([MassPart(3.0, 1.0), MassPart(1.0, 2.0)])
     assert found.center == pytest.approx(1.25)
     assert found.inertia == pytest.approx(3.0 * 0.25**2 + 0.75**2)
 
 
 def test_a_rod_turns_about_its_middle_with_a_twelfth() -> None:
-    assert balance([Part(6.0, 0.5, 2.0)]).inertia == pytest.approx(6.0 * 4.0 / 12.0)
+    assert balance([MassPart(6.0, 0.5, 2.0)]).inertia == pytest.approx(6.0 * 4.0 / 12.0)
 
 
 def test_liquid_lies_at_the_bottom_and_sinks_as_it_leaves() -> None:

@@ -16,7 +16,7 @@ from hfanalysis.engine.unsteady import burn
 from hfanalysis.flight.ascent import Ascent
 from hfanalysis.flight.motor import Motor, Points
 from hfanalysis.flight.rocketpy_script import Scripted, script
-from hfanalysis.flight.summary import Spread, quantities
+from hfanalysis.flight.summary import FlightSpread, quantities
 from hfanalysis.rocket.aerodynamics import Fins, Nose, Shape, Tail
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
@@ -48,7 +48,7 @@ def test_the_way_down_is_weight_against_drag() -> None:
 
 
 def test_a_quantity_has_the_deviation_of_the_drawn_flights() -> None:
-    found = quantities(ROCKET, ascent(), 6.05, "no parachutes", {"apogee": Spread(80.0, (2900.0, 3200.0))})
+    found = quantities(ROCKET, ascent(), 6.05, "no parachutes", {"apogee": FlightSpread(80.0, (2900.0, 3200.0))})
     assert (found["apogee"].std, found["apogee"].ci95) == (80.0, (2900.0, 3200.0))
     assert found["peak_velocity"].std is None
 

@@ -15,7 +15,7 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.inference.fitting.hypothesis import Hypothesis, base_hypothesis
 from hfanalysis.inference.fitting.predict import ACCURACY, readings, with_spare_fuel
-from hfanalysis.inference.observations.channel import Channel
+from hfanalysis.inference.observations.channel import ObservedChannel
 from hfanalysis.inference.observations.frame import AROUND_CHANGE, EVENT_STD, FIRST, FUEL_STD
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
@@ -82,7 +82,9 @@ def _quiet(done: Burn, fuel_out: float, common: bool) -> Observed:
     return replace(empty, channels=channels, common=COMMON * same * np.outer(*sizes))
 
 
-def _channel(name: str, reading: Array, grid: Array, resting: NDArray[np.bool_], kept: NDArray[np.bool_]) -> Channel:
+def _channel(
+    name: str, reading: Array, grid: Array, resting: NDArray[np.bool_], kept: NDArray[np.bool_]
+) -> ObservedChannel:
     after = resting & (grid > 0.0) if name in ("p_chamber", "thrust") else np.zeros_like(resting)
     first = np.flatnonzero(kept | after)
     one = np.ones(first.size)
@@ -92,7 +94,7 @@ def _channel(name: str, reading: Array, grid: Array, resting: NDArray[np.bool_],
     covariance = NOISE[name] ** 2 * np.diag(one)
     covariance = covariance + BIAS[name] ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
     count = np.ones(first.size, dtype=np.int64)
-    return Channel(name, grid[first], value, first, count, still, NOISE[name] * one, BIAS[name], covariance)
+    return ObservedChannel(name, grid[first], value, first, count, still, NOISE[name] * one, BIAS[name], covariance)
 
 
 def covariance_of(test: Observed) -> Array:

@@ -13,11 +13,11 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from tests.segment.stand import Trial, definition, fire, log_of, segments_of
 
-from hfanalysis.measured_flight.firing import Gas, _gas_mass
+from hfanalysis.measured_flight.firing import ChamberGas, _gas_mass
 from hfanalysis.measured_flight.propellant import Propellant, _fuel
 from hfanalysis.measured_flight.thrust import measured_thrust
 from hfanalysis.quantity import Quantity
-from hfanalysis.record.sections import Chamber, Grain
+from hfanalysis.record.sections import Chamber, GrainSection
 from hfanalysis.units import Value
 
 LENGTH, DENSITY, OUTER, MASS = 0.6, 900.0, 40e-3, 1.6
@@ -26,7 +26,9 @@ FLOW = 1.2 - 0.08 * TIME
 
 
 def stated(**change: Any) -> Any:
-    grain = Grain(mass=Value(MASS), length=Value(LENGTH), density=Value(DENSITY), outer_radius=Value(OUTER), **change)
+    grain = GrainSection(
+        mass=Value(MASS), length=Value(LENGTH), density=Value(DENSITY), outer_radius=Value(OUTER), **change
+    )
     return definition(grain=grain, chamber=Chamber(pre_volume=Value(0.2e-3), post_volume=Value(0.9e-3)))
 
 
@@ -50,7 +52,7 @@ def test_the_fuel_goes_as_the_grain_regresses(n: float) -> None:
 
 def test_the_chamber_holds_what_its_volumes_and_the_port_do() -> None:
     """p V = m R T, before the burn and when all fuel is gone."""
-    gas = Gas(np.array([10e5, 10e5]), np.full(2, 1.25), np.full(2, 8e5))
+    gas = ChamberGas(np.array([10e5, 10e5]), np.full(2, 1.25), np.full(2, 8e5))
     load = SimpleNamespace(time=TIME, fuel=MASS * (1.0 - TIME / 10.0))
     found = _gas_mass(np.array([0.0, 10.0]), gas, stated(), cast(Propellant, load))
     empty = 0.2e-3 + 0.9e-3 + pi * OUTER**2 * LENGTH

@@ -11,9 +11,9 @@ import pytest
 from tests.segment.stand import definition, fire, log_of, segments_of
 
 from hfanalysis.measured_flight.firing import firing
-from hfanalysis.measured_flight.product import Launch, launch, product, write_histories
-from hfanalysis.record.rocket import MainParachute, Parachute, Rocket
-from hfanalysis.record.sections import Grain
+from hfanalysis.measured_flight.product import MeasuredFlight, fly_measured, product, write_histories
+from hfanalysis.record.rocket import MainParachute, ParachuteSection, Rocket
+from hfanalysis.record.sections import GrainSection
 from hfanalysis.units import Value
 
 GROUND = 1402.0
@@ -24,16 +24,16 @@ ROCKET = Rocket(
     launch_angle=Value(np.radians(5.0)),
     rail_length=Value(6.0),
     launch_altitude=Value(GROUND),
-    drogue=Parachute(drag_coefficient=1.5, area=Value(1.2)),
+    drogue=ParachuteSection(drag_coefficient=1.5, area=Value(1.2)),
     main=MainParachute(drag_coefficient=2.2, area=Value(10.0), deploy_altitude=Value(450.0)),
 )
 
 
 @cache
-def flown() -> Launch:
+def flown() -> MeasuredFlight:
     test = fire(rate=200.0)
-    stated = definition(mass=Value(10.0, 0.04), grain=Grain(mass=Value(1.6, 0.03)), rocket=ROCKET)
-    return launch(firing(log_of(test, accuracy=20.0), segments_of(test), None, stated), ROCKET, 400, 1)
+    stated = definition(mass=Value(10.0, 0.04), grain=GrainSection(mass=Value(1.6, 0.03)), rocket=ROCKET)
+    return fly_measured(firing(log_of(test, accuracy=20.0), segments_of(test), None, stated), ROCKET, 400, 1)
 
 
 def test_the_wet_mass_is_as_well_known_as_its_parts_together() -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from hfanalysis.errors import AbsentError
-from hfanalysis.flight.summary import Spread
+from hfanalysis.flight.summary import FlightSpread
 from hfanalysis.measured_flight.firing import Firing, firing
 from hfanalysis.measured_flight.uncertainty import disperse, inputs, rows
 from hfanalysis.products.calibration import Calibration
@@ -61,7 +61,7 @@ def replica(*changes: tuple[str, str], calibrated: bool = True, without: tuple[s
     return firing(kept, segments, calibration if calibrated else None, definition(*changes))
 
 
-def flown(drag: float) -> dict[str, Spread]:
+def flown(drag: float) -> dict[str, FlightSpread]:
     """What drawn flights with an uncertainty of the drag say."""
     rocket = definition().rocket
     assert rocket is not None

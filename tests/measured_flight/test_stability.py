@@ -10,13 +10,13 @@ import pytest
 
 from hfanalysis.flight.margin import margin
 from hfanalysis.flight.pitch import COLUMNS, HEIGHT, MARGIN, SPEED, Flights
-from hfanalysis.measured_flight.stability import Stability, checks, product
+from hfanalysis.measured_flight.stability import StabilityRuns, checks, product
 from hfanalysis.rocket.aerodynamics import Fins, Nose, Shape
 
 SHAPE = Shape(0.16, Nose("von_karman", 0.5), 2.5, Fins(4, 0.25, 0.05, 0.12, 0.2, 2.7))
 
 
-def stable(mean: float, std: float) -> Stability:
+def stable(mean: float, std: float) -> StabilityRuns:
     """A rocket whose margin at the rail's end differs so from gust to gust."""
     time = np.arange(400)
     paths = np.full((50, time.size, len(COLUMNS)), 0.0)
@@ -27,7 +27,7 @@ def stable(mean: float, std: float) -> Stability:
     found = margin(Flights(4.0, paths, np.full(50, 10)))
     assert found is not None
     weighed = SimpleNamespace(center=np.array([1.9, 1.7]))
-    return cast(Stability, SimpleNamespace(outside=SHAPE, balance=weighed, margins=(found,), notes=()))
+    return cast(StabilityRuns, SimpleNamespace(outside=SHAPE, balance=weighed, margins=(found,), notes=()))
 
 
 def test_the_margin_at_the_rails_end_is_as_sure_as_gusts_leave_it() -> None:

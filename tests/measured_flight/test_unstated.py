@@ -14,11 +14,11 @@ from hfanalysis.flight.ascent import RESULTS
 from hfanalysis.flight.summary import ASCENT
 from hfanalysis.measured_flight.propellant import _exponent, propellant
 from hfanalysis.measured_flight.thrust import MeasuredThrust, _drift_taken, measured_thrust
-from hfanalysis.measured_flight.uncertainty import Dispersion
+from hfanalysis.measured_flight.uncertainty import DrawnFlights
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
-from hfanalysis.record.sections import Grain
+from hfanalysis.record.sections import GrainSection
 from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
 from hfanalysis.validate.thrust import Thrust
@@ -58,7 +58,7 @@ def test_a_drift_is_told_where_it_is_taken_off(burn: Trial, size: float, told: b
 
 
 def test_masses_without_a_deviation_are_known_to_a_hundredth(burn: Trial) -> None:
-    grain = Grain(mass=Value(1.6), length=Value(0.6), density=Value(900.0), outer_radius=Value(40e-3))
+    grain = GrainSection(mass=Value(1.6), length=Value(0.6), density=Value(900.0), outer_radius=Value(40e-3))
     stated = definition(burn.stand, mass=Value(10.0), grain=grain)
     log = heated(burn, 0.0)
     found = propellant(log, segments_of(burn), None, stated, flown(burn, log))
@@ -72,11 +72,11 @@ def test_a_calibrated_exponent_is_taken_where_fuels_may_have_it(n: float | None,
     assert _exponent(definition(), calibration)[0] == used
 
 
-def results(reached: int) -> Dispersion:
+def results(reached: int) -> DrawnFlights:
     """A thousand flights of which so many leave the rail."""
     values = np.random.default_rng(7).normal(1000.0, 50.0, (1000, RESULTS))
     values[reached:, ASCENT["rail_departure_velocity"][0]] = np.nan
-    return Dispersion(values, np.zeros(1), {})
+    return DrawnFlights(values, np.zeros(1), {})
 
 
 def test_a_quantity_that_one_flight_in_five_lacks_has_no_spread() -> None:

@@ -12,7 +12,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.record.definition import load_definition
 from hfanalysis.record.document import read_toml, validate
 from hfanalysis.record.schema import Section, section
-from hfanalysis.record.sections import Design, Engine, Feed, Grain, Injector, Model, Tank
+from hfanalysis.record.sections import DesignSection, EngineSection, Feed, GrainSection, Injector, Model, Tank
 from hfanalysis.units import Value
 
 ENGINE = """[engine]
@@ -42,12 +42,12 @@ oxidizer_flow = "2.50 kg/s"
 class EngineFile(Section):
     """Some sections of an engine file."""
 
-    engine: Engine
+    engine: EngineSection
     tank: Tank
     feed: Feed
     injector: Injector
-    grain: Grain
-    design: Design
+    grain: GrainSection
+    design: DesignSection
     model: Model = Model()
 
 

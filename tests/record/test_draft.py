@@ -9,7 +9,7 @@ import pytest
 
 from hfanalysis.errors import InputError
 from hfanalysis.record.definition import load_definition
-from hfanalysis.record.draft import Column, draft, guess_channel, new_test, read_columns
+from hfanalysis.record.draft import LogColumn, draft, guess_channel, new_test, read_columns
 
 LOG = Path(__file__).parents[2] / "raw_tests" / "HF5" / "log.csv"
 
@@ -81,7 +81,7 @@ def test_an_empty_log_is_refused_before_anything_is_written(tmp_path: Path) -> N
     ],
 )
 def test_a_guess_needs_name_and_unit_to_agree(name: str, unit: str, channel: str | None) -> None:
-    assert guess_channel(Column(name, name, unit)) == channel
+    assert guess_channel(LogColumn(name, name, unit)) == channel
 
 
 def test_a_log_without_names_or_units_leaves_everything_open(tmp_path: Path) -> None:

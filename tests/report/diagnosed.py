@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hfanalysis.report.material import Column, Store
+from hfanalysis.report.material import Store, StoredVariable
 
 
 def _quantity(value: float, unit: str, std: float | None) -> dict[str, Any]:
@@ -143,9 +143,12 @@ def store() -> Store:
     return {"residuals/p_tank": _left(9e4, "Pa"), "residuals/thrust": _left(20.0, "N")}
 
 
-def _left(level: float, unit: str) -> dict[str, Column]:
+def _left(level: float, unit: str) -> dict[str, StoredVariable]:
     time = np.linspace(0.1, 16.0, 200)
     wave = np.sin(time)
     noise = np.full(time.size, 0.1 * level)
     columns = {"before": level * wave, "after": 0.1 * level * wave, "noise_std": noise}
-    return {"time": Column(time, "s"), **{name: Column(values, unit) for name, values in columns.items()}}
+    return {
+        "time": StoredVariable(time, "s"),
+        **{name: StoredVariable(values, unit) for name, values in columns.items()},
+    }

@@ -15,7 +15,7 @@ from hfanalysis.products.kinds import KINDS
 from hfanalysis.record.definition import load_definition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.summary import summary
-from hfanalysis.report.material import Column, Material, Store
+from hfanalysis.report.material import Material, Store, StoredVariable
 
 TOML = """\
 schema = 1
@@ -151,28 +151,28 @@ VALIDATION: dict[str, Any] = {
 }
 
 
-def _residual(level: float, unit: str) -> dict[str, Column]:
+def _residual(level: float, unit: str) -> dict[str, StoredVariable]:
     """A misfit of one per cent on noise of a tenth of that."""
     time = np.linspace(-1.0, 17.0, 1800)
     model = level * np.exp(-np.maximum(time, 0.0) / 14.0)
     residual = 0.01 * level * np.sin(time)
     noise = np.full(time.size, 0.001 * level)
     named = {"measured": model + residual, "model": model, "residual": residual, "noise_std": noise}
-    return {"time": Column(time, "s"), **{name: Column(values, unit) for name, values in named.items()}}
+    return {"time": StoredVariable(time, "s"), **{name: StoredVariable(values, unit) for name, values in named.items()}}
 
 
-def _performance() -> dict[str, Column]:
+def _performance() -> dict[str, StoredVariable]:
     time = np.linspace(0.1, 12.0, 400)
     fall = np.exp(-time / 9.0)
     return {
-        "time": Column(time, "s"),
-        "oxidizer_flow": Column(1.3 * fall, "kg/s"),
-        "fuel_flow": Column(0.2 * fall**0.5, "kg/s"),
-        "of_ratio": Column(6.5 * fall**0.5, ""),
-        "regression_rate": Column(1.1e-3 * fall**0.5, "m/s"),
-        "c_star": Column(1500.0 + 20.0 * time, "m/s"),
-        "c_star_efficiency": Column(0.93 + 0.001 * time, ""),
-        "thrust_coefficient_efficiency": Column(0.97 - 0.001 * time, ""),
+        "time": StoredVariable(time, "s"),
+        "oxidizer_flow": StoredVariable(1.3 * fall, "kg/s"),
+        "fuel_flow": StoredVariable(0.2 * fall**0.5, "kg/s"),
+        "of_ratio": StoredVariable(6.5 * fall**0.5, ""),
+        "regression_rate": StoredVariable(1.1e-3 * fall**0.5, "m/s"),
+        "c_star": StoredVariable(1500.0 + 20.0 * time, "m/s"),
+        "c_star_efficiency": StoredVariable(0.93 + 0.001 * time, ""),
+        "thrust_coefficient_efficiency": StoredVariable(0.97 - 0.001 * time, ""),
     }
 
 
@@ -205,17 +205,29 @@ def _flight() -> Store:
     time = np.linspace(0.0, 27.0, 300)
     height = 2815.0 * (1.0 - (time / 27.0 - 1.0) ** 2)
     speed = np.minimum(40.0 * time, 208.0 * (1.0 - time / 27.0))
-    ascent = {"time": Column(time, "s"), "height": Column(height, "m"), "speed": Column(speed, "m/s")}
-    bands = {"time": Column(time, "s"), "height_low": Column(0.95 * height), "height_high": Column(1.05 * height)}
+    ascent = {
+        "time": StoredVariable(time, "s"),
+        "height": StoredVariable(height, "m"),
+        "speed": StoredVariable(speed, "m/s"),
+    }
+    bands = {
+        "time": StoredVariable(time, "s"),
+        "height_low": StoredVariable(0.95 * height),
+        "height_high": StoredVariable(1.05 * height),
+    }
     return {"ascent": ascent, "bands": bands, "stability/0": _margin(1.9), "stability/1": _margin(1.2)}
 
 
-def _margin(start: float) -> dict[str, Column]:
+def _margin(start: float) -> dict[str, StoredVariable]:
     """A margin that grows from the rail's end on, the better known the faster the rocket."""
     time = np.linspace(0.6, 25.0, 300)
     fade = np.exp(-(time - 0.6) / 2.0)
     mean, std = 4.0 + (start - 4.0) * fade, 0.05 + 0.2 * fade
-    return {"time": Column(time, "s"), "margin_mean": Column(mean, "1"), "margin_std": Column(std, "1")}
+    return {
+        "time": StoredVariable(time, "s"),
+        "margin_mean": StoredVariable(mean, "1"),
+        "margin_std": StoredVariable(std, "1"),
+    }
 
 
 def stores() -> dict[str, Store]:

@@ -20,7 +20,7 @@ from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import FileSpec, LogSpec, Test, TestDefinition
 from hfanalysis.record.log import Channel, TestLog
-from hfanalysis.record.sections import Injector, Model, Nozzle, Purge, Site, Tank
+from hfanalysis.record.sections import Injector, Model, NozzleSection, Purge, Site, Tank
 from hfanalysis.record.signals import Signal, sample_noise
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
@@ -151,7 +151,7 @@ def definition(stand: Stand | None = None, **change: Any) -> TestDefinition:
         "tank": Tank(volume, mass),
         "injector": Injector(HOLES, Value(HOLE_AREA)),
         "purge": Purge(Value(4.2e5)),
-        "nozzle": Nozzle(Value(THROAT), Value(38.1e-3)),
+        "nozzle": NozzleSection(Value(THROAT), Value(38.1e-3)),
         "site": Site(ambient_pressure=Value(AMBIENT, 0.0)),
     }
     sections.update(change)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.segment.stand import Stand, definition, fire, log_of
 
-from hfanalysis.record.sections import Grain, Observed
+from hfanalysis.record.sections import GrainSection, ObservedSection
 from hfanalysis.segment.fuel import GRID, _fade, _fall_at, _Response
 from hfanalysis.segment.phases import find_phases
 from hfanalysis.units import Value
@@ -51,7 +51,7 @@ def test_a_fade_that_takes_most_of_the_burn_is_no_end_of_the_fuel(lasts: float, 
 def test_where_a_fourteenth_of_the_grain_was_left_no_fall_is_the_end_of_the_fuel(left: float, gone: bool) -> None:
     """Slivers of a thirtieth are what every grain leaves."""
     log = log_of(fire(Stand(t_fuel_out=3.0), rate=200.0), white=5e3)
-    stated = definition(grain=Grain(mass=Value(1.6)), observed=Observed(fuel_mass_after=Value(left)))
+    stated = definition(grain=GrainSection(mass=Value(1.6)), observed=ObservedSection(fuel_mass_after=Value(left)))
     found = find_phases(log, stated).events["t_fuel_out"]
     assert (found.value is not None) is gone
     if not gone:

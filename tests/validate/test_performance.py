@@ -14,7 +14,7 @@ from tests.segment.stand import AMBIENT, THROAT, Trial, definition, fire, log_of
 
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import Channel, TestLog
-from hfanalysis.record.sections import Grain, Observed
+from hfanalysis.record.sections import GrainSection, ObservedSection
 from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
 from hfanalysis.validate.flows import Flows
@@ -30,8 +30,8 @@ from hfanalysis.validate.performance import Fire, _impulse, fire_of, measured
 from hfanalysis.validate.sensor_faults import findings
 from hfanalysis.validate.thrust import Thrust
 
-BURN = Observed(burn_time=Value(9.0, 0.1))
-GRAIN = Grain(mass=Value(1.6, 0.01))
+BURN = ObservedSection(burn_time=Value(9.0, 0.1))
+GRAIN = GrainSection(mass=Value(1.6, 0.01))
 AREA = np.pi * THROAT**2
 
 
@@ -89,7 +89,7 @@ def test_a_flagged_spike_is_no_peak(burn: Trial) -> None:
 
 
 def test_what_is_left_is_no_propellant_burned(burn: Trial) -> None:
-    left = Observed(burn_time=Value(9.0), fuel_mass_after=Value(0.4, 0.01), oxidizer_mass_after=Value(1.0, 0.1))
+    left = ObservedSection(burn_time=Value(9.0), fuel_mass_after=Value(0.4, 0.01), oxidizer_mass_after=Value(1.0, 0.1))
     found = table(log_of(burn), burn, observed=left)
     assert found["fuel_mass"].value == pytest.approx(1.2)
     assert found["oxidizer_mass"].value == pytest.approx(burn.stand.mass - 1.0)

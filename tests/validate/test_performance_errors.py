@@ -11,11 +11,11 @@ from tests.segment.stand import Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
-from hfanalysis.record.sections import Grain, Observed
+from hfanalysis.record.sections import GrainSection, ObservedSection
 from hfanalysis.units import Value
 from hfanalysis.validate.performance import _average, _less, measured, specific_impulse
 
-GRAIN = Grain(mass=Value(1.6, 0.01))
+GRAIN = GrainSection(mass=Value(1.6, 0.01))
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def burn() -> Trial:
 def table(test: Trial, log: TestLog, **seen: float) -> dict[str, Quantity]:
     phases = segments_of(test, t_end=Quantity(EMPTY, "s", 0.01))
     return measured(
-        log, phases, definition(test.stand, observed=Observed(burn_time=Value(EMPTY, 0.01)), grain=GRAIN), None
+        log, phases, definition(test.stand, observed=ObservedSection(burn_time=Value(EMPTY, 0.01)), grain=GRAIN), None
     )
 
 

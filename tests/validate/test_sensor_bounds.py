@@ -10,7 +10,7 @@ import pytest
 from tests.segment.stand import AMBIENT, THROAT, Trial, channel, definition, fire, log_of, segments_of
 
 from hfanalysis.quantity import Quantity
-from hfanalysis.record.sections import Grain
+from hfanalysis.record.sections import GrainSection
 from hfanalysis.thermo.combustion import Gas, equilibrium
 from hfanalysis.units import Value
 from hfanalysis.validate.full import _cell_reads
@@ -41,7 +41,7 @@ def test_heat_capacity_ratios_hold_those_of_the_burnt_gas(gases: list[Gas]) -> N
 
 def test_a_throat_that_is_not_stated_is_that_of_the_propellant_and_its_gas(burn: Trial, gases: list[Gas]) -> None:
     """A_t = m c* / integral of p_c dt, c* of what burns to nine tenths or whole: to a tenth."""
-    grain, loaded = Grain(mass=Value(1.6)), burn.stand.mass
+    grain, loaded = GrainSection(mass=Value(1.6)), burn.stand.mass
     found = _throat(log_of(burn), segments_of(burn), definition(burn.stand, nozzle=None, grain=grain), FIRE)
     assert found is not None
     area, relative, _ = found

@@ -34,7 +34,7 @@ class TankBuilt:
 
 
 @dataclass(frozen=True)
-class Enthalpy:
+class OxidizerEnthalpy:
     """Of the oxidizer entering the chamber on the formation scale [J/kg], and whose it is."""
 
     value: float
@@ -58,14 +58,14 @@ def temperature(needs: Needs) -> float:
     return found
 
 
-def oxidizer_enthalpy(needs: Needs) -> Enthalpy:
+def oxidizer_enthalpy(needs: Needs) -> OxidizerEnthalpy:
     """What the conventions take [J/kg]: PROPEP's ideal gas (report), or the liquid at the tank's initial
     temperature."""
     if needs.file.model.conventions == "report":
-        return Enthalpy(combustion.PROPEP_OXIDIZER_ENTHALPY, "PROPEP: ideal gas at 298.15 K")
+        return OxidizerEnthalpy(combustion.PROPEP_OXIDIZER_ENTHALPY, "PROPEP: ideal gas at 298.15 K")
     t = temperature(needs)
     liquid = float(properties(needs.file).energy(Property.LIQUID_ENTHALPY, t)[0])
-    return Enthalpy(combustion.FORMATION_OFFSET + liquid, f"saturated liquid at {t:.2f} K")
+    return OxidizerEnthalpy(combustion.FORMATION_OFFSET + liquid, f"saturated liquid at {t:.2f} K")
 
 
 @lru_cache(maxsize=1)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from math import pi
 
 from hfanalysis.record.rocket import Geometry, Rocket
-from hfanalysis.record.sections import Chamber, Grain, Tank
+from hfanalysis.record.sections import Chamber, GrainSection, Tank
 from hfanalysis.rocket.aerodynamics import REGULAR_PAINT, Fins, Nose, Shape, Tail
-from hfanalysis.rocket.balance import Part, TankPlace
+from hfanalysis.rocket.balance import MassPart, TankPlace
 
 AGREE = 0.02
 """Relative difference [-] within which the dry mass and the sum of structure and engine are the same rocket."""
@@ -57,19 +57,19 @@ class Masses:
     center of gravity of the empty engine, None where the structure holds it.
     """
 
-    fixed: tuple[Part, ...]
+    fixed: tuple[MassPart, ...]
     tank: TankPlace
     grain_center: float
     grain_length: float
     gas_center: float
     front: float
     length: float
-    dry: Part | None
+    dry: MassPart | None
     remark: str
 
 
 def masses(
-    rocket: Rocket, outside: Shape, tank: Tank | None, grain: Grain | None, chamber: Chamber | None
+    rocket: Rocket, outside: Shape, tank: Tank | None, grain: GrainSection | None, chamber: Chamber | None
 ) -> Masses | str:
     """Where the masses [kg] are [m from the nose tip], or what is not given of it."""
     geometry = rocket.geometry
@@ -89,7 +89,7 @@ def masses(
         return f"{missing[0]} is not given"
     assert geometry.structure is not None
     engine = _engine(geometry, outside)
-    parts = (Part(geometry.structure.mass.value, geometry.structure.center_of_gravity.value, outside.length),)
+    parts = (MassPart(geometry.structure.mass.value, geometry.structure.center_of_gravity.value, outside.length),)
     place = _tank(geometry, tank)
     pre, length, post = _chamber(grain, chamber)
     assert geometry.chamber_position is not None
@@ -108,12 +108,12 @@ def masses(
     )
 
 
-def _engine(geometry: Geometry, outside: Shape) -> Part | None:
+def _engine(geometry: Geometry, outside: Shape) -> MassPart | None:
     """The empty engine, where it is weighed apart; a rod from its front to the rocket's end."""
     if geometry.engine_mass is None or geometry.engine_center_of_gravity is None:
         return None
     center = geometry.engine_center_of_gravity.value
-    return Part(geometry.engine_mass.value, center, 2.0 * max(outside.length - center, 0.0))
+    return MassPart(geometry.engine_mass.value, center, 2.0 * max(outside.length - center, 0.0))
 
 
 def _tank(geometry: Geometry, tank: Tank | None) -> TankPlace:
@@ -128,7 +128,7 @@ def _tank(geometry: Geometry, tank: Tank | None) -> TankPlace:
     return TankPlace(geometry.tank_position.value, length, tank.volume.value)
 
 
-def _chamber(grain: Grain | None, chamber: Chamber | None) -> tuple[float, float, float]:
+def _chamber(grain: GrainSection | None, chamber: Chamber | None) -> tuple[float, float, float]:
     """Lengths [m] before, along and behind the grain, the casing as wide as the grain."""
     assert grain is not None
     assert grain.length is not None
@@ -139,7 +139,7 @@ def _chamber(grain: Grain | None, chamber: Chamber | None) -> tuple[float, float
     return pre, grain.length.value, post
 
 
-def _remark(rocket: Rocket, geometry: Geometry, engine: Part | None) -> str:
+def _remark(rocket: Rocket, geometry: Geometry, engine: MassPart | None) -> str:
     assert geometry.structure is not None
     total = geometry.structure.mass.value + (float(engine.mass) if engine is not None else 0.0)
     if abs(total / rocket.dry_mass.value - 1.0) < AGREE:

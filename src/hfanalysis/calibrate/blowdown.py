@@ -19,7 +19,7 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.optimize import brentq
 
 from hfanalysis.arrays import Array
-from hfanalysis.calibrate.measured_pressures import Histories
+from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.compiled import compiled
 from hfanalysis.engine.blowdown import TankAlone, TankRun, tank_alone
 from hfanalysis.engine.equations import TANK
@@ -84,7 +84,7 @@ class Tables:
     loss: Array
 
     @classmethod
-    def of(cls, histories: Histories, saturation: Saturation) -> Tables:
+    def of(cls, histories: MeasuredPressures, saturation: Saturation) -> Tables:
         """From the measured pressures."""
         t = histories.tank_temperature(saturation)
         volume, slope = saturation.liquid_volume(t)

@@ -9,7 +9,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction
 from hfanalysis.calibrate.loaded_mass import LoadedMass, load_cell_mass
-from hfanalysis.calibrate.measured_pressures import Histories
+from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.calibrate.rest import (
     MODEL_MASS_SPREAD,
     STRATIFIED,
@@ -32,7 +32,9 @@ HISTORY_POINTS = 200
 """Points of a stored history: block means over the liquid phase."""
 
 
-def tank_history(saturation: Saturation, histories: Histories, inputs: Inputs, left: Array) -> TankHistory | None:
+def tank_history(
+    saturation: Saturation, histories: MeasuredPressures, inputs: Inputs, left: Array
+) -> TankHistory | None:
     """Moles of liquid and vapor, n_l + n_v = m/W and n_l v_l + n_v v_v = V (report, 4.2.1), and the flow [mol, kg/s].
 
     ``left`` (n,) is the mass gone [kg] at the histories' times. None for fewer than eight samples.
@@ -60,7 +62,7 @@ def _rounded(values: Array) -> Numbers:
 
 
 def coefficient_history(
-    saturation: Saturation, histories: Histories, inputs: Inputs, left: Array, window: float = 0.5
+    saturation: Saturation, histories: MeasuredPressures, inputs: Inputs, left: Array, window: float = 0.5
 ) -> CoefficientHistory | None:
     """C_i(t) [-] from mdot = U_T / (h_l - U_M) dT/dt of the saturated tank over the injector's ideal flow.
 
@@ -108,7 +110,7 @@ def rest_of(
     log: TestLog,
     segments: Segments,
     saturation: Saturation,
-    histories: Histories,
+    histories: MeasuredPressures,
     inputs: Inputs,
     r: Reduction,
     left: Array,

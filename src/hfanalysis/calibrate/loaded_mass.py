@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hfanalysis.calibrate.measured_pressures import Histories
+from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.calibrate.rest import MODEL_MASS_SPREAD, blowdown_mass
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
@@ -33,7 +33,7 @@ def loaded_mass(
     segments: Segments,
     definition: TestDefinition,
     saturation: Saturation,
-    histories: Histories,
+    histories: MeasuredPressures,
     p_v: float,
 ) -> LoadedMass | None:
     """The stated mass [kg], else the load cell's quiet reading, else what the blowdown itself says; else None.
@@ -65,7 +65,7 @@ def load_cell_mass(log: TestLog, segments: Segments) -> tuple[float, float] | No
 
 
 def _from_blowdown(
-    saturation: Saturation, histories: Histories, volume: float, segments: Segments, p_v: float
+    saturation: Saturation, histories: MeasuredPressures, volume: float, segments: Segments, p_v: float
 ) -> LoadedMass | None:
     t_feed, t_v = segments.time("t_feed") or 0.1, segments.time("t_v") or 0.0
     liquid = (histories.time > t_feed) & (histories.time < t_v)

@@ -33,7 +33,7 @@ BEFORE = 500
 
 
 @dataclass(frozen=True)
-class Histories:
+class MeasuredPressures:
     """Pressures [Pa] at ``time`` [s after opening], all of one length, good samples only (linear between them).
 
     ``signals`` are the channels they come from, with all their samples; ``assumed`` says what was taken for missing.
@@ -48,7 +48,7 @@ class Histories:
     assumed: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, log: TestLog, segments: Segments, definition: TestDefinition, end: float) -> Histories:
+    def of(cls, log: TestLog, segments: Segments, definition: TestDefinition, end: float) -> MeasuredPressures:
         """From the opening to ``end`` [s]. Raises AbsentError where the log has no p_tank or no p_run."""
         origin = segments.t_open.value or 0.0
         signals = {name: signal.shifted(origin) for name, signal in live_signals(log).items() if name in PRESSURES}

@@ -11,8 +11,8 @@ from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase,
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
-from hfanalysis.calibrate.measured_pressures import Histories, PressureReading, read_at_break
-from hfanalysis.calibrate.uncertainty import Draws, Spread, draw
+from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at_break
+from hfanalysis.calibrate.uncertainty import Draws, InputSpread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
 from hfanalysis.calibrate.with_effects import acting
 from hfanalysis.engine.effect import Active
@@ -74,7 +74,7 @@ class _Work:
         self.saturation: Saturation = saturation_of(definition.model.properties)
         self.notes: list[str] = []
         self.warnings: list[str] = []
-        self.histories = Histories.of(log, segments, definition, self._last(t_v))
+        self.histories = MeasuredPressures.of(log, segments, definition, self._last(t_v))
         self.notes.extend(self.histories.assumed)
         self.t_feed = segments.time("t_feed") or 0.0
         self.volume = definition.tank.volume if definition.tank else None
@@ -177,11 +177,11 @@ class _Work:
         out["oxidizer_mass_liquid_phase"] = _mass(inputs.mass - r.vapor_mass, spread, discharge)
         return out
 
-    def _spread(self, mass: LoadedMass) -> Spread:
+    def _spread(self, mass: LoadedMass) -> InputSpread:
         assert self.volume is not None
         assert self.area is not None
         self._mass_std = mass.std
-        return Spread(
+        return InputSpread(
             mass.std,
             self.volume.std or 0.0,
             self.area.std or 0.0,

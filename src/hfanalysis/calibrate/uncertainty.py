@@ -20,7 +20,7 @@ SEED = 20230101
 
 
 @dataclass(frozen=True)
-class Spread:
+class InputSpread:
     """Standard deviations of the inputs: [kg], [m^3], [m^2], [s], [Pa].
 
     ``reading`` is the lower factor (2, 2) of the covariance of p_v and p_end, ``slopes`` [Pa/s] how they move with
@@ -72,7 +72,7 @@ class Draws:
 
 
 def draw(
-    tables: Tables, saturation: Saturation, inputs: Inputs, spread: Spread, samples: int,
+    tables: Tables, saturation: Saturation, inputs: Inputs, spread: InputSpread, samples: int,
     vapor_phase: VaporPhase | None = None,
 ) -> Draws:  # fmt: skip
     """Repeat the reduction ``samples`` times with inputs drawn from normal distributions (same seed each time)."""
@@ -90,7 +90,7 @@ def _what_was_drawn(drawn: list[tuple[Inputs, Shift]]) -> dict[str, Array]:
     return found | {f"p_{n}": np.array([getattr(s, n) for _, s in drawn]) for n in ("tank", "chamber")}
 
 
-def _drawn(inputs: Inputs, spread: Spread, z: Array) -> tuple[Inputs, Shift]:
+def _drawn(inputs: Inputs, spread: InputSpread, z: Array) -> tuple[Inputs, Shift]:
     later, later_end = spread.t_v * z[4], spread.t_end * z[5]
     reading = spread.reading @ z[6:8]
     drawn = replace(

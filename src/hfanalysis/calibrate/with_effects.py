@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
-from hfanalysis.calibrate.measured_pressures import Histories
+from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.engine.blowdown import TankAlone, TankRun, tank_alone
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.equations import NITROGEN, STATES
@@ -30,7 +30,7 @@ LIQUID_STEPS = 400
 
 
 def acting(
-    histories: Histories, tables: Tables, saturation: Saturation, definition: TestDefinition, inputs: Inputs,
+    histories: MeasuredPressures, tables: Tables, saturation: Saturation, definition: TestDefinition, inputs: Inputs,
     effects: Sequence[Active],
 ) -> tuple[Inputs, VaporPhase | None]:  # fmt: skip
     """The inputs as the effects leave them for the balance that gives C_i, and the vapor phase with them in.
@@ -54,7 +54,7 @@ def acting(
 
 
 def _liquid_phase(
-    histories: Histories, saturation: Saturation, definition: TestDefinition, inputs: Inputs, found: Reduction,
+    histories: MeasuredPressures, saturation: Saturation, definition: TestDefinition, inputs: Inputs, found: Reduction,
     effects: Sequence[Active],
 ) -> tuple[TankRun, TankAlone]:  # fmt: skip
     """The tank with the effects from the opening to t_v, or to where its liquid is gone before."""

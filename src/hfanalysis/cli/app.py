@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from hfanalysis.cli.exit_status import ending
+from hfanalysis.cli.exit_status import plain_exit
 from hfanalysis.cli.request import Request
 from hfanalysis.errors import InputError
 from hfanalysis.stages import RUN, STAGES
@@ -70,7 +70,7 @@ def _stage(name: str, text: str, does: Callable[..., None]) -> None:
     options = [*common.parameters.values(), *list(own.parameters.values())[1:]]
 
     def command(**given: Any) -> None:
-        with ending():
+        with plain_exit():
             request = _common(**{key: given.pop(key) for key in common.parameters})
             does(request, **given)
 
@@ -150,7 +150,7 @@ def _compare(
     pdf: Pdf = False,
 ) -> None:
     """Lay two tests over each other: TEST/compare_OTHER.html, curves from the valve's opening, numbers side by side."""
-    with ending():
+    with plain_exit():
         from hfanalysis.cli import exports
 
         exports.compare(Request(test, root, out, as_json, False, quiet), other, pdf)
@@ -172,7 +172,7 @@ def _simulate(
     engine: EngineToml, as_json: EngineJson = False, out: Folder = None, quiet: Quiet = False, until: Until = None
 ) -> None:
     """Run the unsteady model of an engine: tank, injector, grain, chamber, nozzle and flight."""
-    with ending():
+    with plain_exit():
         from hfanalysis.cli import engines
 
         engines.simulate(engine, out, as_json, quiet, until)
@@ -181,7 +181,7 @@ def _simulate(
 @app.command("design")
 def _design(engine: EngineToml, as_json: EngineJson = False, out: Folder = None, quiet: Quiet = False) -> None:
     """Steady-state design of an engine; with --out also the parametric study and a .eng file."""
-    with ending():
+    with plain_exit():
         from hfanalysis.cli import engines
 
         engines.design(engine, out, as_json, quiet)
@@ -195,7 +195,7 @@ def _regression(
     as_json: EngineJson = False,
 ) -> None:
     """Regression constants a and n common to several tests, and whether the tests agree on them."""
-    with ending():
+    with plain_exit():
         from hfanalysis.cli import regression
 
         regression.regression(tests, root, out, as_json)
@@ -216,10 +216,10 @@ def _campaign(
     quiet: Quiet = False,
 ) -> None:
     """Every stage of all tests, several at a time, and what those of one stand say together: campaign.html, .json."""
-    with ending():
+    with plain_exit():
         from hfanalysis.cli import campaign
 
-        request = campaign.Request(tuple(tests or ()), root, out, jobs, as_json, force, quiet)
+        request = campaign.CampaignRequest(tuple(tests or ()), root, out, jobs, as_json, force, quiet)
         status = campaign.campaign(request)
         if status:
             raise typer.Exit(status)
@@ -233,7 +233,7 @@ AnyTest = Annotated[
 @app.command("effects")
 def _effects(test: AnyTest = None, root: Root = Path(), out: Out = None, as_json: EngineJson = False) -> None:
     """List the effects that can be added to the model; for a TEST, what its channels can tell apart."""
-    with ending():
+    with plain_exit():
         if test is None:
             from hfanalysis.cli import effects
 
@@ -241,7 +241,7 @@ def _effects(test: AnyTest = None, root: Root = Path(), out: Out = None, as_json
         else:
             from hfanalysis.cli import separability
 
-            separability.apart(test, root, out, as_json)
+            separability.separability(test, root, out, as_json)
 
 
 @app.command("new")
@@ -251,7 +251,7 @@ def _new(
     root: Root = Path(),
 ) -> None:
     """Draft raw_tests/ID/test.toml from what a log shows. Never overwrites."""
-    with ending():
+    with plain_exit():
         from hfanalysis.record.draft import new_test
 
         typer.echo(f"{new_test(root, test, log)}: drafted; complete what is marked there, then: hfa calibrate {test}")

@@ -29,7 +29,7 @@ _SHOWN = ("burn_time", "total_impulse", "specific_impulse")
 
 
 @dataclass(frozen=True)
-class Request:
+class CampaignRequest:
     """What the command line asks for; no ``tests`` are all of them."""
 
     tests: tuple[str, ...]
@@ -41,7 +41,7 @@ class Request:
     quiet: bool
 
 
-def campaign(request: Request) -> int:
+def campaign(request: CampaignRequest) -> int:
     """Run the tests, write campaign.json and campaign.html, and show what they say; returns the exit status.
 
     A test whose log does not hold all that was asked is part of it with what it has. Raises InputError where there is
@@ -65,7 +65,7 @@ def campaign(request: Request) -> int:
     return _status(ended)
 
 
-def _definitions(request: Request) -> tuple[dict[str, TestDefinition], dict[str, Ended]]:
+def _definitions(request: CampaignRequest) -> tuple[dict[str, TestDefinition], dict[str, Ended]]:
     """The tests' definitions, and what is wrong with those that have faults."""
     found = sorted(path.parent.name for path in (request.root / RAW).glob("*/test.toml"))
     tests = list(dict.fromkeys(request.tests)) or found
@@ -83,7 +83,7 @@ def _definitions(request: Request) -> tuple[dict[str, TestDefinition], dict[str,
     return definitions, refused
 
 
-def _run(tests: list[str], request: Request, progress: Progress) -> Mapping[str, Ended]:
+def _run(tests: list[str], request: CampaignRequest, progress: Progress) -> Mapping[str, Ended]:
     arguments = ["--root", str(request.root), *(("--out", str(request.out)) if request.out is not None else ())]
     arguments += ["--force"] if request.force else []
     done: list[str] = []
@@ -109,7 +109,7 @@ def _status(ended: Mapping[str, Ended]) -> int:
     return DONE
 
 
-def _show(product: Campaign, request: Request, folder: Path) -> None:
+def _show(product: Campaign, request: CampaignRequest, folder: Path) -> None:
     if request.as_json:
         put(to_json(product))
     elif not request.quiet:

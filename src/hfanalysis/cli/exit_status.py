@@ -13,7 +13,7 @@ from hfanalysis.errors import AnalysisError
 
 
 @contextmanager
-def ending() -> Iterator[None]:
+def plain_exit() -> Iterator[None]:
     """Turn an :class:`AnalysisError` into its message and exit status; everything else passes, as a defect of ours."""
     try:
         yield

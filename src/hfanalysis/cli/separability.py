@@ -24,7 +24,7 @@ RIVALS = 3
 """How many of its closest rivals are listed for every effect."""
 
 
-def apart(test: str, root: Path, out: Path | None, as_json: bool) -> None:
+def separability(test: str, root: Path, out: Path | None, as_json: bool) -> None:
     """Show it; calibrates first what has not been calibrated. Raises AbsentError where there is no engine to run."""
     context = bring("calibrate", Request(test, root, out, as_json, force=False, quiet=False))
     subject, found = subject_of(context), library(root / FOLDER)

@@ -125,7 +125,7 @@ def fuel_for_apogee(requirement: Requirement, grain: Grain, vehicle: Vehicle, ta
 
 
 @dataclass(frozen=True)
-class Optimum:
+class OptimumMixture:
     """The mixture of highest ideally expanded specific impulse [s]."""
 
     of_ratio: float
@@ -140,7 +140,7 @@ def ideal_specific_impulse(requirement: Requirement, of_ratio: float) -> float:
     return float(thrust / (flow * STANDARD_GRAVITY))
 
 
-def optimum(requirement: Requirement) -> Optimum:
+def optimum(requirement: Requirement) -> OptimumMixture:
     """The best mixture [-] at the chamber pressure, expanded to ambient, with its specific impulse [s]."""
     from scipy.optimize import minimize_scalar
 
@@ -148,4 +148,4 @@ def optimum(requirement: Requirement) -> Optimum:
         return -ideal_specific_impulse(requirement, of_ratio)
 
     found = minimize_scalar(loss, bounds=(2.0, 15.0), method="bounded", options={"xatol": 1e-4})
-    return Optimum(float(found.x), -float(found.fun))
+    return OptimumMixture(float(found.x), -float(found.fun))

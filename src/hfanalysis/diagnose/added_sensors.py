@@ -19,7 +19,7 @@ from hfanalysis.engine.unsteady import Burn
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import TICK, aligned, slopes_of
 from hfanalysis.inference.observations.alignment import share
-from hfanalysis.inference.observations.channel import Channel, averaged
+from hfanalysis.inference.observations.channel import ObservedChannel, averaged
 from hfanalysis.inference.observations.covariance import FILLING_ERROR, FILLING_TIME
 from hfanalysis.inference.observations.frame import AROUND_CHANGE, FIRST
 from hfanalysis.inference.observations.observed import Observed
@@ -83,7 +83,7 @@ class Sensor:
         covariance[np.diag_indices_from(covariance)] += (1e-3 * self.accuracy) ** 2
         resting, std = np.zeros(points.size, dtype=bool), np.full(points.size, self.accuracy)
         name = "p_chamber" if self.of == "chamber_pressure" else self.of  # the model errs for both alike
-        channel = Channel(name, time, value, points, count, resting, std, self.accuracy, covariance)
+        channel = ObservedChannel(name, time, value, points, count, resting, std, self.accuracy, covariance)
         return replace(observed, channels=(channel,), common=None, alike=None)
 
     def _points(self, observed: Observed, burnt: Burn) -> Integers:

@@ -65,7 +65,7 @@ class Sign:
     besides: tuple[str, ...] = ()
 
 
-def signs(log: TestLog, segments: Segments) -> list[Sign]:
+def signs_of(log: TestLog, segments: Segments) -> list[Sign]:
     """All that is seen; nothing of a tank that is supercharged, whose pressure falls for other reasons."""
     found = [] if segments.supercharged else [fall_at_opening(log, segments)]
     found.append(open_check_valve(log, segments))
@@ -73,7 +73,7 @@ def signs(log: TestLog, segments: Segments) -> list[Sign]:
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownByChannels:
     """What the channels of a test show by themselves: sensors that are ``wrong``, and signs of missing effects."""
 
     wrong: tuple[Finding, ...]
@@ -86,14 +86,14 @@ class Shown:
         return [joined("", [words if words[1] == "_" else capitalised(words), "."]) for words in texts]
 
 
-def shown(log: TestLog, segments: Segments, definition: TestDefinition) -> Shown:
+def shown(log: TestLog, segments: Segments, definition: TestDefinition) -> ShownByChannels:
     """Everything that takes no model to see."""
     wrong = findings(log, segments, definition, fire_of(segments, definition))
-    return Shown(tuple(wrong), tuple(signs(log, segments)))
+    return ShownByChannels(tuple(wrong), tuple(signs_of(log, segments)))
 
 
 @dataclass(frozen=True)
-class Opening:
+class OpeningTransient:
     """How far a tank at rest was above the line through its later fall, and how far it then came below it [Pa].
 
     ``straight``: standard deviation of where that line begins [Pa]; ``lowest``: when it is furthest below [s after the
@@ -111,7 +111,7 @@ class Opening:
         return float(np.hypot(self.straight, COURSE))
 
 
-def opening_of(log: TestLog, segments: Segments) -> Opening | None:
+def opening_of(log: TestLog, segments: Segments) -> OpeningTransient | None:
     """What the tank's pressure [Pa] does as the valve opens [s after the opening]; None where its later fall cannot be
     told."""
     tank, end = _signal(log, segments, "p_tank"), _steady_until(segments)
@@ -122,7 +122,7 @@ def opening_of(log: TestLog, segments: Segments) -> Opening | None:
         return None
     line, spread = np.polyfit(later.time, later.value, 1, cov=True)
     lowest, dip = _dip(tank, line, LATER[0] * end)
-    return Opening(float(np.median(still.value) - line[1]), dip, float(np.sqrt(spread[1, 1])), lowest)
+    return OpeningTransient(float(np.median(still.value) - line[1]), dip, float(np.sqrt(spread[1, 1])), lowest)
 
 
 def fall_at_opening(log: TestLog, segments: Segments) -> Sign | None:
@@ -144,7 +144,7 @@ def fall_at_opening(log: TestLog, segments: Segments) -> Sign | None:
     return Sign(names, "p_tank", 0.0, found.lowest, size, _in_words(found, falls, dips), besides)
 
 
-def _in_words(found: Opening, falls: bool, dips: bool) -> str:
+def _in_words(found: OpeningTransient, falls: bool, dips: bool) -> str:
     parts: list[str] = []
     if falls:
         parts.append(
@@ -195,7 +195,7 @@ def _dip(tank: Signal, line: Array, end: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class PurgeLine:
+class PurgeLineSign:
     """How far a purge line is above the tank as its check valve ``opens`` and at the ``end`` [s after the opening], how
     far it ``fell``, and its ``pressure`` as it opens [Pa]."""
 
@@ -212,7 +212,7 @@ class PurgeLine:
         return self.above_at_end - self.above
 
 
-def purge_line_of(log: TestLog, segments: Segments) -> PurgeLine | None:
+def purge_line_of(log: TestLog, segments: Segments) -> PurgeLineSign | None:
     """What a purge line does [Pa] from the opening of its valve on [s after the opening]; None where that is not
     recorded."""
     tank, line = _signal(log, segments, "p_tank"), _signal(log, segments, "p_purge")
@@ -222,7 +222,7 @@ def purge_line_of(log: TestLog, segments: Segments) -> PurgeLine | None:
     tank_0, line_0, tank_1, line_1 = (s.mean(t - 3.0 * WIDTH, t) for t in (opens, end) for s in (tank, line))
     if not np.isfinite([tank_0, line_0, tank_1, line_1]).all():
         return None
-    return PurgeLine(opens, end, line_0 - tank_0, line_1 - tank_1, line_0 - line_1, line_0)
+    return PurgeLineSign(opens, end, line_0 - tank_0, line_1 - tank_1, line_0 - line_1, line_0)
 
 
 def open_check_valve(log: TestLog, segments: Segments) -> Sign | None:

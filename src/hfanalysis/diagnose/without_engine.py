@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import scale
-from hfanalysis.diagnose.model_free import Shown, Sign, shown
+from hfanalysis.diagnose.model_free import ShownByChannels, Sign, shown
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.subject import Subject
@@ -73,7 +73,7 @@ class _Stated:
     partners: dict[str, float]
 
 
-def _stated(seen: Shown) -> _Stated:
+def _stated(seen: ShownByChannels) -> _Stated:
     sure = _sure()
     groups = [(DRIFT,) for found in seen.wrong if found.verdict == ZERO] + [sign.names for sign in seen.signs]
     if not groups:

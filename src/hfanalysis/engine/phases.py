@@ -129,7 +129,7 @@ class Scratch(NamedTuple):
     values: Array
 
 
-class History(NamedTuple):
+class RunHistory(NamedTuple):
     """Steps as :func:`integrate` returns them, with room for more."""
 
     times: Array
@@ -363,16 +363,16 @@ def first_event(
 
 
 @inner
-def empty_history(room: int, size: int) -> History:
+def empty_history(room: int, size: int) -> RunHistory:
     """Room for so many steps."""
-    return History(
+    return RunHistory(
         np.empty((room, 2)), np.empty((room, size)), np.empty((room, size)), np.empty((room, 2, len(OUTPUTS))),
         np.empty((room, 3, size)), np.empty((room, 2), dtype=np.int64), np.empty(room, dtype=np.int64),
     )  # fmt: skip
 
 
 @inner
-def first(steps: History, n: int, room: int) -> History:
+def first(steps: RunHistory, n: int, room: int) -> RunHistory:
     """The first ``n`` steps, with room for ``room``."""
     out = empty_history(room, steps.begin.shape[1])
     copy(steps.times, out.times, 2 * n)
@@ -387,7 +387,7 @@ def first(steps: History, n: int, room: int) -> History:
 
 @inner
 def record(
-    steps: History, n: int, t: float, y: Array, h: float, liquid: bool, burning: bool, event: int, s: Scratch
+    steps: RunHistory, n: int, t: float, y: Array, h: float, liquid: bool, burning: bool, event: int, s: Scratch
 ) -> None:
     """Keep step ``n``, of ``h`` from ``t`` on [s], in ``y`` (states,) [SI]."""
     steps.times[n, 0], steps.times[n, 1] = t, t + h
@@ -432,7 +432,7 @@ def advance(y: Array, s: Scratch) -> None:
 @compiled(nogil=True)
 def integrate(
     y0: Array, longest: float, run_on: bool, rtol: float, scales: Array, m: Equations, liquid: bool, burning: bool
-) -> tuple[int, History, Array]:
+) -> tuple[int, RunHistory, Array]:
     """From ignition (``liquid``, ``burning``) until the fuel is gone, or to ``longest`` [s] if it is to ``run_on``.
 
     ``y0`` and ``scales`` (states,) [SI]; ``rtol`` the relative tolerance. A tank blown down to ambient pressure ends a
@@ -498,7 +498,7 @@ def integrate(
 
 
 @compiled(nogil=True)
-def sample(at: Array, steps: History, m: Equations) -> tuple[Array, Array]:
+def sample(at: Array, steps: RunHistory, m: Equations) -> tuple[Array, Array]:
     """States (n, states) and outputs (n, outputs) [SI] at increasing times ``at`` (n,) [s], from the steps'
     interpolants; the ends are held."""
     size = steps.begin.shape[1]

@@ -18,7 +18,7 @@ import numpy as np
 from hfanalysis.arrays import Array, Integers
 from hfanalysis.compiled import compiled, inner
 from hfanalysis.engine.equations import IMPULSE, KEEPS, OUTPUTS, Equations, address_of, rates_at
-from hfanalysis.engine.phases import INCREMENT, LIQUID_OUT, OWN_EVENTS, TICK, History, change, events_at
+from hfanalysis.engine.phases import INCREMENT, LIQUID_OUT, OWN_EVENTS, TICK, RunHistory, change, events_at
 from hfanalysis.engine.rosenbrock import copy, factorize, interpolate, substitute
 
 NUDGE = 1e-6
@@ -244,7 +244,7 @@ def copy_slopes(slopes: Slopes, source: int, target: int) -> None:
 
 @inner
 def linearize_step(
-    n: int, run: History, y: Array, m: Equations, p: Parameters, moving: Integers, slopes: Slopes, spare: Spare
+    n: int, run: RunHistory, y: Array, m: Equations, p: Parameters, moving: Integers, slopes: Slopes, spare: Spare
 ) -> None:
     """Slopes [SI] at the nodes of step ``n``, and at its start where an event comes before it; ``y`` (states,) is
     scratch."""
@@ -261,7 +261,7 @@ def linearize_step(
 
 @compiled(nogil=True)
 def propagate(
-    run: History, m: Equations, shifted: Array, steps: Array, acting: Array, scales: Array, start: Array
+    run: RunHistory, m: Equations, shifted: Array, steps: Array, acting: Array, scales: Array, start: Array
 ) -> tuple[Array, Array, Array]:
     """Sensitivities [SI] at four nodes of every step (its start and NODES) and of the event times [s].
 
@@ -343,7 +343,7 @@ def event_slopes(
 
 
 @inner
-def through_event(n: int, run: History, m: Equations, p: Parameters, spare: Spare, s: Array, moment: Array) -> None:
+def through_event(n: int, run: RunHistory, m: Equations, p: Parameters, spare: Spare, s: Array, moment: Array) -> None:
     """Move ``s`` (states, parameters) across the event at the end of step ``n``; into ``moment`` (parameters,) how its
     time [s] moves."""
     t, y, event = run.times[n, 1], run.end[n].copy(), run.events[n]

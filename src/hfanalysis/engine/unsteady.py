@@ -31,7 +31,7 @@ from hfanalysis.engine.equations import (
 from hfanalysis.engine.feed_line import NO_STATED_LOSSES, FeedSystem, line_flow
 from hfanalysis.engine.grain import Grain, flux_power, oxidizer_flux
 from hfanalysis.engine.model import PAD, rates
-from hfanalysis.engine.phases import History
+from hfanalysis.engine.phases import RunHistory
 from hfanalysis.engine.sites import ENVIRONMENT, SITES
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo.air import air
@@ -121,7 +121,7 @@ class Steps:
     ``last`` keeps what was asked for last and before that: residuals and their slopes ask at the same instants.
     """
 
-    history: History
+    history: RunHistory
     engine: Engine
     composition: Composition
     last: list[tuple[Array, Array, Array]] = field(default_factory=list, compare=False, repr=False)

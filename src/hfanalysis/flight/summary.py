@@ -36,7 +36,7 @@ RAIL_TOO_LONG = "the rocket does not reach the end of its rail"
 
 
 @dataclass(frozen=True)
-class Spread:
+class FlightSpread:
     """What drawn flights say of one quantity: standard deviation and 95 % interval."""
 
     std: float
@@ -48,7 +48,7 @@ def quantities(
     flown: Ascent,
     rail_length: float | None,
     canopies: tuple[Parachute, Parachute] | str,
-    spreads: dict[str, Spread] | None = None,
+    spreads: dict[str, FlightSpread] | None = None,
 ) -> dict[str, Quantity]:
     """Every quantity of a flight that took place, each with its unit [m, s, m/s, m/s^2]; what cannot be had says why.
 
@@ -72,7 +72,7 @@ def absent_descent(reason: object) -> dict[str, Quantity]:
     return {name: Quantity.absent(str(reason)) for name in PARACHUTES}
 
 
-def _of_ascent(flown: Ascent, name: str, spread: Spread | None) -> Quantity:
+def _of_ascent(flown: Ascent, name: str, spread: FlightSpread | None) -> Quantity:
     index, unit = ASCENT[name]
     value = float(flown.results[index])
     if np.isnan(value):

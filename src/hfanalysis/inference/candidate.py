@@ -29,7 +29,7 @@ as large and no step nearly free, a practice case without an effect was called u
 FURTHER = 5.0
 """Log of the odds against each effect beyond the first [natural log]: several at once are rarer than one."""
 
-HOPELESS = 30.0
+TOO_FAR_BEHIND = 30.0
 """Log evidence [natural log] behind the best at the same form from which on a candidate is not fitted any finer."""
 
 DOUBT, FAR_DOUBT = 30.0, 100.0

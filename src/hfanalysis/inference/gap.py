@@ -19,7 +19,7 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import added, readings
 from hfanalysis.inference.fitting.threads import each
-from hfanalysis.inference.observations.channel import Channel
+from hfanalysis.inference.observations.channel import ObservedChannel
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import has_name
 
@@ -46,7 +46,7 @@ def residuals_of(found: Fit, observed: Observed) -> dict[str, Array]:
     return out
 
 
-def _bias(channel: Channel, residual: Array, errors: tuple[float, float]) -> Array:
+def _bias(channel: ObservedChannel, residual: Array, errors: tuple[float, float]) -> Array:
     """The most probable offset and gain error of a sensor, as its stated accuracy allows."""
     burning = ~channel.resting
     shapes = np.column_stack([burning, burning * channel.value / float(np.abs(channel.value).max())])
@@ -62,7 +62,7 @@ def root_mean_square(found: Fit, observed: Observed) -> dict[str, float]:
     return {c.name: float(np.sqrt(np.mean(left[c.name][flowing(c, observed)] ** 2))) for c in observed.channels}
 
 
-def flowing(channel: Channel, observed: Observed) -> NDArray[np.bool_]:
+def flowing(channel: ObservedChannel, observed: Observed) -> NDArray[np.bool_]:
     """Which blocks (blocks,) lie between the filling of the line, which the base model does not have, and the end of
     the flow."""
     return ~channel.resting & (channel.time >= observed.phases["liquid"]) & (channel.time > 0.0)
@@ -105,7 +105,7 @@ def total_gap(found: Fit, observed: Observed, where: dict[str, NDArray[np.bool_]
     return float(np.sqrt(total))
 
 
-def _chance(channel: Channel, mask: NDArray[np.bool_], noise: float) -> float:
+def _chance(channel: ObservedChannel, mask: NDArray[np.bool_], noise: float) -> float:
     """Standard deviation of the mean square of noise over ``noise``: by chance, and for its slow part is known to a
     factor only, as the evidence has it."""
     slow = 0.0 if channel.slow is None else float(np.mean(channel.slow.diagonal()[mask])) / noise

@@ -13,7 +13,7 @@ from hfanalysis.engine.sensitivity import run_with_tangents
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.predict import AFTER, sensor_slopes, slopes_of, with_spare_fuel
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.places import PLACES, Place
+from hfanalysis.inference.places import PLACES, SourcePlace
 from hfanalysis.inference.splines import Splines, probe
 
 SCALES = np.geomspace(0.02, 4.0, 9)
@@ -53,11 +53,11 @@ class Linearized:
         return Splines.over(0.0, self.observed.last, SPACING)
 
     @cached_property
-    def everywhere(self) -> list[tuple[Place, Projected]]:
+    def everywhere(self) -> list[tuple[SourcePlace, Projected]]:
         """All places of the model that have no source yet, with :attr:`splines` at each."""
         return self.at(PLACES, self.splines)
 
-    def at(self, places: Sequence[Place], splines: Splines) -> list[tuple[Place, Projected]]:
+    def at(self, places: Sequence[SourcePlace], splines: Splines) -> list[tuple[SourcePlace, Projected]]:
         """Those of the places that have no source yet, with splines at each; what is projected is whitened, by
         coefficients in the unit of the place."""
         hypothesis, observed = self.fitted.hypothesis, self.observed

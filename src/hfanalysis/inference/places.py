@@ -14,7 +14,7 @@ from hfanalysis.inference.observations.observed import Observed
 
 
 @dataclass(frozen=True)
-class Place:
+class SourcePlace:
     """A site of the model or a ``sensor`` (its channel): its governing equation, and unit and typical size of what can
     be there. ``factor_of``: the output that a factor multiplies; for the chamber's temperature, the flow in whose
     enthalpy it is."""
@@ -35,15 +35,15 @@ class Place:
 
 
 PLACES = (
-    Place("tank_heat", "tank_energy", "W", 2000.0),
-    Place("nitrogen_inflow", "tank_volume", "kg/s", 0.02),
-    Place("tank_leak", "tank_volume", "kg/s", 0.05),
-    Place("tank_pressure", "tank_energy", "Pa", 1e5),
-    Place("injector_factor", "injector", "1", 0.1, factor_of="oxidizer_flow"),
-    Place("feed_loss", "feed", "Pa", 1e5),
-    Place("regression_factor", "grain", "1", 0.2, factor_of="fuel_flow"),
-    Place("temperature_factor", "chamber_energy", "1", 0.1, factor_of="nozzle_flow"),
-    Place("throat_factor", "nozzle", "1", 0.05, factor_of="thrust"),
-    Place("thrust_factor", "nozzle", "1", 0.05, factor_of="thrust"),
+    SourcePlace("tank_heat", "tank_energy", "W", 2000.0),
+    SourcePlace("nitrogen_inflow", "tank_volume", "kg/s", 0.02),
+    SourcePlace("tank_leak", "tank_volume", "kg/s", 0.05),
+    SourcePlace("tank_pressure", "tank_energy", "Pa", 1e5),
+    SourcePlace("injector_factor", "injector", "1", 0.1, factor_of="oxidizer_flow"),
+    SourcePlace("feed_loss", "feed", "Pa", 1e5),
+    SourcePlace("regression_factor", "grain", "1", 0.2, factor_of="fuel_flow"),
+    SourcePlace("temperature_factor", "chamber_energy", "1", 0.1, factor_of="nozzle_flow"),
+    SourcePlace("throat_factor", "nozzle", "1", 0.05, factor_of="thrust"),
+    SourcePlace("thrust_factor", "nozzle", "1", 0.05, factor_of="thrust"),
 )
 """Sites of the model at which an unknown of any shape is looked for."""

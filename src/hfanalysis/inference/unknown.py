@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hfanalysis.inference.fitting.hypothesis import Hypothesis
     from hfanalysis.inference.linear import Linearized
     from hfanalysis.inference.observations.observed import Observed
-    from hfanalysis.inference.places import Place
+    from hfanalysis.inference.places import SourcePlace
     from hfanalysis.products.segments import Segments
     from hfanalysis.record.signals import Signal
 
@@ -66,7 +66,7 @@ class History:
     factor of, or what that goes with, by the unit of its equation.
     """
 
-    place: Place
+    place: SourcePlace
     time: Array
     mean: Array
     std: Array
@@ -98,7 +98,7 @@ class Unknown(ABC):
     shows in the samples as it does. ``price``: log of the odds against it.
     """
 
-    place: Place
+    place: SourcePlace
     log_evidence: float
     known_by: ClassVar[str] = ""
     also_by: ClassVar[str] = ""

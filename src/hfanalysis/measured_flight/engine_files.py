@@ -10,8 +10,8 @@ from hfanalysis.assembly.shape import shape
 from hfanalysis.flight import rasp, rocksim
 from hfanalysis.flight.motor import Motor, Points, points_of
 from hfanalysis.flight.rocketpy_script import Scripted, script
-from hfanalysis.measured_flight.product import Launch
-from hfanalysis.measured_flight.stability import Stability
+from hfanalysis.measured_flight.product import MeasuredFlight
+from hfanalysis.measured_flight.stability import StabilityRuns
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.rocket.aerodynamics import Shape
 from hfanalysis.rocket.vehicle import Vehicle
@@ -44,7 +44,7 @@ class Export:
         return rocksim.text(self.motor, self.points, self.comments, self.radii)
 
 
-def rocketpy(launched: Launch, definition: TestDefinition, stable: Stability | str, motor: Export) -> str:
+def rocketpy(launched: MeasuredFlight, definition: TestDefinition, stable: StabilityRuns | str, motor: Export) -> str:
     """The flight as a script for RocketPy; without a geometry the rocket has no surfaces and flies in still air."""
     firing, weighed = launched.firing, None if isinstance(stable, str) else stable
     outside = shape(definition.rocket)
@@ -69,7 +69,7 @@ def rocketpy(launched: Launch, definition: TestDefinition, stable: Stability | s
     )
 
 
-def export(launched: Launch, definition: TestDefinition, stable: Stability | str) -> Export:
+def export(launched: MeasuredFlight, definition: TestDefinition, stable: StabilityRuns | str) -> Export:
     """The firing along its flight: thrust at the altitudes flown through, propellant that burns.
 
     The engine's center of gravity is that of ``stable``, where it is known.
@@ -84,7 +84,7 @@ def export(launched: Launch, definition: TestDefinition, stable: Stability | str
     return Export(motor, points, _comments(launched, definition), _radii(definition))
 
 
-def _motor(launched: Launch, definition: TestDefinition, burnt: float, stable: Stability | str) -> Motor:
+def _motor(launched: MeasuredFlight, definition: TestDefinition, burnt: float, stable: StabilityRuns | str) -> Motor:
     geometry = definition.rocket.geometry if definition.rocket is not None else None
     engine = geometry.engine_mass.value if geometry is not None and geometry.engine_mass is not None else 0.0
     loaded = float(launched.firing.propellant.total[0])
@@ -111,7 +111,7 @@ def _radii(definition: TestDefinition) -> tuple[float, float]:
     return (throat.value if throat else 0.0), (leave.value if leave else 0.0)
 
 
-def _comments(launched: Launch, definition: TestDefinition) -> tuple[str, ...]:
+def _comments(launched: MeasuredFlight, definition: TestDefinition) -> tuple[str, ...]:
     source = {"replica": "REPLICA, generated, not measured", "synthetic": "SYNTHETIC, generated, not measured"}
     altitude = launched.firing.vehicle.launch_altitude
     geometry = definition.rocket.geometry if definition.rocket is not None else None

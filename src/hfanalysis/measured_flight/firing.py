@@ -107,7 +107,7 @@ def launch_altitude(definition: TestDefinition) -> float:
     return atmosphere.altitude_of(definition.ambient_pressure.value)
 
 
-def _no_correction(gas: Gas | None, definition: TestDefinition) -> str:
+def _no_correction(gas: ChamberGas | None, definition: TestDefinition) -> str:
     """Why the thrust cannot be taken to altitude; empty where it can."""
     nozzle = definition.nozzle
     if nozzle is None or nozzle.throat_radius is None or nozzle.exit_radius is None:
@@ -115,7 +115,7 @@ def _no_correction(gas: Gas | None, definition: TestDefinition) -> str:
     return "the log has no live p_chamber" if gas is None else ""
 
 
-def _at_altitude(curve: Curve, gas: Gas, definition: TestDefinition) -> Curve:
+def _at_altitude(curve: Curve, gas: ChamberGas, definition: TestDefinition) -> Curve:
     """The curve with the nozzle's gain by ambient pressure."""
     nozzle = definition.nozzle
     assert nozzle is not None
@@ -127,7 +127,7 @@ def _at_altitude(curve: Curve, gas: Gas, definition: TestDefinition) -> Curve:
 
 
 @dataclass(frozen=True)
-class Gas:
+class ChamberGas:
     """In the chamber over time: measured pressure [Pa]; frozen heat capacity ratio and R T [J/kg] at equilibrium."""
 
     pressure: Array
@@ -137,7 +137,7 @@ class Gas:
 
 def _chamber_gas(
     time: Array, log: TestLog, segments: Segments | None, definition: TestDefinition, load: Propellant
-) -> Gas | None:
+) -> ChamberGas | None:
     """At the O/F of the flows, as the quasi-steady chamber has it; None without a live chamber pressure."""
     channel = log.get("p_chamber")
     if channel is None or segments is None or Signal.of(channel).dead:
@@ -151,10 +151,10 @@ def _chamber_gas(
     ratio = np.interp(time, load.time, load.of_ratio)
     found = [combustion.equilibrium(max(float(pressure[i]), ambient), float(ratio[i])) for i in chosen]
     gamma, rt = np.array([(gas.gamma, gas.gas_constant * gas.temperature) for gas in found]).T
-    return Gas(pressure, np.interp(time, time[chosen], gamma), np.interp(time, time[chosen], rt))
+    return ChamberGas(pressure, np.interp(time, time[chosen], gamma), np.interp(time, time[chosen], rt))
 
 
-def _gas_mass(time: Array, gas: Gas, definition: TestDefinition, load: Propellant) -> Array | None:
+def _gas_mass(time: Array, gas: ChamberGas, definition: TestDefinition, load: Propellant) -> Array | None:
     """m = p V / (R T) [kg], the port as wide as the fuel left it; None where the chamber's size is not known."""
     grain, chamber = definition.grain, definition.chamber
     if chamber is None or grain is None or grain.density is None or grain.outer_radius is None or grain.length is None:

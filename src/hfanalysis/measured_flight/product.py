@@ -19,7 +19,7 @@ from hfanalysis.flight.ascent import TRACE, Ascent, ascend
 from hfanalysis.flight.descent import Leg, descend, fall
 from hfanalysis.measured_flight import stability
 from hfanalysis.measured_flight.firing import Firing
-from hfanalysis.measured_flight.uncertainty import Dispersion, Input, disperse, inputs, rows
+from hfanalysis.measured_flight.uncertainty import DrawnFlights, Input, disperse, inputs, rows
 from hfanalysis.products import flight as products
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.rocket import Rocket
@@ -35,29 +35,31 @@ UNITS = dict(zip(TRACE, ("s", "m", "m/s", "m/s^2", "N", "N", "kg", "1"), strict=
 
 
 @dataclass(frozen=True)
-class Launch:
+class MeasuredFlight:
     """A firing, its flight, and the flights that differ in what is uncertain."""
 
     firing: Firing
     ascent: Ascent
-    dispersion: Dispersion
+    dispersion: DrawnFlights
     inputs: dict[str, Input]
     samples: int
     seed: int
 
 
-def launch(firing: Firing, rocket: Rocket, samples: int, seed: int, progress: Progress | None = None) -> Launch:
+def fly_measured(
+    firing: Firing, rocket: Rocket, samples: int, seed: int, progress: Progress | None = None
+) -> MeasuredFlight:
     """Fly it. Raises AbsentError for a rocket that stays on its pad or leaves the atmosphere model."""
     try:
         flown = ascend(firing.curve, firing.vehicle, firing.rail_length)
     except ValueError as error:
         raise AbsentError(str(error)) from None
     drawn = rows(firing, rocket, samples, seed)
-    return Launch(firing, flown, disperse(firing, drawn, 1.25 * flown.end[0], progress), inputs(firing, rocket),
-                  samples, seed)  # fmt: skip
+    spread = disperse(firing, drawn, 1.25 * flown.end[0], progress)
+    return MeasuredFlight(firing, flown, spread, inputs(firing, rocket), samples, seed)
 
 
-def product(launched: Launch, rocket: Rocket, stable: stability.Stability | str) -> products.Flight:
+def product(launched: MeasuredFlight, rocket: Rocket, stable: stability.StabilityRuns | str) -> products.Flight:
     """The content of flight.json."""
     firing = launched.firing
     flown = summary.quantities(
@@ -82,7 +84,7 @@ def _drawn(given: Input) -> products.DispersionInput:
     return products.DispersionInput(std=given.std, unit=given.unit, origin=origin, of=given.of)
 
 
-def _on_pad(launched: Launch) -> dict[str, Quantity]:
+def _on_pad(launched: MeasuredFlight) -> dict[str, Quantity]:
     firing = launched.firing
     propellant, dry = launched.inputs["propellant"].std, launched.inputs["dry_mass"].std
     std = float(np.hypot(propellant, dry))
@@ -108,7 +110,7 @@ def rail_check(speed: Quantity) -> products.Check:
 
 
 def write_histories(
-    path: Path, launched: Launch, stable: stability.Stability | str, provenance: Mapping[str, Any]
+    path: Path, launched: MeasuredFlight, stable: stability.StabilityRuns | str, provenance: Mapping[str, Any]
 ) -> None:
     """flight.h5: groups ``ascent``, ``bands``, the ways down, ``balance`` and ``stability``, in SI."""
     with h5py.File(path, "w") as file:
@@ -134,7 +136,7 @@ def write_histories(
             _write_stability(file, launched, stable)
 
 
-def _write_stability(file: Any, launched: Launch, stable: stability.Stability) -> None:
+def _write_stability(file: Any, launched: MeasuredFlight, stable: stability.StabilityRuns) -> None:
     """Group ``balance`` over the burn, and ``stability/N`` for every wind."""
     weighed = stable.balance
     columns = {"mass": weighed.mass, "center_of_gravity": weighed.center, "pitch_inertia": weighed.inertia}
@@ -150,7 +152,7 @@ def _write_stability(file: Any, launched: Launch, stable: stability.Stability) -
 MASSES = {"oxidizer_mass": "kg", "fuel_mass": "kg"}
 
 
-def _drawn_on(launched: Launch, time: Array) -> dict[str, Array]:
+def _drawn_on(launched: MeasuredFlight, time: Array) -> dict[str, Array]:
     """Height above the pad and the propellant's masses at the flight's times."""
     load = launched.firing.propellant
     height = launched.ascent.column("altitude") - launched.firing.vehicle.launch_altitude
@@ -161,7 +163,7 @@ def _drawn_on(launched: Launch, time: Array) -> dict[str, Array]:
     }
 
 
-def _legs(launched: Launch) -> dict[str, Leg]:
+def _legs(launched: MeasuredFlight) -> dict[str, Leg]:
     """The ways down; each downwards negative in speed."""
     firing, top = launched.firing, launched.ascent.end
     legs = {"ballistic": fall(firing.vehicle, 0.0, (top[0], top[1], 0.0), firing.vehicle.launch_altitude)}

@@ -14,7 +14,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.loaded_mass import load_cell_mass
-from hfanalysis.calibrate.measured_pressures import Histories
+from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.engine.grain import Grain, opened, pace_between
 from hfanalysis.engine.injector import mass_flow, mass_flows
 from hfanalysis.engine.tank import SPECIFIC_NITROGEN, liquid_of
@@ -174,7 +174,7 @@ def _through_injector(
     assert discharge is not None
     volume, area = definition.tank.volume.value, discharge * definition.injector.area.value
     source = saturation_of(definition.model.properties)
-    histories = Histories.of(log, segments, definition, float(time[-1]))
+    histories = MeasuredPressures.of(log, segments, definition, float(time[-1]))
     t_v = segments.time("t_v") or float(time[-1])
     temperature = np.interp(time, histories.time, histories.tank_temperature(source))
     drop = np.interp(time, histories.time, np.maximum(histories.run - histories.chamber, 0.0))

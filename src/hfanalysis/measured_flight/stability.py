@@ -18,7 +18,7 @@ from hfanalysis.products import flight
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.rocket.aerodynamics import Shape, center_of_pressure, components, drag_parts
-from hfanalysis.rocket.balance import Balance, Part, balance, oxidizer
+from hfanalysis.rocket.balance import Balance, MassPart, balance, oxidizer
 from hfanalysis.thermo.nitrous import saturation
 
 Progress = Callable[[str, float | None], None]
@@ -28,7 +28,7 @@ SLOW = 0.3
 
 
 @dataclass(frozen=True)
-class Stability:
+class StabilityRuns:
     """Center of gravity and inertia on the thrust curve's clock, the shape, the margins by wind, and remarks.
 
     ``engine_center``: of the engine with its propellant [m from its front], None where it is not weighed apart.
@@ -44,7 +44,7 @@ class Stability:
 
 def stability(
     firing: Firing, definition: TestDefinition, winds: Sequence[float], seeds: int, longest: float, progress: Progress
-) -> Stability | str:
+) -> StabilityRuns | str:
     """Fly ``seeds`` times in every wind [m/s], ``longest`` [s] at most; or why there is no stability to tell."""
     rocket = definition.rocket
     outside = shape(rocket)
@@ -64,7 +64,7 @@ def stability(
     if not known:
         return summary.NO_RAIL if firing.rail_length is None else summary.RAIL_TOO_LONG
     notes = tuple(filter(None, (place.remark, _tank_note(firing))))
-    return Stability(outside, weighed, place, known, _engine_center(firing, place, definition), notes)
+    return StabilityRuns(outside, weighed, place, known, _engine_center(firing, place, definition), notes)
 
 
 def _tank_note(firing: Firing) -> str:
@@ -72,18 +72,18 @@ def _tank_note(firing: Firing) -> str:
     return "" if known else "how the oxidizer divides into liquid and vapor is not known: taken as all liquid"
 
 
-def _parts(firing: Firing, place: Masses, definition: TestDefinition) -> list[Part]:
+def _parts(firing: Firing, place: Masses, definition: TestDefinition) -> list[MassPart]:
     return [*place.fixed, *_load(firing, place, definition)]
 
 
-def _load(firing: Firing, place: Masses, definition: TestDefinition) -> list[Part]:
+def _load(firing: Firing, place: Masses, definition: TestDefinition) -> list[MassPart]:
     """Oxidizer, fuel and chamber gas on the thrust curve's clock."""
     time, load = firing.curve.time, firing.propellant
     histories = (load.oxidizer, load.liquid, load.fuel, load.temperature)
     mass, liquid, fuel, t = (np.interp(time, load.time, history) for history in histories)
     tank = oxidizer(place.tank, liquid, mass - liquid, _liquid_volume(t, definition))
-    gas = [] if firing.gas_mass is None else [Part(firing.gas_mass, place.gas_center)]
-    return [*tank, Part(fuel, place.grain_center, place.grain_length), *gas]
+    gas = [] if firing.gas_mass is None else [MassPart(firing.gas_mass, place.gas_center)]
+    return [*tank, MassPart(fuel, place.grain_center, place.grain_length), *gas]
 
 
 def _liquid_volume(temperature: Array, definition: TestDefinition) -> Array:
@@ -98,7 +98,7 @@ def _engine_center(firing: Firing, place: Masses, definition: TestDefinition) ->
     return np.asarray(balance([place.dry, *_load(firing, place, definition)]).center - place.front)
 
 
-def product(stable: Stability | str) -> flight.Stability:
+def product(stable: StabilityRuns | str) -> flight.Stability:
     """What flight.json says of stability."""
     if isinstance(stable, str):
         return flight.Stability(margin_at_rail_departure=Quantity.absent(stable))
@@ -122,7 +122,7 @@ def product(stable: Stability | str) -> flight.Stability:
     )
 
 
-def checks(stable: Stability | str) -> dict[str, flight.Check]:
+def checks(stable: StabilityRuns | str) -> dict[str, flight.Check]:
     """Whether the margin keeps within its limits, two standard deviations included, in every wind."""
     return {
         "least_static_margin": _check(stable, LOW, "at least", lambda m: m.least, lambda margin: margin >= LOW),
@@ -131,7 +131,7 @@ def checks(stable: Stability | str) -> dict[str, flight.Check]:
 
 
 def _check(
-    stable: Stability | str,
+    stable: StabilityRuns | str,
     limit: float,
     side: str,
     extreme: Callable[[flight.WindMargin], float],

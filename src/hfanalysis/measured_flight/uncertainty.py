@@ -26,7 +26,7 @@ from hfanalysis.flight.ascent import (
     arguments,
     fly_all,
 )
-from hfanalysis.flight.summary import ASCENT, Spread
+from hfanalysis.flight.summary import ASCENT, FlightSpread
 from hfanalysis.measured_flight.firing import Firing
 from hfanalysis.processors import processors
 from hfanalysis.record.rocket import Rocket
@@ -120,25 +120,25 @@ def rows(firing: Firing, rocket: Rocket, samples: int, seed: int) -> Array:
 
 
 @dataclass(frozen=True)
-class Dispersion:
+class DrawnFlights:
     """Drawn flights: ``results`` (n, 8) of each, and bands (2.5, 50, 97.5 %) over ``time``: (3, n) by column."""
 
     results: Array
     time: Array
     bands: dict[str, Array]
 
-    def spreads(self) -> dict[str, Spread]:
+    def spreads(self) -> dict[str, FlightSpread]:
         """Standard deviation and 95 % interval of every quantity of the ascent that most flights have."""
         found = {}
         for name, (index, _) in ASCENT.items():
             values = self.results[:, index][np.isfinite(self.results[:, index]) & (self.results[:, APOGEE] > 0.0)]
             if values.size > 0.9 * len(self.results):
                 low, high = np.percentile(values, (2.5, 97.5))
-                found[name] = Spread(float(values.std(ddof=1)), (float(low), float(high)))
+                found[name] = FlightSpread(float(values.std(ddof=1)), (float(low), float(high)))
         return found
 
 
-def disperse(firing: Firing, drawn: Array, last: float, progress: Progress | None = None) -> Dispersion:
+def disperse(firing: Firing, drawn: Array, last: float, progress: Progress | None = None) -> DrawnFlights:
     """Fly every row of ``drawn`` (flights, 9) [SI] on all cores; the bands end at ``last`` [s] or when the first
     flights have turned."""
     results = np.empty((len(drawn), RESULTS))
@@ -160,7 +160,7 @@ def disperse(firing: Firing, drawn: Array, last: float, progress: Progress | Non
     turned = float(np.percentile(results[flying, TIME], 2.5)) if flying.mean() > 0.5 else -1.0
     time: Array = every * np.arange(POINTS, dtype=np.float64)
     kept = time <= turned
-    return Dispersion(results, time[kept], dict(_bands(paths[:, kept], firing.vehicle.launch_altitude)))
+    return DrawnFlights(results, time[kept], dict(_bands(paths[:, kept], firing.vehicle.launch_altitude)))
 
 
 def _bands(paths: Array, ground: float) -> Iterator[tuple[str, Array]]:

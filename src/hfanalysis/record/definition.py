@@ -17,7 +17,17 @@ from hfanalysis.record.document import place, read_toml, validate
 from hfanalysis.record.logspec import Channels, ChannelSpec, Exclusion, FileSpec, LogSpec, TimeSpec
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.record.schema import Instant, ListOf, Refused, Section, Text, section, unknown_key
-from hfanalysis.record.sections import Chamber, Grain, Injector, Model, Nozzle, Observed, Purge, Site, Tank
+from hfanalysis.record.sections import (
+    Chamber,
+    GrainSection,
+    Injector,
+    Model,
+    NozzleSection,
+    ObservedSection,
+    Purge,
+    Site,
+    Tank,
+)
 from hfanalysis.units import Value, near
 
 __all__ = ["ChannelSpec", "Exclusion", "FileSpec", "LogSpec", "TestDefinition", "TimeSpec", "Value", "find_definition",
@@ -102,11 +112,11 @@ class Statements(Section):
     tank: Tank | None = None
     injector: Injector | None = None
     purge: Purge | None = None
-    grain: Grain | None = None
+    grain: GrainSection | None = None
     chamber: Chamber | None = None
-    nozzle: Nozzle | None = None
+    nozzle: NozzleSection | None = None
     site: Site | None = None
-    observed: Observed | None = None
+    observed: ObservedSection | None = None
     rocket: Rocket | None = None
     segments: Segments = field(default_factory=dict)
     exclude: ListOf[Exclusion] = ()

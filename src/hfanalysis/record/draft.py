@@ -106,7 +106,7 @@ files = [{log_text}]
 
 
 @dataclass(frozen=True)
-class Column:
+class LogColumn:
     """A column of a log: its full name, the name without its unit, and the unit ("" where the header states none)."""
 
     label: str
@@ -168,13 +168,13 @@ def draft(test_id: str, log: Path) -> str:
     )
 
 
-def _time_column(columns: list[Column]) -> Column | None:
+def _time_column(columns: list[LogColumn]) -> LogColumn | None:
     """The column of the time stamps, by its name; one that states its unit is preferred."""
     named = [column for column in columns if _TIME.match(column.name)]
     return next((column for column in named if _fits(column.unit, "time")), named[0] if named else None)
 
 
-def read_columns(log: Path) -> list[Column]:
+def read_columns(log: Path) -> list[LogColumn]:
     """The columns that the log's header names; numbered where it has no header. Raises InputError."""
     from hfanalysis.record.readers import open_log
 
@@ -185,14 +185,14 @@ def read_columns(log: Path) -> list[Column]:
     ]
 
 
-def _column(label: str, unit: str) -> Column:
+def _column(label: str, unit: str) -> LogColumn:
     bracketed = _UNIT.match(label)
     if bracketed:
-        return Column(label, bracketed["name"], unit or bracketed["unit"].strip())
+        return LogColumn(label, bracketed["name"], unit or bracketed["unit"].strip())
     last = None if unit else _LAST_WORD.match(label.strip())
     if last and (len(last["unit"]) > 1 or last["unit"] in _LETTERS) and any(_fits(last["unit"], d) for d in _IN_NAMES):
-        return Column(label, last["name"], last["unit"])
-    return Column(label, label, unit)
+        return LogColumn(label, last["name"], last["unit"])
+    return LogColumn(label, label, unit)
 
 
 def _written_stamps(log: Path) -> str:
@@ -208,7 +208,7 @@ def _written_stamps(log: Path) -> str:
     return ""
 
 
-def _time_line(time: Column | None, columns: list[Column], written: str) -> str:
+def _time_line(time: LogColumn | None, columns: list[LogColumn], written: str) -> str:
     if time is None:
         there = ", ".join(_quoted(column.label) for column in columns[:8])
         return f'# time = {{ column = "…", unit = "s" }}   # the column of time stamps; none recognized among {there}'
@@ -217,7 +217,7 @@ def _time_line(time: Column | None, columns: list[Column], written: str) -> str:
     return f"time = {{ column = {_quoted(time.label)}, unit = {_quoted(unit)} }}{sure}"
 
 
-def _channels(columns: list[Column]) -> str:
+def _channels(columns: list[LogColumn]) -> str:
     taken: set[str] = set()
     blocks = []
     for column in columns:
@@ -227,7 +227,7 @@ def _channels(columns: list[Column]) -> str:
     return "\n".join(blocks)
 
 
-def guess_channel(column: Column) -> str | None:
+def guess_channel(column: LogColumn) -> str | None:
     """The canonical channel that a column probably is, by its name and unit; None where nothing speaks for one.
 
     >>> guess_channel(Column("PT-TANK (psia)", "PT-TANK", "psia")), guess_channel(Column("mode", "mode", ""))
@@ -251,7 +251,7 @@ def _fits(unit: str, dimension: str) -> bool:
     return True
 
 
-def _block(column: Column, channel: str | None) -> str:
+def _block(column: LogColumn, channel: str | None) -> str:
     """One channel's table; commented out where the log does not say enough for it to be read."""
     known = channel is not None and _fits(column.unit, CANONICAL[channel])
     lines = [
@@ -263,7 +263,7 @@ def _block(column: Column, channel: str | None) -> str:
     return "\n".join(lines if known else [f"# {line.removeprefix('# ')}" for line in lines]) + "\n"
 
 
-def _remark(column: Column, channel: str | None) -> str:
+def _remark(column: LogColumn, channel: str | None) -> str:
     if not column.unit:
         return "   # not stated in the log"
     if (channel or "").startswith("p_") and not re.search(r"[ag]\)?$", column.unit):

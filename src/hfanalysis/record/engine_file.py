@@ -14,7 +14,19 @@ from hfanalysis.record.definition import check_version
 from hfanalysis.record.document import place, read_toml, validate
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.record.schema import Refused, Section, section
-from hfanalysis.record.sections import Chamber, Design, Engine, Feed, Grain, Injector, Model, Nozzle, Purge, Site, Tank
+from hfanalysis.record.sections import (
+    Chamber,
+    DesignSection,
+    EngineSection,
+    Feed,
+    GrainSection,
+    Injector,
+    Model,
+    NozzleSection,
+    Purge,
+    Site,
+    Tank,
+)
 
 T = TypeVar("T")
 
@@ -23,22 +35,22 @@ TANK_SIZES = ("volume", "length", "ullage")
 
 
 @section
-class Statements(Section):
+class EngineStatements(Section):
     """The whole of an engine file; sections that are not stated have no key."""
 
-    engine: Engine
+    engine: EngineSection
     schema: Annotated[int, BeforeValidator(check_version)]
     model: Model = Model()
     tank: Tank = Tank()
     feed: Feed = Feed()
     injector: Injector = Injector()
     purge: Purge | None = None
-    grain: Grain = Grain()
+    grain: GrainSection = GrainSection()
     chamber: Chamber = Chamber()
-    nozzle: Nozzle = Nozzle()
+    nozzle: NozzleSection = NozzleSection()
     site: Site = Site()
     rocket: Rocket | None = None
-    design: Design = Design()
+    design: DesignSection = DesignSection()
 
     def check(self) -> None:
         given = [key for key in TANK_SIZES if getattr(self.tank, key) is not None]
@@ -47,7 +59,7 @@ class Statements(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class EngineFile(Statements):
+class EngineFile(EngineStatements):
     """A validated engine file and where it is; every number in SI."""
 
     path: Path
@@ -61,7 +73,7 @@ class EngineFile(Statements):
 def load_engine(path: Path) -> EngineFile:
     """The engine file at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
     raw, content = read_toml(path)
-    stated = validate(Statements, {"schema": None, **content}, path)
+    stated = validate(EngineStatements, {"schema": None, **content}, path)
     return EngineFile(**vars(stated), path=path, sha256=hashlib.sha256(raw).hexdigest())
 
 

@@ -24,7 +24,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.flag_notes import flag_warnings, flagged
 from hfanalysis.record.log import Channel
 from hfanalysis.record.plan import Plan, make_plans, open_files
-from hfanalysis.record.quiet import REFERENCES, Firing, find_firing
+from hfanalysis.record.quiet import REFERENCES, FiringSpan, find_firing
 from hfanalysis.record.readers import Source
 from hfanalysis.record.samples import Samples, make_channel, read_samples
 from hfanalysis.record.spool import Spool
@@ -119,7 +119,7 @@ class _Ingest:
     def _samples(self, plan: Plan) -> Samples:
         return read_samples(plan, self.spools[plan.file], self.clocks[plan.clock], self.definition)
 
-    def find_firing(self) -> Firing | None:
+    def find_firing(self) -> FiringSpan | None:
         """When the log departs from rest; the engineer's t_open says so where it is given."""
         by_name = {plan.spec.name: plan for plan in self.plans}
         found = None
@@ -131,9 +131,9 @@ class _Ingest:
         stated = self.definition.segments.get("t_open")
         if stated is None:
             return found
-        return replace(found, start=stated.value) if found else Firing(stated.value, np.inf, "test.toml")
+        return replace(found, start=stated.value) if found else FiringSpan(stated.value, np.inf, "test.toml")
 
-    def write(self, store: Store, firing: Firing | None) -> None:
+    def write(self, store: Store, firing: FiringSpan | None) -> None:
         """Clocks, then channel after channel."""
         names = {key: f"time_{i}" if i else "time" for i, key in enumerate(self.clocks)}
         for key, clock in self.clocks.items():
@@ -147,7 +147,7 @@ class _Ingest:
         count = Counter(plan.file for plan in self.plans)
         self.warnings += [*flag_warnings(found, count), *holes.hole_warnings(lacking, count), *said]
 
-    def _channels(self, firing: Firing | None) -> Iterator[tuple[Plan, tuple[Channel, list[str]]]]:
+    def _channels(self, firing: FiringSpan | None) -> Iterator[tuple[Plan, tuple[Channel, list[str]]]]:
         """Channels in order, a few of them at work."""
 
         def work(plan: Plan) -> tuple[Channel, list[str]]:

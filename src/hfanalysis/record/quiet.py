@@ -56,7 +56,7 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Firing:
+class FiringSpan:
     """When the log departs from rest and when it is back [s, log time], and which channel said so."""
 
     start: float
@@ -64,10 +64,10 @@ class Firing:
     channel: str
 
 
-def find_firing(name: str, trace: Trace) -> Firing | None:
+def find_firing(name: str, trace: Trace) -> FiringSpan | None:
     """The first sustained departure of a channel from rest; None where it shows none."""
     found = _departure(trace, LEAST_DEPARTURE.get(name, 30e3))
-    return Firing(*found, name) if found else None
+    return FiringSpan(*found, name) if found else None
 
 
 def _departure(trace: Trace, least: float) -> tuple[float, float] | None:
@@ -160,7 +160,7 @@ def _std_of_mean(values: Array) -> float:
     return float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else 0.0
 
 
-def before(trace: Trace, firing: Firing) -> Trace:
+def before(trace: Trace, firing: FiringSpan) -> Trace:
     """The quiet stretch before a firing, cut where the channel itself departs earlier."""
     window = trace.between(firing.start - LONGEST_QUIET, firing.start - MARGIN)
     blocks = in_blocks(window, 5 * QUIET_BLOCK)
@@ -171,7 +171,7 @@ def before(trace: Trace, firing: Firing) -> Trace:
     return window.between(-np.inf, float(blocks.time[calm[-1]]) + QUIET_BLOCK)
 
 
-def after(trace: Trace, firing: Firing) -> Trace | None:
+def after(trace: Trace, firing: FiringSpan) -> Trace | None:
     """The longest stretch after a firing over which the channel is flat; None where there is none."""
     if not len(trace.time):
         return None

@@ -28,7 +28,7 @@ _UPRIGHT = between(0.0, math.radians(90.0), "between 0 and 90 degrees from the v
 
 
 @section
-class Nose(Section):
+class NoseSection(Section):
     """Nose cone: kind and length [m]."""
 
     kind: Literal["cone", "ogive", "von_karman", "ellipsoid"]
@@ -43,7 +43,7 @@ class Body(Section):
 
 
 @section
-class Fins(Section):
+class FinsSection(Section):
     """Fin set: count, chords, span, sweep length, position of the root's leading edge, thickness [m]."""
 
     count: Count
@@ -56,7 +56,7 @@ class Fins(Section):
 
 
 @section
-class Tail(Section):
+class TailSection(Section):
     """Boat tail: length, aft diameter, position [m]."""
 
     length: Length
@@ -76,10 +76,10 @@ class Structure(Section):
 class Geometry(Section):
     """[rocket.geometry]: lengths [m] from the nose tip; roughness of the surface [m]."""
 
-    nose: Nose | None = None
+    nose: NoseSection | None = None
     body: Body | None = None
-    fins: Fins | None = None
-    tail: Tail | None = None
+    fins: FinsSection | None = None
+    tail: TailSection | None = None
     structure: Structure | None = None
     roughness: Length | None = None
     tank_position: Place | None = None
@@ -89,7 +89,7 @@ class Geometry(Section):
 
 
 @section
-class Parachute(Section):
+class ParachuteSection(Section):
     """[rocket.drogue]: drag coefficient and area [m^2]."""
 
     drag_coefficient: Positive
@@ -97,7 +97,7 @@ class Parachute(Section):
 
 
 @section
-class MainParachute(Parachute):
+class MainParachute(ParachuteSection):
     """[rocket.main]: opens at ``deploy_altitude`` [m above ground]."""
 
     deploy_altitude: Length | None = None
@@ -121,7 +121,7 @@ class Rocket(Section):
     launch_altitude: Altitude | None = None
     wind_speed: Annotated[Value, quantity("velocity", _WIND)] | None = None
     geometry: Geometry | None = None
-    drogue: Parachute | None = None
+    drogue: ParachuteSection | None = None
     main: MainParachute | None = None
 
     def check(self) -> None:

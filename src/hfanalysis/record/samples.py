@@ -15,7 +15,7 @@ from hfanalysis.record.definition import ChannelSpec, Exclusion, TestDefinition
 from hfanalysis.record.flags import flag_impossible, flag_readings
 from hfanalysis.record.log import Channel, Flag, Flags
 from hfanalysis.record.plan import Plan
-from hfanalysis.record.quiet import Firing, Trace
+from hfanalysis.record.quiet import FiringSpan, Trace
 from hfanalysis.record.spool import Spool
 from hfanalysis.record.zero import Zero, ambient_zero, tare
 from hfanalysis.units import si_unit
@@ -68,7 +68,7 @@ def read_samples(plan: Plan, spool: Spool, clock: Clock, definition: TestDefinit
 
 
 def make_channel(
-    plan: Plan, samples: Samples, firing: Firing | None, definition: TestDefinition
+    plan: Plan, samples: Samples, firing: FiringSpan | None, definition: TestDefinition
 ) -> tuple[Channel, list[str]]:
     """The channel with zero and tare taken, and what there is to say about it."""
     spec = plan.spec
@@ -88,7 +88,7 @@ def make_channel(
 
 
 def _zero(
-    spec: ChannelSpec, samples: Samples, firing: Firing | None, definition: TestDefinition, accuracy: float
+    spec: ChannelSpec, samples: Samples, firing: FiringSpan | None, definition: TestDefinition, accuracy: float
 ) -> Zero:
     if spec.zero == "ambient":
         return ambient_zero(spec, samples.trace, firing, definition.ambient_pressure, accuracy)

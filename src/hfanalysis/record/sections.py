@@ -50,7 +50,7 @@ class Model(Section):
 
 
 @section
-class DipTube(Section):
+class DipTubeSection(Section):
     """[tank] dip_tube: diameters [m]."""
 
     outer_diameter: Length
@@ -79,7 +79,7 @@ class Tank(Section):
     inner_diameter: Length | None = None
     length: Length | None = None
     ullage: NotNegative | None = None
-    dip_tube: DipTube | None = None
+    dip_tube: DipTubeSection | None = None
     polytropic_exponent: Annotated[float | str, PlainValidator(_exponent)] | None = None
 
     def check(self) -> None:
@@ -134,7 +134,7 @@ class Purge(Section):
 
 
 @section
-class Grain(Section):
+class GrainSection(Section):
     """[grain]: mass [kg], length [m], density [kg/m^3], outer radius [m]; regression a [SI], n."""
 
     mass: Mass | None = None
@@ -167,7 +167,7 @@ class Chamber(Section):
 
 
 @section
-class Nozzle(Section):
+class NozzleSection(Section):
     """[nozzle]: radii [m]."""
 
     throat_radius: Length | None = None
@@ -191,7 +191,7 @@ class Site(Section):
 
 
 @section
-class Observed(Section):
+class ObservedSection(Section):
     """[observed]: seen or measured outside the log; time [s], radius [m], masses [kg]."""
 
     burn_time: Duration | None = None
@@ -201,7 +201,7 @@ class Observed(Section):
 
 
 @section
-class Engine(Section):
+class EngineSection(Section):
     """[engine] of an engine file."""
 
     id: Text
@@ -210,7 +210,7 @@ class Engine(Section):
 
 
 @section
-class Design(Section):
+class DesignSection(Section):
     """[design] of an engine file: flow [kg/s], chamber pressure [Pa], target apogee [m]."""
 
     oxidizer_flow: Annotated[Value, quantity("mass_flow", POSITIVE)] | None = None

@@ -8,7 +8,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.record.logspec import ChannelSpec
-from hfanalysis.record.quiet import Firing, Level, Trace, after, before, level
+from hfanalysis.record.quiet import FiringSpan, Level, Trace, after, before, level
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value, si_unit
 
@@ -39,7 +39,7 @@ class Zero:
         return curve
 
 
-def ambient_zero(spec: ChannelSpec, trace: Trace, firing: Firing | None, ambient: Value, accuracy: float) -> Zero:
+def ambient_zero(spec: ChannelSpec, trace: Trace, firing: FiringSpan | None, ambient: Value, accuracy: float) -> Zero:
     """The zero [Pa] of a pressure that is open to the air before ignition.
 
     Args:
@@ -71,7 +71,7 @@ def not_back(channel: str) -> str:
     return f"channel {channel}: does not return to zero"
 
 
-def tare(spec: ChannelSpec, trace: Trace, firing: Firing | None, accuracy: float) -> Zero:
+def tare(spec: ChannelSpec, trace: Trace, firing: FiringSpan | None, accuracy: float) -> Zero:
     """The zero [N or kg] of a load cell: from before the firing, and after it where the cell is at rest again.
 
     ``trace`` holds its good samples [s], [SI]; ``accuracy`` is the standard deviation of its bias [SI].
@@ -89,7 +89,7 @@ def tare(spec: ChannelSpec, trace: Trace, firing: Firing | None, accuracy: float
     return _with_drift(spec, first, last, trace, firing.start, accuracy)
 
 
-def _quiet_level(trace: Trace, firing: Firing | None) -> tuple[Level | None, str]:
+def _quiet_level(trace: Trace, firing: FiringSpan | None) -> tuple[Level | None, str]:
     if firing is None:
         return None, "no firing found, hence no quiet time before it"
     found = level(before(trace, firing)) if len(trace.time) else None

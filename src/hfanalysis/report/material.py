@@ -28,7 +28,7 @@ _BEFORE, _AFTER = 2.0, 3.0
 
 
 @dataclass(frozen=True)
-class Column:
+class StoredVariable:
     """A variable of an HDF5 product, with its SI unit."""
 
     values: Array
@@ -36,7 +36,7 @@ class Column:
     long_name: str = ""
 
 
-Table = Mapping[str, Column]
+Table = Mapping[str, StoredVariable]
 Store = Mapping[str, Table]
 """The groups of an HDF5 product by their path ("" for the root), each with its variables."""
 
@@ -152,7 +152,7 @@ def read_store(path: Path) -> Store:
     """All one-dimensional variables of an HDF5 file, by group; those without a dimension become arrays of one."""
     import h5py
 
-    found: dict[str, dict[str, Column]] = {}
+    found: dict[str, dict[str, StoredVariable]] = {}
 
     def keep(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and item.ndim <= 1 and item.dtype.kind in "fiu":
@@ -164,9 +164,9 @@ def read_store(path: Path) -> Store:
     return found
 
 
-def _column(item: Any) -> Column:
+def _column(item: Any) -> StoredVariable:
     unit, long_name = (str(item.attrs.get(key, "")) for key in ("units", "long_name"))
-    return Column(np.atleast_1d(np.asarray(item[()], dtype=float)), unit, long_name)
+    return StoredVariable(np.atleast_1d(np.asarray(item[()], dtype=float)), unit, long_name)
 
 
 def required(table: Table, *names: str) -> list[Array]:

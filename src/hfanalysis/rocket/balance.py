@@ -14,7 +14,7 @@ from hfanalysis.arrays import Array
 
 
 @dataclass(frozen=True)
-class Part:
+class MassPart:
     """Mass [kg], center of gravity [m from the nose tip] and length [m] of a part, each over time or constant."""
 
     mass: Array | float
@@ -31,7 +31,7 @@ class Balance:
     inertia: Array
 
 
-def balance(parts: Iterable[Part]) -> Balance:
+def balance(parts: Iterable[MassPart]) -> Balance:
     """Mass [kg], CG [m] and pitch inertia [kg m^2], (n,), of parts taken as slender rods (report, eq. 3.60).
 
     CG = sum m x / sum m, I = sum m (L^2/12 + (x - CG)^2).
@@ -52,7 +52,7 @@ class TankPlace:
     volume: float
 
 
-def oxidizer(place: TankPlace, liquid: Array, vapor: Array, liquid_volume: Array) -> list[Part]:
+def oxidizer(place: TankPlace, liquid: Array, vapor: Array, liquid_volume: Array) -> list[MassPart]:
     """The tank's content: ``liquid`` and ``vapor`` [kg] over time, the liquid's specific volume [m^3/kg], (n,) each.
 
     The liquid fills the tank from below; each phase has its center in the middle of the length it takes.
@@ -60,6 +60,6 @@ def oxidizer(place: TankPlace, liquid: Array, vapor: Array, liquid_volume: Array
     height = np.clip(liquid * liquid_volume / place.volume, 0.0, 1.0) * place.length
     bottom = place.top + place.length
     return [
-        Part(liquid, bottom - 0.5 * height, height),
-        Part(vapor, place.top + 0.5 * (place.length - height), place.length - height),
+        MassPart(liquid, bottom - 0.5 * height, height),
+        MassPart(vapor, place.top + 0.5 * (place.length - height), place.length - height),
     ]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from hfanalysis.assembly.engine import Enthalpy
+from hfanalysis.assembly.engine import OxidizerEnthalpy
 from hfanalysis.products import engines
 from hfanalysis.products.disk import sha256_file
 from hfanalysis.record.engine_file import EngineFile
 from hfanalysis.version import __version__
 
 
-def heading(file: EngineFile, command: str, enthalpy: Enthalpy) -> dict[str, Any]:
+def heading(file: EngineFile, command: str, enthalpy: OxidizerEnthalpy) -> dict[str, Any]:
     """Which engine, by which command, under which conventions, with which oxidizer enthalpy [J/kg]."""
     return {
         "engine": file.engine.id,

@@ -20,7 +20,7 @@ _ALONE = "svg { font-family: system-ui, sans-serif; background: var(--paper); }"
 
 
 @dataclass(frozen=True)
-class Curve:
+class PlottedCurve:
     """A named line; ``style`` picks its color, else it takes the next one."""
 
     x: Array
@@ -34,8 +34,8 @@ def simulation(table: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
     [s]")."""
     time = table["time [s]"]
 
-    def curve(column: str, factor: float, name: str) -> Curve:
-        return Curve(time, table[column] * factor, name)
+    def curve(column: str, factor: float, name: str) -> PlottedCurve:
+        return PlottedCurve(time, table[column] * factor, name)
 
     pressures = [curve("tank_pressure [Pa]", 1e-5, "tank"), curve("chamber_pressure [Pa]", 1e-5, "chamber")]
     yield "pressures.svg", chart("Pressures", "time [s]", "pressure [bar]", pressures)
@@ -58,14 +58,14 @@ def study(flows: Sequence[FlowPoint], mixtures: Sequence[MixturePoint]) -> Itera
     yield "specific_impulse_mixture.svg", chart(title, "O/F", "specific impulse [s]", curves, with_zero=False)
 
 
-def _by_length(flows: Sequence[FlowPoint], key: str, factor: float, fixed: bool) -> list[Curve]:
+def _by_length(flows: Sequence[FlowPoint], key: str, factor: float, fixed: bool) -> list[PlottedCurve]:
     lengths = sorted({point.grain_length for point in flows})
     curves = []
     for length in lengths:
         points = [point for point in flows if point.grain_length == length]
         found = [_value(point.fixed if fixed else point.ideal, key) * factor for point in points]
         x = np.array([point.oxidizer_flow for point in points])
-        curves.append(Curve(x, np.array(found), f"{1e3 * length:.0f} mm"))
+        curves.append(PlottedCurve(x, np.array(found), f"{1e3 * length:.0f} mm"))
     return curves
 
 
@@ -73,19 +73,19 @@ def _value(engine: SteadyEngine | None, key: str) -> float:
     return float("nan") if engine is None else float(getattr(engine, key))
 
 
-def _by_pressure(mixtures: Sequence[MixturePoint]) -> Iterator[Curve]:
+def _by_pressure(mixtures: Sequence[MixturePoint]) -> Iterator[PlottedCurve]:
     """A curve for each pressure; beside it PROPEP's enthalpy where that is another."""
     for pressure in sorted({point.chamber_pressure for point in mixtures}):
         points = [point for point in mixtures if point.chamber_pressure == pressure]
         x = np.array([point.of_ratio for point in points])
         own = np.array([point.specific_impulse for point in points])
         propep = np.array([point.specific_impulse_propep for point in points])
-        yield Curve(x, own, f"{1e-5 * pressure:.1f} bar")
+        yield PlottedCurve(x, own, f"{1e-5 * pressure:.1f} bar")
         if not np.array_equal(own, propep):
-            yield Curve(x, propep, "PROPEP's", "raw")
+            yield PlottedCurve(x, propep, "PROPEP's", "raw")
 
 
-def chart(title: str, x_label: str, y_label: str, curves: Sequence[Curve], with_zero: bool = True) -> str:
+def chart(title: str, x_label: str, y_label: str, curves: Sequence[PlottedCurve], with_zero: bool = True) -> str:
     """One chart as an SVG document with its own style sheet."""
     xs = np.concatenate([curve.x for curve in curves])
     plot = svg.new_plot((float(xs.min()), float(xs.max())), svg.value_range([c.y for c in curves], with_zero))

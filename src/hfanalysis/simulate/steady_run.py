@@ -46,7 +46,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Design:
+class DesignRun:
     """The task, the engine that answers it, and the JSON product."""
 
     task: Task
@@ -54,7 +54,7 @@ class Design:
     product: Designed
 
 
-def design(file: EngineFile) -> Design:
+def design(file: EngineFile) -> DesignRun:
     """The steady-state design of an engine file.
 
     Raises :class:`InputError` where the file lacks what the model needs, or no engine meets what it asks for.
@@ -78,7 +78,7 @@ def design(file: EngineFile) -> Design:
             "provenance": heading.provenance(file),
         }
     )
-    return Design(task, engine, product)
+    return DesignRun(task, engine, product)
 
 
 def task_of(needs: Needs) -> Task:

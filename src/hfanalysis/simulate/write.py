@@ -15,7 +15,7 @@ from hfanalysis.flight import rasp
 from hfanalysis.products.disk import atomic, write_json
 from hfanalysis.record.engine_file import EngineFile
 from hfanalysis.simulate import plots, study
-from hfanalysis.simulate.steady_run import Design
+from hfanalysis.simulate.steady_run import DesignRun
 from hfanalysis.simulate.study import FlowPoint, MixturePoint
 from hfanalysis.simulate.unsteady_run import Simulation
 
@@ -60,7 +60,7 @@ def histories(simulation: Simulation) -> dict[str, Array]:
     }
 
 
-def design(out: Path, file: EngineFile, designed: Design) -> None:
+def design(out: Path, file: EngineFile, designed: DesignRun) -> None:
     """design.json, the study's two tables and their plots, and ID.eng of the constant thrust."""
     write_json(out / "design.json", designed.product)
     flows = study.over_flow_and_length(designed.task)
@@ -105,7 +105,7 @@ def _mixture_row(point: MixturePoint) -> list[object]:
     return [point.chamber_pressure, point.of_ratio, point.specific_impulse, point.specific_impulse_propep]
 
 
-def engine_file(file: EngineFile, designed: Design) -> str:
+def engine_file(file: EngineFile, designed: DesignRun) -> str:
     """The constant thrust as a RASP engine file; the rocket's dry mass holds the empty engine."""
     engine, grain = designed.engine, designed.task.grain
     propellant = engine.oxidizer_mass + engine.fuel_mass

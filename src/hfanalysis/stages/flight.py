@@ -16,7 +16,7 @@ def run(context: Context) -> None:
     from hfanalysis.inference.adopted.effects import read_adopted
     from hfanalysis.measured_flight.engine_files import export, rocketpy
     from hfanalysis.measured_flight.firing import firing
-    from hfanalysis.measured_flight.product import launch, product, write_histories
+    from hfanalysis.measured_flight.product import fly_measured, product, write_histories
     from hfanalysis.measured_flight.stability import stability
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.products.segments import Segments
@@ -30,7 +30,7 @@ def run(context: Context) -> None:
     log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, adopted.acting)
     calibration = None if "calibrate" in context.absent else context.read(Calibration)
     flown = firing(log, segments, calibration, definition, bool(context.parameter("raw_thrust")))
-    found = launch(
+    found = fly_measured(
         flown, definition.rocket, int(context.parameter("flights")), int(context.parameter("seed")), context.progress
     )
     winds, seeds = context.parameter("winds"), int(context.parameter("gust_seeds"))

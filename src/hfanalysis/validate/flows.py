@@ -23,7 +23,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.nitrous import saturation as saturation_of
-from hfanalysis.validate.tank_free import TankAlone
+from hfanalysis.validate.tank_free import TankFreeRun
 
 HISTORY_STEP = 0.02
 """[s] of the histories: block means over this time."""
@@ -58,7 +58,7 @@ class Flows:
 
 
 def oxidizer_flow(
-    log: TestLog, segments: Segments, calibration: TankConstants, definition: TestDefinition, alone: TankAlone,
+    log: TestLog, segments: Segments, calibration: TankConstants, definition: TestDefinition, alone: TankFreeRun,
     time: Array,
 ) -> Array:  # fmt: skip
     """[kg/s], (n,), at given times (n,) [s]: from the measured pressures while there is liquid, then from the tank
@@ -98,7 +98,7 @@ def burn_fuel(engine: Engine, law: Regression, time: Array, oxidizer: Array, fac
 
 
 @dataclass(frozen=True)
-class Nozzle:
+class NozzleFlow:
     """The nozzle on a given chamber pressure: ideal flow [kg/s], thrust [N], and the gas's R T [J/kg] and gamma."""
 
     flow: Array
@@ -109,7 +109,7 @@ class Nozzle:
 
 def nozzle_along(
     engine: Engine, pressure: Array, of_ratio: Array, ambient: float, throat_factor: Array | float = 1.0
-) -> Nozzle:
+) -> NozzleFlow:
     """What the nozzle does with gas of this mixture ``of_ratio`` [-] at this ``pressure`` [Pa], both (n,), into
     ``ambient`` [Pa].
 
@@ -121,4 +121,4 @@ def nozzle_along(
         engine.combustion.kernel, pressure, of_ratio, enthalpy, engine.throat_area * np.asarray(throat_factor),
         engine.exit_area, ambient,
     )  # fmt: skip
-    return Nozzle(*found)
+    return NozzleFlow(*found)

@@ -37,7 +37,7 @@ FILLING_STEPS = 200
 
 
 @dataclass(frozen=True)
-class TankAlone:
+class TankFreeRun:
     """A run of the tank alone at the times of ``measured`` p_tank; ``chamber`` and ``run_pressure`` [Pa], ``flow``
     through the injector [kg/s], ``mass`` [kg], liquid gone at ``t_v`` [s] (NaN: not).
 
@@ -65,7 +65,7 @@ def run_tank_alone(
     definition: TestDefinition,
     constant: bool,
     effects: Sequence[Active] = (),
-) -> TankAlone:
+) -> TankFreeRun:
     """The tank from t_feed on with the measured chamber pressure; ``constant``: losses by phase instead of K_loss.
 
     Raises AbsentError where C_i, and with it the model, cannot be had.
@@ -92,7 +92,7 @@ def run_tank_alone(
     wet = ~(part.time >= run.t_v)
     liquid = saturation.liquid_density(np.where(wet, run.temperature, temperature))
     factor = run.injector_factor(feed.area, np.where(wet, liquid, run.mass / feed.volume))
-    return TankAlone(
+    return TankFreeRun(
         part, run.pressure, run.flow, run.mass, run.t_v, chamber, start, m, run.run_pressure, factor,
         run.nitrogen_share,
     )  # fmt: skip

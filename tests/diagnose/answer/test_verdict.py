@@ -26,7 +26,7 @@ from hfanalysis.diagnose.answer.posterior import (
     POOR_FIT,
     SET,
     UNSEEN,
-    Scale,
+    EvidenceScale,
     above_chance,
     evidences_of,
     kind,
@@ -76,7 +76,7 @@ def eroded() -> Naming:
 
 @given(labels, some.floats(0.5, 20.0), some.floats(0.0, 5.0), some.floats(0.0, POOR_FIT))
 def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: float, leftover: float) -> None:
-    found = Scale(t, more).probabilities(evidences, leftover)
+    found = EvidenceScale(t, more).probabilities(evidences, leftover)
     assert set(found) == set(evidences)
     assert sum(found.values()) == pytest.approx(1.0)
     little = "none" in evidences and not above_chance(evidences)
@@ -87,7 +87,7 @@ def test_probabilities_sum_to_one(evidences: dict[str, float], t: float, more: f
 
 @given(labels)
 def test_the_set_is_the_smallest_that_holds_nine_tenths(evidences: dict[str, float]) -> None:
-    found = Scale().probabilities(evidences, 1.0)
+    found = EvidenceScale().probabilities(evidences, 1.0)
     names = smallest_set(found)
     assert sum(found[n] for n in names) >= SET - 1e-12
     assert sum(found[n] for n in names[:-1]) < SET
@@ -96,10 +96,10 @@ def test_the_set_is_the_smallest_that_holds_nine_tenths(evidences: dict[str, flo
 
 def test_a_temperature_takes_evidences_less_seriously() -> None:
     evidences = {"none": 0.0, "tank_heat": 10.0}
-    cold, warm = (Scale(t).probabilities(evidences, 1.0) for t in (1.0, 5.0))
+    cold, warm = (EvidenceScale(t).probabilities(evidences, 1.0) for t in (1.0, 5.0))
     assert cold["tank_heat"] == pytest.approx(1.0 / (1.0 + np.exp(-10.0)))
     assert warm["tank_heat"] == pytest.approx(1.0 / (1.0 + np.exp(-2.0)))
-    left = Scale(1.0, 4.0)
+    left = EvidenceScale(1.0, 4.0)
     assert left.probabilities(evidences, 0.8) == cold
     assert left.probabilities(evidences, 2.0) == warm
 
@@ -107,7 +107,7 @@ def test_a_temperature_takes_evidences_less_seriously() -> None:
 @given(some.floats(-20.0, 5000.0), some.floats(-20.0, 5000.0), some.floats(POOR_FIT, 100.0))
 def test_of_a_test_that_no_model_comes_near_names_keep_a_share(name: float, strange: float, leftover: float) -> None:
     evidences = {"none": 0.0, "tank_heat": name, "unknown": strange}
-    near, far = (Scale().probabilities(evidences, left) for left in (1.0, leftover))
+    near, far = (EvidenceScale().probabilities(evidences, left) for left in (1.0, leftover))
     assert sum(far.values()) == pytest.approx(1.0)
     for label in ("none", "tank_heat"):
         assert far[label] == pytest.approx(near[label] * POOR_FIT / leftover)
@@ -115,7 +115,7 @@ def test_of_a_test_that_no_model_comes_near_names_keep_a_share(name: float, stra
 
 
 def test_far_from_all_models_a_name_is_claimed_only_where_no_source_is_found() -> None:
-    stated = Scale().probabilities({"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, 19.0)
+    stated = EvidenceScale().probabilities({"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, 19.0)
     assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": 4000.0}, poor_fit(19.0)) == "unknown"
     assert _claimed(stated, {"none": 0.0, "tank_heat": 8000.0, "unknown": -5.0}, poor_fit(19.0)) == "tank_heat"
     assert _claimed(stated, {"none": 0.0, "tank_heat": 8.0, "unknown": -5.0}, poor_fit(19.0)) == "none"
@@ -124,7 +124,7 @@ def test_far_from_all_models_a_name_is_claimed_only_where_no_source_is_found() -
 
 def test_where_evidence_misleads_nothing_is_certain() -> None:
     evidences = {"none": 0.0, "tank_heat": 400.0, "n2_purge": 3.0, "unknown": -5.0}
-    found = Scale(misled=0.1).probabilities(evidences, 1.0)
+    found = EvidenceScale(misled=0.1).probabilities(evidences, 1.0)
     assert sum(found.values()) == pytest.approx(1.0)
     assert found["none"] == pytest.approx(0.1 * BEFORE["none"])
     assert found["n2_purge"] == pytest.approx(0.1 * BEFORE["named"] / 2.0)
@@ -134,7 +134,7 @@ def test_where_evidence_misleads_nothing_is_certain() -> None:
 @pytest.mark.parametrize("evidence", [LEAST_EVIDENCE - 0.01, LEAST_EVIDENCE])
 def test_faint_evidence_misleads_in_a_share_of_its_own(evidence: float) -> None:
     evidences = {"none": 0.0, "tank_heat": evidence, "unknown": -5.0}
-    found = Scale(misled=0.01, misled_faint=0.2).probabilities(evidences, 1.0)
+    found = EvidenceScale(misled=0.01, misled_faint=0.2).probabilities(evidences, 1.0)
     share = 0.2 if evidence < LEAST_EVIDENCE else 0.01
     assert sum(found.values()) == pytest.approx(1.0)
     assert found["none"] == pytest.approx(share * BEFORE["none"], abs=2e-4)
@@ -148,7 +148,7 @@ def test_effects_that_were_not_tried_are_less_probable_than_those_that_were() ->
 
 
 def test_an_offset_of_a_kind_shifts_its_odds() -> None:
-    shifted = Scale(offsets={"none": 2.0, "named": 0.0, "unknown": 0.0}).probabilities(
+    shifted = EvidenceScale(offsets={"none": 2.0, "named": 0.0, "unknown": 0.0}).probabilities(
         {"none": 0.0, "n2_purge": 2.0}, 1
     )
     assert shifted["none"] == pytest.approx(0.5)
@@ -158,10 +158,12 @@ def test_an_offset_of_a_kind_shifts_its_odds() -> None:
 def test_what_was_not_seen_is_as_good_as_none_but_for_its_own_offset() -> None:
     offsets = {"none": 0.0, "named": 1.0, "unknown": 0.0, "unseen named": -3.0}
     seen = {"none": 0.0, "n2_purge": 4.0, "tank_heat": UNSEEN, "fuel_sliver": UNSEEN - 20.0}
-    found = Scale(temperature=2.0, offsets=offsets).probabilities(seen, 1.0)
+    found = EvidenceScale(temperature=2.0, offsets=offsets).probabilities(seen, 1.0)
     assert found["tank_heat"] == found["fuel_sliver"] == pytest.approx(found["none"] * np.exp(-3.0))
     assert found["n2_purge"] == pytest.approx(found["none"] * np.exp(1.0 + 4.0 / 2.0))
-    without = Scale(temperature=2.0, offsets={"none": 0.0, "named": 1.0, "unknown": 0.0}).probabilities(seen, 1.0)
+    without = EvidenceScale(temperature=2.0, offsets={"none": 0.0, "named": 1.0, "unknown": 0.0}).probabilities(
+        seen, 1.0
+    )
     assert without["fuel_sliver"] < without["tank_heat"]
 
 
@@ -170,7 +172,7 @@ def test_unknown_has_to_explain_more_than_closures_get_wrong() -> None:
 
     def odds(name: float, unknown: float) -> float:
         evidences = {"none": 0.0, "tank_heat": name, "unknown": unknown}
-        found = Scale(2.0, offsets=offsets, unexplained=0.5).probabilities(evidences, 1.0)
+        found = EvidenceScale(2.0, offsets=offsets, unexplained=0.5).probabilities(evidences, 1.0)
         return float(np.log(found["unknown"] / found["tank_heat"]))
 
     assert odds(64.0, 67.0) == pytest.approx(-1.0 + (3.0 - 4.0) / 2.0)
@@ -183,7 +185,7 @@ def test_a_source_in_another_equation_is_nothing_that_a_closure_gets_wrong() -> 
     evidences = {"none": 0.0, "injector_two_phase": 100.0, "unknown": 108.0}
 
     def odds(apart: float | None) -> float:
-        found = Scale(2.0, unexplained=1.0).probabilities(evidences, 1.0, apart)
+        found = EvidenceScale(2.0, unexplained=1.0).probabilities(evidences, 1.0, apart)
         return float(np.log(found["unknown"] / found["injector_two_phase"]))
 
     assert odds(None) == pytest.approx((8.0 - 10.0) / 2.0)
@@ -197,7 +199,7 @@ def test_where_nothing_is_seen_unknown_is_not_more_probable_than_none() -> None:
 
     def odds(unknown: float, name: float = 1.0, offset: float = 0.0) -> float:
         offsets = {"none": 0.0, "named": 0.0, "unknown": offset}
-        found = Scale(offsets=offsets).probabilities({"none": 0.0, "tank_heat": name, "unknown": unknown}, 1.0)
+        found = EvidenceScale(offsets=offsets).probabilities({"none": 0.0, "tank_heat": name, "unknown": unknown}, 1.0)
         return float(np.log(found["unknown"] / found["none"]))
 
     least = ABOVE_CHANCE["unknown"]
@@ -217,14 +219,14 @@ def stored(monkeypatch: pytest.MonkeyPatch, tmp_path):  # type: ignore[no-untype
 
 
 def test_without_constants_evidences_are_taken_as_they_are(stored) -> None:  # type: ignore[no-untyped-def]
-    assert scale() == Scale()
+    assert scale() == EvidenceScale()
 
 
 def test_constants_are_read_from_their_file(stored) -> None:  # type: ignore[no-untyped-def]
     offsets = {"none": 1.0, "named": 0.0, "unknown": -1.0}
     text = json.dumps({"temperature": 3.0, "temperature_per_leftover": 0.2, "offsets": offsets, "cases": 9})
     (stored / "probabilities.json").write_text(text, encoding="utf-8")
-    assert scale() == Scale(3.0, 0.2, offsets)
+    assert scale() == EvidenceScale(3.0, 0.2, offsets)
 
 
 def test_none_is_the_zero_of_evidence_and_a_set_counts_for_its_first_name() -> None:
@@ -321,7 +323,7 @@ def probable(*gains: tuple[str, float]) -> Naming:
     ],
 )
 def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.setattr(verdict_module, "scale", Scale)  # evidences as they are
+    monkeypatch.setattr(verdict_module, "scale", EvidenceScale)  # evidences as they are
     verdict = verdict_of(probable(*gains))
     assert verdict.label == label
     assert sum(verdict.posterior.values()) == pytest.approx(1.0)
@@ -332,7 +334,7 @@ def test_the_verdict_follows_from_the_odds(gains, label: str, monkeypatch) -> No
 
 
 def test_what_is_too_little_for_a_claim_is_no_place_but_the_likeliest(monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.setattr(verdict_module, "scale", Scale)
+    monkeypatch.setattr(verdict_module, "scale", EvidenceScale)
     found = probable(("nozzle_throat_erosion", 8.8))
     verdict = verdict_of(found)
     assert (verdict.label, verdict.chosen.names) == ("none", ())
@@ -431,7 +433,7 @@ def test_an_equation_is_as_probable_as_its_names_together() -> None:
 
 
 def test_where_nothing_is_claimed_the_likeliest_place_is_told_all_the_same(monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.setattr(verdict_module, "scale", Scale)
+    monkeypatch.setattr(verdict_module, "scale", EvidenceScale)
     for gain, there in ((3.0, True), (-1.0, False), (20.0, False)):
         found = probable(("nozzle_throat_erosion", gain))
         verdict = verdict_of(found)
@@ -450,7 +452,7 @@ def test_the_likeliest_place_is_in_the_likeliest_equation() -> None:
         equations={"nozzle_throat_erosion": "nozzle"} | dict.fromkeys(("tank_heat", "tank_wall_heat_capacity"), "tank"),
     )
     evidences = evidences_of(found)
-    stated = Scale().probabilities(evidences, 1.0)
+    stated = EvidenceScale().probabilities(evidences, 1.0)
     likeliest = likeliest_of(by_equation(stated, found), stated, evidences, found)
     assert likeliest is not None
     assert likeliest.names == ("tank_heat",)
@@ -466,8 +468,8 @@ def with_set(gain: float, further: str = "load_cell_drift") -> Naming:
 @pytest.mark.parametrize(("gain", "claimed"), [(0.5, 1), (0.8, 1), (0.9, 2), (10.0, 2)])
 def test_a_second_effect_is_claimed_where_one_does_not_explain_as_much(gain: float, claimed: int, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     """One alone has the probability 1 / (1 + e^gain), and 0.3 is enough."""
-    monkeypatch.setattr(verdict_module, "scale", Scale)
-    monkeypatch.setattr(posterior, "scale", Scale)
+    monkeypatch.setattr(verdict_module, "scale", EvidenceScale)
+    monkeypatch.setattr(posterior, "scale", EvidenceScale)
     verdict = verdict_of(with_set(gain))
     assert len(verdict.chosen.names) == claimed
     assert verdict.partners["load_cell_drift"] == pytest.approx(1.0 / (1.0 + np.exp(-gain)), abs=1e-6)
@@ -476,8 +478,8 @@ def test_a_second_effect_is_claimed_where_one_does_not_explain_as_much(gain: flo
 
 
 def test_partners_that_explain_as_much_share_the_probability(monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.setattr(verdict_module, "scale", Scale)
-    monkeypatch.setattr(posterior, "scale", Scale)
+    monkeypatch.setattr(verdict_module, "scale", EvidenceScale)
+    monkeypatch.setattr(posterior, "scale", EvidenceScale)
     found = replace(with_set(12.0), sets=(*with_set(12.0).sets, *with_set(12.0, "chamber_tap_lag").sets))
     verdict = verdict_of(found)
     assert verdict.label == "ambiguous"
@@ -614,8 +616,8 @@ def test_what_slow_noise_may_be_larger_by_is_no_gap() -> None:
 
 
 def test_what_is_named_beside_the_first_is_not_said_to_be_excluded(monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.setattr(verdict_module, "scale", Scale)
-    monkeypatch.setattr(posterior, "scale", Scale)
+    monkeypatch.setattr(verdict_module, "scale", EvidenceScale)
+    monkeypatch.setattr(posterior, "scale", EvidenceScale)
     found = with_set(10.0)
     found = replace(
         found, equations={**found.equations, **dict.fromkeys(("load_cell_drift", "chamber_tap_lag"), "sensor")}
@@ -629,7 +631,7 @@ def test_what_is_named_beside_the_first_is_not_said_to_be_excluded(monkeypatch) 
 
 
 def test_an_unknown_source_is_no_effect_of_the_name_of_its_site(monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.setattr(verdict_module, "scale", Scale)
+    monkeypatch.setattr(verdict_module, "scale", EvidenceScale)
     found = probable(("nozzle_throat_erosion", 3.0), ("unknown", 40.0))
     at_heat = replace(found.unknown[0], names=("tank_heat",))
     equations = {**found.equations, "tank_heat": "tank_energy"}

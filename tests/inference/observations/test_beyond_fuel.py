@@ -26,7 +26,7 @@ from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.reduction import observe_test
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
-from hfanalysis.record.sections import Observed as Seen
+from hfanalysis.record.sections import ObservedSection as Seen
 from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
 

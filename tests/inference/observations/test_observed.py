@@ -12,7 +12,7 @@ from tests.inference.made import covariance_of
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.observations.blocks import MERGED, NEAR
-from hfanalysis.inference.observations.channel import FORM_ERROR, SHARE, Channel
+from hfanalysis.inference.observations.channel import FORM_ERROR, SHARE, ObservedChannel
 from hfanalysis.inference.observations.covariance import coherence_of
 from hfanalysis.inference.observations.frame import (
     AROUND_CHANGE,
@@ -27,11 +27,11 @@ from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER, as_read
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
-from hfanalysis.record.sections import Observed as Seen
+from hfanalysis.record.sections import ObservedSection as Seen
 from hfanalysis.units import Value
 
 
-def channel(test: Observed, name: str) -> Channel:
+def channel(test: Observed, name: str) -> ObservedChannel:
     return next(c for c in test.channels if c.name == name)
 
 

@@ -59,7 +59,7 @@ def share_kept(leftover: float) -> float:
 
 
 @dataclass(frozen=True)
-class Scale:
+class EvidenceScale:
     """How log evidences become probabilities: p_k ~ exp(offset of its kind + evidence / T).
 
     A label of which a score test saw nothing (UNSEEN) is as good as none, but for an offset of its own: that an effect
@@ -173,14 +173,14 @@ def beyond_closures(
 
 
 @lru_cache(maxsize=1)
-def scale() -> Scale:
+def scale() -> EvidenceScale:
     """The constants that come along; none are applied where there are none."""
     source = files("hfanalysis.diagnose.answer") / "probabilities.json"
     if not source.is_file():
-        return Scale()
+        return EvidenceScale()
     found = json.loads(source.read_text(encoding="utf-8"))
     rest = {name: float(found.get(name, 0.0)) for name in ("misled", "misled_faint", "unexplained")}
-    return Scale(found["temperature"], found["temperature_per_leftover"], found["offsets"], **rest)
+    return EvidenceScale(found["temperature"], found["temperature_per_leftover"], found["offsets"], **rest)
 
 
 def evidences_of(found: Naming) -> dict[str, float]:

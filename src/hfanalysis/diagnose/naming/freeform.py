@@ -10,7 +10,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.diagnose.naming.dropping import dropped
 from hfanalysis.diagnose.naming.plain import plain_sources
-from hfanalysis.inference.candidate import HOPELESS, SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.inference.candidate import SHORT, TOO_FAR_BEHIND, Bench, Candidate, attempted, candidate
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.form import FINEST
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
@@ -132,7 +132,7 @@ def _fitted(
     if named is not None and named.names:
         same = named if named.form == start.form else bench.refitted(named, start.form)
         rival = max(rival, same.log_evidence if same else -np.inf)
-    racing = [c for c in found if c.log_evidence > rival - HOPELESS]
+    racing = [c for c in found if c.log_evidence > rival - TOO_FAR_BEHIND]
     if not racing and found[0].log_evidence > rival - BEYOND:
         racing = found[:1]
     return [*each(bench.judged, racing), *found[len(racing) :]]

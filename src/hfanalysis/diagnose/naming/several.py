@@ -13,7 +13,7 @@ from hfanalysis.diagnose.naming.fading import fades, fading_fit
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.slack import slack_gain
-from hfanalysis.inference.candidate import HOPELESS, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.inference.candidate import TOO_FAR_BEHIND, Bench, Candidate, attempted, candidate, more_probable
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import predict
 from hfanalysis.inference.fitting.threads import each
@@ -143,7 +143,7 @@ def _in_the_running(grown: list[Candidate]) -> list[Candidate]:
     top = dict[tuple[str, ...], float]()
     for c in grown:
         top[c.names[:-1]] = max(c.log_evidence, top.get(c.names[:-1], -np.inf))
-    return [c for c in grown if c.log_evidence > top[c.names[:-1]] - HOPELESS]
+    return [c for c in grown if c.log_evidence > top[c.names[:-1]] - TOO_FAR_BEHIND]
 
 
 def _asked(

@@ -21,8 +21,8 @@ from hfanalysis.diagnose.naming.score import Test, score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.engine.effect import Effect
 from hfanalysis.inference.candidate import (
-    HOPELESS,
     SHORT,
+    TOO_FAR_BEHIND,
     WELL_FITTED,
     Bench,
     Candidate,
@@ -212,11 +212,11 @@ def _raced(started: list[Candidate], bench: Bench) -> list[Candidate]:
     """Each at the form with most evidence for it, going down together; who falls far behind goes no further."""
     out, running = [], started
     while running:
-        least = max(c.log_evidence for c in running) - HOPELESS
+        least = max(c.log_evidence for c in running) - TOO_FAR_BEHIND
         finer = each(partial(_finer, bench=bench, least=least), running)
         out += [c for c, further in zip(running, finer, strict=True) if further is None]
         running = [further for further in finer if further is not None]
-    least = max((c.log_evidence for c in out), default=0.0) - HOPELESS
+    least = max((c.log_evidence for c in out), default=0.0) - TOO_FAR_BEHIND
     return each(lambda c: _settled(c, bench) if bench.tempering and c.log_evidence > least else c, out)
 
 

@@ -15,7 +15,7 @@ from scipy.linalg import block_diag
 from scipy.sparse import csr_array
 
 from hfanalysis.arrays import Array, Mask
-from hfanalysis.diagnose.weak_form.linear import History
+from hfanalysis.diagnose.weak_form.linear import LinearHistory
 
 SHORTEST_CELL, MOST_CELLS = 0.03, 200
 """Seconds, and how many cells there are at most."""
@@ -222,7 +222,7 @@ class Windows:
     mean: Array
     slope: Array
 
-    def of(self, rate: History | None, stored: History | None) -> History:
+    def of(self, rate: LinearHistory | None, stored: LinearHistory | None) -> LinearHistory:
         """Mean (functions,) of a rate [unit/s] and of the slope of what is stored [unit], the derivative moved onto the
         test function."""
         parts = [h.weighted(w) for h, w in ((rate, self.mean), (stored, self.slope)) if h is not None]
@@ -256,11 +256,11 @@ class Piece:
     """An equation in one phase: its cells, the mean of a rate, what is stored, and a factor that gives the unit."""
 
     part: slice
-    rate: History | None
-    stored: History | None = None
+    rate: LinearHistory | None
+    stored: LinearHistory | None = None
     scale: Array | None = None
 
 
-def by_phase(cells: Cells, rate: History, stored: History | None = None) -> list[Piece]:
+def by_phase(cells: Cells, rate: LinearHistory, stored: LinearHistory | None = None) -> list[Piece]:
     """An equation over all cells, phase by phase: ``rate`` (cells,) [unit/s] and what is ``stored`` (cells,) [unit]."""
     return [Piece(part, rate[part], None if stored is None else stored[part]) for part in cells.phases]

@@ -17,7 +17,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 from hfanalysis.diagnose.weak_form.cells import Cells, Piece, by_phase
-from hfanalysis.diagnose.weak_form.linear import History, integral, through, through_all
+from hfanalysis.diagnose.weak_form.linear import LinearHistory, integral, through, through_all
 from hfanalysis.engine.chamber import chamber_volume
 from hfanalysis.engine.grain import flux_power, opened, oxidizer_flux
 from hfanalysis.engine.nozzle import expand_along
@@ -40,16 +40,16 @@ class ChamberBalance:
 
     engine: Engine
     cells: Cells
-    channels: Mapping[str, History]
-    constants: Mapping[str, History]
-    flow: History
+    channels: Mapping[str, LinearHistory]
+    constants: Mapping[str, LinearHistory]
+    flow: LinearHistory
     enthalpy: Array
 
-    def _constant(self, name: str) -> History:
+    def _constant(self, name: str) -> LinearHistory:
         return self.constants[name].spread(self.cells.time.size)
 
     @cached_property
-    def _regression(self) -> tuple[History, History]:
+    def _regression(self) -> tuple[LinearHistory, LinearHistory]:
         """Port radius [m] and fuel flow [kg/s]."""
         e, n = self.engine, self._constant("n")
         pace = integral(through(lambda m, n: _powers(m / pi, n), self.flow, n), self.cells.width)
@@ -61,7 +61,7 @@ class ChamberBalance:
         return radius, fuel
 
     @cached_property
-    def _expansion(self) -> tuple[History, History, History]:
+    def _expansion(self) -> tuple[LinearHistory, LinearHistory, LinearHistory]:
         """Stored gas [kg], flow [kg/s] and thrust [N] of the nozzle at the measured chamber pressure."""
         e, enthalpy, (radius, fuel) = self.engine, self.enthalpy, self._regression
 

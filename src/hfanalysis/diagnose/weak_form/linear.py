@@ -21,37 +21,37 @@ Recipes, section 5.7)."""
 
 
 @dataclass(frozen=True)
-class History:
+class LinearHistory:
     """``value`` (n,) [any unit] and its ``slopes`` (n, k) with k independent N(0, 1) numbers."""
 
     value: Array
     slopes: Array
 
-    def __add__(self, other: History) -> History:
-        return History(self.value + other.value, self.slopes + other.slopes)
+    def __add__(self, other: LinearHistory) -> LinearHistory:
+        return LinearHistory(self.value + other.value, self.slopes + other.slopes)
 
-    def __sub__(self, other: History) -> History:
-        return History(self.value - other.value, self.slopes - other.slopes)
+    def __sub__(self, other: LinearHistory) -> LinearHistory:
+        return LinearHistory(self.value - other.value, self.slopes - other.slopes)
 
-    def __mul__(self, other: History) -> History:
+    def __mul__(self, other: LinearHistory) -> LinearHistory:
         slopes = self.slopes * other.value[:, None] + other.slopes * self.value[:, None]
-        return History(self.value * other.value, slopes)
+        return LinearHistory(self.value * other.value, slopes)
 
-    def times(self, factor: float) -> History:
+    def times(self, factor: float) -> LinearHistory:
         """The same in another unit: ``factor`` of it."""
-        return History(factor * self.value, factor * self.slopes)
+        return LinearHistory(factor * self.value, factor * self.slopes)
 
-    def __getitem__(self, part: slice) -> History:
-        return History(self.value[part], self.slopes[part])
+    def __getitem__(self, part: slice) -> LinearHistory:
+        return LinearHistory(self.value[part], self.slopes[part])
 
-    def spread(self, count: int) -> History:
+    def spread(self, count: int) -> LinearHistory:
         """A single value, held over ``count`` instants: (count,) [its unit]."""
-        return History(np.repeat(self.value, count), np.repeat(self.slopes, count, axis=0))
+        return LinearHistory(np.repeat(self.value, count), np.repeat(self.slopes, count, axis=0))
 
-    def weighted(self, weights: Array) -> History:
+    def weighted(self, weights: Array) -> LinearHistory:
         """Weighted sums (sums,) over the instants [the value's unit times that of the weights]; ``weights`` (sums,
         n)."""
-        return History(weights @ self.value, weights @ self.slopes)
+        return LinearHistory(weights @ self.value, weights @ self.slopes)
 
     @property
     def covariance(self) -> Array:
@@ -59,12 +59,12 @@ class History:
         return np.asarray(self.slopes @ self.slopes.T)
 
 
-def joined(parts: Sequence[History]) -> History:
+def joined(parts: Sequence[LinearHistory]) -> LinearHistory:
     """One history after the other, all in one unit [any]."""
-    return History(np.concatenate([p.value for p in parts]), np.concatenate([p.slopes for p in parts]))
+    return LinearHistory(np.concatenate([p.value for p in parts]), np.concatenate([p.slopes for p in parts]))
 
 
-def integral(rate: History, width: Array) -> History:
+def integral(rate: LinearHistory, width: Array) -> LinearHistory:
     """Integral (n,) [unit of the rate times s] up to the middle of each cell of a history of cell means; ``width`` (n,)
     [s] of the cells.
 
@@ -72,10 +72,10 @@ def integral(rate: History, width: Array) -> History:
     [0.5, 2.0]
     """
     value, slopes = rate.value * width, rate.slopes * width[:, None]
-    return History(np.cumsum(value) - 0.5 * value, np.cumsum(slopes, axis=0) - 0.5 * slopes)
+    return LinearHistory(np.cumsum(value) - 0.5 * value, np.cumsum(slopes, axis=0) - 0.5 * slopes)
 
 
-def total(rate: History, width: Array) -> History:
+def total(rate: LinearHistory, width: Array) -> LinearHistory:
     """Integral over all cells, as a single value [unit of the rate times s]; ``width`` (n,) [s] of the cells.
 
     >>> total(History(np.array([2.0, 4.0]), np.zeros((2, 0))), np.array([0.5, 0.5])).value.tolist()
@@ -84,7 +84,7 @@ def total(rate: History, width: Array) -> History:
     return rate.weighted(width[None, :])
 
 
-def through_all(formula: Callable[..., tuple[Array, ...]], *inputs: History) -> tuple[History, ...]:
+def through_all(formula: Callable[..., tuple[Array, ...]], *inputs: LinearHistory) -> tuple[LinearHistory, ...]:
     """What a formula that acts at each instant by itself makes of histories (n,) [any units]; it gives several, all
     (n,).
 
@@ -100,10 +100,10 @@ def through_all(formula: Callable[..., tuple[Array, ...]], *inputs: History) -> 
         up, down = (formula(*values[:i], values[i] + s, *values[i + 1 :]) for s in (step, -step))
         for slope, high, low in zip(slopes, up, down, strict=True):
             slope += ((high - low) / (2.0 * step))[:, None] * given.slopes
-    return tuple(History(value, slope) for value, slope in zip(results, slopes, strict=True))
+    return tuple(LinearHistory(value, slope) for value, slope in zip(results, slopes, strict=True))
 
 
-def through(formula: Callable[..., Array], *inputs: History) -> History:
+def through(formula: Callable[..., Array], *inputs: LinearHistory) -> LinearHistory:
     """What a formula that acts at each instant by itself makes of histories (n,), of any units; slopes to first order.
 
     >>> two, three = History(np.array([2.0]), np.eye(1)), History(np.array([3.0]), np.zeros((1, 1)))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.diagnose.weak_form.linear import History
+from hfanalysis.diagnose.weak_form.linear import LinearHistory
 from hfanalysis.engine.unsteady import Engine
 
 if TYPE_CHECKING:
@@ -59,12 +59,12 @@ class Spread:
         out[np.ix_(where, where)] = self.covariance
         return out
 
-    def constants(self, engine: Engine, slopes: Array) -> dict[str, History]:
+    def constants(self, engine: Engine, slopes: Array) -> dict[str, LinearHistory]:
         """The engine's constants [SI] by name, each a single value; ``slopes`` (KNOWN, k) [SI] with k independent N(0,
         1) numbers."""
         rows = slopes if slopes.size else np.zeros((len(KNOWN), slopes.shape[1]))
         values = _values(engine)
-        return {name: History(np.array([values[name]]), rows[i : i + 1]) for i, name in enumerate(KNOWN)}
+        return {name: LinearHistory(np.array([values[name]]), rows[i : i + 1]) for i, name in enumerate(KNOWN)}
 
 
 def _values(engine: Engine) -> dict[str, float]:

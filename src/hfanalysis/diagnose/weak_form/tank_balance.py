@@ -11,7 +11,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.diagnose.weak_form.cells import Piece, by_phase
-from hfanalysis.diagnose.weak_form.linear import History, integral, through
+from hfanalysis.diagnose.weak_form.linear import LinearHistory, integral, through
 from hfanalysis.diagnose.weak_form.tank_flow import TankFlow
 from hfanalysis.engine.feed_line import line_loss
 from hfanalysis.engine.injector import mass_flows
@@ -58,7 +58,7 @@ class TankBalance(TankFlow):
         source, temperature = self.engine.saturation, float(self.vapor_start[1].value[0])
         return float(source.pressure(temperature) * source.vapor_volume(temperature)[0]) / temperature
 
-    def _carried(self) -> History:
+    def _carried(self) -> LinearHistory:
         """Enthalpy flow [W] of the liquid that leaves."""
         source = self.engine.saturation
         return through(

@@ -15,7 +15,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.diagnose.weak_form.cells import Cells
-from hfanalysis.diagnose.weak_form.linear import History, integral, joined, through, total
+from hfanalysis.diagnose.weak_form.linear import LinearHistory, integral, joined, through, total
 from hfanalysis.engine.injector import flow_resistance, mass_flows
 from hfanalysis.engine.tank import COLDEST_VAPOR, WARMEST_VAPOR
 from hfanalysis.engine.unsteady import Engine
@@ -33,9 +33,9 @@ class TankFlow:
 
     engine: Engine
     cells: Cells
-    channels: Mapping[str, History]
-    constants: Mapping[str, History]
-    edge: History | None
+    channels: Mapping[str, LinearHistory]
+    constants: Mapping[str, LinearHistory]
+    edge: LinearHistory | None
 
     @property
     def wet(self) -> slice:
@@ -47,13 +47,13 @@ class TankFlow:
         """Cells behind it."""
         return self.cells.phases[1] if len(self.cells.phases) > 1 else None
 
-    def constant(self, name: str, part: slice | None = None) -> History:
+    def constant(self, name: str, part: slice | None = None) -> LinearHistory:
         """One of the constants [SI], held over a phase (default: all cells); (cells,)."""
         part = part or slice(0, self.cells.time.size)
         return self.constants[name].spread(part.stop - part.start)
 
     @cached_property
-    def _resistance(self) -> History:
+    def _resistance(self) -> LinearHistory:
         """Effective area [m^2] of what lies between the two pressures that are measured."""
         feed = self.engine.feed
         if "p_run" in self.channels or feed.constant_losses is not None:
@@ -63,7 +63,7 @@ class TankFlow:
         )
 
     @cached_property
-    def _drop(self) -> History:
+    def _drop(self) -> LinearHistory:
         """Pressure drop across it [Pa]."""
         upstream = self.channels.get("p_run", self.channels["p_tank"])
         lost = self.constant_loss if "p_run" not in self.channels else 0.0
@@ -78,24 +78,24 @@ class TankFlow:
         return np.where(np.arange(self.cells.time.size) < self.cells.wet, *losses)
 
     @cached_property
-    def temperature(self) -> History:
+    def temperature(self) -> LinearHistory:
         """Of the saturated tank (wet cells,) [K], while there is liquid, from its pressure."""
         return through(self.engine.saturation.temperature, self.channels["p_tank"][self.wet])
 
     @cached_property
-    def wet_flow(self) -> History:
+    def wet_flow(self) -> LinearHistory:
         """Oxidizer flow (wet cells,) [kg/s] while there is liquid (report, eq. 3.2)."""
         area = self._resistance.spread(self.cells.wet)
         density = self.engine.saturation.liquid_density
         return through(lambda a, t, x: mass_flows(a, density(t), x), area, self.temperature, self._drop[self.wet])
 
     @cached_property
-    def wet_mass(self) -> History:
+    def wet_mass(self) -> LinearHistory:
         """What the tank holds (wet cells,) [kg] while there is liquid: the load less the integral of the flow."""
         return self.constant("oxidizer_mass", self.wet) - integral(self.wet_flow, self.cells.width[self.wet])
 
     @cached_property
-    def vapor_start(self) -> tuple[History, History]:
+    def vapor_start(self) -> tuple[LinearHistory, LinearHistory]:
         """Mass [kg] and temperature [K] of the vapor that is left at the end of the liquid, each a single value."""
         assert self.edge is not None
         source = self.engine.saturation
@@ -103,7 +103,7 @@ class TankFlow:
         return through(lambda v, t: v * source.vapor_density(t), self.constants["volume"], temperature), temperature
 
     @cached_property
-    def dry_mass(self) -> History:
+    def dry_mass(self) -> LinearHistory:
         """What the tank holds (dry cells,) [kg] after the end of the liquid.
 
         sqrt(M) = sqrt(M_v) - int mdot / (2 sqrt(M)) dt, for the flow at the density M/V is sqrt(M) times that at 1/V.
@@ -120,7 +120,7 @@ class TankFlow:
         return through(left, self.vapor_start[0].spread(count), integral(pace, self.cells.width[self.dry]))
 
     @cached_property
-    def exponent(self) -> History:
+    def exponent(self) -> LinearHistory:
         """Polytropic exponent of the vapor (dry cells,) [-]; c_p/c_v at the end of the liquid where the engine states
         none."""
         count = self.dry_mass.value.size
@@ -134,7 +134,7 @@ class TankFlow:
         return through(ratio, self.vapor_start[1]).spread(count)
 
     @cached_property
-    def dry_flow(self) -> History:
+    def dry_flow(self) -> LinearHistory:
         """Oxidizer flow (dry cells,) [kg/s] after the end of the liquid."""
         assert self.dry is not None
         area = self._resistance.spread(self.dry_mass.value.size)
@@ -147,12 +147,12 @@ class TankFlow:
         )
 
     @cached_property
-    def flow(self) -> History:
+    def flow(self) -> LinearHistory:
         """Oxidizer flow through the injector (cells,) [kg/s]."""
         return joined([self.wet_flow, self.dry_flow]) if self.dry is not None else self.wet_flow
 
     @cached_property
-    def dry_temperature(self) -> History:
+    def dry_temperature(self) -> LinearHistory:
         """Of the vapor (dry cells,) [K], from pressure and mass."""
         assert self.dry is not None
         count = self.dry_mass.value.size
@@ -167,12 +167,12 @@ class TankFlow:
         )
 
     @property
-    def dry_edge(self) -> History:
+    def dry_edge(self) -> LinearHistory:
         """The tank's pressure at the end of the liquid [Pa], held over the cells behind it (dry cells,)."""
         assert self.edge is not None
         return self.edge.spread(self.dry_mass.value.size)
 
-    def closing_mass(self) -> History | None:
+    def closing_mass(self) -> LinearHistory | None:
         """What the injector's flow leaves in the tank at the end of the liquid, less the vapor that fits it [kg], a
         single value.
 

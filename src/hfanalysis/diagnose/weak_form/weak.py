@@ -29,7 +29,7 @@ from hfanalysis.diagnose.weak_form.cells import (
 )
 from hfanalysis.diagnose.weak_form.cells import windows as windows_of
 from hfanalysis.diagnose.weak_form.chamber_balance import ChamberBalance
-from hfanalysis.diagnose.weak_form.linear import History
+from hfanalysis.diagnose.weak_form.linear import LinearHistory
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.tank_balance import TankBalance
 from hfanalysis.engine.equations import O_ENTHALPY, O_OXIDIZER_FLOW
@@ -165,12 +165,12 @@ class _Balances:
 def _balances(measured: _Measured, engine: Engine, spread: Spread) -> _Balances:
     names = list(measured.readings)
     slopes = columns([*(measured.covariance(n) for n in names), spread.matrix()])
-    whole = {n: History(measured.values(n), s) for n, s in zip(names, slopes, strict=False)}
+    whole = {n: LinearHistory(measured.values(n), s) for n, s in zip(names, slopes, strict=False)}
     return _joined(measured, engine, whole, spread.constants(engine, slopes[-1]))
 
 
 def _joined(
-    measured: _Measured, engine: Engine, whole: Mapping[str, History], constants: Mapping[str, History]
+    measured: _Measured, engine: Engine, whole: Mapping[str, LinearHistory], constants: Mapping[str, LinearHistory]
 ) -> _Balances:
     """The balances between channels that are given on cells and at the end of the liquid."""
     cells = measured.cells
@@ -182,7 +182,7 @@ def _joined(
         tank = TankBalance(engine, cells, channels, constants, edge)
         return _Balances(tank, ChamberBalance(engine, cells, channels, constants, tank.flow, tank.enthalpy))
     flow, enthalpy = _assumed(engine, cells)
-    known = History(flow, np.zeros_like(channels["p_chamber"].slopes))
+    known = LinearHistory(flow, np.zeros_like(channels["p_chamber"].slopes))
     return _Balances(None, ChamberBalance(engine, cells, channels, constants, known, enthalpy))
 
 
@@ -259,7 +259,7 @@ def _with_explained(
         reading = measured.readings[name]
         times = _aligned(done, readings, reading.time[within(reading, measured.cells.end)])
         value = sampled.weights @ observe(done, times)[name]
-        whole[name] = History(value, np.zeros((value.size, 0)))
+        whole[name] = LinearHistory(value, np.zeros((value.size, 0)))
     balances = _joined(measured, base, whole, Spread.none().constants(base, np.zeros((0, 0))))
     out = []
     for residual in found:

@@ -18,7 +18,7 @@ from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.inference.fitting.fade import abrupt, bounded, fade_misfit, fade_slope
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.observations.alignment import model_times, share
-from hfanalysis.inference.observations.channel import Channel
+from hfanalysis.inference.observations.channel import ObservedChannel
 from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.observations.recorded import ALIKE
 from hfanalysis.inference.splines import Splines
@@ -204,7 +204,7 @@ def _with_its_zero(observed: Observed, true: Mapping[str, Array], read: dict[str
     return {**read, ALIKE[1]: read[ALIKE[1]] + (read[ALIKE[0]] - true[ALIKE[0]])[taken]}
 
 
-def added(hypothesis: Hypothesis, observed: Observed, x: Array, channel: Channel) -> Array:
+def added(hypothesis: Hypothesis, observed: Observed, x: Array, channel: ObservedChannel) -> Array:
     """What unknown sources and another table of nitrous oxide add to a channel's blocks (blocks,) [SI], at ``x``
     (parameters,)."""
     own = hypothesis.offset(channel.name, x, channel.time)

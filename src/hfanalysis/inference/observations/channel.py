@@ -22,7 +22,7 @@ the whole."""
 
 
 @dataclass(frozen=True)
-class Channel:
+class ObservedChannel:
     """Block means of one channel: ``time`` [s after the opening], ``value`` and stated ``accuracy`` [SI].
 
     ``first`` and ``count`` say which points of the common grid are averaged into each block. ``covariance`` is that of
@@ -51,14 +51,14 @@ class Channel:
     unsure: float = 1.0
     tables: Array | None = None
 
-    def only(self, rows: Integers) -> Channel:
+    def only(self, rows: Integers) -> ObservedChannel:
         """The same with some of its blocks; ``rows`` (kept,): their numbers."""
         picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
         slow = None if self.slow is None else self.slow[np.ix_(rows, rows)]
         tables = None if self.tables is None else self.tables[rows]
         return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)], slow=slow, tables=tables)
 
-    def with_white_noise(self) -> Channel:
+    def with_white_noise(self) -> ObservedChannel:
         """The same with independent noise of the same size, beside offset and gain."""
         burning = np.where(self.resting, 0.0, 1.0)
         gain = self.value * burning / float(np.abs(self.value).max())

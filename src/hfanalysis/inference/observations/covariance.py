@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.alignment import share
 from hfanalysis.inference.observations.blocks import TANK_AT_REST, Blocks
-from hfanalysis.inference.observations.channel import SHARE, Channel, averaged, range_of
+from hfanalysis.inference.observations.channel import SHARE, ObservedChannel, averaged, range_of
 from hfanalysis.inference.observations.flow_end import WITHOUT_FIRE
 from hfanalysis.inference.observations.frame import BLOCK, Frame
 from hfanalysis.inference.observations.oscillation import oscillation
@@ -44,7 +44,7 @@ SPEED_ORDER = 3
 
 def channel_of(
     blocks: Blocks, definition: TestDefinition, frame: Frame, shaken: Array | None, sensor: Array
-) -> Channel:
+) -> ObservedChannel:
     """The channel of these blocks with the covariance of their noise.
 
     ``shaken`` (grid, grid): covariance of an oscillation that it shows; ``sensor`` (blocks, blocks): that of the
@@ -57,7 +57,7 @@ def channel_of(
     shared = of_the_model(blocks, frame)
     covariance = own + sensor + shared @ shared.T + _filling(blocks, frame, resting)
     std = np.sqrt(own.diagonal())
-    return Channel(
+    return ObservedChannel(
         name, blocks.time, blocks.value, blocks.first, blocks.count, resting, std, accuracy, covariance,
         coherence_of(own), _of_blocks(wander.slow(frame.grid, frame.width), blocks), unsure=wander.unsure,
     )  # fmt: skip

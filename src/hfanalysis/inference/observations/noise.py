@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import block_diag, cholesky, lapack
 
 from hfanalysis.arrays import Array
-from hfanalysis.inference.observations.channel import Channel, form_covariance
+from hfanalysis.inference.observations.channel import ObservedChannel, form_covariance
 from hfanalysis.inference.observations.recorded import ALIKE, TOGETHER
 
 LEAST_SHARE, MOST_SHARE = 0.05, 0.95
@@ -42,7 +42,7 @@ class Group:
     one error in both.
     """
 
-    channels: tuple[Channel, ...]
+    channels: tuple[ObservedChannel, ...]
     common: Array | None
     place: slice
     first: int
@@ -92,7 +92,7 @@ class Group:
         return clear, share * np.minimum(MOST_SHARE / share.sum(axis=0), 1.0)
 
 
-def groups_of(channels: Sequence[Channel], common: Array | None, alike: Array | None) -> Iterator[Group]:
+def groups_of(channels: Sequence[ObservedChannel], common: Array | None, alike: Array | None) -> Iterator[Group]:
     """The channels, one by one or, where two of them have a ``common`` covariance or are ``alike``, together.
     Covariances (blocks of the first, blocks of the second) [SI]."""
     shared, at, i = {TOGETHER[0]: common, ALIKE[0]: alike}, 0, 0

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
 from hfanalysis.arrays import Array
-from hfanalysis.inference.observations.channel import CHAMBER_FORM, FORM_ERROR, Channel
+from hfanalysis.inference.observations.channel import CHAMBER_FORM, FORM_ERROR, ObservedChannel
 from hfanalysis.inference.observations.flow_end import WITHOUT_FIRE
 from hfanalysis.inference.observations.noise import Group, SlowNoise, groups_of, slow_noise
 from hfanalysis.inference.observations.recorded import ALIKE, TOGETHER
@@ -45,7 +45,7 @@ class Observed:
     ``grid``: (points,); ``ambient``: pressure [Pa].
     """
 
-    channels: tuple[Channel, ...]
+    channels: tuple[ObservedChannel, ...]
     grid: Array
     resting: NDArray[np.bool_]
     events: Mapping[str, tuple[float, float]]

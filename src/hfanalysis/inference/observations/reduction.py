@@ -8,7 +8,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.observations.blocks import Blocks, blocks_of
 from hfanalysis.inference.observations.burn_out import fade_of
-from hfanalysis.inference.observations.channel import Channel, range_of
+from hfanalysis.inference.observations.channel import ObservedChannel, range_of
 from hfanalysis.inference.observations.covariance import (
     channel_of,
     common_of,
@@ -72,12 +72,12 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
 
 
 def _with_second_look(
-    channels: dict[str, Channel],
+    channels: dict[str, ObservedChannel],
     of_tank: Blocks | None,
     line: PurgeLine | None,
     definition: TestDefinition,
     frame: Frame,
-) -> tuple[dict[str, Channel], Array | None]:
+) -> tuple[dict[str, ObservedChannel], Array | None]:
     """The channels with the purge line behind the tank's pressure, and the covariance of both; as they are where the
     line tells nothing. What the model gets wrong of the tank is the same of the line."""
     means = None if line is None else blocks_of(line.signal, frame, False, line.start)

@@ -19,7 +19,7 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
-from hfanalysis.inference.places import Place
+from hfanalysis.inference.places import SourcePlace
 from hfanalysis.inference.unknown import POINTS, SHAPE, History, Samples, Unknown, nameless_effect
 from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
@@ -101,7 +101,7 @@ class FailingFlow(Unknown):
     seconds: float
     share: float
     log_evidence: float
-    place = Place("failing flow", "injector", "kg/s", 0.1)
+    place = SourcePlace("failing flow", "injector", "kg/s", 0.1)
     known_by = "fails_within"
 
     @classmethod

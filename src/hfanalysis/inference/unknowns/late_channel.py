@@ -18,7 +18,7 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.fitting.predict import misread
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.places import Place
+from hfanalysis.inference.places import SourcePlace
 from hfanalysis.inference.unknown import SHAPE, History, Samples, Unknown, nameless_effect
 from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
@@ -78,7 +78,7 @@ class LateChannel(Unknown):
 
     seconds: float
     log_evidence: float
-    place = Place(f"clock of {CHANNEL}", "sensor", "s", TYPICAL, sensor=CHANNEL)
+    place = SourcePlace(f"clock of {CHANNEL}", "sensor", "s", TYPICAL, sensor=CHANNEL)
     known_by = "delay"
 
     @classmethod

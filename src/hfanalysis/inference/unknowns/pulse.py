@@ -16,7 +16,7 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.linear import SCALES, Linearized, Projected
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.places import PLACES, Place
+from hfanalysis.inference.places import PLACES, SourcePlace
 from hfanalysis.inference.unknown import POINTS, PREFIX, History, LinearUnknown, nameless_effect, spread_of
 
 SIZE, START, DURATION, EDGE, SITE, HOOK = range(6)
@@ -76,7 +76,7 @@ class Pulse(LinearUnknown):
     """A pulse of ``size`` (whose prior has the deviation ``scale``) from ``start`` on for ``duration`` [s]; ``end``: of
     what is compared [s]."""
 
-    place: Place
+    place: SourcePlace
     log_evidence: float
     nuisances: Array
     size: float
@@ -135,7 +135,7 @@ def _between(free: Free, least: float, most: float) -> Free:
     return replace(free, least=free.place(least), most=free.place(most))
 
 
-def _best(place: Place, projected: Projected, about: Linearized) -> Pulse:
+def _best(place: SourcePlace, projected: Projected, about: Linearized) -> Pulse:
     """The best pulse at a place among those that begin and end on a grid of half the splines' spacing.
 
     The price of each is that it is one of many.

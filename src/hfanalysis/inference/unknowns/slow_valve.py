@@ -18,7 +18,7 @@ from hfanalysis.engine.sites import AT_FLOW, FEED_FACTOR, switch, term
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.places import Place
+from hfanalysis.inference.places import SourcePlace
 from hfanalysis.inference.unknown import POINTS, SHAPE, History, Samples, Unknown, nameless_effect
 from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
@@ -95,7 +95,7 @@ class SlowValve(Unknown):
 
     seconds: float
     log_evidence: float
-    place = Place("valve", "feed", "Pa", 1e5)
+    place = SourcePlace("valve", "feed", "Pa", 1e5)
     known_by = "opens_in"
     also_by = "feed_line_fill"
 

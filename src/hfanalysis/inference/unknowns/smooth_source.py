@@ -11,7 +11,7 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Block, Hypothesis
 from hfanalysis.inference.linear import SCALES, SPACING, Linearized, Projected
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.places import PLACES, Place
+from hfanalysis.inference.places import PLACES, SourcePlace
 from hfanalysis.inference.splines import Splines, probe
 from hfanalysis.inference.unknown import POINTS, PREFIX, History, LinearUnknown, spread_of
 from hfanalysis.record.channels import unit_of
@@ -46,7 +46,7 @@ class SmoothSource(LinearUnknown):
     ``coefficients`` and ``scale`` are in the unit of the place; ``nuisances`` in prior standard deviations.
     """
 
-    place: Place
+    place: SourcePlace
     log_evidence: float
     nuisances: Array
     scale: float
@@ -98,14 +98,14 @@ class SmoothSource(LinearUnknown):
         return tuple(f"{owner}.c{i}" for i in range(self.splines.count))
 
 
-def sensor_place(observed: Observed, name: str) -> Place:
+def sensor_place(observed: Observed, name: str) -> SourcePlace:
     """A sensor as a place: an offset over time, with the size [SI] that is typical of it."""
     accuracy = next(c.accuracy for c in observed.channels if c.name == name)
     typical = LOAD_CELL_DRIFT if name == "thrust" else BEYOND_ACCURACY * accuracy
-    return Place(OFFSET + name, "sensor", unit_of(name), typical, sensor=name)
+    return SourcePlace(OFFSET + name, "sensor", unit_of(name), typical, sensor=name)
 
 
-def seen_at(place: Place, mean: Array, std: Array) -> Place:
+def seen_at(place: SourcePlace, mean: Array, std: Array) -> SourcePlace:
     """The place of a source by its history: ``mean`` and ``std`` (n,) in the unit of the place.
 
     What the thrust departs by to one side and is gone, or not seen any more, as the flow ends is the nozzle's: a cell
@@ -128,13 +128,13 @@ def smooth_prior(count: int, correlation: float) -> Array:
     return np.asarray(np.exp(-0.5 * (lag / correlation) ** 2) + 1e-6 * np.eye(count))
 
 
-def _best(place: Place, projected: Projected, splines: Splines) -> SmoothSource:
+def _best(place: SourcePlace, projected: Projected, splines: Splines) -> SmoothSource:
     """The most probable scale and correlation of a source at a place."""
     tried = [source for c in CORRELATIONS for source in _of_scales(place, projected, splines, c)]
     return max(tried, key=lambda source: source.log_evidence)
 
 
-def _of_scales(place: Place, projected: Projected, splines: Splines, correlation: float) -> list[SmoothSource]:
+def _of_scales(place: SourcePlace, projected: Projected, splines: Splines, correlation: float) -> list[SmoothSource]:
     """A source at every scale."""
     found = []
     root = np.linalg.cholesky(smooth_prior(splines.count, correlation))

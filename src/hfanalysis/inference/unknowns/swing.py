@@ -22,7 +22,7 @@ from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, switch, term
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.places import Place
+from hfanalysis.inference.places import SourcePlace
 from hfanalysis.inference.unknown import POINTS, History, Samples, Unknown, nameless_effect
 from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
@@ -128,7 +128,7 @@ class Swing(Unknown):
     start: float
     end: float
     log_evidence: float
-    place = Place("swing of the flow", "injector", "1", 0.01)
+    place = SourcePlace("swing of the flow", "injector", "1", 0.01)
     known_by = "frequency"
 
     @classmethod

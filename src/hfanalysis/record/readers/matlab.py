@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
-from hfanalysis.record.readers.table import Series, Table
+from hfanalysis.record.readers.table import LogSeries, Table
 
 WIDEST = 256
 """Columns of a matrix beyond which it is no set of channels."""
@@ -35,7 +35,7 @@ def open_source(path: Path, spec: FileSpec) -> Table:
     return Table(path, found)
 
 
-def _from_mat5(path: Path) -> Iterator[Series]:
+def _from_mat5(path: Path) -> Iterator[LogSeries]:
     from scipy.io import loadmat
 
     with warnings.catch_warnings():
@@ -46,11 +46,11 @@ def _from_mat5(path: Path) -> Iterator[Series]:
             yield from _series(name, value)
 
 
-def _from_hdf5(path: Path) -> Iterator[Series]:
+def _from_hdf5(path: Path) -> Iterator[LogSeries]:
     """MATLAB 7.3 is HDF5 with groups for structs, and arrays transposed."""
     import h5py
 
-    def walk(name: str, item: Any) -> Iterator[Series]:
+    def walk(name: str, item: Any) -> Iterator[LogSeries]:
         if isinstance(item, h5py.Group):
             for key in item:
                 yield from walk(f"{name}.{key}", item[key])
@@ -63,7 +63,7 @@ def _from_hdf5(path: Path) -> Iterator[Series]:
                 yield from walk(key, file[key])
 
 
-def _series(name: str, value: Any) -> Iterator[Series]:
+def _series(name: str, value: Any) -> Iterator[LogSeries]:
     """The series of a variable or a field."""
     if type(value) is not np.ndarray:  # MATLAB's own classes come as arrays of a kind
         return
@@ -74,14 +74,14 @@ def _series(name: str, value: Any) -> Iterator[Series]:
         yield from _columns(name, np.asarray(value, dtype=np.float64))
 
 
-def _columns(name: str, array: NDArray[np.float64]) -> Iterator[Series]:
+def _columns(name: str, array: NDArray[np.float64]) -> Iterator[LogSeries]:
     if 1 in array.shape:
-        yield Series(name, array.ravel())
+        yield LogSeries(name, array.ravel())
     elif array.shape[1] == 2 and _is_time(array[:, 0]):
-        yield Series(name, array[:, 1], time=array[:, 0])
+        yield LogSeries(name, array[:, 1], time=array[:, 0])
     elif array.shape[1] <= WIDEST:
         for i, column in enumerate(array.T, start=1):
-            yield Series(f"{name}.{i}", column)
+            yield LogSeries(f"{name}.{i}", column)
 
 
 def _is_time(numbers: NDArray[np.float64]) -> bool:

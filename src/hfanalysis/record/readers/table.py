@@ -14,7 +14,7 @@ from hfanalysis.record.readers.base import Chunk, Progress
 
 
 @dataclass(frozen=True)
-class Series:
+class LogSeries:
     """Numbers under a name; ``time`` [s] where the format says when each was read."""
 
     name: str
@@ -28,7 +28,7 @@ class Table:
 
     sha256: str | None = None
 
-    def __init__(self, path: Path, series: Sequence[Series]) -> None:
+    def __init__(self, path: Path, series: Sequence[LogSeries]) -> None:
         """Raises :class:`InputError` where there is no series."""
         if not series:
             raise InputError(f"{path}: found no series of numbers; expected at least one")

@@ -11,7 +11,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
-from hfanalysis.record.readers.table import Series, Table
+from hfanalysis.record.readers.table import LogSeries, Table
 
 _UNITS = ("unit_string", "NI_UnitDescription", "Unit")
 """Properties in which a channel's unit is stated."""
@@ -29,15 +29,15 @@ def open_source(path: Path, spec: FileSpec) -> Table:
     return Table(path, found)
 
 
-def _series(channels: list[Any]) -> Iterator[Series]:
+def _series(channels: list[Any]) -> Iterator[LogSeries]:
     starts = [start for channel in channels if (start := channel.properties.get("wf_start_time")) is not None]
     for channel in channels:
         numbers = channel[:]
         name = f"{channel.group_name}.{channel.name}"
         if numbers.dtype.kind == "M" and len(numbers):
-            yield Series(name, (numbers - numbers[0].astype("M8[D]")) / np.timedelta64(1, "s"), "s")
+            yield LogSeries(name, (numbers - numbers[0].astype("M8[D]")) / np.timedelta64(1, "s"), "s")
         elif numbers.dtype.kind in "fiub" and len(numbers):
-            yield Series(name, numbers.astype(np.float64), _unit(channel), _time(channel, min(starts, default=None)))
+            yield LogSeries(name, numbers.astype(np.float64), _unit(channel), _time(channel, min(starts, default=None)))
 
 
 def _unit(channel: Any) -> str:
