@@ -116,6 +116,7 @@ DIAGNOSIS: dict[str, Any] = {
         "From 0.4 to 6.2 s the tank's energy differs by 0.9 ± 0.15 kW on average.",
         "p_tank: rms 0.9 bar without, 0.1 bar with it; noise 0.08 bar.",
     ],
+    "quoted": {f"{size} bar": {"value": 1e5 * size, "unit": "Pa", "std": None} for size in (0.9, 0.1, 0.08)},
     "provenance": {"hfanalysis": "0.1.0"},
 }
 

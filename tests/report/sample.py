@@ -146,7 +146,9 @@ VALIDATION: dict[str, Any] = {
     ],
     "absent": {},
     "warnings": ["thrust and p_c A_t disagree: 2430 N against 3100 N"],
-    "quoted": {f"{force} N": {"value": float(force), "unit": "N", "std": None} for force in (2430, 3100)},
+    "quoted": {
+        words: {"value": float(words.split()[0]), "unit": "N", "std": None} for words in ("2430 N", "3100 N", "+76 N")
+    },
     "provenance": {"hfanalysis": "0.1.0", "parameters": {"modes": "all"}},
 }
 
