@@ -230,7 +230,7 @@ def _channels(columns: list[LogColumn]) -> str:
 def guess_channel(column: LogColumn) -> str | None:
     """The canonical channel that a column probably is, by its name and unit; None where nothing speaks for one.
 
-    >>> guess_channel(Column("PT-TANK (psia)", "PT-TANK", "psia")), guess_channel(Column("mode", "mode", ""))
+    >>> guess_channel(LogColumn("PT-TANK (psia)", "PT-TANK", "psia")), guess_channel(LogColumn("mode", "mode", ""))
     ('p_tank', None)
     """
     said = next((mark for mark, dimension in _MARKS.items() if _fits(column.unit, dimension)), "")

@@ -32,7 +32,7 @@ import numpy as np
 from hfanalysis.engine.effect import Parameter
 from hfanalysis.engine.sites import RATES, THROAT_FACTOR, term
 from hfanalysis.inference.fitting.hypothesis import Free
-from hfanalysis.inference.places import Place
+from hfanalysis.inference.places import SourcePlace
 from hfanalysis.inference.unknown import History, Unknown, nameless_effect
 from hfanalysis.quantity import Quantity
 
@@ -50,7 +50,7 @@ EFFECT = nameless_effect("worn", "nozzle", "a worn throat", (Parameter("part", "
 class WornThroat(Unknown):
     part: float
     log_evidence: float
-    place = Place("worn throat", "nozzle", "1", 0.05)
+    place = SourcePlace("worn throat", "nozzle", "1", 0.05)
     known_by = "wider_by"
 
     @classmethod

@@ -85,7 +85,7 @@ class EvidenceScale:
 
         ``elsewhere``: log evidence of the best unknown source in another equation than the best name's.
 
-        >>> found = Scale().probabilities({"none": 0.0, "tank_heat": 12.0, "unknown": 0.0}, 1.0)
+        >>> found = EvidenceScale().probabilities({"none": 0.0, "tank_heat": 12.0, "unknown": 0.0}, 1.0)
         >>> round(found["tank_heat"], 3)
         1.0
         """

@@ -68,7 +68,7 @@ def integral(rate: LinearHistory, width: Array) -> LinearHistory:
     """Integral (n,) [unit of the rate times s] up to the middle of each cell of a history of cell means; ``width`` (n,)
     [s] of the cells.
 
-    >>> integral(History(np.array([2.0, 4.0]), np.zeros((2, 0))), np.array([0.5, 0.5])).value.tolist()
+    >>> integral(LinearHistory(np.array([2.0, 4.0]), np.zeros((2, 0))), np.array([0.5, 0.5])).value.tolist()
     [0.5, 2.0]
     """
     value, slopes = rate.value * width, rate.slopes * width[:, None]
@@ -78,7 +78,7 @@ def integral(rate: LinearHistory, width: Array) -> LinearHistory:
 def total(rate: LinearHistory, width: Array) -> LinearHistory:
     """Integral over all cells, as a single value [unit of the rate times s]; ``width`` (n,) [s] of the cells.
 
-    >>> total(History(np.array([2.0, 4.0]), np.zeros((2, 0))), np.array([0.5, 0.5])).value.tolist()
+    >>> total(LinearHistory(np.array([2.0, 4.0]), np.zeros((2, 0))), np.array([0.5, 0.5])).value.tolist()
     [3.0]
     """
     return rate.weighted(width[None, :])
@@ -106,7 +106,7 @@ def through_all(formula: Callable[..., tuple[Array, ...]], *inputs: LinearHistor
 def through(formula: Callable[..., Array], *inputs: LinearHistory) -> LinearHistory:
     """What a formula that acts at each instant by itself makes of histories (n,), of any units; slopes to first order.
 
-    >>> two, three = History(np.array([2.0]), np.eye(1)), History(np.array([3.0]), np.zeros((1, 1)))
+    >>> two, three = LinearHistory(np.array([2.0]), np.eye(1)), LinearHistory(np.array([3.0]), np.zeros((1, 1)))
     >>> out = through(lambda p, t: p * t, two, three)
     >>> float(out.value[0]), round(float(out.slopes[0, 0]), 6)
     (6.0, 3.0)
