@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmarks.blind.folder import code_digest
 from benchmarks.studies import one_thread, put
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -179,8 +180,6 @@ def main() -> int:
     parser.add_argument("--write", type=Path)
     asked = parser.parse_args()
     one_thread()
-    from hfanalysis.stages.freshness import code_hash
-
     wanted = [ROOT / "raw_tests" / name for name in OWN]
     if asked.cases:
         wanted += [asked.cases / "raw_tests" / name for name in PRACTICE]
@@ -188,7 +187,7 @@ def main() -> int:
     for test in [test for test in tests if not test.exists()]:
         print(f"{test} is not there: skipped", file=sys.stderr)
         tests.remove(test)
-    store = Store(asked.found, code_hash())
+    store = Store(asked.found, code_digest())
     study(tests, asked.draws, store)
     lines = table(tests, store)
     print("\n".join(lines))

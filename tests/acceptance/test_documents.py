@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from pipeline import constants_page
+
 from hfanalysis.record.definition import load_definition
 
 REPOSITORY = Path(__file__).parents[2]
@@ -38,3 +40,8 @@ def test_the_lock_file_names_no_place() -> None:
     assert "://" not in lock
     assert "--hash=sha256:" in lock
     assert not re.search(r"(?m)^(-|.*\s@\s|.*file:|#.*/)", lock)
+
+
+def test_the_ledger_of_constants_is_that_of_the_source() -> None:
+    written = constants_page.PAGE.read_text(encoding="utf-8")
+    assert written == constants_page.page(constants_page.constants()), "`make readme` writes it"

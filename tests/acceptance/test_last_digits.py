@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 from benchmarks import last_digits
+from benchmarks.blind.folder import code_digest
 from benchmarks.last_digits import ALLOWED, ROOT, movements, numbers, perturbed
 from numpy.typing import NDArray
 
@@ -50,3 +53,23 @@ def test_what_only_some_draws_have_moves_without_end() -> None:
 def test_numbers_are_found_wherever_they_stand() -> None:
     content = {"x": [{"name": "heat", "size": {"value": 1.0, "std": 0.1}}], "no": {"value": 1.0, "std": None}}
     assert dict(numbers(content)) == {"x/heat/size": (1.0, 0.1)}
+
+
+def test_the_study_goes_on_from_what_was_found_by_the_same_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two draws that are there, and one of other code: nothing is analysed, and the page has the two."""
+
+    def line(draw: int, value: float, code: str) -> str:
+        return json.dumps({"case": "HF5", "draw": draw, "code": code, "numbers": {"C_i": (value, 0.5)}})
+
+    found, page = tmp_path / "found.jsonl", tmp_path / "page.md"
+    rows = [line(0, 1.0, code_digest()), line(1, 1.1, code_digest()), line(1, 9.0, "another")]
+    found.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    page.write_text("<!-- last-digits: begin -->\n<!-- last-digits: end -->\n", encoding="utf-8")
+    asked = ["--draws", "2", "--only", "HF5", "--found", str(found), "--write", str(page)]
+    monkeypatch.setattr("sys.argv", ["last_digits", *asked])
+    monkeypatch.setattr(last_digits, "analysed", lambda *_: pytest.fail("what is there is analysed again"))
+    assert last_digits.main() == 0
+    assert "| HF5 | 2 | 1 | 1 | `C_i` | 20 |" in page.read_text(encoding="utf-8")
+    assert "| HF5 | `C_i` | 20 |" in capsys.readouterr().out

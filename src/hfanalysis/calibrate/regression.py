@@ -54,10 +54,10 @@ LARGEST_STEP = 0.2
 ROUNDS = 2
 """Times that the weights follow from what a fit leaves, and the fit from the weights."""
 RESURVEYS = 3
-"""Times the surface is followed from a lower point that it has shown, and the misfit by which that has to be lower.
-Evidence: without it values lay outside their own intervals."""
+"""Times the surface is followed from a lower point that it has shown. Evidence: without it values lay outside their own
+intervals."""
 NEGLIGIBLE = 0.05
-"""Times the surface is followed from a lower point that it has shown, and the misfit by which that has to be lower."""
+"""Misfit [-] by which such a point has to be lower."""
 
 TESTS_DISAGREE = 0.01
 """Probability of the rise in misfit by common constants below which tests are said to disagree. Evidence:

@@ -113,7 +113,7 @@ def test_a_fit_follows_a_valley_that_bends(monkeypatch: pytest.MonkeyPatch, bend
         there = Prediction(residual(x), None, burnt)
         return with_slopes(hypothesis, observed, x, there) if tangents else there
 
-    def with_slopes(_: object, __: object, x: Array, there: Prediction, accuracy: float = 0.0) -> Prediction:
+    def with_slopes(_: object, __: object, x: Array, there: Prediction) -> Prediction:
         slopes.append(x)
         out = np.zeros((2, x.size))
         out[:, :2] = [[-200.0 * bend * x[0], 100.0], [-5.0, 0.0]]
