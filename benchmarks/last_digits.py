@@ -93,7 +93,7 @@ def numbers(content: Any, place: str = "") -> Iterator[tuple[str, tuple[float, f
         if isinstance(value, float) and isinstance(std, float) and std > 0.0:
             yield place, (value, std)
         for key, inner in content.items():
-            if key != "provenance":
+            if key not in ("provenance", "quoted"):  # what sentences quote stands elsewhere
                 yield from numbers(inner, f"{place}/{key}" if place else key)
     elif isinstance(content, list):
         for i, inner in enumerate(content):
