@@ -10,7 +10,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.breaks import RELAXATIONS, Break, Design, combine, find_break, kink, relaxation, rounded_kink
+from hfanalysis.segment.breaks import JUMPS, RELAXATIONS, Break, Design, combine, find_break, kink, relaxation, rounded_kink
 
 COARSE, FINE = 41, 61
 """Instants tried over the reach of a search, and around the best of them."""
@@ -60,8 +60,8 @@ def refine_step(
     Looked for within ``reach`` [s] of ``rough`` [s] in [rough - ``before``, rough + ``after``] [s]. None where the
     window holds too few samples.
     """
-    designs = [relaxation(c, before=order) for c in RELAXATIONS]
-    return _search(signals, rough, before, after, reach, designs, RELAXATIONS)
+    designs = [relaxation(c, before=order) for c in RELAXATIONS] + [relaxation(c, order, jumps=True) for c in JUMPS]
+    return _search(signals, rough, before, after, reach, designs, (*RELAXATIONS, *JUMPS), richer=len(JUMPS))
 
 
 def _search(
@@ -73,15 +73,16 @@ def _search(
     designs: Sequence[Design],
     constants: Sequence[float],
     noise: Noise | None = None,
+    richer: int = 0,
 ) -> Break | None:
     windows = [s.between(rough - before, rough + after) for s in signals]
     windows = [w for w in windows if _enough(w, rough)]
     if not windows:
         return None
-    found = _profile(windows, np.linspace(rough - reach, rough + reach, COARSE), designs, constants, noise)
+    found = _profile(windows, np.linspace(rough - reach, rough + reach, COARSE), designs, constants, noise, richer)
     step = min(w.step for w in windows)
     zoom = min(max(5.0 * found.std, 2.5 * step, 2.0 * reach / COARSE), reach)
-    return _profile(windows, np.linspace(found.time - zoom, found.time + zoom, FINE), designs, constants, noise)
+    return _profile(windows, np.linspace(found.time - zoom, found.time + zoom, FINE), designs, constants, noise, richer)
 
 
 def _profile(
@@ -90,8 +91,9 @@ def _profile(
     designs: Sequence[Design],
     constants: Sequence[float],
     noise: Noise | None,
+    richer: int,
 ) -> Break:
-    breaks = [find_break(w, candidates, designs, constants, noise) for w in windows]
+    breaks = [find_break(w, candidates, designs, constants, noise, richer) for w in windows]
     return combine(breaks, min(w.step for w in windows))
 
 
