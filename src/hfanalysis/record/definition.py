@@ -75,14 +75,14 @@ class Test(Section):
     """[test]: which test this is."""
 
     id: Annotated[Text, AfterValidator(_id)]
-    kind: Literal["hot_fire", "cold_flow"]
+    kind: Literal["hot_fire", "cold_flow", "water_flow"]
     date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
     source: Literal["measured", "replica", "synthetic"] = "measured"
     description: Text = ""
     stand: Text | None = None
 
 
-_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
 
 
 def _known_events(found: dict[str, Value]) -> dict[str, Value]:

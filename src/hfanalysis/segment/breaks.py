@@ -21,11 +21,7 @@ Design = Callable[[Array, float], Array]
 RELAXATIONS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.008, 0.013, 0.02, 0.03, 0.05, 0.08, 0.13, 0.2, 0.3, 0.6)
 """Time constants tried for what follows a break [s]; 0 is a step."""
 
-JUMPS = (0.005, 0.013, 0.03, 0.08, 0.2)
-"""Time constants tried for what follows a jump that is only a part of the change [s]. Evidence: an injector's drop is
-there at once, the chamber's pressure follows; a relaxation alone put such openings up to two samples early."""
-
-SHAPE = 0.1
+SHAPE = 0.3
 """Part of the sample interval that the shape of an onset leaves open, whatever the noise. Evidence: without it onsets
 of other shapes were dated too surely (test_breaks.py)."""
 

@@ -10,7 +10,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.breaks import JUMPS, RELAXATIONS, Break, Design, combine, find_break, kink, relaxation, rounded_kink
+from hfanalysis.segment.breaks import RELAXATIONS, Break, Design, combine, find_break, kink, relaxation, rounded_kink
 
 COARSE, FINE = 41, 61
 """Instants tried over the reach of a search, and around the best of them."""
@@ -53,15 +53,23 @@ def refine_knee(signal: Signal, rough: float, before: float, after: float, reach
 
 
 def refine_step(
-    signals: Sequence[Signal], rough: float, before: float, after: float, reach: float, order: int = 1
+    signals: Sequence[Signal],
+    rough: float,
+    before: float,
+    after: float,
+    reach: float,
+    order: int = 1,
+    jumps: Sequence[float] = (),
 ) -> Break | None:
     """A sudden change that relaxes, in one or several signals at the same instant; ``order`` of the curve before it.
+
+    ``jumps`` are time constants [s] with which it may relax after a part of it has come at once.
 
     Looked for within ``reach`` [s] of ``rough`` [s] in [rough - ``before``, rough + ``after``] [s]. None where the
     window holds too few samples.
     """
-    designs = [relaxation(c, before=order) for c in RELAXATIONS] + [relaxation(c, order, jumps=True) for c in JUMPS]
-    return _search(signals, rough, before, after, reach, designs, (*RELAXATIONS, *JUMPS), richer=len(JUMPS))
+    designs = [relaxation(c, before=order) for c in RELAXATIONS] + [relaxation(c, order, jumps=True) for c in jumps]
+    return _search(signals, rough, before, after, reach, designs, (*RELAXATIONS, *jumps), richer=len(jumps))
 
 
 def _search(
