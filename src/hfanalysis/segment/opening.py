@@ -24,6 +24,9 @@ JUMPS = (0.005, 0.013, 0.03, 0.08, 0.2)
 """Time constants tried for what follows a jump that is only a part of the change [s]. Evidence: an injector's drop is
 there at once, the chamber's pressure follows; a relaxation alone put such openings up to two samples early."""
 
+AROUND = 2.5
+"""Seconds around the line's first rise in which the tank's own first fall is looked for."""
+
 LATE_RESPONSE = 1.0
 """Seconds by which the pressures may follow the valve's channel: its stroke and the filling of the line."""
 
@@ -68,10 +71,14 @@ def _by_response(signals: Mapping[str, Signal]) -> Opening | None:
     lead = next(iter(rough))
     names = dict.fromkeys((lead, *(n for n in ("p_run", "p_tank") if n in signals and _responds(signals[n], rough[lead]))))
     together = _refined([signals[n] for n in names], rough[lead])
-    tank = rough.get("p_tank")
-    if lead != "p_run" or tank is None or abs(tank - rough["p_run"]) < _same_instant(signals["p_run"], signals["p_tank"]):
+    if lead != "p_run" or "p_tank" in names or "p_tank" not in signals:
         return together
-    return _apart({n: _refined([signals[n]], rough[n]) for n in ("p_run", "p_tank")}, rough)
+    around = {n: s.between(rough[lead] - AROUND, rough[lead] + AROUND) for n, s in signals.items()}
+    tank = _rough(around, "p_tank")
+    if tank is None or not _responds(signals["p_tank"], tank):
+        return together
+    alone = {lead: _refined([signals[lead]], rough[lead]), "p_tank": _refined([signals["p_tank"]], tank)}
+    return _apart(alone, rough)
 
 
 def _apart(alone: Mapping[str, Opening], rough: Mapping[str, float]) -> Opening:
@@ -81,11 +88,6 @@ def _apart(alone: Mapping[str, Opening], rough: Mapping[str, float]) -> Opening:
     best = min(alone.values(), key=lambda one: abs(one.time - follows[0]) if follows else one.std)
     doubt = 0.5 * float(np.ptp([one.time for one in alone.values()]))
     return replace(best, std=float(np.hypot(best.std, doubt)))
-
-
-def _same_instant(*signals: Signal) -> float:
-    """[s] within which the coarse beginnings of two changes are of the same instant."""
-    return RISE_TIME / 2.0 + 5.0 * max(s.step for s in signals)
 
 
 def under_way(signals: Mapping[str, Signal]) -> str | None:

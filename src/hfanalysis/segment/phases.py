@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,8 +13,9 @@ from hfanalysis.products.segments import Opening as ListedOpening
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal, live_signals
-from hfanalysis.segment.end_of_burn import find_unchoking
+from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, QUIET, find_unchoking, pulses_after
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.coarse_load import coarse_load
 from hfanalysis.segment.firings import Flow, find_flows, largest
@@ -61,7 +63,8 @@ def find_phases(log: TestLog, definition: TestDefinition, firing: int | None = N
     shifted = {name: s.between(origin - 60.0, origin + LONGEST_RUN).shifted(origin) for name, s in signals.items()}
     dead = [f"{n} never changes or has no good samples: left out" for n in log.channels if n not in signals]
     unsure += strange_tank(shifted.get("p_tank")) + firings.said
-    search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std)
+    zeros = {name: channel.zero_std or 0.0 for name, channel in log.channels.items()}
+    search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std, zeros)
     kind = search.run()
     return Segments.of(
         Quantity(opening.time, "s", max(opening.std, 1e-9), why=f"from {', '.join(opening.channels)}"),
@@ -197,8 +200,14 @@ def _finite(edge: float) -> float | None:
 class _Search:
     """The search for the events of one test; keeps what has been found while the next event is looked for."""
 
-    def __init__(self, signals: Mapping[str, Signal], definition: TestDefinition, opening_std: float) -> None:
-        self.opening_std = opening_std
+    def __init__(
+        self,
+        signals: Mapping[str, Signal],
+        definition: TestDefinition,
+        opening_std: float,
+        zeros: Mapping[str, float],
+    ) -> None:
+        self.opening_std, self.zeros = opening_std, zeros
         self.signals = signals
         self.definition = definition
         self.ambient = definition.ambient_pressure.value
@@ -296,14 +305,32 @@ class _Search:
             return "the log has no p_chamber"
         if kind.name != "hot_fire":
             return f"nothing burns: {kind.why}"
-        start = self._time("t_feed") or 0.3
-        return find_unchoking(self.signals["p_chamber"], self.ambient, start, self._chamber_offset())
+        chamber, offset = self.signals["p_chamber"], self._chamber_offset()
+        found = find_unchoking(chamber, self.ambient, self._time("t_feed") or 0.3, offset, self._chamber_bias(), self._noise())
+        if not isinstance(found, str):
+            for start, end in pulses_after(chamber, CRITICAL_RATIO * self.ambient + offset, found[0]):
+                self.notes.append(
+                    f"the chamber is above 1.8 times ambient again from {start:.2f} to {end:.2f} s: gas that is blown "
+                    "through after the burn, which t_end does not count"
+                )
+        return found
 
     def _chamber_offset(self) -> float:
         """How far the open chamber reads from ambient before the opening [Pa]: a bias to allow for, where it is one."""
         quiet = self.signals["p_chamber"].between(-5.0, -0.05).value
         offset = float(np.median(quiet)) - self.ambient if quiet.size > 7 else 0.0
         return offset if abs(offset) < LARGEST_OFFSET else 0.0
+
+    def _noise(self) -> Noise:
+        """The chamber sensor's, its wander judged with that of the other pressures: the quiet time alone is short."""
+        noises = {n: Noise.of(s, s.between(*QUIET)) for n, s in self.signals.items() if n.startswith("p_")}
+        usual = float(np.median([noise.flicker for noise in noises.values()]))
+        return replace(noises["p_chamber"], flicker=0.5 * (noises["p_chamber"].flicker + usual))
+
+    def _chamber_bias(self) -> float:
+        """Standard deviation [Pa] of how 1.8 times ambient reads: the chamber's zero, and the air's pressure."""
+        of_air = (CRITICAL_RATIO - 1.0) * (self.definition.ambient_pressure.std or 0.0)
+        return float(np.hypot(of_air, self.zeros.get("p_chamber", 0.0)))
 
     def _fuel_end(self, kind: Kind) -> tuple[float, float] | str:
         if kind.name != "hot_fire":
