@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -47,8 +48,9 @@ def find_flows(signals: Mapping[str, Signal]) -> list[Flow]:
     """
     found = [stretch for name in LEADS if name in signals for stretch in _stretches(signals[name])]
     merged = _merged(found)
-    edges = [-np.inf, *(0.5 * (a[1] + b[0]) for a, b in zip(merged, merged[1:], strict=False)), np.inf]
-    return [Flow(*span, *edge) for span, edge in zip(merged, zip(edges, edges[1:], strict=False), strict=True)]
+    between = [0.5 * (before[1] + after[0]) for before, after in pairwise(merged)]
+    since, until = [-np.inf, *between], [*between, np.inf]
+    return [Flow(*span, since[i], until[i]) for i, span in enumerate(merged)]
 
 
 def largest(flows: Sequence[Flow], signals: Mapping[str, Signal], fire: bool) -> int:
@@ -68,9 +70,11 @@ def _stretches(signal: Signal) -> list[tuple[float, float]]:
     state = np.where(value > rest + LARGE * (top - rest), 1, np.where(value < rest + OVER * (top - rest), -1, 0))
     known = np.maximum.accumulate(np.where(state != 0, np.arange(state.size), 0))
     up = np.r_[state[known] > 0, False]
-    begins, ends = np.flatnonzero(np.diff(up.astype(int)) > 0) + 1, np.flatnonzero(np.diff(up.astype(int)) < 0)
-    spans = [(float(coarse.time[a]), float(coarse.time[b])) for a, b in zip(begins, ends[ends >= begins[0]], strict=True)] \
-        if begins.size else []
+    turns = np.diff(up.astype(int))
+    begins = np.flatnonzero(turns > 0) + 1
+    ends = np.flatnonzero(turns < 0)
+    ends = ends[ends.size - begins.size :]  # a first end without a beginning is of what was on from the first sample
+    spans = [(float(coarse.time[a]), float(coarse.time[b])) for a, b in zip(begins, ends, strict=True)]
     return [(a, b) for a, b in spans if b - a >= SHORTEST]
 
 

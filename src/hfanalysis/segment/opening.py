@@ -24,6 +24,10 @@ JUMPS = (0.005, 0.013, 0.03, 0.08, 0.2)
 """Time constants tried for what follows a jump that is only a part of the change [s]. Evidence: an injector's drop is
 there at once, the chamber's pressure follows; a relaxation alone put such openings up to two samples early."""
 
+AT_ONCE = 0.1
+"""Seconds within which chamber or thrust follow the tank where they and not the line show the opening: then the line's
+sensor lags or is smoothed, and half the distance is doubt."""
+
 AROUND = 2.5
 """Seconds around the line's first rise in which the tank's own first fall is looked for."""
 
@@ -64,7 +68,7 @@ def find_opening(signals: Mapping[str, Signal]) -> Opening | None:
 
 
 def _by_response(signals: Mapping[str, Signal]) -> Opening | None:
-    """Line and tank together, where they change at the same instant; else the one that shows it more sharply."""
+    """Line and tank together; the tank alone where chamber or thrust change with it, and the line by itself long before."""
     rough = {name: time for name in LEADS if (time := _rough(signals, name)) is not None}
     if not rough:
         return None
@@ -75,19 +79,12 @@ def _by_response(signals: Mapping[str, Signal]) -> Opening | None:
         return together
     around = {n: s.between(rough[lead] - AROUND, rough[lead] + AROUND) for n, s in signals.items()}
     tank = _rough(around, "p_tank")
-    if tank is None or not _responds(signals["p_tank"], tank):
-        return together
-    alone = {lead: _refined([signals[lead]], rough[lead]), "p_tank": _refined([signals["p_tank"]], tank)}
-    return _apart(alone, rough)
-
-
-def _apart(alone: Mapping[str, Opening], rough: Mapping[str, float]) -> Opening:
-    """Of two that disagree the one that chamber or thrust follow more closely, half their distance as doubt: one of the
-    two lags, or the line fills before the tank's pressure falls."""
     follows = [rough[name] for name in ("p_chamber", "thrust") if name in rough]
-    best = min(alone.values(), key=lambda one: abs(one.time - follows[0]) if follows else one.std)
-    doubt = 0.5 * float(np.ptp([one.time for one in alone.values()]))
-    return replace(best, std=float(np.hypot(best.std, doubt)))
+    if tank is None or not follows or min(abs(t - tank) for t in follows) > AT_ONCE or tank - rough[lead] < RISE_TIME:
+        return together
+    sharper = _refined([signals["p_tank"]], tank)
+    doubt = 0.5 * abs(sharper.time - together.time)
+    return replace(sharper, std=float(np.hypot(sharper.std, doubt)))
 
 
 def under_way(signals: Mapping[str, Signal]) -> str | None:
