@@ -5,7 +5,7 @@ ingest, segment and calibrate. ``engine``: logs of whole engines (simulated/engi
 ``blind``: the cases without an effect of another generator, where its folder is given.
 Results are written as they come to .cache/recovery-*.jsonl; the table goes to docs/recovery.md.
 
-    python benchmarks/recovery.py --cases 400 [--blind FOLDER]
+    python -m benchmarks.recovery --cases 400 [--blind FOLDER]
 """
 
 from __future__ import annotations
