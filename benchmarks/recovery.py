@@ -131,7 +131,7 @@ def run(name: str, cases: Iterable[Any], work: Any, processes: int) -> list[dict
 def _code() -> str:
     """Results are of one state of the code: any change to it starts the study anew."""
     digest = hashlib.sha256()
-    for path in sorted([*ROOT.glob("src/**/*.py"), *ROOT.glob("benchmarks/virtual_*.py")]):
+    for path in sorted([*ROOT.glob("src/**/*.py"), *ROOT.glob("simulated/*.py")]):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
 
