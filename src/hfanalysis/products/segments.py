@@ -20,7 +20,9 @@ class Opening(Part):
 
     number: Annotated[int, Is("counted from 1 in the order of the log")]
     t_open: Annotated[Quantity, Is("its valve opens, in log time", "s")]
-    start: Annotated[float | None, Is("from when on its events are looked for, in log time; null: the log's start", "s")]
+    start: Annotated[
+        float | None, Is("from when on its events are looked for, in log time; null: the log's start", "s")
+    ]
     end: Annotated[float | None, Is("until when, in log time; null: the log's end", "s")]
     taken: Annotated[bool, Is("whether the events are this one's")]
 
@@ -41,7 +43,9 @@ class Segments(Product):
     t_purge: Annotated[Quantity, Is("nitrogen enters the tank", "s")]
     t_fuel_out: Annotated[Quantity, Is("the fade of chamber pressure and thrust begins as the fuel runs out", "s")]
     t_fuel_gone: Annotated[Quantity, Is("it has ended: the solid fuel is gone", "s")]
-    t_end: Annotated[Quantity, Is("the chamber stays below 1.8 times ambient pressure; without it, the thrust has ended", "s")]
+    t_end: Annotated[
+        Quantity, Is("the chamber stays below 1.8 times ambient pressure; without it, the thrust has ended", "s")
+    ]
     order: Annotated[tuple[str, ...], Is("the events that there are, by time")]
     engineer: Annotated[tuple[str, ...], Is("events that were set by hand")]
     found_where_engineer_set: Annotated[dict[str, float], Is("what the search finds for these", "s")]

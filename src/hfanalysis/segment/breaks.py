@@ -102,8 +102,8 @@ def find_break(
     """
     sums = np.array([[_sum_of_squares(signal, design, c) for c in candidates] for design in designs])
     if richer:
-        closest = np.unravel_index(int(np.argmin(sums)), sums.shape)
-        fitted = _noise_variance(signal, designs[closest[0]], float(candidates[closest[1]]))
+        shape, at = divmod(int(np.argmin(sums)), candidates.size)
+        fitted = _noise_variance(signal, designs[shape], float(candidates[at]))
         sums[-richer:] += np.log(max(signal.time.size, 2)) * fitted
     best = int(np.argmin(sums.min(axis=1)))
     profile = sums.min(axis=0)

@@ -12,8 +12,7 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.nitrous import saturation
 
 LARGEST_COEFFICIENT = 1.2
-"""C_i [-] above which a t_v is impossible: no orifice passes more than its area, and a fifth is for what is coarse here.
-"""
+"""C_i [-] above which a t_v is impossible: no orifice passes more than its area; a fifth is for what is coarse."""
 
 SMALLEST_LIQUID = 0.5
 """Least part of a load that leaves as liquid, for a tank that is filled by a fifth or more."""
@@ -21,7 +20,8 @@ SMALLEST_LIQUID = 0.5
 
 @dataclass(frozen=True)
 class CoarseLoad:
-    """Least ``mass`` [kg] that leaves as liquid, the injector's ``area`` [m^2], and the pressures [Pa] that drive it."""
+    """Least ``mass`` [kg] that leaves as liquid, the injector's ``area`` [m^2], the liquid's ``density`` [kg/m^3], and
+    the pressures [Pa] that drive it."""
 
     mass: float
     area: float

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
@@ -62,10 +63,14 @@ def pulses_after(chamber: Signal, limit: float, t_end: float) -> list[tuple[floa
     if part.time.size < 8:
         return []
     above = part.smooth(max(SMOOTH, 4.0 * chamber.step)) > limit
-    return [(float(part.time[a]), float(part.time[b])) for a, b in _runs(part.time, above) if part.time[b] - part.time[a] > SMOOTH]
+    return [
+        (float(part.time[a]), float(part.time[b]))
+        for a, b in _runs(part.time, above)
+        if part.time[b] - part.time[a] > SMOOTH
+    ]
 
 
-def _runs(time: Array, above: Array) -> list[tuple[int, int]]:
+def _runs(time: Array, above: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """First and last index of each stretch above, those closer than APART together as one."""
     index = np.flatnonzero(above)
     if not index.size:
@@ -86,7 +91,8 @@ def _crossing(
 ) -> tuple[float, float]:
     """Where the parabola through what is around ``rough`` [s] passes the limit [Pa]; its error over its slope.
 
-    The sensor has wandered since the ``quiet`` time [s] in which its zero was taken. A last crossing of noise alone comes too late, the later the more slowly the pressure falls.
+    The sensor has wandered since the ``quiet`` time [s] in which its zero was taken. A last crossing of noise alone
+    comes too late, the later the more slowly the pressure falls.
     """
     best: tuple[float, float] | None = None
     narrowest = np.inf

@@ -24,8 +24,8 @@ COLD_PRESSURE_SHARE = 0.18
 """Chamber over run-line pressure, above ambient, below which the flow is cold, where the geometry is unknown."""
 
 THRUST_COEFFICIENT = 1.4
-"""F / (p_c A_t) [-] that turns a thrust into the chamber pressure it needs. Source: 1.2 to 1.6 for nozzles of area ratio
-2 to 6 at 10 to 40 bar."""
+"""F / (p_c A_t) [-] that turns a thrust into the chamber pressure it needs. Source: 1.2 to 1.6 for nozzles of area
+ratio 2 to 6 at 10 to 40 bar."""
 
 SILENT = 0.1e5
 """[Pa] A chamber that moves by less than this while the thrust responds does not see the flow: the gauge is dead, or no
@@ -146,10 +146,14 @@ def _by_thrust(signals: Mapping[str, Signal], span: tuple[float, float], known: 
         if known.flow is not None:
             velocity = force / known.flow
             side = "above" if velocity > COLDEST_FIRE else "below"
-            why = f"thrust over flow of {velocity:.0f} m/s at {known.flow:.2f} kg/s, {side} the {COLDEST_FIRE:.0f} m/s of any fire"
-            return velocity > COLDEST_FIRE, why
+            of_fire = f"{side} the {COLDEST_FIRE:.0f} m/s of any fire"
+            return velocity > COLDEST_FIRE, (
+                f"thrust over flow of {velocity:.0f} m/s at {known.flow:.2f} kg/s, {of_fire}"
+            )
         needed = force / (THRUST_COEFFICIENT * (known.throat_area or np.inf))
-        return _by_share(needed, signals["p_run"].mean(start, end) - known.ambient, "the pressure that the thrust needs")
+        return _by_share(
+            needed, signals["p_run"].mean(start, end) - known.ambient, "the pressure that the thrust needs"
+        )
 
     return _somewhere(judged, thrust, span) if np.isfinite(thrust.mean(*_later(span))) else None
 
@@ -169,7 +173,7 @@ def _felt(thrust: Signal, span: tuple[float, float]) -> bool:
     if part.value.size < 4:
         return False
     error = max(thrust.noise, float(part.value.std())) / np.sqrt(part.value.size)
-    return float(part.value.mean()) - _rest(thrust) > FELT * error
+    return bool(float(part.value.mean()) - _rest(thrust) > FELT * error)
 
 
 def _somewhere(judged: Callable[[float, float], Verdict], signal: Signal, span: tuple[float, float]) -> Verdict:

@@ -29,9 +29,9 @@ LEAST_LOSS = 0.05
 """By the end of the liquid a tank has lost at least this part of its pressure."""
 
 GAS_EMPTIES = 0.25
-"""Least rate at which the pressure falls by its own part once the liquid is gone, times t_v [-]: what is left is gas, and
-leaves by the same injector. That number is m (m_l / m_v) (mdot_v / mdot_l): liquid over vapor 1.5 to 7 for tanks filled
-by 20 to 85 %, flow of the vapor 0.2 of the liquid's or more. The opening's own drop and the end of late boiling have
+"""Least rate at which the pressure falls by its own part once the liquid is gone, times t_v [-]: what is left is gas
+and leaves by the same injector. That number is m (m_l / m_v) (mdot_v / mdot_l): liquid over vapor 1.5 to 7 for tanks
+filled by 20 to 85 %, flow of the vapor 0.2 of the liquid's or more. The opening's own drop and the end of late boiling have
 0.1 and less. Source: choked flow of nitrous oxide vapor against that of its liquid (CoolProp), at 25 to 45 bar."""
 
 DRY_PRESSURE_SPREAD = 0.2
@@ -140,9 +140,7 @@ def _run_line_fall(run: Signal, about: float, wide: float) -> float | None:
     return float(times[best]) if np.isfinite(drop[best]) and drop[best] > 0.5 * abs(usual) else None
 
 
-def _rough_knee(
-    tank: Signal, end: float, expected: float | None, impossible: Callable[[float], bool]
-) -> float | None:
+def _rough_knee(tank: Signal, end: float, expected: float | None, impossible: Callable[[float], bool]) -> float | None:
     coarse = tank.reduced(max(0.01, tank.step))
     width = float(np.clip(0.05 * end, max(0.1, 5 * tank.step), max(0.4, 8 * tank.step)))
     times = np.arange(0.5 * width, end - 0.4 * width, 0.25 * width)

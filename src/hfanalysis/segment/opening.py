@@ -68,12 +68,14 @@ def find_opening(signals: Mapping[str, Signal]) -> Opening | None:
 
 
 def _by_response(signals: Mapping[str, Signal]) -> Opening | None:
-    """Line and tank together; the tank alone where chamber or thrust change with it, and the line by itself long before."""
+    """Line and tank together; the tank where chamber or thrust change with it, and the line by itself long before."""
     rough = {name: time for name in LEADS if (time := _rough(signals, name)) is not None}
     if not rough:
         return None
     lead = next(iter(rough))
-    names = dict.fromkeys((lead, *(n for n in ("p_run", "p_tank") if n in signals and _responds(signals[n], rough[lead]))))
+    names = dict.fromkeys(
+        (lead, *(n for n in ("p_run", "p_tank") if n in signals and _responds(signals[n], rough[lead])))
+    )
     together = _refined([signals[n] for n in names], rough[lead])
     if lead != "p_run" or "p_tank" in names or "p_tank" not in signals:
         return together

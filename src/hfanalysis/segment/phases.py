@@ -15,9 +15,9 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal, live_signals
+from hfanalysis.segment.coarse_load import coarse_load
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, QUIET, find_unchoking, pulses_after
 from hfanalysis.segment.feed import find_line_full
-from hfanalysis.segment.coarse_load import coarse_load
 from hfanalysis.segment.firings import Flow, find_flows, largest
 from hfanalysis.segment.fuel import find_fuel_end
 from hfanalysis.segment.kind import Kind, Known, recognize
@@ -306,7 +306,9 @@ class _Search:
         if kind.name != "hot_fire":
             return f"nothing burns: {kind.why}"
         chamber, offset = self.signals["p_chamber"], self._chamber_offset()
-        found = find_unchoking(chamber, self.ambient, self._time("t_feed") or 0.3, offset, self._chamber_bias(), self._noise())
+        found = find_unchoking(
+            chamber, self.ambient, self._time("t_feed") or 0.3, offset, self._chamber_bias(), self._noise()
+        )
         if not isinstance(found, str):
             for start, end in pulses_after(chamber, CRITICAL_RATIO * self.ambient + offset, found[0]):
                 self.notes.append(

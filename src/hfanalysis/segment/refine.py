@@ -68,7 +68,8 @@ def refine_step(
     Looked for within ``reach`` [s] of ``rough`` [s] in [rough - ``before``, rough + ``after``] [s]. None where the
     window holds too few samples.
     """
-    designs = [relaxation(c, before=order) for c in RELAXATIONS] + [relaxation(c, order, jumps=True) for c in jumps]
+    simple: list[Design] = [relaxation(c, before=order) for c in RELAXATIONS]
+    designs = simple + [relaxation(c, order, jumps=True) for c in jumps]
     return _search(signals, rough, before, after, reach, designs, (*RELAXATIONS, *jumps), richer=len(jumps))
 
 

@@ -40,7 +40,7 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
     if all(active.effect.of_sensor for active in effects):
         return found
     context.progress("fitting all constants together, adopted effects in", None)
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     subject = Subject(read_log(context.product("ingest.h5")), segments, base, context.definition)
     try:
         return fitted_together(subject, effects, found)
@@ -57,7 +57,7 @@ def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     from hfanalysis.products.segments import Segments
     from hfanalysis.record.log import read_log
 
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)
     context.progress("repeating the calibration with drawn inputs", None)
     result = calibrate(log, segments, context.definition, int(context.parameter("samples")), effects)

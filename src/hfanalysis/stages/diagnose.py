@@ -53,7 +53,7 @@ def subject_of(context: Context) -> Subject:
     from hfanalysis.record.log import read_log
 
     log = read_log(context.product("ingest.h5"))
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     if "calibrate" not in context.absent:
         return Subject(log, segments, context.read(Calibration, BASE + Calibration.file), context.definition)
     if "p_tank" in log and "p_run" not in log:

@@ -14,7 +14,9 @@ def run(context: Context) -> None:
     from hfanalysis.segment.phases import find_phases
 
     log = read_log(context.product("ingest.h5"))
-    context.write(find_phases(log, context.definition))
+    context.write(find_phases(log, context.definition, int(context.parameter("firing")) or None))
 
 
-STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run, adopts=False)
+STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run, adopts=False,
+    parameters={"firing": 0}, least={"firing": 0},
+)  # fmt: skip

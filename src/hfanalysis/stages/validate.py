@@ -20,7 +20,7 @@ def run(context: Context) -> None:
     from hfanalysis.validate.validation import validate
 
     log = read_log(context.product("ingest.h5"))
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     absent = context.absent.get("calibrate")
     calibration = None if absent else context.read(Calibration)
     adopted = read_adopted(context.root, context.definition)
