@@ -23,6 +23,7 @@ def judge(log: TestLog, definition: TestDefinition, sisters: Sequence[Sister] = 
     return Health(
         channels={name: _channel(name, found, definition) for name in log.channels},
         between=tuple(_overruled(finding, definition) for finding in (*tied, *doubts)),
+        firing=test.fire,
         compared=tuple(sister.name for sister in sisters),
         warnings=(),
     )

@@ -78,6 +78,9 @@ class Health(Product):
 
     channels: Annotated[dict[str, ChannelHealth], Is("by canonical name")]
     between: Annotated[tuple[Finding, ...], Is("findings that tie channels, or this test to others of its stand")]
+    firing: Annotated[tuple[float, float] | None, Is(
+        "from when to when most channels are away from rest, by a coarse look", "s, log time"
+    )] = None  # fmt: skip
     compared: Annotated[tuple[str, ...], Is("other tests of the stand that were looked at")] = ()
     warnings: Warnings
 

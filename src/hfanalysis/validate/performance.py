@@ -73,7 +73,7 @@ def measured(
     oxidizer, fuel = _oxidizer(log, segments, definition, calibration), _fuel(definition)
     out["specific_impulse"] = specific_impulse(impulse, oxidizer, fuel)
     out["peak_chamber_pressure"] = _peak(log, "p_chamber", _signal(log, segments, "p_chamber"), fire)
-    out["peak_thrust"] = _peak(log, "thrust", thrust.signal if thrust else "the log has no thrust", fire)
+    out["peak_thrust"] = _peak(log, "thrust", thrust.signal if thrust else log.lacks("thrust"), fire)
     out["average_thrust"] = _average(impulse, out["burn_time"])
     out |= {"oxidizer_mass": oxidizer, "fuel_mass": fuel}
     out["mean_chamber_pressure"] = _mean(log, segments, "p_chamber", fire)
@@ -84,7 +84,7 @@ def measured(
 def _signal(log: TestLog, segments: Segments, name: str) -> Signal | str:
     channel = log.get(name)
     if channel is None:
-        return f"the log has no {name}"
+        return log.lacks(name)
     signal = Signal.of(channel).shifted(segments.t_open.value or 0.0)
     return signal if signal.time.size > 8 else f"{name} has too few good samples"
 
@@ -99,7 +99,7 @@ def _bias(channel: Channel) -> float:
 def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     """Integral of the thrust over the burn, the cell's drift taken off."""
     if thrust is None:
-        return Quantity.absent("the log has no thrust")
+        return Quantity.absent(log.lacks("thrust"))
     signal, channel = thrust.signal, log["thrust"]
     if signal.time.size < 9:
         return Quantity.absent("thrust has too few good samples")
@@ -132,7 +132,7 @@ def _raw_integral(log: TestLog) -> Quantity:
     """What a plain integral of the raw channel over the file gives."""
     channel = log.get("thrust")
     if channel is None:
-        return Quantity.absent("the log has no thrust")
+        return Quantity.absent(log.lacks("thrust"))
     raw = channel.values if channel.raw is None else channel.raw
     good = channel.good & np.isfinite(raw)
     value = float(np.trapezoid(raw[good], channel.time[good]))

@@ -1,0 +1,86 @@
+"""What a channel's health makes of the numbers that rest on it: doubted, with the reason in the same line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from hfanalysis.health.rests_on import channels_of, concerns
+from hfanalysis.products.health import HEALTHY, UNUSABLE, Finding, Health
+from hfanalysis.products.model import Part, Product
+from hfanalysis.quantity import DOUBTED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+from hfanalysis.sentences import joined, text
+
+P = TypeVar("P", bound=Part)
+WORSE = (NOT_IDENTIFIABLE, UNPHYSICAL)
+"""Verdicts that a doubt does not replace."""
+
+
+def doubted(product: Product, health: Health) -> Product:
+    """A product whose quantities say where they rest on a channel that is not healthy, or that is trusted all the same.
+
+    Everything else is as it was.
+    """
+    if all(channel.verdict == HEALTHY and not channel.trust for channel in health.channels.values()):
+        return product
+    return _part(product, product.file, health)
+
+
+def _part(part: P, product: str, health: Health) -> P:
+    """A part of a product, and what is in it."""
+    changes = {name: _value(name, value, product, health) for name, value in part.given.items()}
+    return part.but(**{name: new for name, new in changes.items() if new is not getattr(part, name)})
+
+
+def _value(name: str, value: Any, product: str, health: Health) -> Any:
+    if isinstance(value, Quantity):
+        return with_doubt(value, list(reasons(product, name, value, health)))
+    if isinstance(value, Part):
+        return _part(value, product, health)
+    if isinstance(value, Mapping) and any(isinstance(inner, (Quantity, Part)) for inner in value.values()):
+        return {key: _value(key, inner, product, health) for key, inner in value.items()}
+    return value
+
+
+def reasons(product: str, name: str, quantity: Quantity, health: Health) -> Iterator[tuple[bool, str]]:
+    """Why a quantity of a product is doubted (True), or what the engineer overruled (False): sentences."""
+    for channel in channels_of(product, name, quantity):
+        found = health.of(channel)
+        for finding in found.findings:
+            if finding.verdict == HEALTHY or not concerns(product, name, finding.kind):
+                continue
+            if found.trust:
+                yield False, text(
+                    "{channel} is trusted ({trust}) against {what}", channel=channel, trust=found.trust,
+                    what=_words(finding),
+                )  # fmt: skip
+            elif finding.verdict != UNUSABLE or _in_firing(finding, health):
+                yield True, text("{channel} {what}", channel=channel, what=_words(finding))
+
+
+def _in_firing(finding: Finding, health: Health) -> bool:
+    """Whether a stretch that is left out is one of the firing, and not all of the channel."""
+    if finding.whole or health.firing is None:
+        return not finding.whole
+    (start, end), (first, last) = finding.span, health.firing
+    return start < last and end > first
+
+
+def _words(finding: Finding) -> str:
+    left = ", left out" if finding.verdict == UNUSABLE else ""
+    return text("({kind}{left}): {evidence}", kind=finding.kind.replace("_", " "), left=left, evidence=finding.evidence)
+
+
+def with_doubt(quantity: Quantity, why: list[tuple[bool, str]]) -> Quantity:
+    """A quantity with these reasons beside it; doubted where one of them is a doubt, unless it is worse already."""
+    if not why:
+        return quantity
+    said = list(dict.fromkeys(words for _, words in why))
+    if quantity.value is None:
+        return replace(quantity, reason=joined("; ", [str(quantity.reason), *said]))
+    doubt = any(is_doubt for is_doubt, _ in why) and quantity.verdict not in WORSE
+    told = [quantity.why] if quantity.why else []
+    # what makes a number doubtful comes before where it is from
+    line = joined("; ", [*said, *told] if doubt else [*told, *said])
+    return replace(quantity, verdict=DOUBTED if doubt else quantity.verdict, why=line)
