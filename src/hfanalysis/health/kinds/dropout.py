@@ -36,6 +36,8 @@ def _below_vacuum(seen: Seen) -> Iterator[Finding]:
     if len(values) < 4 * FEWEST:
         return
     rest = seen.coarse.rest.value if seen.coarse.rest else seen.ambient
+    if _reversed(seen, rest):
+        return
     limit = min(0.0, rest) - BELOW * seen.channel.accuracy
     bridge = max(FEWEST, round(BRIDGED * seen.coarse.rate))
     found = [(a, b) for a, b in stretches(running_median(values) < limit, bridge) if b - a >= FEWEST]
@@ -45,6 +47,18 @@ def _below_vacuum(seen: Seen) -> Iterator[Finding]:
         words = "reads {value} absolute from {start:.2f} to {end:.2f} s ({n} samples), and no pressure is below vacuum"
         evidence = text(words, value=level(mean, "pressure"), start=start, end=end, n=b - a)
         yield _none(seen, start, end, evidence, "a code for no reading, a transmitter's fault current or a broken wire")
+
+
+def _reversed(seen: Seen, rest: float) -> bool:
+    """Whether it goes below vacuum as far as others go up, and comes back: a reversed sign, which is another kind."""
+    if seen.fire is None:
+        return False
+    part = seen.trace.between(*seen.fire).values
+    if len(part) < 4 * FEWEST:
+        return False
+    low, high = np.percentile(part, (10.0, 90.0))
+    last = seen.coarse.last
+    return bool(high - rest < 0.3 * (rest - low) and last is not None and last.value - low > 0.5 * (rest - low))
 
 
 def _coded(seen: Seen) -> Iterator[Finding]:
