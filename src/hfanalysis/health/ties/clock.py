@@ -33,5 +33,4 @@ def find(test: SeenTest) -> Iterator[Finding]:
     )
     yield Finding(
         kind="clock", verdict="suspect", channels=tuple(test.channels), evidence=evidence, means=means, cure=None,
-        gain=stated.value / left - 1.0,
     )  # fmt: skip
