@@ -18,6 +18,8 @@ NOT_READ = Flag.TIME | Flag.EXCLUDED
 """Rows that are none, or that were left out already."""
 SHORTEST = 3
 """Rows that a repeated block has at least [rows]."""
+LAGS = 8
+"""Lags that are looked at. Evidence: a log has few blocks of which another is a copy."""
 AROUND = 32
 """Rows on either side of held ones that say how often rows repeat there [rows]."""
 AWAY = 0.1
@@ -52,21 +54,39 @@ def _by_clock(test: SeenTest) -> Iterator[list[Seen]]:
     yield from groups
 
 
-def _blocks(rows: NDArray[np.uint64]) -> Iterator[Run]:
-    """Blocks of rows (n,) that are those of a while before, and by chance would not be."""
+def _blocks(rows: NDArray[np.uint64]) -> list[Run]:
+    """Blocks of rows (n,) that are those of a while before, and by chance would not be; none within another."""
+    found: list[Run] = []
+    for run in sorted((run for lag in _likely(rows) for run in _at(rows, lag)), key=lambda r: -r.length):
+        if not any(run.first <= other.last and run.last >= other.first for other in found):
+            found.append(run)
+    return sorted(found, key=lambda run: run.first)
+
+
+def _likely(rows: NDArray[np.uint64]) -> list[int]:
+    """The lags at which rows in a row were there before, those of the most rows first."""
     lag = _lags(rows)
-    found = [Run(int(a), int(b), int(lag[a])) for a, b in _same(lag) if lag[a] > 1 and b - a + 1 >= SHORTEST]
-    if not found:
-        return
-    twin = lag > 0
-    alone = np.ones(len(rows), dtype=bool)
-    for run in found:
-        alone[run.first - run.lag : run.last + 1] = False
-    share = (np.count_nonzero(twin & alone) + 1.0) / (np.count_nonzero(alone) + 2.0)
-    for run in found:
-        distinct = len(np.unique(rows[run.first : run.last + 1]))
-        if certain(distinct, max(share, 1.0 / len(rows)), float(len(rows)) ** 2):
-            yield run
+    runs = _same(lag)
+    length = runs[:, 1] - runs[:, 0] + 1
+    long = (length >= SHORTEST) & (lag[runs[:, 0]] > 1)
+    if not long.any():
+        return []
+    total = np.bincount(lag[runs[long, 0]], weights=length[long])
+    return [int(place) for place in np.argsort(-total)[:LAGS] if total[place]]
+
+
+def _at(rows: NDArray[np.uint64], lag: int) -> Iterator[Run]:
+    """The blocks that are those of so many rows before."""
+    equal = np.r_[np.zeros(lag, dtype=bool), rows[lag:] == rows[:-lag]]
+    for first, last in true_runs(equal):
+        length = int(last - first + 1)
+        if length < SHORTEST:
+            continue
+        others, count = np.count_nonzero(equal) - length, len(rows) - lag - length
+        chance = max((others + 1.0) / (count + 2.0), 1.0 / len(rows))
+        distinct = len(np.unique(rows[first : last + 1]))
+        if chance < 1.0 and certain(distinct, chance, float(len(rows)) ** 2):
+            yield Run(int(first), int(last), lag)
 
 
 def _live(test: SeenTest, time: Array, run: Run) -> bool:
