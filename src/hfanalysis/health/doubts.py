@@ -44,19 +44,21 @@ def _value(name: str, value: Any, product: str, health: Health) -> Any:
 
 
 def reasons(product: str, name: str, quantity: Quantity, health: Health) -> Iterator[tuple[bool, str]]:
-    """Why a quantity of a product is doubted (True), or what the engineer overruled (False): sentences."""
+    """Why a quantity of a product is doubted (True), or what the engineer overruled (False): sentences.
+
+    Channels that the same is said of stand in one.
+    """
+    whose: dict[tuple[bool, str, str], list[str]] = {}
     for channel in channels_of(product, name, quantity):
-        found = health.of(channel)
-        for finding in found.findings:
+        trust = health.of(channel).trust
+        for finding in health.of(channel).findings:
             if finding.verdict == HEALTHY or not concerns(product, name, finding.kind):
                 continue
-            if found.trust:
-                yield False, text(
-                    "{channel} is trusted ({trust}) against {what}", channel=channel, trust=found.trust,
-                    what=_words(finding),
-                )  # fmt: skip
-            elif finding.verdict != UNUSABLE or _in_firing(finding, health):
-                yield True, text("{channel} {what}", channel=channel, what=_words(finding))
+            if trust or finding.verdict != UNUSABLE or _in_firing(finding, health):
+                whose.setdefault((not trust, trust or "", _words(finding)), []).append(channel)
+    for (doubt, trust, words), names in whose.items():
+        trusted = f" trusted ({trust}) against" if trust else ""
+        yield doubt, text("{names}{trusted} {words}", names=", ".join(names), trusted=trusted, words=words)
 
 
 def _in_firing(finding: Finding, health: Health) -> bool:
@@ -78,6 +80,8 @@ def with_doubt(quantity: Quantity, why: list[tuple[bool, str]]) -> Quantity:
         return quantity
     said = list(dict.fromkeys(words for _, words in why))
     if quantity.value is None:
+        if quantity.verdict not in WORSE:
+            return quantity
         return replace(quantity, reason=joined("; ", [str(quantity.reason), *said]))
     doubt = any(is_doubt for is_doubt, _ in why) and quantity.verdict not in WORSE
     told = [quantity.why] if quantity.why else []

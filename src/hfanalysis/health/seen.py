@@ -27,6 +27,8 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.logspec import ChannelSpec
 from hfanalysis.record.quiet import Trace
+from hfanalysis.sentences import Text, said
+from hfanalysis.wording.numbers import people_unit
 
 FIRING = ("p_chamber", "thrust", "p_run", "p_tank")
 """Channels that say when the firing is, the most telling first."""
@@ -77,6 +79,11 @@ class Seen:
         scale, offset = self.spec.factor
         ambient = self.ambient if self.spec.gauge else 0.0
         return (self.said - ambient - offset) / scale * self.spec.scale + self.spec.offset
+
+    def amount(self, value: float, form: str = ".4g") -> Text:
+        """A value or a difference [SI] in the unit of people at a stand, as findings say it."""
+        factor, unit = people_unit(self.channel.unit)
+        return said(value, unit, form, size=1.0 / factor) if unit else Text(f"{value:{form}}")
 
     def finding(self, kind: str, verdict: Any, **about: Any) -> Finding:
         """A finding of this channel alone."""

@@ -23,17 +23,21 @@ definition: about its plateau."""
 
 
 def usable(log: TestLog, health: Health, definition: TestDefinition) -> TestLog:
-    """The log [SI] without its unusable stretches; a channel that has no other samples is not in it.
+    """The log [SI] without its unusable stretches; a channel that has no other samples is not in it."""
+    found = marked(log, health, definition)
+    kept = {name: channel for name, channel in found.channels.items() if not _gone(channel, log[name])}
+    reasons = {name: why(unusable_findings(health.of(name))) for name in log.channels if name not in kept}
+    return replace(found, channels=kept, unusable=reasons)
+
+
+def marked(log: TestLog, health: Health, definition: TestDefinition) -> TestLog:
+    """The log [SI] with its unusable stretches flagged.
 
     Zero and tare that were taken with such a stretch are taken anew without it.
     """
     cut = {name: _cut(channel, health.of(name)) for name, channel in log.channels.items()}
-    kept = {name: channel for name, channel in cut.items() if not _gone(channel, log[name])}
-    touched = {name for name, channel in kept.items() if channel is not log[name]}
-    if touched | (set(log.channels) - set(kept)):
-        kept = _zeroed(kept, touched, set(log.channels) - set(kept), definition)
-    reasons = {name: why(unusable_findings(health.of(name))) for name in log.channels if name not in kept}
-    return replace(log, channels=kept, unusable=reasons)
+    touched = {name for name, channel in cut.items() if channel is not log[name]}
+    return replace(log, channels=_zeroed(cut, touched, definition)) if touched else log
 
 
 def unusable_findings(health: ChannelHealth) -> list[Finding]:
@@ -64,12 +68,9 @@ def _gone(now: Channel, before: Channel) -> bool:
     return bool(before.good.any()) and not bool(now.good.any())
 
 
-def _zeroed(
-    channels: Mapping[str, Channel], touched: set[str], gone: set[str], definition: TestDefinition
-) -> dict[str, Channel]:
+def _zeroed(channels: Mapping[str, Channel], touched: set[str], definition: TestDefinition) -> dict[str, Channel]:
     """The channels with their zeros taken anew where a sample that they rested on, or told the firing by, is gone."""
-    asked = next((name for name in REFERENCES if name in channels or name in gone), None)
-    every = asked in touched | gone
+    every = next((name for name in REFERENCES if name in channels), None) in touched
     firing = _firing(channels, touched, definition)
     return {
         name: _with_zero(channel, firing, definition) if every or name in touched else channel

@@ -161,6 +161,13 @@ class Context:
         used = usable.usable(log, health, self.definition)
         return usable.widened(used, health) if widened else used
 
+    def marked(self) -> TestLog:
+        """The log of ingest with all that it has, for people to look at; what is unusable is flagged."""
+        from hfanalysis.health import usable
+        from hfanalysis.record.log import read_log
+
+        return usable.marked(read_log(self.product("ingest.h5")), self._health(), self.definition)
+
     def believed(self) -> tuple[TestLog, TestDefinition]:
         """That log, and test.toml with its accuracies."""
         from hfanalysis.health.usable import as_accurate

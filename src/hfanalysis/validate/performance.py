@@ -34,6 +34,10 @@ SPAN = 0.25
 test_performance_errors.py: a tare takes away three quarters of what a cell may be off by."""
 
 
+EARLY = 0.5
+"""[s] before the burn's end at which a channel may end and still say what it was over the burn."""
+
+
 @dataclass(frozen=True)
 class Fire:
     """When the engine burns: from the opening to ``end`` [s], known to ``std``, as ``source`` says."""
@@ -103,8 +107,8 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     signal, channel = thrust.signal, log["thrust"]
     if signal.time.size < 9:
         return Quantity.absent("thrust has too few good samples")
-    if signal.time[-1] < fire.end - 0.5:
-        return Quantity.absent(f"the log ends at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)")
+    if signal.time[-1] < fire.end - EARLY:
+        return Quantity.absent(_ends_early("thrust", signal, fire))
     edges = np.array([0.0, fire.end])
     whole, unseen = signal.bridged(), signal.holes(*edges)
     inner = whole.between(*edges)
@@ -120,6 +124,11 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     holes = f"; {lacking:.2f} s without samples bridged by straight lines" if lacking else ""
     why = text("over the burn{drift}{holes}", drift=drift, holes=holes)
     return Quantity(value, "N s", float(np.linalg.norm(errors)), why=why)
+
+
+def _ends_early(name: str, signal: Signal, fire: Fire) -> str:
+    """How it is said that a channel says nothing of the burn's last part."""
+    return f"the good samples of {name} end at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)"
 
 
 def _across(signal: Signal, start: float, end: float) -> float:
@@ -177,6 +186,8 @@ def _mean(log: TestLog, segments: Segments, name: str, fire: Fire) -> Quantity:
     inner = signal.between(0.0, fire.end)
     if inner.time.size < 8:
         return Quantity.absent(f"{name} has too few good samples in the burn")
+    if signal.time[-1] < fire.end - EARLY:
+        return Quantity.absent(_ends_early(name, signal, fire))
     mean = float(np.trapezoid(inner.value, inner.time) / np.ptp(inner.time))
     return Quantity(mean, log[name].unit, _bias(log[name]))
 
