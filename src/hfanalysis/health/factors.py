@@ -9,6 +9,8 @@ from hfanalysis.units import TABLE, unit_factor
 
 MET = {"pressure": ("psi", "bar", "kPa", "MPa", "Pa"), "force": ("N", "kN", "lbf", "kgf"), "mass": ("kg", "g", "lb")}
 """Units that loggers write. Source: definition."""
+FAR = 3.0
+"""Factor from which on a unit is more likely mistaken than a scale [-]: below, kgf for lbf is the only one."""
 SLACK = 0.04
 """Relative error with which a factor may be met by that of two units [-]."""
 
@@ -57,7 +59,7 @@ def unit_for(factor: Factor, unit: str, dimension: str) -> str | None:
         return None
     stated = unit_factor(unit, dimension, "")[0]
     ratios = {u: unit_factor(u, dimension, "")[0] / stated for u in MET[dimension]}
-    fits = [u for u, r in ratios.items() if abs(log(r)) > 0.1 and _within(r, factor)]
+    fits = [u for u, r in ratios.items() if abs(log(r)) > log(FAR) and _within(r, factor)]
     return min(fits, key=lambda u: abs(log(ratios[u] / factor.middle))) if fits else None
 
 

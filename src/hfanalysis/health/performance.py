@@ -47,7 +47,7 @@ def choked(pressure: float, ambient: float) -> bool:
 def _convergent(gamma: float, pressure: float, ambient: float) -> float:
     """Momentum and pressure at a sonic exit: (1 + g) (2 / (g + 1))^(g / (g - 1)) - p_a / p_c."""
     critical = (2.0 / (gamma + 1.0)) ** (gamma / (gamma - 1.0))
-    return (1.0 + gamma) * critical - ambient / pressure
+    return float((1.0 + gamma) * critical - ambient / pressure)
 
 
 def _fully_expanded(gamma: float, pressure: float, ambient: float) -> float:

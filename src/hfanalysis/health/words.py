@@ -1,4 +1,4 @@
-"""How findings say levels, spans and cures."""
+"""How findings say levels and channels."""
 
 from __future__ import annotations
 
@@ -23,8 +23,3 @@ def called(channel: str) -> str:
     """A channel with what it is: the reader may not know canonical names."""
     long = LONG_NAMES.get(channel)
     return f"{channel} ({long})" if long else channel
-
-
-def exclusion(channel: str, start: float, end: float) -> str:
-    """The lines of test.toml that leave a stretch [s, log time] of a channel out."""
-    return f'[[exclude]]\nstart = {start:.6g}\nend = {end:.6g}\nchannels = ["{channel}"]'

@@ -32,7 +32,7 @@ def amended(text: str, channel: str, lines: str) -> str:
     for key, value in wanted.items():
         if key == "channels":
             for name, keys in value.items():
-                text = _with_keys(text, name, keys, lines)
+                text = _with_keys(text, name, keys, _own(lines, name))
         elif isinstance(value, list) and value and isinstance(value[0], dict):
             if all(table in expected.get(key, []) for table in value):
                 continue
@@ -80,6 +80,11 @@ def _with_keys(text: str, channel: str, keys: Mapping[str, Any], lines: str) -> 
         else:
             rows[place] = line + _comment(rows[place])
     return "\n".join(rows)
+
+
+def _own(lines: str, channel: str) -> str:
+    """The rows of a channel's own table."""
+    return re.split(rf"\[channels\.{re.escape(channel)}\]", lines, maxsplit=1)[1].split("[", 1)[0]
 
 
 def _line(lines: str, key: str) -> str:

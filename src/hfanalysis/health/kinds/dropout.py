@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hfanalysis.health.cures import exclude
 from hfanalysis.health.seen import Seen
 from hfanalysis.health.shape import running_median, stretches
-from hfanalysis.health.words import exclusion, level
+from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
 from hfanalysis.record.holes import holes
 from hfanalysis.record.log import Flag
@@ -64,7 +65,7 @@ def _reversed(seen: Seen, rest: float) -> bool:
 def _coded(seen: Seen) -> Iterator[Finding]:
     """Holes in which the log has rows, but no reading that is one."""
     none = (seen.channel.flags & np.uint8(Flag.DROPOUT)) != 0
-    if seen.dimension == "dimensionless" or not none.any() or none.mean() > 0.9:
+    if seen.dimension in ("dimensionless", "temperature") or not none.any() or none.mean() > 0.9:
         return
     stamps = seen.channel.time[none]
     for start, end in holes(seen.trace.time)[:TOLD]:
@@ -76,5 +77,5 @@ def _coded(seen: Seen) -> Iterator[Finding]:
 
 
 def _none(seen: Seen, start: float, end: float, evidence: str, means: str) -> Finding:
-    cure = exclusion(seen.name, start, end)
+    cure = exclude([seen.name], start, end)
     return seen.finding("dropout", "unusable", start=start, end=end, evidence=evidence, means=means, cure=cure)

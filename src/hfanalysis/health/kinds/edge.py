@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
+from hfanalysis.health.cures import exclude
 from hfanalysis.health.seen import Seen
-from hfanalysis.health.words import exclusion, level
+from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
 from hfanalysis.record.signals import sample_noise
 from hfanalysis.sentences import text
@@ -38,7 +40,7 @@ def find(seen: Seen) -> Iterator[Finding]:
             yield _finding(seen, time, values, np.flatnonzero(where) + (0 if begin else len(values) - AT_MOST), begin)
 
 
-def _finding(seen: Seen, time: Array, values: Array, at: Array, begin: bool) -> Finding:
+def _finding(seen: Seen, time: Array, values: Array, at: NDArray[np.intp], begin: bool) -> Finding:
     step = 0.25 / seen.coarse.rate if seen.coarse.rate else 0.0
     first, last = (0, int(at[-1])) if begin else (int(at[0]), len(values) - 1)
     start, end = float(time[first]) - step, float(time[last]) + step
@@ -50,5 +52,5 @@ def _finding(seen: Seen, time: Array, values: Array, at: Array, begin: bool) -> 
         high=level(float(np.percentile(values, 99)), seen.dimension),
     )  # fmt: skip
     means = "no reading: what a converter says before its first or after its last measurement, or a line cut short"
-    cure = exclusion(seen.name, start, end)
+    cure = exclude([seen.name], start, end)
     return seen.finding("edge", "unusable", start=start, end=end, evidence=evidence, means=means, cure=cure)

@@ -10,9 +10,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.health.cures import exclude
 from hfanalysis.health.seen import Seen
 from hfanalysis.health.shape import by_blocks, spread_about_neighbors
-from hfanalysis.health.words import exclusion, level
+from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
 from hfanalysis.record.quiet import Trace
 from hfanalysis.sentences import text
@@ -79,7 +80,7 @@ def _finding(seen: Seen, blocks: list[Trace], noise: Array, at: int) -> Finding 
         start=start, size=level(size, seen.dimension), usual=level(usual, seen.dimension),
     )  # fmt: skip
     means = "the sensor or its cable has died: what follows is noise, and no signal is in it"
-    cure = exclusion(seen.name, start, end)
+    cure = exclude([seen.name], start, end)
     return seen.finding("noise", "unusable", start=start, end=end, evidence=evidence, means=means, cure=cure)
 
 
@@ -92,4 +93,6 @@ def _flat(blocks: list[Trace], size: float) -> bool:
 
 def _shaken(seen: Seen, start: float) -> bool:
     """Whether it begins with the firing, as a stand's shaking does."""
-    return seen.fire is not None and abs(start - seen.fire[0]) < 0.1 * (seen.fire[1] - seen.fire[0]) + 0.3
+    if seen.fire is None:
+        return False
+    return bool(abs(start - seen.fire[0]) < 0.1 * (seen.fire[1] - seen.fire[0]) + 0.3)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hfanalysis.health.coarse import FEW
+from hfanalysis.health.cures import exclude
 from hfanalysis.health.seen import Seen
 from hfanalysis.health.shape import Mask, running_median, stretches
-from hfanalysis.health.words import exclusion, level
+from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
 from hfanalysis.record.signals import sample_noise
 from hfanalysis.sentences import text
@@ -35,6 +37,9 @@ def find(seen: Seen) -> Iterator[Finding]:
     if len(values) < 0.1 * len(seen.said):
         yield _open(seen, "unusable", text("{share:.0f} % of its readings are none", share=100.0 * np.mean(~finite)))
         return
+    lost = np.flatnonzero(~finite)
+    if len(lost) > LASTING * len(seen.said) and lost[-1] - lost[0] < 2 * len(lost):
+        yield _lost(seen, lost)
     low, high = OXIDIZER if seen.name in ("T_tank", "T_run") else ANYWHERE
     level_ = running_median(values)
     outside = (level_ < low) | (level_ > high)
@@ -43,6 +48,15 @@ def find(seen: Seen) -> Iterator[Finding]:
     elif (noise := sample_noise(values)) > JUMPY:
         words = "its readings jump by {noise:.0f} K from one sample to the next, which no bead can follow"
         yield _open(seen, "unusable", text(words, noise=noise * np.sqrt(2.0)))
+
+
+def _lost(seen: Seen, lost: NDArray[np.intp]) -> Finding:
+    """A stretch in which it has no reading, or only the code for an open one."""
+    start, end = (float(seen.channel.time[i]) for i in (lost[0], lost[-1]))
+    words = "has no reading, or the code for none, from {start:.2f} to {end:.2f} s"
+    evidence = text(words, start=start, end=end)
+    cure = exclude([seen.name], start, end)
+    return _open(seen, "unusable", evidence, start=start, end=end, cure=cure)
 
 
 def _outside(seen: Seen, time: np.ndarray, values: np.ndarray, outside: Mask) -> Finding:
@@ -56,7 +70,7 @@ def _outside(seen: Seen, time: np.ndarray, values: np.ndarray, outside: Mask) ->
     if outside.mean() > 0.5:
         return _open(seen, "unusable", evidence)
     start, end = float(time[first]), float(time[last])
-    return _open(seen, "unusable", evidence, start=start, end=end, cure=exclusion(seen.name, start, end))
+    return _open(seen, "unusable", evidence, start=start, end=end, cure=exclude([seen.name], start, end))
 
 
 def _open(seen: Seen, verdict: str, evidence: str, **about: object) -> Finding:

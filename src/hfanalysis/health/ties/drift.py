@@ -16,17 +16,17 @@ from hfanalysis.sentences import text
 
 LONGEST = 10.0
 """[s] before the firing that are looked at: earlier, a stand is still worked on."""
-SHORTEST = 1.0
+SHORTEST = 2.0
 """[s] of quiet below which no drift is told from noise."""
 BLOCKS = 12
 """Blocks whose means a straight line is laid through."""
-DEVIATIONS = 5.0
+DEVIATIONS = 8.0
 """Deviations of its slope that a drift has to have [-]."""
 SHARE = 0.02
 """Part of its rise by which a drift has to change the channel through the firing [-]."""
 ACCURACIES = 3.0
 """Deviations of the stated accuracy by which it has to; where none is stated, the share alone counts [-]."""
-STRAIGHT = 0.8
+STRAIGHT = 0.9
 """Part of the blocks' variance that the line has to explain [-]: a step or a knock is no drift."""
 
 
@@ -44,7 +44,8 @@ def find(test: SeenTest) -> Iterator[Finding]:
 
 
 def _drift(test: SeenTest, seen: Seen) -> Finding | None:
-    assert test.fire is not None and seen.coarse.rise is not None
+    assert test.fire is not None
+    assert seen.coarse.rise is not None
     start, end = test.fire
     quiet = usable(test, seen).between(start - LONGEST, start - MARGIN)
     fitted = _line(quiet)

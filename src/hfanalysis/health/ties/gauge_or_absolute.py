@@ -61,7 +61,8 @@ def _likely(test: SeenTest, wrong: dict[str, int]) -> Iterator[Finding]:
         if seen.dimension != "pressure" or seen.name in wrong or seen.spec.unit not in alike:
             continue
         if (-1 if seen.spec.gauge else 1) == side and test.get(seen.name) is not None:
-            evidence = text("{others}, logged in the same unit, are off by one ambient pressure", others=" and ".join(wrong))
+            words = "{others}, logged in the same unit, are off by one ambient pressure"
+            evidence = text(words, others=" and ".join(wrong))
             yield seen.finding(
                 "gauge_or_absolute", "suspect", evidence=evidence, means=_means(seen), cure=_cure(seen),
                 bias=seen.ambient,

@@ -118,7 +118,8 @@ def _dry(test: SeenTest, cell: Seen, w: Weighed) -> Finding | None:
         else text("the tank holds {most} at most", most=said(limit, "kg", ".3g"))
     )  # fmt: skip
     evidence = text(words, before=level(w.before, "mass"), after=level(w.after, "mass"), what=what)
-    means = text("reads {dry} of tank and fittings too: what it loses is right, what it weighs is not", dry=said(dry, "kg", ".3g"))
+    words = "reads {dry} of tank and fittings too: what it loses is right, what it weighs is not"
+    means = text(words, dry=said(dry, "kg", ".3g"))
     scale, _ = cell.spec.factor
     cure = f"offset = {cell.spec.offset - dry / scale * cell.spec.scale:.4g}"
     return cell.finding("gross_mass", "suspect", evidence=evidence, means=means, cure=cure, bias=dry)

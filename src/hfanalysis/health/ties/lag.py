@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import accumulate
+from math import hypot
 
 import numpy as np
 
@@ -85,7 +86,7 @@ def _behind(test: SeenTest) -> Finding | None:
         return None
     time, (run, chamber) = sampled
     early = (time > test.fire[0]) & (time < test.fire[0] + EARLY)
-    sure = SURE * float(np.hypot(*(test.channels[n].channel.accuracy for n in ("p_run", "p_chamber"))))
+    sure = SURE * hypot(*(test.channels[n].channel.accuracy for n in ("p_run", "p_chamber")))
     below = (run - chamber < -sure) & early
     parts = [(a, b) for a, b in stretches(below) if time[b - 1] - time[a] > SLOWEST]
     later = (time > test.fire[0] + EARLY) & (time < test.fire[0] + 2.0 * EARLY)

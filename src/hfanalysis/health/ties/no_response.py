@@ -7,10 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.health.cures import exclude
 from hfanalysis.health.firing import EMPTY_LINE, STEP, own_zero, usable
 from hfanalysis.health.seen import Seen, SeenTest
 from hfanalysis.health.shape import stretches
-from hfanalysis.health.words import called, exclusion, level
+from hfanalysis.health.words import called, level
 from hfanalysis.products.health import Finding
 from hfanalysis.record.quiet import in_blocks
 from hfanalysis.sentences import text
@@ -25,6 +26,8 @@ INTERFERENCE = 0.5e5
 rises by less than 1 bar."""
 WIDEST = 5e-3
 """[m^2] of a throat that no such stand has (80 mm across): thrust over a smaller pressure than this is no thrust's."""
+HELD = 75.0
+"""Percentile of the firing that a channel holds for a good part of it [-]: fuel or liquid may be gone early in it."""
 AT_REST = 0.05
 """Part of what it should be at least within which a pressure counts as at rest [-]."""
 SHORTEST = 0.1
@@ -54,11 +57,14 @@ def _shows(test: SeenTest, name: str) -> bool:
 
 
 def _rise(test: SeenTest, seen: Seen) -> float | None:
-    """From rest to the middle half of the firing [SI]; of the whole firing where the middle is too short."""
+    """From rest to what it holds for a good part of the firing [SI]."""
     assert test.fire is not None
     start, end = test.fire
-    middle = usable(test, seen).between(start + 0.25 * (end - start), end - 0.25 * (end - start)).values
-    return float(np.median(middle)) - seen.coarse.rest.value if len(middle) and seen.coarse.rest else None
+    part = in_blocks(usable(test, seen).between(start, end), STEP * 5.0).values
+    if not len(part) or seen.coarse.rest is None:
+        return None
+    fall = seen.name == "p_tank"
+    return float(np.percentile(part, 100.0 - HELD if fall else HELD)) - seen.coarse.rest.value
 
 
 def _nothing(test: SeenTest, seen: Seen, other: Seen) -> bool:
@@ -70,7 +76,7 @@ def _nothing(test: SeenTest, seen: Seen, other: Seen) -> bool:
     if seen.name == "p_tank":
         # a regulated tank does not fall, but what it feeds is never above it
         other_level = (_rise(test, other) or 0.0) + test.ambient
-        return abs(rise) < max(noise, 0.02 * other_level) and rest.value + rise < 0.7 * other_level
+        return bool(abs(rise) < max(noise, 0.02 * other_level)) and rest.value + rise < 0.7 * other_level
     if seen.name == "p_chamber":
         # a low gauge rises with the thrust, a dead one does not: the throat that the two would need tells
         small = rise < max(noise, seen.channel.accuracy)
@@ -119,5 +125,5 @@ def _for_a_while(run: Seen, start: float, end: float, p_c: Array) -> Finding:
     words = "reads ambient from {start:.2f} to {end:.2f} s while the chamber behind it stands {p_c} above ambient"
     evidence = text(words, start=start, end=end, p_c=level(float(p_c.mean()), "pressure"))
     means = "its signal is lost for a while: no line is below the chamber that it feeds"
-    cure = exclusion(run.name, start, end)
+    cure = exclude([run.name], start, end)
     return run.finding("dead", "unusable", start=start, end=end, evidence=evidence, means=means, cure=cure)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import pi
+from math import hypot, pi
 
 import numpy as np
 
@@ -35,7 +35,7 @@ COLD_SHARE = 0.18
 
 @dataclass(frozen=True)
 class Ties:
-    """What thrust would have to be multiplied by to fit p_c, and either to fit the mass; None where it cannot be had."""
+    """What thrust has to be multiplied by to fit p_c, and either to fit the mass; None where it cannot be had."""
 
     thrust_by_pressure: Factor | None
     pressure_by_mass: Factor | None
@@ -61,23 +61,29 @@ def _is_aside(finding: Finding) -> bool:
 def _blame(test: SeenTest, ties: Ties, above: tuple[str, ...]) -> Iterator[Finding]:
     """The channel that breaks all ties that are broken."""
     f_p, p_m, f_m = ties.thrust_by_pressure, ties.pressure_by_mass, ties.thrust_by_mass
-    broken = f_p is not None and f_p.off
     too_high = p_m is not None and p_m.high < 1.0
-    if broken and f_p is not None:
-        by_mass = f_m is not None and f_m.off and (f_m.low > 1.0) == (f_p.low > 1.0)
-        if by_mass and not too_high and f_m is not None:
-            yield _off(test, ("thrust",), f_p.both(f_m) or f_p, ties)
-        elif above or too_high or f_m is not None or _would_be_above(test, f_p.inverse):
-            lead = ("thrust",) if _would_be_above(test, f_p.inverse) and not (above or too_high) else ("p_chamber",)
-            yield _off(test, lead, f_p if lead == ("thrust",) else f_p.inverse, ties)
-        else:
-            yield _off(test, ("thrust", "p_chamber"), f_p, ties)
+    if f_p is not None and f_p.off:
+        yield _off(test, _who(test, ties, f_p, above or too_high), f_p, ties)
     elif too_high and p_m is not None:
-        yield _off(test, ("p_chamber",), p_m, ties)
+        yield _off(test, ("p_chamber",), p_m.inverse, ties)
     elif above:
         yield _order(test, ("p_chamber",) if len(above) == 2 else ("p_chamber", above[0]), "p_chamber", above[0])
     elif f_p is None and f_m is not None and f_m.off:
         yield _off(test, ("thrust",), f_m, ties)
+
+
+def _who(test: SeenTest, ties: Ties, f_p: Factor, pressure_too: object) -> tuple[str, ...]:
+    """Thrust or chamber pressure, where the third tie acquits the other; else both."""
+    p_m, f_m = ties.pressure_by_mass, ties.thrust_by_mass
+    if pressure_too:
+        return ("p_chamber",)
+    if f_m is not None and f_m.off and (f_m.low > 1.0) == (f_p.low > 1.0):
+        return ("thrust",)
+    thrust = f_m is None or f_p.both(f_m) is not None
+    pressure = (p_m is None or f_p.inverse.both(p_m) is not None) and not _would_be_above(test, f_p.inverse)
+    if thrust == pressure:
+        return ("thrust", "p_chamber")
+    return ("thrust",) if thrust else ("p_chamber",)
 
 
 def _ties(test: SeenTest) -> Ties:
@@ -190,7 +196,7 @@ def _is_above(test: SeenTest, name: str, feeding: str) -> bool:
     burn = burn_of(test, name, feeding)
     if burn is None:
         return False
-    sure = DEVIATIONS * float(np.hypot(*(test.channels[n].channel.accuracy for n in (name, feeding))))
+    sure = DEVIATIONS * hypot(*(test.channels[n].channel.accuracy for n in (name, feeding)))
     above = burn.values[name] - burn.values[feeding] > sure
     return float(np.mean(above[burn.burning])) > ABOVE
 
@@ -205,9 +211,10 @@ def _would_be_above(test: SeenTest, factor: Factor) -> bool:
 
 
 def _off(test: SeenTest, channels: tuple[str, ...], factor: Factor, ties: Ties) -> Finding:
-    first = test.channels[channels[0]]
+    """``factor``: of the thrust; of the chamber pressure alone its inverse."""
+    first, alone = test.channels[channels[0]], len(channels) == 1
+    factor = factor.inverse if channels == ("p_chamber",) else factor
     unit = unit_for(factor, first.spec.unit, first.dimension)
-    alone = len(channels) == 1
     means = text(
         "{who} {verb} off by a factor of {low:.2g} to {high:.2g}{unit}{else_}",
         who=" or ".join(channels), verb="is", low=factor.low, high=factor.high,
@@ -240,10 +247,7 @@ def _order(test: SeenTest, channels: tuple[str, ...], name: str, feeding: str) -
         upper=said(upper, "bar", ".3g"), feeding=feeding, lower=said(lower, "bar", ".3g"),
     )  # fmt: skip
     means = f"nothing flows uphill: the scale of {' or '.join(channels)} is off"
-    factor = Factor(0.5 * lower / upper, lower / upper)
-    seen = test.channels[channels[0]]
-    unit = unit_for(Factor(0.1 * lower / upper, lower / upper), seen.spec.unit, "pressure") if len(channels) == 1 else None
+    gain = 1.0 - 0.75 * lower / upper
     return Finding(
-        kind="unit" if unit else "scale", verdict="suspect", channels=channels, evidence=evidence, means=means,
-        cure=f'unit = "{unit}"' if unit else None, gain=1.0 - factor.middle,
-    )  # fmt: skip
+        kind="scale", verdict="suspect", channels=channels, evidence=evidence, means=means, cure=None, gain=gain
+    )

@@ -86,7 +86,7 @@ def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
     shift = last.value - before.value
     stated = ACCURACIES[seen.dimension] * seen.channel.accuracy if seen.channel.accuracy_stated else 0.0
     least = max(SHIFT_SHARE[seen.dimension] * rise, error, stated, 2.0 * left[1])
-    if not least < abs(shift - left[0]) < MOST * rise:
+    if not (least < abs(shift) < MOST * rise and least < abs(shift - left[0])):
         return None
     words = "reads {after} after the firing and {before} before it: {shift} of {rise} of its largest rise"
     evidence = text(
