@@ -84,6 +84,15 @@ def test_a_zero_that_is_off_moves_no_bend_of_a_curve() -> None:
     assert found.t_end.verdict == "doubted"
 
 
+def test_a_stretch_is_a_doubt_about_the_events_near_it() -> None:
+    events = {"t_open": Quantity(100.0, "s"), "t_v": Quantity(5.0, "s", 0.01)}
+    for span, expected in (((102.0, 103.0), (None, None)), ((104.5, 106.0), (None, "doubted"))):
+        health = health_of("p_run", "unusable", (100.0, 108.0), kind="stuck", start=span[0], end=span[1])
+        found = doubted(filled(Segments, events), health)
+        assert isinstance(found, Segments)
+        assert (found.t_open.verdict, found.t_v.verdict) == expected
+
+
 def test_what_the_engineer_states_rests_on_no_channel() -> None:
     burn = {"performance": {"measured": {"burn_time": Quantity(17.0, "s", 0.1, why="[observed] burn_time")}}}
     product = doubted(filled(Validation, burn), health_of("thrust", "suspect"))
