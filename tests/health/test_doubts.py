@@ -48,6 +48,14 @@ def test_without_findings_a_product_is_the_same() -> None:
     assert doubted(product, Health(channels={}, between=(), warnings=())) is product
 
 
+def test_constants_fitted_together_rest_on_the_thrust_as_well() -> None:
+    law = {"a": Quantity(1e-4, verdict="identified")}
+    for fitted, verdict in (({}, "identified"), ({"oxidizer_mass_fitted": Quantity(8.3, "kg")}, "doubted")):
+        found = doubted(filled(Calibration, law | fitted), health_of("thrust", "suspect"))
+        assert isinstance(found, Calibration)
+        assert found.a.verdict == verdict
+
+
 def test_worse_verdicts_stay_and_get_the_reason() -> None:
     why = [(True, "p_tank (zero): it reads low")]
     bad = with_doubt(Quantity(-3.0, verdict="unphysical", why="outside"), why)

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from hfanalysis.health.rests_on import channels_of, concerns
+from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns
+from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.health import HEALTHY, UNUSABLE, Finding, Health
 from hfanalysis.products.model import Part, Product
 from hfanalysis.products.segments import Segments
@@ -30,7 +31,8 @@ def doubted(product: Product, health: Health) -> Product:
         return product
     if isinstance(product, Segments):
         return _events(product, health)
-    return _part(product, product.file, health)
+    together = isinstance(product, Calibration) and product.oxidizer_mass_fitted is not None
+    return _part(product, product.file + TOGETHER * together, health)
 
 
 def _events(product: Segments, health: Health) -> Segments:
