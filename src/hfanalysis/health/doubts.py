@@ -47,7 +47,7 @@ def _events(product: Segments, health: Health) -> Segments:
 
 def _part(part: P, product: str, health: Health) -> P:
     """A part of a product, and what is in it."""
-    changes = {name: _value(name, value, product, health) for name, value in part.given.items()}
+    changes = {name: _value(name, value, product, health) for name, value in part.content.items()}
     return part.but(**{name: new for name, new in changes.items() if new is not getattr(part, name)})
 
 
