@@ -48,6 +48,14 @@ def test_without_findings_a_product_is_the_same() -> None:
     assert doubted(product, Health(channels={}, between=(), warnings=())) is product
 
 
+def test_constants_fitted_together_rest_on_the_thrust_as_well() -> None:
+    law = {"a": Quantity(1e-4, verdict="identified")}
+    for fitted, verdict in (({}, "identified"), ({"oxidizer_mass_fitted": Quantity(8.3, "kg")}, "doubted")):
+        found = doubted(filled(Calibration, law | fitted), health_of("thrust", "suspect"))
+        assert isinstance(found, Calibration)
+        assert found.a.verdict == verdict
+
+
 def test_worse_verdicts_stay_and_get_the_reason() -> None:
     why = [(True, "p_tank (zero): it reads low")]
     bad = with_doubt(Quantity(-3.0, verdict="unphysical", why="outside"), why)
@@ -82,6 +90,15 @@ def test_a_zero_that_is_off_moves_no_bend_of_a_curve() -> None:
     found = doubted(filled(Segments, events), health_of("p_chamber", "suspect"))
     assert isinstance(found, Segments)
     assert found.t_end.verdict == "doubted"
+
+
+def test_a_stretch_is_a_doubt_about_the_events_near_it() -> None:
+    events = {"t_open": Quantity(100.0, "s"), "t_v": Quantity(5.0, "s", 0.01)}
+    for span, expected in (((102.0, 103.0), (None, None)), ((104.5, 106.0), (None, "doubted"))):
+        health = health_of("p_run", "unusable", (100.0, 108.0), kind="stuck", start=span[0], end=span[1])
+        found = doubted(filled(Segments, events), health)
+        assert isinstance(found, Segments)
+        assert (found.t_open.verdict, found.t_v.verdict) == expected
 
 
 def test_what_the_engineer_states_rests_on_no_channel() -> None:

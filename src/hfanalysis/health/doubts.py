@@ -6,13 +6,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from hfanalysis.health.rests_on import channels_of, concerns
+from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns
+from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.health import HEALTHY, UNUSABLE, Finding, Health
 from hfanalysis.products.model import Part, Product
+from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import DOUBTED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 from hfanalysis.sentences import joined, text
 
 P = TypeVar("P", bound=Part)
+NEAR = 1.0
+"""[s] about an event in which a stretch may have moved it. Evidence: ignition is late by a second at most, and the
+searches look at less."""
 WORSE = (NOT_IDENTIFIABLE, UNPHYSICAL)
 """Verdicts that a doubt does not replace."""
 
@@ -24,12 +29,25 @@ def doubted(product: Product, health: Health) -> Product:
     """
     if all(channel.verdict == HEALTHY and not channel.trust for channel in health.channels.values()):
         return product
-    return _part(product, product.file, health)
+    if isinstance(product, Segments):
+        return _events(product, health)
+    together = isinstance(product, Calibration) and product.oxidizer_mass_fitted is not None
+    return _part(product, product.file + TOGETHER * together, health)
+
+
+def _events(product: Segments, health: Health) -> Segments:
+    """The events, each with the doubts about what was found near it."""
+    origin, changes = product.t_open.value, {}
+    for name, event in product.quantities.items():
+        after = 0.0 if name == "t_open" else event.value
+        instant = None if origin is None or after is None else origin + after
+        changes[name] = with_doubt(event, list(reasons(product.file, name, event, health, instant)))
+    return product.but(**changes)
 
 
 def _part(part: P, product: str, health: Health) -> P:
     """A part of a product, and what is in it."""
-    changes = {name: _value(name, value, product, health) for name, value in part.given.items()}
+    changes = {name: _value(name, value, product, health) for name, value in part.content.items()}
     return part.but(**{name: new for name, new in changes.items() if new is not getattr(part, name)})
 
 
@@ -43,10 +61,12 @@ def _value(name: str, value: Any, product: str, health: Health) -> Any:
     return value
 
 
-def reasons(product: str, name: str, quantity: Quantity, health: Health) -> Iterator[tuple[bool, str]]:
+def reasons(
+    product: str, name: str, quantity: Quantity, health: Health, instant: float | None = None
+) -> Iterator[tuple[bool, str]]:
     """Why a quantity of a product is doubted (True), or what the engineer overruled (False): sentences.
 
-    Channels that the same is said of stand in one.
+    Channels that the same is said of stand in one. Of an event, ``instant`` is when it is [s, log time].
     """
     whose: dict[tuple[bool, str, str], list[str]] = {}
     for channel in channels_of(product, name, quantity):
@@ -54,11 +74,19 @@ def reasons(product: str, name: str, quantity: Quantity, health: Health) -> Iter
         for finding in health.of(channel).findings:
             if finding.verdict == HEALTHY or not concerns(product, name, finding.kind):
                 continue
+            if instant is not None and not _near(finding, instant):
+                continue
             if trust or finding.verdict != UNUSABLE or _in_firing(finding, health):
                 whose.setdefault((not trust, trust or "", _words(finding)), []).append(channel)
     for (doubt, trust, words), names in whose.items():
         trusted = f" trusted ({trust}) against" if trust else ""
         yield doubt, text("{names}{trusted} {words}", names=", ".join(names), trusted=trusted, words=words)
+
+
+def _near(finding: Finding, instant: float) -> bool:
+    """Whether an event's search may have looked at a stretch."""
+    start, end = finding.span
+    return start - NEAR <= instant <= end + NEAR
 
 
 def _in_firing(finding: Finding, health: Health) -> bool:

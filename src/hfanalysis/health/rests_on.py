@@ -8,8 +8,6 @@ from hfanalysis.quantity import Quantity
 
 PRESSURES = ("p_tank", "p_run", "p_chamber")
 FIRE = ("p_chamber", "thrust")
-MODEL = ("p_tank", "p_run", "p_chamber")
-"""What the constants of a modeled engine come from."""
 
 SEGMENTS = {
     "t_open": ("p_run", "p_chamber", "thrust"),
@@ -23,7 +21,7 @@ SEGMENTS = {
 
 CALIBRATION = {
     "C_i": PRESSURES,
-    "m": ("p_tank", "p_run", "p_chamber"),
+    "m": PRESSURES,
     "Z": ("p_tank",),
     "K_loss": PRESSURES,
     "p_loss_liquid": ("p_tank", "p_run"),
@@ -35,9 +33,9 @@ CALIBRATION = {
     "oxidizer_mass": (),
     "oxidizer_mass_fitted": (*PRESSURES, "thrust"),
     "tank_temperature": (*PRESSURES, "thrust"),
-    "a": (*PRESSURES, "thrust"),
-    "n": (*PRESSURES, "thrust"),
-    "regression_rate_reference": (*PRESSURES, "thrust"),
+    "a": PRESSURES,
+    "n": PRESSURES,
+    "regression_rate_reference": PRESSURES,
     "reference_flux": PRESSURES,
     "pressure": ("p_tank",),
     "temperature": ("p_tank",),
@@ -83,6 +81,9 @@ TABLES: Mapping[str, Rests] = {
 }
 """By product and quantity, the channels. A quantity that is not named rests on none."""
 
+TOGETHER = " together"
+"""How the name of a product ends here whose constants were fitted together, with the thrust."""
+
 OUTSIDE = ("[observed]", "set by the engineer", "as stated")
 """How the reason of a quantity begins that comes from test.toml, not from the log."""
 FROM_CELL = ("from the load cell",)
@@ -101,7 +102,8 @@ def channels_of(product: str, name: str, quantity: Quantity) -> tuple[str, ...]:
         return ()
     if any(words in told for words in FROM_CELL):
         return ("m_tank",)
-    return TABLES.get(product, {}).get(name, ())
+    found = TABLES.get(product.removesuffix(TOGETHER), {}).get(name, ())
+    return (*found, "thrust") if product.endswith(TOGETHER) and found == PRESSURES else found
 
 
 def concerns(product: str, name: str, kind: str) -> bool:

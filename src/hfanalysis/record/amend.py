@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import tomllib
@@ -32,13 +33,13 @@ def amended(text: str, channel: str, lines: str) -> str:
     for key, value in wanted.items():
         if key == "channels":
             for name, keys in value.items():
-                text = _with_keys(text, name, keys, _own(lines, name))
+                text = _with_keys(text, name, keys)
         elif isinstance(value, list) and value and isinstance(value[0], dict):
             if all(table in expected.get(key, []) for table in value):
                 continue
             text = text.rstrip("\n") + "\n\n" + _tables(lines)
         elif not isinstance(value, dict):
-            text = _with_keys(text, channel, {key: value}, lines)
+            text = _with_keys(text, channel, {key: value})
     if _plain(tomllib.loads(text)) != _plain(_merged(expected, channel, wanted)):
         raise InputError(f"cannot put {lines!r} in by itself; write it into [channels.{channel}] by hand")
     return text
@@ -63,16 +64,16 @@ def write(path: Path, text: str) -> None:
         scratch.unlink(missing_ok=True)
 
 
-def _with_keys(text: str, channel: str, keys: Mapping[str, Any], lines: str) -> str:
-    """A channel's table with keys as ``lines`` write them, in place of those it has."""
+def _with_keys(text: str, channel: str, keys: Mapping[str, Any]) -> str:
+    """A channel's table with these keys, in place of those it has."""
     rows = text.split("\n")
     header = re.compile(rf"^\s*\[\s*channels\s*\.\s*(?:{re.escape(channel)}|\"{re.escape(channel)}\")\s*\]")
     start = next((i for i, row in enumerate(rows) if header.match(row)), None)
     if start is None:
         return text
     end = next((i for i in range(start + 1, len(rows)) if _HEADER.match(rows[i])), len(rows))
-    for key in keys:
-        line = _line(lines, key)
+    for key, value in keys.items():
+        line = f"{key} = {json.dumps(value, ensure_ascii=False)}"
         place = next((i for i in range(start + 1, end) if re.match(rf"^\s*{re.escape(key)}\s*=", rows[i])), None)
         if place is None:
             rows.insert(_last(rows, start, end) + 1, line)
@@ -80,15 +81,6 @@ def _with_keys(text: str, channel: str, keys: Mapping[str, Any], lines: str) -> 
         else:
             rows[place] = line + _comment(rows[place])
     return "\n".join(rows)
-
-
-def _own(lines: str, channel: str) -> str:
-    """The rows of a channel's own table."""
-    return re.split(rf"\[channels\.{re.escape(channel)}\]", lines, maxsplit=1)[1].split("[", 1)[0]
-
-
-def _line(lines: str, key: str) -> str:
-    return next(row.strip() for row in lines.split("\n") if re.match(rf"^\s*{re.escape(key)}\s*=", row))
 
 
 def _last(rows: Sequence[str], start: int, end: int) -> int:

@@ -13,7 +13,7 @@ from hfanalysis.health.runs import certain, gap_edges, true_runs
 from hfanalysis.health.seen import Seen
 from hfanalysis.products.health import UNUSABLE, Finding
 from hfanalysis.record.log import Flag
-from hfanalysis.record.signals import sample_noise
+from hfanalysis.record.signals import second_to_std
 from hfanalysis.sentences import text
 
 WINDOW = 64
@@ -39,7 +39,8 @@ def find(seen: Seen) -> Iterator[Finding]:
         return
     equal = np.r_[False, np.diff(values) == 0.0]
     runs = true_runs(equal)
-    # only the longest can be certain; they decide whether the rest is worth looking at
+    if not any(certain(int(last - first + 1), 1.0 / len(values), len(values)) for first, last in runs):
+        return  # not even if readings repeated next to never
     chance = _chance(values, equal, runs, seen.coarse.quantum)
     if chance is None:
         return
@@ -61,7 +62,8 @@ def _chance(values: Array, equal: NDArray[np.bool_], runs: NDArray[np.int64], qu
     whole = len(rest) // WINDOW
     if whole < 1:
         return None
-    noises = np.sort([sample_noise(part) for part in rest[: whole * WINDOW].reshape(whole, WINDOW)])
+    second = np.abs(np.diff(rest[: whole * WINDOW].reshape(whole, WINDOW), 2, axis=1))
+    noises = np.sort(second_to_std(np.median(second, axis=1)))
     if noises[int(QUIETEST * whole)] < NOISY * quantum:
         return None
     return float((np.count_nonzero(equal & outside) + 1.0) / (outside.sum() + 2.0))

@@ -21,6 +21,9 @@ NOISES = 5.0
 """Deviations of both levels' means that a shift has to exceed [-]."""
 ACCURACIES = {"force": 3.0, "pressure": 2.0}
 """Deviations of the stated accuracy that a shift has to exceed [-]; where none is stated, the share alone counts."""
+TAKEN_OFF, LEFT_IN = 12.0**-0.5, 3.0**-0.5
+"""Deviation of a mean over the firing for a shift of one [-], where a linear drift was taken off and where it was not.
+Source: of a shift at any instant a uniform share is in the mean; its deviation from one half, and from nothing."""
 MOST = 0.5
 """Part of the rise above which what is left is no zero any more [-]: a channel that does not come back at all."""
 AT_REST = 4.0
@@ -94,7 +97,12 @@ def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
         shift=f"{100.0 * shift / rise:+.1f} %", rise=level(rise, seen.dimension),
     )  # fmt: skip
     means = "its zero moved while it fired, nobody knows when: readings in the firing may be off by as much"
-    return seen.finding("zero", "suspect", evidence=evidence, means=means, cure=None, bias=abs(shift))
+    return seen.finding("zero", "suspect", evidence=evidence, means=means, cure=None, bias=_bias(seen, shift))
+
+
+def _bias(seen: Seen, shift: float) -> float:
+    """What a mean over the firing may be off by [SI] for a zero that moved at an instant that nobody knows."""
+    return abs(shift) * (TAKEN_OFF if seen.channel.drift else LEFT_IN)
 
 
 def _settled(test: SeenTest, trace: Trace) -> Level | None:
