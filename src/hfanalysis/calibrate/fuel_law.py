@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.evidence_from_log import evidence_of
@@ -41,9 +43,12 @@ def regress(
 ) -> FuelLaw:
     """a, n and the rate at the reference flux of one test, with their verdicts, ``effects`` acting."""
     try:
-        return result(fit([evidence_for(log, segments, definition, calibration, effects)]))
+        found = fit([evidence_for(log, segments, definition, calibration, effects)])
     except AbsentError as error:
         return FuelLaw.absent(str(error))
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        return FuelLaw.absent(f"the engine's model cannot be fitted with what test.toml states: {error}")
+    return result(found)
 
 
 def regress_together(tests: Sequence[Evidence]) -> Joint:

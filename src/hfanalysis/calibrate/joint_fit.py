@@ -216,7 +216,7 @@ class _Constants:
         assert n.ci95 is not None
         along = np.array([1.0, log(flux)])
         spread = float(np.sqrt(along @ self._covariance_of_law @ along))
-        verdict, why = judge_regression(True, n.ci95, n.std or 0.0, flux, spread)
+        verdict, why = judge_regression("", n.ci95, n.std or 0.0, flux, spread)
         rate, around = a.value * flux**n.value, exp(NORMAL_95 * spread)
         return {
             "a": replace(a, verdict=verdict, why=why),
