@@ -9,6 +9,7 @@ import numpy as np
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.evidence_from_log import evidence_of
+from hfanalysis.calibrate.facts import nothing_to_regress
 from hfanalysis.calibrate.regression import Joint, fit, fit_together, result
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
@@ -31,6 +32,8 @@ def evidence_for(
     if calibration.draws is None:
         reason = calibration.constants.C_i.reason
         raise AbsentError(f"no oxidizer flow to regress with: C_i is missing ({reason})")
+    if reason := nothing_to_regress(log, segments, definition, calibration.constants):
+        raise AbsentError(reason)
     return evidence_of(log, segments, definition, calibration.constants, calibration.draws, effects)
 
 

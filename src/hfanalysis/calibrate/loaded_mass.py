@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.calibrate.rest import MODEL_MASS_SPREAD, blowdown_mass
 from hfanalysis.products.segments import Segments
+from hfanalysis.quantity import NORMAL_95
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
@@ -21,11 +23,17 @@ to one percent."""
 
 @dataclass(frozen=True)
 class LoadedMass:
-    """The mass [kg], its standard deviation, and in words where it comes from."""
+    """The mass [kg], its standard deviation, and in words where it comes from; ``doubts``: what speaks against it."""
 
     value: float
     std: float
     source: str
+    doubts: tuple[str, ...] = ()
+
+    def against(self, doubts: Mapping[str, float]) -> LoadedMass:
+        """The same with the other masses [kg] by the words that say them within its 95 %."""
+        away = max((abs(other - self.value) for other in doubts.values()), default=0.0)
+        return replace(self, std=float(np.hypot(self.std, away / NORMAL_95)), doubts=tuple(doubts))
 
 
 def loaded_mass(

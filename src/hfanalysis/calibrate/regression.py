@@ -287,10 +287,13 @@ class _Told:
 
 def _not_told(found: Fitted, *told: _Told) -> str:
     """Why the region of the likelihood is none that tells a and n; empty where it is one."""
+    if _at_limit(found):
+        low, high = (1e3 * rate for rate in RANGE_RATE)
+        return f"the rate comes to the end of what any fuel has, {low:g} to {high:g} mm/s"
+    if not RANGE_N[0] + NEAR < found.best[1] < RANGE_N[1] - NEAR:
+        return f"n comes to the end of where it is looked for, {RANGE_N[0]:g} to {RANGE_N[1]:g}"
     if any(t.outside for t in told):
         return "the least misfit is not where the fit has come to: it has several valleys, or none"
-    if _at_limit(found):
-        return f"the rate comes to the end of what any fuel has, {RANGE_RATE[0] * 1e3:g} to {RANGE_RATE[1] * 1e3:g} mm/s"
     return "" if found.surface.bounded else "the likelihood has no end where it was followed"
 
 
@@ -307,7 +310,9 @@ def result(found: Fitted) -> FuelLaw:
     verdict, why = judge_regression(_not_told(found, ln_rate, ln_a, n), (n.low, n.high), n.std, flux, ln_rate.std)
     known = ln_rate.std <= WIDEST_RATE and not _at_limit(found)
     return FuelLaw(
-        a=Quantity(exp(ln_a.value), UNIT_OF_A, law.a * ln_a.std, (exp(ln_a.low), exp(ln_a.high)), verdict=verdict, why=why),
+        a=Quantity(
+            exp(ln_a.value), UNIT_OF_A, law.a * ln_a.std, (exp(ln_a.low), exp(ln_a.high)), verdict=verdict, why=why
+        ),
         n=Quantity(n.value, "", n.std, (n.low, n.high), verdict=verdict, why=why),
         regression_rate_reference=Quantity(
             exp(ln_rate.value), "m/s", exp(ln_rate.value) * ln_rate.std, (exp(ln_rate.low), exp(ln_rate.high)),

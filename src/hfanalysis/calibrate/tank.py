@@ -9,7 +9,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
 from hfanalysis.calibrate.calibration import TankCalibration
-from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
+from hfanalysis.calibrate.diagnostics import coefficient_history, other_masses, rest_of, tank_history
 from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at_break
 from hfanalysis.calibrate.uncertainty import Draws, InputSpread, draw
@@ -20,7 +20,7 @@ from hfanalysis.engine.injector import mass_flows
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankConstants, TankHistory
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
+from hfanalysis.quantity import IDENTIFIED, NOT_IDENTIFIABLE, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.thermo.nitrous import saturation as saturation_of
@@ -46,6 +46,9 @@ Evidence: test_rest.py: a mass that does not fit the tank at all is an error of 
 
 NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase",
          "vapor_mass_at_t_v", "mass_at_t_feed", "oxidizer_mass")  # fmt: skip
+
+BY_MASS = ("C_i", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase", "mass_at_t_feed", "oxidizer_mass")
+"""Of these, those that are worth what the loaded mass is worth."""
 
 
 def calibrate(
@@ -104,16 +107,18 @@ class _Work:
         tables = Tables.of(self.histories, self.saturation)
         inputs, vapor = self._acting(tables, inputs)
         nominal = reduce(tables, self.saturation, inputs, phase=vapor)
-        draws = draw(tables, self.saturation, inputs, self._spread(mass), samples, vapor)
         self.notes.append(f"loaded mass: {mass.source}")
         left = self._mass_left(nominal, inputs)
         rest, remarks = rest_of(self.log, self.segments, self.saturation, self.histories, inputs, nominal, left, mass)
         self.warnings.extend(remarks)
+        mass = mass.against(other_masses(rest, mass))
+        draws = draw(tables, self.saturation, inputs, self._spread(mass), samples, vapor)
         history = coefficient_history(self.saturation, self.histories, inputs, left)
         content = tank_history(self.saturation, self.histories, inputs, left)
         quantities = self._quantities(nominal, draws, inputs, left)
-        loaded = Quantity(mass.value, "kg", mass.std, verdict="identified", why=mass.source)
-        quantities["oxidizer_mass"] = loaded
+        quantities["oxidizer_mass"] = Quantity(mass.value, "kg", mass.std, verdict=IDENTIFIED, why=mass.source)
+        for words in mass.doubts:
+            quantities |= {name: quantities[name].doubted(words) for name in BY_MASS}
         return TankCalibration(self._constants(quantities, rest, history, content), draws)
 
     def _constants(
@@ -307,7 +312,7 @@ class _Work:
                 why = f"{lacking} has no good samples for {gap:.2f} s of the {end - start:.2f} s of this phase"
                 out[name] = Quantity.absent(why, verdict=NOT_IDENTIFIABLE)
             else:
-                out[name] = Quantity(value, "Pa", error, verdict="identified")
+                out[name] = Quantity(value, "Pa", error, verdict=IDENTIFIED)
         return out
 
 

@@ -129,6 +129,21 @@ class Statements(Section):
                 raise Refused(f"{channel.file!r} is not in log.files{offer}", "channels", name, "file")
         for i, exclusion in enumerate(self.exclude):
             exclusion.check_channels(self.channels, "exclude", i)
+        self._check_left()
+
+    def _check_left(self) -> None:
+        """No more can be left after a test than there was before it."""
+        for key, part, loaded in (
+            ("fuel_mass_after", "[grain] mass", self.grain.mass if self.grain else None),
+            ("oxidizer_mass_after", "[tank] oxidizer_mass", self.tank.oxidizer_mass if self.tank else None),
+        ):
+            left = getattr(self.observed, key, None)
+            if left is not None and loaded is not None and left.value > loaded.value:
+                raise Refused(
+                    f"found {left.value:.4g} kg; expected no more than the {loaded.value:.4g} kg of {part}",
+                    "observed",
+                    key,
+                )
 
 
 @dataclass(frozen=True, kw_only=True)

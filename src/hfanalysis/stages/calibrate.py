@@ -51,6 +51,7 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
 
 def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     """The content of calibration.json with these effects acting."""
+    from hfanalysis.calibrate.facts import held_against
     from hfanalysis.calibrate.fuel_law import regress
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.inference.adopted.corrected_log import corrected
@@ -62,7 +63,8 @@ def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     context.progress("repeating the calibration with drawn inputs", None)
     result = calibrate(log, segments, context.definition, int(context.parameter("samples")), effects)
     context.progress("fitting the regression", None)
-    return result.with_law(regress(log, segments, context.definition, result, effects))
+    found = result.with_law(regress(log, segments, context.definition, result, effects))
+    return held_against(log, segments, context.definition, found)
 
 
 STAGE = Stage(
