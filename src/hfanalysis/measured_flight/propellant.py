@@ -230,7 +230,7 @@ def _fuel(definition: TestDefinition, calibration: Calibration | None, time: Arr
 def _exponent(definition: TestDefinition, calibration: Calibration | None) -> tuple[float, str]:
     grain = definition.grain
     if grain is not None and grain.n is not None:
-        return grain.n, "[grain] n"
+        return grain.n.value, "[grain] n"
     found = calibration.alone("n").value if calibration is not None else None
     if found is not None and 0.0 < found <= 2.0:
         return found, "calibrated n"

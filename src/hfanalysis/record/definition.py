@@ -19,6 +19,7 @@ from hfanalysis.record.rocket import Rocket
 from hfanalysis.record.schema import Instant, ListOf, Refused, Section, Text, section, unknown_key
 from hfanalysis.record.sections import (
     Chamber,
+    Feed,
     GrainSection,
     Injector,
     Model,
@@ -75,7 +76,7 @@ class Test(Section):
     """[test]: which test this is."""
 
     id: Annotated[Text, AfterValidator(_id)]
-    kind: Literal["hot_fire", "cold_flow"]
+    kind: Literal["hot_fire", "cold_flow", "water_flow"]
     date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
     source: Literal["measured", "replica", "synthetic"] = "measured"
     description: Text = ""
@@ -111,6 +112,7 @@ class Statements(Section):
     model: Model = Model()
     tank: Tank | None = None
     injector: Injector | None = None
+    feed: Feed | None = None
     purge: Purge | None = None
     grain: GrainSection | None = None
     chamber: Chamber | None = None
@@ -130,6 +132,8 @@ class Statements(Section):
         for i, exclusion in enumerate(self.exclude):
             exclusion.check_channels(self.channels, "exclude", i)
         self._check_left()
+        if self.feed is not None and self.feed.p_loss is not None:
+            raise Refused("a test has K_loss here, which a log may bear out; not a constant loss", "feed", "p_loss")
 
     def _check_left(self) -> None:
         """No more can be left after a test than there was before it."""
