@@ -23,11 +23,15 @@ to one percent."""
 
 @dataclass(frozen=True)
 class LoadedMass:
-    """The mass [kg], its standard deviation, and in words where it comes from; ``doubts``: what speaks against it."""
+    """The mass [kg], its standard deviation, and in words where it comes from; ``doubts``: what speaks against it.
+
+    It was ``weighed``, or follows from what the log and other statements say.
+    """
 
     value: float
     std: float
     source: str
+    weighed: bool = True
     doubts: tuple[str, ...] = ()
 
     def against(self, doubts: Mapping[str, float]) -> LoadedMass:
@@ -86,5 +90,8 @@ def _from_blowdown(
         return None
     std = 2.0 * MODEL_MASS_SPREAD * mass
     return LoadedMass(
-        mass, std, f"{mass:.2f} +/- {std:.2f} kg from the blowdown itself; none is stated and there is no load cell"
+        mass,
+        std,
+        f"{mass:.2f} +/- {std:.2f} kg from the blowdown itself; none is stated and there is no load cell",
+        weighed=False,
     )

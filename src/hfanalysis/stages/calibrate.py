@@ -52,7 +52,7 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
 def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     """The content of calibration.json with these effects acting."""
     from hfanalysis.calibrate.facts import held_against
-    from hfanalysis.calibrate.fuel_law import regress
+    from hfanalysis.calibrate.fuel_law import contradiction, regress
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.inference.adopted.corrected_log import corrected
     from hfanalysis.products.segments import Segments
@@ -64,6 +64,8 @@ def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     result = calibrate(log, segments, context.definition, int(context.parameter("samples")), effects)
     context.progress("fitting the regression", None)
     found = result.with_law(regress(log, segments, context.definition, result, effects))
+    if said := contradiction(context.definition, found):
+        found = found.but(warnings=(*found.warnings, said))
     return held_against(log, segments, context.definition, found)
 
 

@@ -14,7 +14,7 @@ from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
 from hfanalysis.inference.full_run import FullRun, moved
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import STATED, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
@@ -265,14 +265,13 @@ def _changes(full: FullRun, calibration: Calibration) -> list[dict[str, float]]:
     engine, discharge, m = full.engine, calibration.C_i, calibration.m.std or 0.0
     rate, flux = calibration.regression_rate_reference, calibration.regression.reference_flux
     assert discharge.value is not None
-    assert rate.value is not None
-    assert flux is not None
-    assert flux.value is not None
     area = engine.feed.area * (1.0 + (discharge.std or 0.0) / discharge.value)
     changes = [{"area": area}, {"loss_factor": engine.feed.loss_factor + (calibration.K_loss.std or 0.0)}]
     changes.append({"oxidizer_mass": engine.oxidizer_mass + (calibration.load.std or 0.0)})
     if engine.polytropic_exponent is not None and m > 0.0:
         changes.append({"polytropic_exponent": engine.polytropic_exponent + m})
-    changes.append({"a": engine.a * (1.0 + (rate.std or 0.0) / rate.value)})
     n = engine.n + (calibration.n.std or 0.0)
+    if STATED in (calibration.a.verdict, calibration.n.verdict) or not rate.value or flux is None or not flux.value:
+        return [*changes, {"a": engine.a + (calibration.a.std or 0.0)}, {"n": n}]
+    changes.append({"a": engine.a * (1.0 + (rate.std or 0.0) / rate.value)})
     return [*changes, {"n": n, "a": rate.value / flux.value**n}]
