@@ -20,7 +20,7 @@ from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
-from hfanalysis.validate.thrust import Thrust, thrust_of
+from hfanalysis.validate.thrust import OUT, Thrust, burnt_out, thrust_of
 
 NAMES = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust", "average_thrust",
          "oxidizer_mass", "fuel_mass")  # fmt: skip
@@ -43,8 +43,9 @@ class Fire:
     source: str
 
 
-def fire_of(segments: Segments, definition: TestDefinition) -> Fire | str:
-    """The burn as seen on video, else until the fuel is gone, else until the chamber unchokes; or why there is none."""
+def fire_of(segments: Segments, definition: TestDefinition, log: TestLog | None = None) -> Fire | str:
+    """The burn as seen on video, else until the fuel is gone, else until the chamber unchokes, else until the ``log``'s
+    thrust is gone; or why there is none."""
     if segments.kind != "hot_fire" or segments.misfire:
         return "nothing burns in this test"
     seen = definition.observed.burn_time if definition.observed else None
@@ -54,6 +55,9 @@ def fire_of(segments: Segments, definition: TestDefinition) -> Fire | str:
         found = segments.time(name)
         if found is not None:
             return Fire(found, max(segments.std(name), 1e-3), f"{name}: {words}")
+    gone = burnt_out(thrust_of(log, segments, definition).signal) if log is not None and "thrust" in log else None
+    if gone is not None:
+        return Fire(*gone, f"until the thrust is below {100.0 * OUT:.0f} % of its largest for good")
     return text("the end of the burn is not known: {reason}", reason=segments.t_end.reason)
 
 
@@ -63,7 +67,7 @@ def measured(
     """The measured column [s, N s, Pa, N, kg], and ``total_impulse_of_file`` [N s]: the raw integral over the whole
     file.
     """
-    fire = fire_of(segments, definition)
+    fire = fire_of(segments, definition, log)
     if isinstance(fire, str):
         none = {name: Quantity.absent(fire) for name in NAMES}
         return none | {"oxidizer_mass": _oxidizer(log, segments, definition, calibration)}
