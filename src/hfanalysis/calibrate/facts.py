@@ -166,7 +166,8 @@ class _Facts:
 
     def _chamber(self) -> Doubt | None:
         """p_c A_t that neither the thrust nor the propellant's flow brings together with a fire."""
-        nozzle, means, flow = self.definition.nozzle, self._means("p_run", "p_chamber"), self._oxidizer_flow()
+        nozzle, flow = self.definition.nozzle, self._oxidizer_flow()
+        means = self._means("p_run", "p_chamber") or self._means("p_tank", "p_chamber")
         if not self._burning or nozzle is None or nozzle.throat_radius is None or means is None or flow is None:
             return None
         chamber, ambient = means[1], self.definition.ambient_pressure.value

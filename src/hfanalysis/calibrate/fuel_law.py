@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import log
 
 import numpy as np
@@ -17,7 +18,7 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import UNIT_OF_A, FuelLaw
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import CONDITIONAL, Quantity
+from hfanalysis.quantity import CONDITIONAL, IDENTIFIED, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 
@@ -66,7 +67,15 @@ def _fitted(
         return FuelLaw.absent(str(error))
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return FuelLaw.absent(f"the engine's model cannot be fitted with what test.toml states: {error}")
-    return result(found)
+    return _conditional(result(found), calibration.constants.C_i)
+
+
+def _conditional(law: FuelLaw, discharge: Quantity) -> FuelLaw:
+    """a and n hold on the condition that C_i holds on."""
+    if discharge.verdict != CONDITIONAL:
+        return law
+    found = {n: q for n, q in law.quantities.items() if q.verdict == IDENTIFIED}
+    return law.but(**{n: replace(q, verdict=CONDITIONAL, why=discharge.why) for n, q in found.items()})
 
 
 def held(definition: TestDefinition, by_log: FuelLaw) -> FuelLaw:

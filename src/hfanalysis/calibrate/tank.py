@@ -11,6 +11,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, other_masses, rest_of, tank_history
+from hfanalysis.calibrate.feed_loss import estimated_share
 from hfanalysis.calibrate.loaded_mass import UNSTATED, LoadedMass, loaded_mass
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at_break
 from hfanalysis.calibrate.stated import Held
@@ -22,11 +23,13 @@ from hfanalysis.engine.injector import mass_flows
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankConstants, TankHistory
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import DERIVED, IDENTIFIED, NOT_IDENTIFIABLE, STATED, Quantity
+from hfanalysis.quantity import CONDITIONAL, DERIVED, IDENTIFIED, NOT_IDENTIFIABLE, STATED, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import live_signals
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
+from hfanalysis.units import Value
 
 VAPOR_PRESSURE_SHARE = 0.6
 """Without nitrogen the vapor phase is followed until the tank has this share of its pressure at t_v. Evidence:
@@ -48,6 +51,9 @@ Evidence: test_rest.py: a mass that does not fit the tank at all is an error of 
 
 NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase",
          "vapor_mass_at_t_v", "mass_at_t_feed", "oxidizer_mass")  # fmt: skip
+
+BY_RUN_LINE = ("C_i", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "mass_at_t_feed")
+"""Of these, those that rest on the pressure before the injector."""
 
 BY_MASS = ("C_i", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase", "mass_at_t_feed", "oxidizer_mass")
 """Of these, those that are worth what the loaded mass is worth."""
@@ -79,7 +85,12 @@ class _Work:
         self.saturation: Saturation = saturation_of(definition.model.properties)
         self.notes: list[str] = []
         self.warnings: list[str] = []
-        self.histories = MeasuredPressures.of(log, segments, definition, self._last(t_v))
+        self.lost: Value | None = None
+        if "p_run" not in live_signals(log) and "p_tank" in log:
+            self.lost, self.estimated = estimated_share(log, segments, definition, self.saturation)
+            self.warnings.append(self.estimated)
+        lost = self.lost.value if self.lost is not None else None
+        self.histories = MeasuredPressures.of(log, segments, definition, self._last(t_v), lost)
         self.notes.extend(self.histories.assumed)
         self.t_feed = segments.time("t_feed") or 0.0
         self.volume = definition.tank.volume if definition.tank else None
@@ -202,6 +213,21 @@ class _Work:
             )
 
     def _quantities(self, r: Reduction, draws: Draws, inputs: Inputs, left: Array) -> dict[str, Quantity]:
+        return self._conditional(self._judged(r, draws, inputs, left))
+
+    def _conditional(self, found: dict[str, Quantity]) -> dict[str, Quantity]:
+        """What rests on a pressure before the injector that was estimated holds on that condition."""
+        if self.lost is None:
+            return found
+        resting = {n: q for n, q in found.items() if n in BY_RUN_LINE and q.verdict in (IDENTIFIED, NOT_IDENTIFIABLE)}
+        told = {
+            n: replace(q, verdict=CONDITIONAL, why=self.estimated) for n, q in resting.items() if q.value is not None
+        }
+        if "m" in found and "m" not in self.held.values:  # how fast the vapor leaves hangs on it
+            told["m"] = Quantity.absent(self.estimated, verdict=NOT_IDENTIFIABLE)
+        return found | told
+
+    def _judged(self, r: Reduction, draws: Draws, inputs: Inputs, left: Array) -> dict[str, Quantity]:
         held = "C_i" in self.held.values
         discharge = self.held.quantity("C_i") if held else judge_discharge(r, draws, self._excluded_share())
         known = np.isfinite(r.C_i) and 0.0 < r.C_i < 10.0
@@ -255,6 +281,9 @@ class _Work:
 
     def _bias(self, name: str) -> float:
         channel = self.log.get(name)
+        if name == "p_run" and self.lost is not None:
+            h = self.histories
+            return (self.lost.std or 0.0) * h.mean(h.tank - h.chamber, self.t_feed, self.t_v)
         if channel is None:
             return self.definition.ambient_pressure.std or 0.0
         if channel.zero_std is None:
@@ -359,7 +388,7 @@ class _Work:
                 out[name] = Quantity.absent(why, verdict=NOT_IDENTIFIABLE)
             else:
                 out[name] = Quantity(value, "Pa", error, verdict=IDENTIFIED)
-        return out
+        return self._conditional(out)
 
 
 def _mass(value: float, std: float, discharge: Quantity) -> Quantity:

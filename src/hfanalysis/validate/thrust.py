@@ -36,7 +36,7 @@ test_thrust.py: a cell that reads next to nothing is left alone."""
 
 
 OUT = 0.05
-"""Part of the largest thrust below which a motor has burnt out. Source: NFPA 1125, the burn time of its thrust curve."""
+"""Part of the largest thrust below which a motor is burnt out. Source: NFPA 1125, burn time of its thrust curve."""
 
 FADED = (0.1, 0.025)
 """Parts of it [-] between which it passes OUT: how well that instant is told."""
