@@ -29,6 +29,7 @@ from hfanalysis.record.sections import (
     Site,
     Tank,
 )
+from hfanalysis.record.unused import OF_TESTS, SPREADS_OF_TESTS, unused
 from hfanalysis.units import Value, near
 
 __all__ = ["ChannelSpec", "Exclusion", "FileSpec", "LogSpec", "TestDefinition", "TimeSpec", "Value", "find_definition",
@@ -201,7 +202,8 @@ def load_definition(path: Path) -> TestDefinition:
     """The test.toml at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
     raw, content = read_toml(path)
     stated = validate(Statements, {"schema": None, **content}, path)
-    digest, warnings = hashlib.sha256(raw).hexdigest(), _odd_names(stated.channels)
+    idle = unused(stated, OF_TESTS, SPREADS_OF_TESTS, "test.toml")
+    digest, warnings = hashlib.sha256(raw).hexdigest(), (*_odd_names(stated.channels), *idle)
     definition = TestDefinition(**vars(stated), path=path, sha256=digest, warnings=warnings)
     _check_folder(definition)
     return definition
