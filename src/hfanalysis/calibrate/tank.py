@@ -17,6 +17,7 @@ from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureR
 from hfanalysis.calibrate.stated import Held
 from hfanalysis.calibrate.uncertainty import HELD, Draws, InputSpread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
+from hfanalysis.calibrate.water_flow import calibrate_water, is_water
 from hfanalysis.calibrate.with_effects import acting
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.injector import mass_flows
@@ -66,6 +67,8 @@ def calibrate(
 
     Raises AbsentError where neither C_i nor anything else can be had because p_tank, p_run or t_v is missing.
     """
+    if is_water(segments, definition):
+        return TankCalibration(calibrate_water(log, segments, definition))
     t_v = segments.time("t_v")
     if t_v is None:
         raise AbsentError(

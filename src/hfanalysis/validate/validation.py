@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.water_flow import is_water
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
@@ -81,8 +82,9 @@ class _Work:
         self.log, self.segments, self.definition = log, segments, definition
         self.effects = effects
         self.true = corrected(log, segments.t_open.value or 0.0, effects)
-        self._calibration = calibration
-        self.uncalibrated = uncalibrated
+        water = is_water(segments, definition)
+        self._calibration = None if water else calibration
+        self.uncalibrated = "water flows: there is no tank of nitrous oxide to run" if water else uncalibrated
         self.ambient = definition.ambient_pressure.value
         self.fire = performance.fire_of(segments, definition, self.true)
         self.absent: dict[str, str] = {}
