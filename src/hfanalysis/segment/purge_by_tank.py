@@ -1,7 +1,7 @@
 """t_purge without a purge line to look at: where the tank, emptying as vapor, begins to fall less and less.
 
 Vapor that expands loses its pressure at a rate that hardly changes: ln p is smooth. Nitrogen that enters lets the fall
-die away, so that the slope of ln p, or its curvature, jumps. Only a strong inflow shows so; a weak one is not told from the vapor.
+die away, so that the slope of ln p, or its curvature, jumps. A weak inflow is not told from the vapor.
 """
 
 from __future__ import annotations
@@ -87,4 +87,4 @@ def _left(design: Array, value: Array) -> tuple[float, Array]:
     """Sum of squares that a fit leaves, and its coefficients."""
     beta = np.linalg.lstsq(design, value, rcond=None)[0]
     residual = value - design @ beta
-    return float(residual @ residual), beta
+    return float(residual @ residual), np.asarray(beta, dtype=np.float64)
