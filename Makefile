@@ -137,12 +137,13 @@ blind-calibrate: $(STAMP) ## fit the stated probabilities on 600 tests of the ca
 	$(BLIND) run --split calibration --n 600 --jobs 2 $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) calibrate --split calibration
 
-readme: $(STAMP) ## write anew what comes of the code: samples in README.md, docs/effects.md, docs/constants.md, docs/products.md, docs/schemas, make's rules
+readme: $(STAMP) ## write anew what comes of the code: samples in README.md, docs/effects.md, docs/constants.md, docs/channels.md, docs/products.md, docs/schemas, make's rules
 	@$(BIN)/python pipeline/readme.py
 	@$(BIN)/python pipeline/effects_page.py
 	@$(BIN)/python pipeline/products_page.py
 	@$(BIN)/python pipeline/dag.py
 	@$(BIN)/python pipeline/constants_page.py
+	@$(BIN)/python pipeline/channels_page.py
 
 COMPILE := $(BIN)/uv pip compile --universal --python-version 3.11 --only-binary :all: --upgrade --generate-hashes \
 	--no-emit-index-url --custom-compile-command 'make lock' --quiet

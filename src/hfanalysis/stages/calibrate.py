@@ -51,7 +51,8 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
 
 def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     """The content of calibration.json with these effects acting."""
-    from hfanalysis.calibrate.fuel_law import regress
+    from hfanalysis.calibrate.facts import held_against
+    from hfanalysis.calibrate.fuel_law import contradiction, regress
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.inference.adopted.corrected_log import corrected
     from hfanalysis.products.segments import Segments
@@ -62,7 +63,10 @@ def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     context.progress("repeating the calibration with drawn inputs", None)
     result = calibrate(log, segments, definition, int(context.parameter("samples")), effects)
     context.progress("fitting the regression", None)
-    return result.with_law(regress(log, segments, definition, result, effects))
+    found = result.with_law(regress(log, segments, definition, result, effects))
+    if said := contradiction(definition, found):
+        found = found.but(warnings=(*found.warnings, said))
+    return held_against(log, segments, definition, found)
 
 
 STAGE = Stage(
