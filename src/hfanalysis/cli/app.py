@@ -35,6 +35,11 @@ Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="STAGE.NAME=VALUE", help="Set a parameter of a stage for this run.")
 ]
 
+Firing = Annotated[
+    int | None,
+    typer.Option("--firing", min=1, metavar="N", help="Take this firing of the log; products go to TEST.firing-N/."),
+]
+
 
 def _version(wanted: bool) -> None:
     if wanted:
@@ -59,9 +64,11 @@ def _common(
     force: Force = False,
     quiet: Quiet = False,
     settings: Set = None,
+    firing: Firing = None,
 ) -> Request:
     """What every stage is asked with."""
-    return Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+    request = Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+    return request if firing is None else request.setting(f"segment.firing={firing}")
 
 
 def _stage(name: str, text: str, does: Callable[..., None]) -> None:

@@ -84,7 +84,7 @@ class Test(Section):
     stand: Text | None = None
 
 
-_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
 
 
 def _known_events(found: dict[str, Value]) -> dict[str, Value]:

@@ -118,9 +118,13 @@ class FileSpec(ReadingOptions):
 
 @section
 class LogSpec(ReadingOptions):
-    """[log]: the files; what is given beside ``files`` holds for every file that does not say otherwise."""
+    """[log]: the files; what is given beside ``files`` holds for every file that does not say otherwise.
+
+    ``firing``: which of several in the log is analysed, counted from 1; None takes the largest.
+    """
 
     files: ListOf[Annotated[FileSpec, _under("file")]]
+    firing: Annotated[int, Field(strict=True, ge=1)] | None = None
 
     def check(self) -> None:
         super().check()
