@@ -92,6 +92,7 @@ class _Ingest:
         stamps = sorted({plan.stamps for plan in plans.values() if plan.stamps is not None})
         spool = self.spools[file] = Spool(source, self.folder)
         spool.fill(sorted(plans), stamps, lambda share: progress(file, share))
+        self.warnings += source.notes
         for column, text in spool.text.items():
             if column in plans:
                 cells = f"{text.count} cells hold text, the first {text.first!r} in line {text.line}"

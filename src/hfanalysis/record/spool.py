@@ -68,6 +68,8 @@ class Spool:
     text: dict[int, Text] = field(default_factory=dict)
     written: set[int] = field(default_factory=set)
     """Columns of stamps that are dates or times of day, here in seconds."""
+    epochs: dict[int, float] = field(default_factory=dict)
+    """Column of stamps -> the instant of its zero [s since 1970], where the log says so."""
     idle: NDArray[np.bool_] | None = None
     """Rows in which every column reads exactly zero; None where that says nothing."""
     _columns: dict[int, Growing] = field(default_factory=dict)
@@ -91,6 +93,7 @@ class Spool:
                     size = 0
                 self._note(chunk.text)
                 self.written |= chunk.written
+                self.epochs |= chunk.epochs
         self.idle = _if_rare(np.concatenate(idle)) if idle and len(columns) > 1 else None
 
     def _append(self, numbers: Sequence[tuple[int, Array]]) -> int:

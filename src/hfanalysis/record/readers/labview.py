@@ -12,7 +12,8 @@ from pathlib import Path
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
 from hfanalysis.record.readers.delimited import Delimited
-from hfanalysis.record.readers.dialect import SAMPLE, Dialect, encoding_of
+from hfanalysis.record.readers.dialect import Dialect
+from hfanalysis.record.readers.encodings import SAMPLE, encoding_of
 
 _MARKS = {"Tab": "\t", "Comma": ",", "Semicolon": ";"}
 _NAMES = "X_Value"
