@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array, Mask
 from hfanalysis.compiled import compiled
 from hfanalysis.errors import InputError
+from hfanalysis.record.clock_repair import repaired
 from hfanalysis.record.logspec import TimeSpec
 from hfanalysis.record.spool import Spool
 from hfanalysis.units import unit_factor
@@ -16,17 +18,19 @@ from hfanalysis.units import unit_factor
 
 @dataclass(frozen=True)
 class Clock:
-    """The stamps of a group of samples: ``time`` [s, log time] of the rows in ``keep``; ``stale`` where it stands or
-    steps back.
+    """The stamps of a group of samples: ``time`` [s, log time] of the rows ``keep`` (their numbers, in the order of
+    time; None: all as they are); ``stale`` where it stands or steps back. ``epoch``: the instant of its zero [s since
+    1970, as written], where the log says so.
 
     ``stale`` marks samples whose stamp is not later than an earlier good one: of a group with one stamp all but the
     first; where time steps back, whichever side of the step leaves fewer samples out.
     """
 
     time: Array
-    keep: Mask | None
+    keep: NDArray[np.intp] | None
     stale: Mask
     warnings: tuple[str, ...] = ()
+    epoch: float | None = None
 
 
 def read_clock(spool: Spool, column: int | None, spec: TimeSpec, rows: int, where: str) -> Clock:
@@ -39,15 +43,18 @@ def read_clock(spool: Spool, column: int | None, spec: TimeSpec, rows: int, wher
         raise InputError(_no_stamps(spool, column, where))
     warnings = [f"{where}: {n} rows without a readable time stamp are left out"] if (n := int((~keep).sum())) else []
     written = spec.unit in ("datetime", "clock") or column in spool.written
-    whole = bool(keep.all())
-    time = (stamps if whole else stamps[keep]) * (1.0 if written else unit_factor(spec.unit, "time", where)[0])
+    run = repaired(stamps if keep.all() else stamps[keep], turns=not written)
+    rows_kept = None if keep.all() else np.flatnonzero(keep)
+    if run.order is not None:
+        rows_kept = run.order if rows_kept is None else rows_kept[run.order]
+    warnings += [f"{where}: {note}" for note in run.notes]
+    time = run.time * (1.0 if written else unit_factor(spec.unit, "time", where)[0])
     if spec.spread:
         time, note = _spread(time, where)
         warnings += note
     stale = stale_stamps(time)
     warnings += _noted(time, stale, where)
-    time += spec.offset.value
-    return Clock(time, None if whole else keep, stale, tuple(warnings))
+    return Clock(time + spec.offset.value, rows_kept, stale, tuple(warnings), spool.epochs.get(column))
 
 
 def _regular(spec: TimeSpec, rows: int) -> Clock:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array
 from hfanalysis.record.readers import Source, Text
 
-IN_MEMORY = 1 << 30
+IN_MEMORY = 1 << 28
 """Bytes of one log file's columns that may stay in memory [B]."""
 WORKERS = 2
 """Threads that put columns away: most of it is waiting for the system to hand out memory."""

@@ -29,7 +29,7 @@ from hfanalysis.record.readers.stamps import StampParser
 if TYPE_CHECKING:
     import pyarrow as pa
 
-SEGMENT = 4_000_000
+SEGMENT = 1_000_000
 """Bytes of text parsed at a time [B]: large enough for threads to be worth it, small enough for the memory."""
 WORKERS = 2
 """Segments parsed at a time: bounds the memory."""

@@ -33,8 +33,8 @@ test_dirt.py: rows broken by a lost byte are rarer, and cutting them would shift
 LONGEST_HEADER = 40
 """Lines over which a row of names may run that are broken inside quotes. Evidence: test_headers.py: each of a row's
 names may be broken, so that there are as many lines as columns."""
-ENOUGH = 200
-"""Rows of each part of the file whose cells are asked for the marks of numbers."""
+ENOUGH = 300
+"""Rows, spread over the parts of the file that are looked at, whose cells are asked for the marks of numbers."""
 
 Substitution = tuple[re.Pattern[str], str]
 
@@ -151,7 +151,8 @@ def _described(
     header = read_header(above, width, empty) if not labels else _labeled(labels, width)
     if delimiter == WHITESPACE and shorter:
         raise InputError(_ragged(path, width, shorter))
-    columns = [[row[i] for row in whole] for i in range(width)]
+    some = whole[:: max(1, len(whole) // ENOUGH)]
+    columns = [[row[i] for row in some] for i in range(width)]
     decimal = spec.decimal or marks.decimal_mark(columns, str(path))
     stamped = frozenset(i for i, cells in enumerate(columns) if _is_stamped(cells))
     return Dialect(
@@ -215,17 +216,20 @@ def _merit(lines: Sequence[str], mark: str) -> tuple[bool, float]:
 
 
 def _first(rows: Sequence[Sequence[str]]) -> int:
-    """The number of lines before the data: up to the first two rows, blank ones aside, that are mostly numbers."""
+    """The lines before the data: up to the first two rows in a row, blank ones aside, that are mostly numbers (or the
+    last row).
+    """
     widths = Counter(len(row) for row in rows if any(row))
     width = widths.most_common(1)[0][0] if widths else 0
-    filled = [i for i, row in enumerate(rows) if any(row)]
-    looks = [_is_data(rows[i], width) for i in filled]
-    return next((i for i, two in zip(filled, _twice(looks), strict=True) if two), len(rows))
-
-
-def _twice(looks: Sequence[bool]) -> list[bool]:
-    """Which are true and followed by another, or last."""
-    return [look and (k + 1 == len(looks) or looks[k + 1]) for k, look in enumerate(looks)]
+    before = None
+    for i, row in enumerate(rows):
+        if not any(row):
+            continue
+        looks = _is_data(row, width)
+        if looks and before is not None:
+            return before
+        before = i if looks else None
+    return len(rows) if before is None else before
 
 
 def _is_data(row: Sequence[str], width: int) -> bool:

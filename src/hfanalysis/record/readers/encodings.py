@@ -7,7 +7,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 SAMPLE = 1 << 18
-"""Bytes looked at in one place of a file [B]."""
+"""Bytes looked at at the beginning of a file [B]."""
+FURTHER = 1 << 16
+"""Bytes looked at in its middle and at its end [B]."""
 NULS_OF_UTF16 = 0.25
 """Share of zero bytes from which a text is written in two bytes a character. Evidence: test_dirt.py: half of the bytes
 of a log in UTF-16 are zero; a lost block or a mark of two bytes by chance has few of them."""
@@ -57,17 +59,17 @@ def _after_lone_return(text: bytes) -> int:
 
 
 def samples(path: Path, encoding: str) -> list[str]:
-    """Text from the beginning, the middle and the end of a file, each of whole lines but for the file's last."""
+    """Text from the beginning, the middle and the end of a file, each without the lines that it cuts."""
     size = path.stat().st_size
     with path.open("rb") as file:
         head = file.read(SAMPLE)
         parts = [head.decode(encoding, errors="replace").removeprefix("\ufeff")]
-        for place in (size // 2, size - SAMPLE) if size > 3 * SAMPLE else (SAMPLE,) if size > SAMPLE else ():
+        for place in sorted({max(SAMPLE, size // 2), max(SAMPLE, size - FURTHER)}) if size > SAMPLE else ():
             file.seek(place - place % 4)
-            parts.append(file.read(SAMPLE if size > 3 * SAMPLE else -1).decode(_no_mark(encoding, head), "replace"))
+            parts.append(file.read(FURTHER).decode(_no_mark(encoding, head), errors="replace"))
     if size > SAMPLE:
         parts[0] = _up_to_last_line(parts[0])
-    return [parts[0], *(_from_next_line(part) for part in parts[1:])]
+    return [parts[0], *(_up_to_last_line(_from_next_line(part)) for part in parts[1:])]
 
 
 def _no_mark(encoding: str, head: bytes) -> str:

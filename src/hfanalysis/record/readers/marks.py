@@ -36,6 +36,7 @@ _REPLACED = (
     (re.compile("(?<=\\d)['\u2019](?=\\d{3}(?!\\d))"), ""),
 )
 """What is written otherwise than in ASCII and without marks between thousands, and what it becomes."""
+_NOT_ASCII = (_REPLACED[0][0], _REPLACED[2][0])
 BLANK_BETWEEN = (re.compile(r"(?<![\d.,:/-])([+-]?\d{1,3}) (?=\d{3}(?!\d|:|/|-))"), r"\1")
 """The same for a plain blank, where blanks do not separate columns."""
 
@@ -51,7 +52,7 @@ def is_number(field: str) -> bool:
 
 def replaced(text: str) -> list[tuple[re.Pattern[str], str]]:
     """What has to be replaced in a text that is written like this, before its numbers are plain."""
-    return [(mark, by) for mark, by in _REPLACED if mark.search(text)]
+    return [(mark, by) for mark, by in _REPLACED if not (text.isascii() and mark in _NOT_ASCII) and mark.search(text)]
 
 
 def decimal_mark(columns: Iterable[Sequence[str]], where: str) -> str:
