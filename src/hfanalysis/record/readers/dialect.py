@@ -135,7 +135,7 @@ def _described(
     lines: Sequence[Line], labels: Sequence[str],
 ) -> Dialect:  # fmt: skip
     rows = [split(line.text, delimiter) for line in lines]
-    begin = _first(rows) if spec.header_rows is None else spec.header_rows
+    begin = first_row(rows) if spec.header_rows is None else spec.header_rows
     first = spec.header_rows if spec.header_rows is not None else (lines[begin - 1].end if begin else 0)
     data = [(line.text, row) for line, row in zip(lines[begin:], rows[begin:], strict=True) if any(row)]
     if not data:
@@ -215,7 +215,7 @@ def _merit(lines: Sequence[str], mark: str) -> tuple[bool, float]:
     return width > 1 and numeric > 0, round(numeric * times / max(len(rows), 1), 2)
 
 
-def _first(rows: Sequence[Sequence[str]]) -> int:
+def first_row(rows: Sequence[Sequence[str]]) -> int:
     """The lines before the data: up to the first two rows in a row, blank ones aside, that are mostly numbers (or the
     last row).
     """

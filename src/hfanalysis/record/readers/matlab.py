@@ -1,7 +1,9 @@
 """MATLAB's .mat: arrays and (nested) structs of arrays, by names such as ``PT1``, ``CF1.mass`` or ``data.PTRAN_1``.
 
-An array of two columns the first of which rises, but for a few steps back, is taken as [time, value]. Text, cells,
-single numbers and MATLAB's own classes are left out; of other matrices the columns are ``NAME.1``, ``NAME.2``, ...
+An array of two columns the first of which rises, but for a few steps back, is taken as [time, value]. Of other matrices
+the columns are ``NAME.1``, ``NAME.2``, ... (the longer axis is time). Arrays of structs with single numbers are series
+by field; those that each hold a name and a series, channels by that name. Cells of single numbers are numbers. Text and
+single numbers are left out, MATLAB's own classes (table, timetable, datetime) refused by name.
 """
 
 from __future__ import annotations
@@ -9,58 +11,114 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
-from hfanalysis.record.readers.table import LogSeries, Table
+from hfanalysis.record.readers.series import series
+from hfanalysis.record.readers.table import WIDEST, LogSeries, Table
 
-WIDEST = 256
-"""Columns of a matrix beyond which it is no set of channels."""
 BACK = 0.02
 """Share of steps back that a logger's clock may have."""
+_NAME_FIELDS = ("name", "label", "channel", "title", "id")
+_TIME_FIELDS = ("t", "time", "x", "timestamp", "timestamps")
+"""Fields of a channel's struct, by what they hold."""
 
 
 def open_source(path: Path, spec: FileSpec) -> Table:
     """The file's arrays; raises :class:`InputError` where it cannot be read."""
     with path.open("rb") as file:
         is_hdf5 = file.read(10) == b"MATLAB 7.3"
+    opaque: dict[str, str] = {}
     try:
-        found = list(_from_hdf5(path) if is_hdf5 else _from_mat5(path))
+        found = list(_from_hdf5(path, opaque) if is_hdf5 else _from_mat5(path, opaque))
+    except InputError:
+        raise
     except Exception as error:  # damaged files fail in every way that there is
         raise InputError(f"{path}: cannot be read as a MATLAB file: {error or type(error).__name__}") from None
-    return Table(path, found)
+    notes = [f"{path.name}: {_refused(name, kind)}" for name, kind in opaque.items()]
+    if not found and notes:
+        raise InputError(f"{path}: {_refused(*next(iter(opaque.items())))}")
+    return Table(path, found, notes)
 
 
-def _from_mat5(path: Path) -> Iterator[LogSeries]:
+def _refused(name: str, kind: str) -> str:
+    return (
+        f"variable {name!r} is of MATLAB's own class {kind}, which only MATLAB reads; expected arrays or structs "
+        "(table2struct(T, 'ToScalar', true), seconds(t - t(1)))"
+    )
+
+
+def _from_mat5(path: Path, opaque: dict[str, str]) -> Iterator[LogSeries]:
     from scipy.io import loadmat
+    from scipy.io.matlab import MatlabOpaque
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # about variables of MATLAB's own classes, which are left out
+        warnings.simplefilter("ignore")  # about variables of MATLAB's own classes, which are refused by name below
         content: Mapping[str, Any] = loadmat(path)
     for name, value in content.items():
-        if not name.startswith("__"):
+        if isinstance(value, MatlabOpaque):
+            opaque.update(_own_classes(name, value))
+        elif not name.startswith("__"):
             yield from _series(name, value)
 
 
-def _from_hdf5(path: Path) -> Iterator[LogSeries]:
+def _own_classes(name: str, value: Any) -> Iterator[tuple[str, str]]:
+    """Variables of MATLAB's own classes: name and class, as far as the file tells."""
+    for one in np.ravel(value):
+        fields = one.dtype.names if hasattr(one, "dtype") else None
+        words = [_word(one[field]) for field in fields or ()]
+        names = {field: word for field, word in zip(fields or (), words, strict=True)}
+        variable = names.get("s0") or (name if name not in ("None", "__function_workspace__") else "")
+        if variable:
+            yield variable, names.get("s2") or "(unnamed)"
+
+
+def _word(value: Any) -> str:
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value) if isinstance(value, str) else ""
+
+
+def _from_hdf5(path: Path, opaque: dict[str, str]) -> Iterator[LogSeries]:
     """MATLAB 7.3 is HDF5 with groups for structs, and arrays transposed."""
     import h5py
 
-    def walk(name: str, item: Any) -> Iterator[LogSeries]:
-        if isinstance(item, h5py.Group):
-            for key in item:
-                yield from walk(f"{name}.{key}", item[key])
-        elif item.attrs.get("MATLAB_class", b"double") != b"char" and not item.attrs.get("MATLAB_empty", 0):
-            yield from _series(name, np.asarray(item).T)
+    from hfanalysis.record.readers.hdf5_inside import Stored, datasets
 
     with h5py.File(path, "r") as file:
-        for key in file:
-            if not key.startswith("#"):
-                yield from walk(key, file[key])
+        for names, item in datasets(path, file):
+            kind = np.asarray(item.attrs.get("MATLAB_class", b"double")).item().decode(errors="replace")
+            if names[0].startswith("#") or kind == "char" or item.attrs.get("MATLAB_empty", 0):
+                continue
+            if "MATLAB_object_decode" in item.attrs and kind not in ("function_handle",):
+                opaque[".".join(names)] = kind
+            elif kind == "cell" and item.dtype.kind == "O":
+                yield from _series(".".join(names), _referred(file, item))
+            elif item.dtype.kind == "O":
+                yield from _records_of(file, item, names)
+            elif item.dtype.kind in "fiub" and item.ndim == 2:
+                if 1 in item.shape and item.size > 1:
+                    yield LogSeries(".".join(names), cast(Array, Stored(path, item.name, item.shape)))
+                else:
+                    yield from _series(".".join(names), np.asarray(item).T)
+
+
+def _referred(file: Any, item: Any) -> NDArray[Any]:
+    """The single numbers that a cell array's references lead to; other contents are None."""
+    found = np.empty(item.shape, dtype=object)
+    for place, reference in np.ndenumerate(np.asarray(item)):
+        inner = file[reference] if reference else None
+        plain = inner is not None and hasattr(inner, "dtype") and inner.dtype.kind in "fiub" and inner.size == 1
+        found[place] = np.asarray(inner).reshape(1, 1) if plain else None
+    return found.T
+
+
+def _records_of(file: Any, item: Any, names: tuple[str, ...]) -> Iterator[LogSeries]:
+    """A field of an array of structs, where it holds single numbers."""
+    yield from _series(".".join(names), _referred(file, item))
 
 
 def _series(name: str, value: Any) -> Iterator[LogSeries]:
@@ -70,17 +128,75 @@ def _series(name: str, value: Any) -> Iterator[LogSeries]:
     if value.dtype.names and value.size == 1:
         for field in value.dtype.names:
             yield from _series(f"{name}.{field}", value[field].item())
+    elif value.dtype.names:
+        yield from _of_structs(name, value.ravel())
+    elif value.dtype.kind == "O" and value.ndim == 2 and value.size > 1:
+        yield from _of_cells(name, value)
     elif value.dtype.kind in "fiub" and value.ndim == 2 and value.size > 1:
-        yield from _columns(name, np.asarray(value, dtype=np.float64))
+        yield from columns(name, np.asarray(value, dtype=np.float64))
 
 
-def _columns(name: str, array: NDArray[np.float64]) -> Iterator[LogSeries]:
+def _of_structs(name: str, elements: NDArray[Any]) -> Iterator[LogSeries]:
+    """An array of structs: a channel in each, or a sample in each."""
+    fields = elements.dtype.names or ()
+    if all(np.size(elements[0][field]) <= 1 or _is_text(elements[0][field]) for field in fields):
+        for field in fields:
+            found = series(f"{name}.{field}", [_single(one[field]) for one in elements])
+            if found is not None and np.isfinite(found.numbers).any():
+                yield found
+        return
+    title = next((field for field in fields if field.lower() in _NAME_FIELDS), None)
+    clock = next((field for field in fields if field.lower() in _TIME_FIELDS), None)
+    if clock and all(np.array_equal(one[clock], elements[0][clock]) for one in elements):
+        yield from _series(f"{name}.{clock}", elements[0][clock])
+    for number, one in enumerate(elements, start=1):
+        own = str(_single(one[title])) if title and _is_text(one[title]) else str(number)
+        for field in fields:
+            if field in (title, clock) or _is_text(one[field]):
+                continue
+            values = [part for part in _series("", one[field]) if part.numbers.ndim == 1]
+            time = np.asarray(one[clock], dtype=np.float64).ravel() if clock else None
+            rest = [other for other in fields if other not in (title, clock) and np.size(one[other]) > 1]
+            label = f"{name}.{own}" if len(rest) == 1 else f"{name}.{own}.{field}"
+            for part in values:
+                fits = time is not None and len(time) == len(part.numbers)
+                yield LogSeries(f"{label}{part.name}", part.numbers, time=time if fits else part.time)
+
+
+def _is_text(value: Any) -> bool:
+    return bool(getattr(value, "dtype", np.dtype(float)).kind in "US")
+
+
+def _single(value: Any) -> Any:
+    """The one number or text of an array, None of an empty one."""
+    flat = np.ravel(value)
+    return flat[0].item() if len(flat) == 1 and hasattr(flat[0], "item") else str(flat[0]) if len(flat) == 1 else None
+
+
+def _of_cells(name: str, cells: NDArray[Any]) -> Iterator[LogSeries]:
+    """Cells of single numbers or text: rows or columns of a table, the longer axis being time."""
+    table = cells if cells.shape[0] >= cells.shape[1] else cells.T
+    if table.shape[1] > WIDEST or not all(np.size(one) <= 1 for one in np.ravel(table[:2])):
+        return
+    for i, column in enumerate(table.T, start=1):
+        title = _single(column[0]) if _is_text(column[0]) else None
+        values = [_single(one) for one in (column[1:] if title else column)]
+        label = f"{name}.{title}" if title else name if table.shape[1] == 1 else f"{name}.{i}"
+        found = series(label, values) if any(value is not None for value in values) else None
+        if found is not None:
+            yield found
+
+
+def columns(name: str, array: NDArray[np.float64]) -> Iterator[LogSeries]:
+    """The series of a matrix (n, k): its one row or column, [time, value], or one by one."""
     if 1 in array.shape:
         yield LogSeries(name, array.ravel())
-    elif array.shape[1] == 2 and _is_time(array[:, 0]):
-        yield LogSeries(name, array[:, 1], time=array[:, 0])
-    elif array.shape[1] <= WIDEST:
-        for i, column in enumerate(array.T, start=1):
+        return
+    table = array if array.shape[0] >= array.shape[1] else array.T
+    if table.shape[1] == 2 and _is_time(table[:, 0]):
+        yield LogSeries(name, table[:, 1], time=table[:, 0])
+    elif table.shape[1] <= WIDEST:
+        for i, column in enumerate(table.T, start=1):
             yield LogSeries(f"{name}.{i}", column)
 
 

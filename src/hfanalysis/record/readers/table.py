@@ -12,6 +12,9 @@ from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.record.readers.base import Chunk, Progress, Text
 
+WIDEST = 256
+"""Columns of a matrix beyond which it is no set of channels."""
+
 
 @dataclass(frozen=True)
 class LogSeries:
@@ -32,7 +35,6 @@ class Table:
     """An opened log of several series. The time of those that have one follows as a column ``NAME.time``."""
 
     sha256: str | None = None
-    others: tuple[tuple[str, ...], ...] = ()
     doubt = ""
 
     def __init__(self, path: Path, series: Sequence[LogSeries], notes: Sequence[str] = ()) -> None:
@@ -43,6 +45,8 @@ class Table:
         timed = [(i, one.time) for i, one in enumerate(series) if one.time is not None]
         self.name = path.name
         self.columns = (*(one.name for one in series), *(f"{series[i].name}.time" for i, _ in timed))
+        ends = tuple(name.rpartition(".")[2] for name in self.columns)
+        self.others: tuple[tuple[str, ...], ...] = (ends,)
         self.units = (*(one.unit for one in series), *("s" for _ in timed))
         self._numbers = [*(one.numbers for one in series), *(time for _, time in timed)]
         self._stamps = {i: len(series) + k for k, (i, _) in enumerate(timed)}
