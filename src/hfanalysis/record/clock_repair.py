@@ -24,14 +24,15 @@ TURNS = {
     86400e3: "milliseconds of the day",
     60e6: "microseconds of the minute",
 }
-"""After how much [unit of the stamps] a clock begins anew, and what then does. Source: two's complement; the minute, the
-hour and the day."""
+"""After how much [unit of the stamps] a clock begins anew, and what then does. Source: two's complement; the minute,
+the hour and the day."""
 SMOOTH = 20.0
 """Usual steps that the step over a wrap may last. Evidence: test_clock_repair.py: jitter of a logger; a restart lands
 anywhere."""
 LASTING = 4
 """Samples after a step back that run on from it for it to be more than a stamp gone astray. Evidence: as many as
 flags.py calls no spike any more."""
+BACKWARDS = "the rows run backwards; taken in reverse"
 FARTHEST = 0.02
 """Share of the rows by which a row may be out of place. Evidence: as FAR_ROWS."""
 FAR_ROWS = 50
@@ -51,12 +52,12 @@ class Repaired:
 
 
 def repaired(stamps: Array, turns: bool = True) -> Repaired:
-    """Stamps (n,) that run, as far as they show how; in the unit of the log. ``turns``: they are a number, not a date."""
+    """Stamps (n,) that run, as far as they show how; in the unit of the log. ``turns``: they are numbers, no dates."""
     steps = np.diff(stamps)
     if len(stamps) < 2 * LASTING or not (steps < 0.0).any():
         return Repaired(stamps)
     if np.count_nonzero(steps < 0.0) > 0.9 * np.count_nonzero(steps):
-        return Repaired(stamps[::-1].copy(), np.arange(len(stamps))[::-1], ("the rows run backwards; taken in reverse",))
+        return Repaired(stamps[::-1].copy(), np.arange(len(stamps))[::-1], (BACKWARDS,))
     if turns and (unwrapped := _unwrapped(stamps, steps)) is not None:
         return unwrapped
     return _sorted(stamps, steps) or _joined(stamps)
@@ -111,16 +112,23 @@ def _joined(stamps: Array) -> Repaired:
     """The stamps with every lasting step back made a usual step: a restart, or a clock set back."""
     time, notes = stamps.copy(), []
     usual = _usual(np.diff(stamps))
-    for at in np.flatnonzero(np.diff(stamps) < 0.0):
+    for at in map(int, np.flatnonzero(np.diff(stamps) < 0.0)):
         shown = stamps[at + 1 :]
         runs_on = len(shown) >= LASTING and bool((np.diff(shown[:LASTING]) >= 0.0).all())
         over = int(np.argmax(shown > stamps[at])) if (shown > stamps[at]).any() else len(shown)
-        if not runs_on or over < LASTING or _returns(shown[: over + 1], stamps[at], usual):
+        ahead = _run_above(stamps[: at + 1], shown[0])
+        if not runs_on or min(over, ahead) < LASTING or _returns(shown[: over + 1], stamps[at], usual):
             continue
         shift = time[at] + usual - time[at + 1]
         time[at + 1 :] += shift
         notes.append(_restart(stamps[at], stamps[at + 1], at))
     return Repaired(time, None, tuple(notes))
+
+
+def _run_above(stamps: Array, level: float) -> int:
+    """How many of the last stamps are all above a level."""
+    below = np.flatnonzero(stamps <= level)
+    return len(stamps) - (int(below[-1]) + 1 if len(below) else 0)
 
 
 def _returns(shown: Array, before: float, usual: float) -> bool:
@@ -134,6 +142,6 @@ def _returns(shown: Array, before: float, usual: float) -> bool:
 
 def _restart(before: float, after: float, row: int) -> str:
     return (
-        f"after row {row + 1} the clock goes from {before:.10g} to {after:.10g}: it restarts or is set back; what follows "
-        "is put one usual step later, so times across this row are right only if the logger did not pause"
+        f"after row {row + 1} the clock goes from {before:.10g} to {after:.10g}: it restarts or is set back; what "
+        "follows is put one usual step later, so times across this row are right only if the logger did not pause"
     )

@@ -15,6 +15,12 @@ from hfanalysis.record.logspec import TimeSpec
 from hfanalysis.record.spool import Spool
 from hfanalysis.units import unit_factor
 
+GROUPS = 3
+"""Whole groups of samples with one stamp that show a rate. Evidence: UNEVEN."""
+UNEVEN = 0.1
+"""Share by which groups may differ, beside one sample. Evidence: test_clocks.py: whole seconds of a steady logger hold
+as many samples but for one; a logger that repeats samples or pauses does not."""
+
 
 @dataclass(frozen=True)
 class Clock:
@@ -49,8 +55,8 @@ def read_clock(spool: Spool, column: int | None, spec: TimeSpec, rows: int, wher
         rows_kept = run.order if rows_kept is None else rows_kept[run.order]
     warnings += [f"{where}: {note}" for note in run.notes]
     time = run.time * (1.0 if written else unit_factor(spec.unit, "time", where)[0])
-    if spec.spread:
-        time, note = _spread(time, where)
+    if spec.spread or (spec.spread is None and _evenly_shared(time)):
+        time, note = _spread(time, where, bool(spec.spread))
         warnings += note
     stale = stale_stamps(time)
     warnings += _noted(time, stale, where)
@@ -124,14 +130,35 @@ def _noted(time: Array, stale: Mask, where: str) -> list[str]:
     return notes
 
 
-def _spread(time: Array, where: str) -> tuple[Array, list[str]]:
-    """Samples that share a stamp spread evenly up to the next stamp, as the engineer asked."""
+def _groups(time: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Where groups of samples with one stamp begin, and how many samples each has."""
     starts = np.flatnonzero(np.diff(time, prepend=-np.inf) != 0.0)
-    counts = np.diff(np.append(starts, len(time)))
+    return starts, np.diff(np.append(starts, len(time)))
+
+
+def _evenly_shared(time: Array) -> bool:
+    """Whether stamps are truncated and a steady rate shows: as many samples, but for one, share each whole stamp."""
+    _, counts = _groups(time)
+    whole = counts[1:-1]
+    if len(whole) < GROUPS or np.median(whole) < 2 or (np.diff(time) < 0.0).any():
+        return False
+    return bool((np.abs(whole - np.median(whole)) <= np.maximum(1.0, UNEVEN * np.median(whole))).all())
+
+
+def _spread(time: Array, where: str, asked: bool) -> tuple[Array, list[str]]:
+    """Samples that share a stamp spread evenly up to the next stamp; those of a first stamp that are fewer end at it."""
+    starts, counts = _groups(time)
     if len(starts) < 2:
         return time, []
     steps = np.diff(time[starts])
-    steps = np.append(steps, np.median(steps))
+    usual = np.median(steps)
+    steps = np.append(steps, usual) / counts
     place = np.arange(len(time)) - np.repeat(starts, counts)
-    spread = np.repeat(time[starts], counts) + place * np.repeat(steps / counts, counts)
-    return spread, [f"{where}: samples that share a stamp are spread evenly, as test.toml asks"]
+    spread = np.repeat(time[starts], counts) + place * np.repeat(steps, counts)
+    if len(counts) > 2:
+        pace, first, last = usual / np.median(counts[1:-1]), int(counts[0]), int(starts[-1])
+        if first * pace < steps[0] * first:
+            spread[:first] = time[first] - pace * np.arange(first, 0, -1)
+        spread[last:] = np.minimum(spread[last:], time[last] + pace * place[last:])
+    why = "as test.toml asks" if asked else "since as many share each (spread = false leaves them)"
+    return spread, [f"{where}: samples that share a stamp are spread evenly, {why}"]

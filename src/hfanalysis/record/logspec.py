@@ -75,14 +75,14 @@ class TimeSpec(Section):
     ``column``: name or number from 1; ``rate`` [Hz] stands for it in logs without stamps. ``unit``: of time, or
     "datetime" and "clock" for stamps written as dates or times of day (found by themselves). ``offset`` [s] is added to
     the stamps, which brings files with their own clocks together. ``spread``: samples that share a truncated stamp are
-    spread evenly up to the next one.
+    spread evenly up to the next one; None: where as many share each.
     """
 
     column: Column | None = None
     unit: Annotated[Text, AfterValidator(_time_unit)] = "s"
     offset: Instant = Value(0.0)
     rate: Annotated[Value, quantity("frequency", POSITIVE)] | None = None
-    spread: YesOrNo = False
+    spread: YesOrNo | None = None
 
     def check(self) -> None:
         if (self.column is None) == (self.rate is None):

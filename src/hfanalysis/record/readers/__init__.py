@@ -46,8 +46,8 @@ def _detect(path: Path, head: bytes) -> str:
     if begun:
         return _not_another_zip(path, begun[0])
     if _is_binary(head):
-        what = NO_LOGS_BY_SUFFIX.get(path.suffix.lower(), f"bytes of a format that is not known here; expected {names()}")
-        raise InputError(f"{path}: found {what}")
+        unknown = f"bytes of a format that is not known here; expected {names()}"
+        raise InputError(f"{path}: found {NO_LOGS_BY_SUFFIX.get(path.suffix.lower(), unknown)}")
     return next((word for word, one in FORMATS.items() if one.text and one.suffix == path.suffix.lower() != ""), TEXT)
 
 

@@ -143,7 +143,7 @@ class Delimited:
             text = written.encode()
         if is_last and text[-1:] not in (b"\n", b"\r", b""):
             text, rest = without_cut_end(text, about)
-        plain = self._plain(text, wanted, line) if about.delimiter != WHITESPACE and not about.shorter else None
+        plain = self._plain(text, wanted, line) if about.delimiter != WHITESPACE else None
         if plain is None:
             plain = self._row_by_row(text, wanted, line, left_out)
         if rest.strip(b"\0\x1a\x0c\xff \r"):
@@ -151,16 +151,20 @@ class Delimited:
         return plain, left_out
 
     def _plain(self, text: bytes, wanted: Sequence[int], line: int) -> Segment | None:
-        """The numbers of rows all of which are plain; None where one is not."""
+        """The numbers of rows all of which are plain and of one width; None where one is not."""
         import pyarrow as pa
 
-        try:
-            table = _parsed(text, self.dialect, wanted)
-        except (pa.ArrowInvalid, UnicodeError):
-            return None
-        text_columns = {c: table.column(str(c)).combine_chunks() for c in wanted if c in self.dialect.stamped}
-        numbers = {c: _filled(table.column(str(c))) for c in wanted if c not in self.dialect.stamped}
-        return Segment(numbers, text_columns, range(line, line + table.num_rows))
+        for width in (self.dialect.width, *sorted(self.dialect.shorter, reverse=True)):
+            there = [c for c in wanted if c < width]
+            try:
+                table = _parsed(text, self.dialect, there, width)
+            except (pa.ArrowInvalid, UnicodeError):
+                continue
+            words = {c: table.column(str(c)).combine_chunks() for c in there if c in self.dialect.stamped}
+            numbers = {c: _filled(table.column(str(c))) for c in there if c not in self.dialect.stamped}
+            numbers |= {c: np.full(table.num_rows, np.nan) for c in wanted if c >= width}
+            return Segment(numbers, words, range(line, line + table.num_rows))
+        return None
 
     def _row_by_row(self, text: bytes, wanted: Sequence[int], line: int, left_out: LeftOut) -> Segment:
         import pyarrow as pa
@@ -183,7 +187,7 @@ class Delimited:
         return Chunk(columns, text, frozenset(written), epochs)
 
 
-def _parsed(text: bytes, about: Dialect, wanted: Sequence[int]) -> pa.Table:
+def _parsed(text: bytes, about: Dialect, wanted: Sequence[int], width: int) -> pa.Table:
     """The wanted columns by pyarrow, which rounds correctly; raises ArrowInvalid where a cell is no number."""
     import pyarrow as pa
     from pyarrow import csv
@@ -191,7 +195,7 @@ def _parsed(text: bytes, about: Dialect, wanted: Sequence[int]) -> pa.Table:
     kinds = {str(c): pa.string() if c in about.stamped else pa.float64() for c in wanted}
     return csv.read_csv(
         pa.py_buffer(text),
-        csv.ReadOptions(use_threads=False, block_size=max(len(text), 1), column_names=list(map(str, range(about.width)))),
+        csv.ReadOptions(use_threads=False, block_size=max(len(text), 1), column_names=list(map(str, range(width)))),
         csv.ParseOptions(delimiter=about.delimiter),
         csv.ConvertOptions(
             column_types=kinds, include_columns=list(kinds), decimal_point=about.decimal, strings_can_be_null=True

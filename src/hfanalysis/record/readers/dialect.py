@@ -147,7 +147,8 @@ def _described(
     width, shorter = _widths([row for _, row in data], max((len(row) for row in rows[:begin]), default=0))
     whole = [row for _, row in data if len(row) == width]
     empty = _empty_at_end(whole, width)
-    above = [_header_row(line.text, row, delimiter, width) for line, row in zip(lines[:begin], rows[:begin], strict=True)]
+    over = zip(lines[:begin], rows[:begin], strict=True)
+    above = [_header_row(line.text, row, delimiter, width) for line, row in over]
     header = read_header(above, width, empty) if not labels else _labeled(labels, width)
     if delimiter == WHITESPACE and shorter:
         raise InputError(_ragged(path, width, shorter))

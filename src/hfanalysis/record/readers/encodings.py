@@ -41,7 +41,7 @@ def in_utf8(blocks: Iterable[bytes], encoding: str) -> Iterator[bytes]:
 
 
 def whole_lines(blocks: Iterable[bytes]) -> Iterator[bytes]:
-    """The blocks cut at the ends of lines; only the last may lack one. Lines end in LF, or in CR where there is none."""
+    """The blocks cut at the ends of lines, LF or else CR; only the last may lack one."""
     rest = b""
     for block in blocks:
         whole = rest + block if rest else block

@@ -33,5 +33,6 @@ def _point(path: Path, number: int, words: list[str]) -> tuple[float, float]:
     try:
         time, thrust = map(float, words)
     except ValueError:
-        raise InputError(f"{path}, line {number}: found {' '.join(words)!r}; expected a time [s] and a thrust [N]") from None
+        found = " ".join(words)
+        raise InputError(f"{path}, line {number}: found {found!r}; expected a time [s] and a thrust [N]") from None
     return time, thrust

@@ -19,8 +19,8 @@ def open_source(path: Path, spec: FileSpec) -> Table:
         book = CalamineWorkbook.from_path(path)
         sheets = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
     except Exception as error:  # damaged files fail in every way that there is
-        said = str(error) or type(error).__name__
-        raise InputError(f"{path}: cannot be read as a spreadsheet: {said}; expected one saved anew, or as CSV") from None
+        said = f"cannot be read as a spreadsheet: {str(error) or type(error).__name__}"
+        raise InputError(f"{path}: {said}; expected one saved anew, or as CSV") from None
     found = {name: list(from_rows(rows)) for name, rows in sheets.items()}
     filled = {name: columns for name, columns in found.items() if columns}
     if len(filled) == 1:

@@ -36,10 +36,12 @@ def read_header(rows: Sequence[Row], width: int, empty: int = 0) -> Header:
     """The header above data of ``width`` columns, the last ``empty`` of which hold nothing."""
     near = [list(row) for row in rows if any(row) and abs(len(row) - width) <= max(NEARLY, width // 4)]
     units = next((row for row in near if _is_units(row)), [])
+    before_units = near[: near.index(units)] if units in near else []
     named = [_without_mark(row, width) for row in near if row is not units and not _is_kinds(row)]
     named = [row for row in named if not all(is_number(cell) for cell in row if cell)]
     fitting = [fitted for row in named if (fitted := _fitted(row, width, empty)) is not None]
-    primary = _primary(fitting)
+    beside = _fitted(before_units[-1], width, empty) if before_units else None
+    primary = _primary(fitting, beside)
     units_fitted = _padded(_aligned(units, width), width)
     if primary is None and named:
         return Header(("",) * width, ("",) * width, (), _doubt(named[-1], width))
@@ -50,20 +52,25 @@ def read_header(rows: Sequence[Row], width: int, empty: int = 0) -> Header:
     return Header(primary, units_fitted, others if ends == primary else (*others, ends))
 
 
-def _primary(rows: Sequence[tuple[str, ...]]) -> tuple[str, ...] | None:
-    """The row that names most columns, each by its own name and by no number; among such the first."""
-    return max(rows, key=_merit, default=None)
+def _primary(rows: Sequence[tuple[str, ...]], beside: tuple[str, ...] | None) -> tuple[str, ...] | None:
+    """The row that names most columns, each by its own name and by no number; among such the one above the units, else
+    the last.
+    """
 
+    def merit(place: int) -> tuple[bool, int, bool, int]:
+        row = rows[place]
+        words = not any(cell[:1].isdigit() or is_number(cell) for cell in row)
+        return words, len({cell for cell in row if cell}), row == beside, place
 
-def _merit(row: Row) -> tuple[bool, int]:
-    return not any(is_number(cell) for cell in row), len({cell for cell in row if cell})
+    return rows[max(range(len(rows)), key=merit)] if rows else None
 
 
 def _doubt(names: Row, width: int) -> str:
+    shown = ", ".join(map(repr, names[:8])) + (", ..." if len(names) > 8 else "")
     return (
-        f"the row of names has {len(names)} fields ({', '.join(map(repr, names[:8]))}{', ...' if len(names) > 8 else ''}) "
-        f"and the rows of data have {width}: which names which column cannot be told; expected columns by number, or a "
-        "header with a name for each (in quotes where a name holds the mark between columns)"
+        f"the row of names has {len(names)} fields ({shown}) and the rows of data have {width}: which names which "
+        "column cannot be told; expected columns by number, or a header with a name for each (in quotes where a name "
+        "holds the mark between columns)"
     )
 
 

@@ -17,7 +17,6 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
-from hfanalysis.record.readers.base import Source
 from hfanalysis.record.readers.delimited import Delimited
 from hfanalysis.record.readers.dialect import Dialect
 from hfanalysis.record.readers.encodings import SAMPLE, encoding_of
@@ -31,7 +30,7 @@ _SEGMENT = "Channels"
 """With this begins the header of a segment."""
 
 
-def open_source(path: Path, spec: FileSpec) -> Source:
+def open_source(path: Path, spec: FileSpec) -> Delimited | Table:
     """The text log below its header; raises :class:`InputError` where there is none."""
     with path.open("rb") as file:
         sample = file.read(SAMPLE)
@@ -48,7 +47,9 @@ def open_source(path: Path, spec: FileSpec) -> Source:
     if (b"\n" + _SEGMENT.encode() + mark.encode()) in sample[sample.find(_NAMES.encode()) :] or _again(path, sample):
         return _segments(path, encoding, mark, decimal, clocks)
     units = _units(above, mark, columns)
-    return Delimited(path, Dialect(encoding, mark, decimal, row + 1, len(columns), columns, units), clocks)
+    shorter = frozenset({len(columns) - 1}) if columns[-1] == "Comment" else frozenset[int]()
+    about = Dialect(encoding, mark, decimal, row + 1, len(columns), columns, units, shorter=shorter)
+    return Delimited(path, about, clocks)
 
 
 def _again(path: Path, sample: bytes) -> bool:

@@ -1,8 +1,8 @@
 """How numbers are written: the decimal mark, marks between thousands, signs and exponents that are not ASCII's.
 
 What ``1,062`` is, no cell tells: a file's cells together do. A mark is decimal where some cell has it before other than
-three digits (or behind a lone zero); it sets thousands apart where it stands twice, before the other mark, or in a column
-whose other cells are whole numbers below a thousand.
+three digits (or behind a lone zero); it sets thousands apart where it stands twice, before the other mark, or in a
+column whose other cells are whole numbers below a thousand.
 """
 
 from __future__ import annotations

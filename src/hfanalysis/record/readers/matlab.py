@@ -72,7 +72,7 @@ def _own_classes(name: str, value: Any) -> Iterator[tuple[str, str]]:
     for one in np.ravel(value):
         fields = one.dtype.names if hasattr(one, "dtype") else None
         words = [_word(one[field]) for field in fields or ()]
-        names = {field: word for field, word in zip(fields or (), words, strict=True)}
+        names = dict(zip(fields or (), words, strict=True))
         variable = names.get("s0") or (name if name not in ("None", "__function_workspace__") else "")
         if variable:
             yield variable, names.get("s2") or "(unnamed)"

@@ -67,7 +67,7 @@ def rows_of(text: bytes, about: Dialect, line: int, left_out: LeftOut) -> Rows:
 def _holds_something(text: str) -> bool:
     """Anything but separators, or one character over and over."""
     bare = text.strip("\t,;| ")
-    return bool(bare) and (len(set(bare)) > 1 or bare.isalnum() and bare.isascii())
+    return bool(bare) and (len(set(bare)) > 1 or (bare.isalnum() and bare.isascii()))
 
 
 def _cells(text: str, about: Dialect) -> list[str] | None:
@@ -102,7 +102,8 @@ def without_cut_end(text: bytes, about: Dialect) -> tuple[bytes, bytes]:
     if not last.strip() or not above.strip():
         return text, b""
     cells = _cells(last.decode("utf-8", errors="replace"), about)
-    before = [row for row in (_cells(line.decode("utf-8", "replace"), about) for line in above.splitlines()[-20:]) if row]
+    lines = [line.decode("utf-8", errors="replace") for line in above.splitlines()[-20:]]
+    before = [row for row in (_cells(line, about) for line in lines) if row]
     if cells is None or not before or _is_cut(cells[-1], [row[-1] for row in before], about.decimal):
         return above, last
     return text + b"\n", b""

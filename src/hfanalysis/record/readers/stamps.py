@@ -106,15 +106,15 @@ class StampParser:
         """Days (n,) since the first date, NaN where there is none."""
         import pyarrow.compute as pc
 
-        keys = [fields[name] for name in ("y", "a", "b", "m", "d", "n") if name in fields]
-        names = [name for name in ("y", "a", "b", "m", "d", "n") if name in fields]
-        coded = pc.binary_join_element_wise(*keys, " ").dictionary_encode()
+        names: list[str] = [name for name in ("y", "a", "b", "m", "d", "n") if name in fields]
+        coded = pc.binary_join_element_wise(*(fields[name] for name in names), " ").dictionary_encode()
         dates = [dict(zip(names, str(date).split(" "), strict=True)) for date in coded.dictionary.to_pylist()]
         days = np.array([*self._numbered(dates), np.nan])
         if self.first:
             self.epoch = DAY * _day(self.first, bool(self.day_first))
         index = np.nan_to_num(np.asarray(coded.indices.to_numpy(zero_copy_only=False), dtype=float), nan=-1.0)
-        return days[index.astype(int)] - (self.epoch or 0.0) / DAY
+        found: Array = days[index.astype(int)] - (self.epoch or 0.0) / DAY
+        return found
 
     def _numbered(self, dates: list[dict[str, str]]) -> list[float]:
         """Days since 1970 of dates in the order in which they come."""
@@ -152,7 +152,8 @@ def _zones(zone: Any) -> Array:
     coded = zone.dictionary_encode()
     offsets = np.array([*(_offset(word or "") for word in coded.dictionary.to_pylist()), 0.0])
     index = np.nan_to_num(np.asarray(coded.indices.to_numpy(zero_copy_only=False), dtype=float), nan=-1.0)
-    return offsets[index.astype(int)]
+    found: Array = offsets[index.astype(int)]
+    return found
 
 
 def _offset(zone: str) -> float:

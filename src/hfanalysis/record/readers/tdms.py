@@ -69,7 +69,8 @@ def _time(pieces: list[Waveform], count: int, first: Any) -> Array | None:
         return None
     time = np.empty(count)
     for one, end in zip(pieces, [*(later.index for later in pieces[1:]), count], strict=True):
-        late = 0.0 if one.start is None or first is None else float((one.start - first) / np.timedelta64(1, "ns")) * 1e-9
+        known = one.start is not None and first is not None
+        late = float((one.start - first) / np.timedelta64(1, "ns")) * 1e-9 if known else 0.0
         assert one.step is not None
         time[one.index : end] = late + one.offset + one.step * np.arange(max(end - one.index, 0))
     return time
