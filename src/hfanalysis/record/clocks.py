@@ -146,7 +146,7 @@ def _evenly_shared(time: Array) -> bool:
 
 
 def _spread(time: Array, where: str, asked: bool) -> tuple[Array, list[str]]:
-    """Samples that share a stamp spread evenly up to the next stamp; those of a first stamp that are fewer end at it."""
+    """Samples that share a stamp spread evenly up to the next stamp; a first stamp's end at it."""
     starts, counts = _groups(time)
     if len(starts) < 2:
         return time, []
