@@ -38,6 +38,11 @@ class Clock:
     warnings: tuple[str, ...] = ()
     epoch: float | None = None
 
+    def good(self, readings: Array) -> tuple[Array, Array]:
+        """Time [s] (k,) and readings (k,), in the unit of the log, of the samples that are not stale."""
+        kept = readings if self.keep is None else readings[self.keep]
+        return self.time[~self.stale], kept[~self.stale]
+
 
 def read_clock(spool: Spool, column: int | None, spec: TimeSpec, rows: int, where: str) -> Clock:
     """The clock of a file's column, or of its sample rate; raises :class:`InputError` where no stamp can be read."""
@@ -60,12 +65,17 @@ def read_clock(spool: Spool, column: int | None, spec: TimeSpec, rows: int, wher
         warnings += note
     stale = stale_stamps(time)
     warnings += _noted(time, stale, where)
-    return Clock(time + spec.offset.value, rows_kept, stale, tuple(warnings), spool.epochs.get(column))
+    return Clock(time + _stated(spec), rows_kept, stale, tuple(warnings), spool.epochs.get(column))
+
+
+def _stated(spec: TimeSpec) -> float:
+    """The offset [s] that is stated, 0 where it is to be found."""
+    return 0.0 if spec.offset is None else spec.offset.value
 
 
 def _regular(spec: TimeSpec, rows: int) -> Clock:
     assert spec.rate is not None
-    return Clock(np.arange(rows) / spec.rate.value + spec.offset.value, None, np.zeros(rows, dtype=bool))
+    return Clock(np.arange(rows) / spec.rate.value + _stated(spec), None, np.zeros(rows, dtype=bool))
 
 
 def _no_stamps(spool: Spool, column: int, where: str) -> str:
