@@ -59,9 +59,8 @@ class MeasuredPressures:
                 raise AbsentError(f"test {definition.test.id}: the log has no {name} to calibrate with")
             if signals[name].between(0.0, end).time.size < 2:
                 last = f"{signals[name].time[-1]:.2f} s" if signals[name].time.size else "no time"
-                raise AbsentError(
-                    f"test {definition.test.id}: {name} says nothing after the opening: its last good sample is at {last}"
-                )
+                until = f"says nothing after the opening: its last good sample is at {last}"
+                raise AbsentError(f"test {definition.test.id}: {name} {until}")
         blocks = signals["p_tank"].between(0.0, end).reduced(FINEST_BLOCK)
         if blocks.time.size < 8:
             raise AbsentError("too few good samples of p_tank after the opening")

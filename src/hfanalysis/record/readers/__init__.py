@@ -17,9 +17,9 @@ __all__ = ["Chunk", "Progress", "Source", "Text", "find_column", "open_log"]
 
 LOOKED_AT = 4096
 """Bytes by which a format is recognized [B]."""
-NOT_TEXT = 0.1
-"""Share of control characters from which bytes are no text. Evidence: test_formats.py: text has none but for damage;
-numbers in binary have one byte in ten of them and more."""
+NOT_TEXT = 0.05
+"""Share of control characters from which bytes are no text. Evidence: test_more_formats.py: text has none but for
+damage; of bytes of any kind one in twelve is one."""
 _CONTROL = bytes(set(range(1, 32)) - {7, 8, 9, 10, 11, 12, 13, 26, 27})
 
 

@@ -14,7 +14,7 @@ from hfanalysis.record.logspec import FileSpec
 from hfanalysis.record.readers import fixed_width, marks
 from hfanalysis.record.readers.encodings import SAMPLE, encoding_of, samples
 from hfanalysis.record.readers.header import Header, by_wide_blanks, joined, read_header
-from hfanalysis.record.readers.marks import is_number
+from hfanalysis.record.readers.marks import is_number, is_spaced
 
 WHITESPACE = " "
 _DELIMITERS = (",", ";", "\t", "|", WHITESPACE)
@@ -199,7 +199,7 @@ def split(line: str, delimiter: str) -> list[str]:
 
 
 def _is_datum(field: str) -> bool:
-    return is_number(field) or (any(c.isdigit() for c in field) and bool(_STAMP.fullmatch(field)))
+    return is_number(field) or is_spaced(field) or (any(c.isdigit() for c in field) and bool(_STAMP.fullmatch(field)))
 
 
 def _delimiter(lines: Sequence[str]) -> str:

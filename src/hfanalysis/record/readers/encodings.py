@@ -41,16 +41,16 @@ def in_utf8(blocks: Iterable[bytes], encoding: str) -> Iterator[bytes]:
 
 
 def whole_lines(blocks: Iterable[bytes]) -> Iterator[bytes]:
-    """The blocks cut at the ends of lines, LF or else CR; only the last may lack one."""
-    rest = b""
+    """The blocks cut at the ends of lines, LF or else CR; only the last may lack one, and has whole lines above it."""
+    ready, rest = b"", b""
     for block in blocks:
         whole = rest + block if rest else block
         end = whole.rfind(b"\n") + 1 or _after_lone_return(whole)
-        rest = whole[end:]
-        if end:
-            yield whole[:end] if rest else whole
-    if rest:
-        yield rest
+        if end and ready:
+            yield ready
+        ready, rest = (whole[:end] if end < len(whole) else whole, whole[end:]) if end else (ready, whole)
+    if ready or rest:
+        yield ready + rest if rest else ready
 
 
 def _after_lone_return(text: bytes) -> int:

@@ -29,6 +29,8 @@ _TWICE = {
 _DECIMAL = {mark: re.compile(rf"{_SIGN}\d*\{mark}\d*{_EXPONENT}") for mark in ".,"}
 _WHOLE = re.compile(rf"{_SIGN}\d{{1,3}}")
 
+_SPACED = re.compile(rf"{_SIGN}\d{{1,3}}( \d{{3}})+([.,]\d*)?")
+
 _REPLACED = (
     (re.compile("[\u2212\u2013\ufe63\uff0d](?=\\d)"), "-"),
     (re.compile(r"(?<=\d)[dD](?=[+-]\d)"), "e"),
@@ -37,7 +39,7 @@ _REPLACED = (
 )
 """What is written otherwise than in ASCII and without marks between thousands, and what it becomes."""
 _NOT_ASCII = (_REPLACED[0][0], _REPLACED[2][0])
-BLANK_BETWEEN = (re.compile(r"(?<![\d.,:/-])([+-]?\d{1,3}) (?=\d{3}(?!\d|:|/|-))"), r"\1")
+BLANK_BETWEEN = (re.compile(r"(?<![\d.:/-])([+-]?\d{1,3}) (?=\d{3}(?!\d|:|/|-))"), r"\1")
 """The same for a plain blank, where blanks do not separate columns."""
 
 
@@ -48,6 +50,11 @@ def is_number(field: str) -> bool:
     (True, True, False)
     """
     return bool(_NUMBER.fullmatch(field))
+
+
+def is_spaced(field: str) -> bool:
+    """Whether a field is a number with blanks between thousands."""
+    return bool(_SPACED.fullmatch(field))
 
 
 def replaced(text: str) -> list[tuple[re.Pattern[str], str]]:
