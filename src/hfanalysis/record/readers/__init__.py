@@ -16,7 +16,7 @@ from hfanalysis.record.readers.base import Chunk, Progress, Source, Text, find_c
 __all__ = ["Chunk", "Progress", "Source", "Text", "find_column", "open_log"]
 
 LOOKED_AT = 4096
-"""Bytes by which a format is recognized [B]."""
+"""Bytes by which a format is recognized [B]. Evidence: test_more_formats.py: damage of some bytes does not decide."""
 NOT_TEXT = 0.05
 """Share of control characters from which bytes are no text. Evidence: test_more_formats.py: text has none but for
 damage; of bytes of any kind one in twelve is one."""

@@ -34,7 +34,8 @@ LONGEST_HEADER = 40
 """Lines over which a row of names may run that are broken inside quotes. Evidence: test_headers.py: each of a row's
 names may be broken, so that there are as many lines as columns."""
 ENOUGH = 300
-"""Rows, spread over the parts of the file that are looked at, whose cells are asked for the marks of numbers."""
+"""Rows, spread over the parts of the file that are looked at, whose cells are asked for the marks of numbers.
+Evidence: test_number_marks.py."""
 
 Substitution = tuple[re.Pattern[str], str]
 

@@ -22,6 +22,7 @@ _SINCE = re.compile(r"^\s*(?P<unit>\w+)\s+since\s+(?P<date>.+?)\s*$")
 _SECONDS = {"second": 1.0, "sec": 1.0, "s": 1.0, "millisecond": 1e-3, "msec": 1e-3, "ms": 1e-3, "microsecond": 1e-6,
             "us": 1e-6, "nanosecond": 1e-9, "ns": 1e-9, "minute": 60.0, "min": 60.0, "hour": 3600.0, "h": 3600.0,
             "hr": 3600.0, "day": 86400.0, "d": 86400.0}  # fmt: skip
+"""Seconds in a unit of time [s]. Source: CF conventions for NetCDF, 4.4."""
 
 
 def open_source(path: Path, spec: FileSpec) -> Table:

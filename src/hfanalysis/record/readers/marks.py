@@ -39,6 +39,7 @@ _REPLACED = (
 )
 """What is written otherwise than in ASCII and without marks between thousands, and what it becomes."""
 _NOT_ASCII = (_REPLACED[0][0], _REPLACED[2][0])
+"""Those of them that a text in ASCII cannot hold. Source: ASCII."""
 BLANK_BETWEEN = (re.compile(r"(?<![\d.:/-])([+-]?\d{1,3}) (?=\d{3}(?!\d|:|/|-))"), r"\1")
 """The same for a plain blank, where blanks do not separate columns."""
 

@@ -9,7 +9,7 @@ from hfanalysis.record.readers import fixed_width
 from hfanalysis.record.readers.dialect import COMMENT, WHITESPACE, Dialect, split
 
 SHOWN = 60
-"""Characters of a line that a message shows."""
+"""Characters of a line that a message shows. Evidence: it stays one line."""
 
 
 @dataclass

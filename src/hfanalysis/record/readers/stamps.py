@@ -32,6 +32,7 @@ _ZONE = r" ?(?P<zone>Z|UTC|[+-]\d\d:?\d\d)?"
 _MINUTES = r"^\s*(?P<minute>\d{1,3}):(?P<second>\d{2})[.,](?P<fraction>\d+)\s*$"
 _MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 _OTHER_NAMES = {"mai": 5, "mär": 3, "okt": 10, "dez": 12, "fév": 2, "avr": 4, "aoû": 8, "déc": 12}
+"""Months as spreadsheets abbreviate them elsewhere. Source: CLDR, German and French."""
 
 
 @dataclass

@@ -13,7 +13,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.record.readers.base import Chunk, Progress, Text
 
 WIDEST = 256
-"""Columns of a matrix beyond which it is no set of channels."""
+"""Columns of a matrix beyond which it is no set of channels. Evidence: pictures and spectra have more."""
 
 
 @dataclass(frozen=True)

@@ -13,20 +13,21 @@ from typing import IO, Any
 import numpy as np
 
 LEAD_IN = 28
-"""Bytes before a segment's metadata [B]."""
+"""Bytes before a segment's metadata [B]. Source: the same."""
 METADATA, NEW_LIST, BIG_ENDIAN, DAQMX = 1 << 1, 1 << 2, 1 << 6, 1 << 7
-"""Bits that say what a segment has."""
+"""Bits that say what a segment has. Source: the same."""
 UNKNOWN = 0xFFFFFFFFFFFFFFFF
-"""Length of a segment that was being written when the file was last open."""
+"""Length of a segment that was being written when the file was last open. Source: the same."""
 NONE, SAME, SCALERS = 0xFFFFFFFF, 0, (0x69120000, 0x69130000)
-"""Lengths of an object's raw data index that stand for none, the one before, and those of DAQmx."""
+"""Lengths of an object's raw data index that stand for none, the one before, and those of DAQmx. Source: the same."""
 SIZES = {1: 1, 2: 2, 3: 4, 4: 8, 5: 1, 6: 2, 7: 4, 8: 8, 9: 4, 10: 8, 0x19: 4, 0x1A: 8, 0x21: 1, 0x44: 16,
          0x08000C: 8, 0x10000D: 16}  # fmt: skip
-"""Bytes of a value by its type [B]."""
+"""Bytes of a value by its type [B]. Source: the same."""
 STRING, INSTANT, DOUBLE = 0x20, 0x44, 10
-"""Types of values."""
+"""Types of values. Source: the same."""
 BEFORE_1970 = 2082844800
-"""Seconds from the beginning of 1904, where instants count from, to that of 1970 [s]."""
+"""Seconds from the beginning of 1904, where instants count from, to that of 1970 [s].
+Source: 66 years, 17 of them leap years."""
 
 
 @dataclass(frozen=True)
