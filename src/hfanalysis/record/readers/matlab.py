@@ -8,7 +8,6 @@ single numbers are left out, MATLAB's own classes (table, timetable, datetime) r
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, cast
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
+from hfanalysis.record.readers import mat5
 from hfanalysis.record.readers.series import series
 from hfanalysis.record.readers.table import WIDEST, LogSeries, Table
 
@@ -54,32 +54,11 @@ def _refused(name: str, kind: str) -> str:
 
 
 def _from_mat5(path: Path, opaque: dict[str, str]) -> Iterator[LogSeries]:
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatlabOpaque
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # about variables of MATLAB's own classes, which are refused by name below
-        content: Mapping[str, Any] = loadmat(path)
-    for name, value in content.items():
-        if isinstance(value, MatlabOpaque):
-            opaque.update(_own_classes(name, value))
-        elif not name.startswith("__"):
+    for name, value in mat5.variables(path.read_bytes()):
+        if isinstance(value, mat5.Opaque):
+            opaque[name] = value.kind or "(unnamed)"
+        else:
             yield from _series(name, value)
-
-
-def _own_classes(name: str, value: Any) -> Iterator[tuple[str, str]]:
-    """Variables of MATLAB's own classes: name and class, as far as the file tells."""
-    for one in np.ravel(value):
-        fields = one.dtype.names if hasattr(one, "dtype") else None
-        words = [_word(one[field]) for field in fields or ()]
-        names = dict(zip(fields or (), words, strict=True))
-        variable = names.get("s0") or (name if name not in ("None", "__function_workspace__") else "")
-        if variable:
-            yield variable, names.get("s2") or "(unnamed)"
-
-
-def _word(value: Any) -> str:
-    return value.decode(errors="replace") if isinstance(value, bytes) else str(value) if isinstance(value, str) else ""
 
 
 def _from_hdf5(path: Path, opaque: dict[str, str]) -> Iterator[LogSeries]:
@@ -123,23 +102,23 @@ def _records_of(file: Any, item: Any, names: tuple[str, ...]) -> Iterator[LogSer
 
 def _series(name: str, value: Any) -> Iterator[LogSeries]:
     """The series of a variable or a field."""
-    if type(value) is not np.ndarray:  # MATLAB's own classes come as arrays of a kind
-        return
-    if value.dtype.names and value.size == 1:
-        for field in value.dtype.names:
-            yield from _series(f"{name}.{field}", value[field].item())
-    elif value.dtype.names:
-        yield from _of_structs(name, value.ravel())
-    elif value.dtype.kind == "O" and value.ndim == 2 and value.size > 1:
-        yield from _of_cells(name, value)
-    elif value.dtype.kind in "fiub" and value.ndim == 2 and value.size > 1:
-        yield from columns(name, np.asarray(value, dtype=np.float64))
+    if isinstance(value, mat5.Struct):
+        if len(value.elements) == 1:
+            for field, inner in value.elements[0].items():
+                yield from _series(f"{name}.{field}", inner)
+        elif value.elements and value.fields:
+            yield from _of_structs(name, value)
+    elif isinstance(value, np.ndarray) and value.ndim == 2 and value.size > 1:
+        if value.dtype.kind == "O":
+            yield from _of_cells(name, value)
+        elif value.dtype.kind in "fiub":
+            yield from columns(name, np.asarray(value, dtype=np.float64))
 
 
-def _of_structs(name: str, elements: NDArray[Any]) -> Iterator[LogSeries]:
+def _of_structs(name: str, array: mat5.Struct) -> Iterator[LogSeries]:
     """An array of structs: a channel in each, or a sample in each."""
-    fields = elements.dtype.names or ()
-    if all(np.size(elements[0][field]) <= 1 or _is_text(elements[0][field]) for field in fields):
+    elements, fields = array.elements, array.fields
+    if all(isinstance(one, str) or np.size(one) <= 1 for one in elements[0].values()):
         for field in fields:
             found = series(f"{name}.{field}", [_single(one[field]) for one in elements])
             if found is not None and np.isfinite(found.numbers).any():
@@ -150,36 +129,37 @@ def _of_structs(name: str, elements: NDArray[Any]) -> Iterator[LogSeries]:
     if clock and all(np.array_equal(one[clock], elements[0][clock]) for one in elements):
         yield from _series(f"{name}.{clock}", elements[0][clock])
     for number, one in enumerate(elements, start=1):
-        own = str(_single(one[title])) if title and _is_text(one[title]) else str(number)
-        for field in fields:
-            if field in (title, clock) or _is_text(one[field]):
-                continue
-            values = [part for part in _series("", one[field]) if part.numbers.ndim == 1]
-            time = np.asarray(one[clock], dtype=np.float64).ravel() if clock else None
-            rest = [other for other in fields if other not in (title, clock) and np.size(one[other]) > 1]
-            label = f"{name}.{own}" if len(rest) == 1 else f"{name}.{own}.{field}"
-            for part in values:
-                fits = time is not None and len(time) == len(part.numbers)
-                yield LogSeries(f"{label}{part.name}", part.numbers, time=time if fits else part.time)
+        own = one[title] if title and isinstance(one[title], str) else str(number)
+        rest = {field: one[field] for field in fields if field not in (title, clock)}
+        yield from _of_channel(f"{name}.{own}", rest, one[clock] if clock else None)
 
 
-def _is_text(value: Any) -> bool:
-    return bool(getattr(value, "dtype", np.dtype(float)).kind in "US")
+def _of_channel(name: str, fields: Mapping[str, Any], clock: Any) -> Iterator[LogSeries]:
+    """The series of a struct that is one channel, on its own clock where that is as long."""
+    held = [(field, part) for field, value in fields.items() for part in _series("", value)]
+    time = next((part.numbers for part in _series("", clock)), None)
+    for field, part in held:
+        label = name if len(held) == 1 else f"{name}.{field}"
+        fits = time is not None and len(time) == len(part.numbers)
+        yield LogSeries(f"{label}{part.name}", part.numbers, time=time if fits else part.time)
 
 
 def _single(value: Any) -> Any:
-    """The one number or text of an array, None of an empty one."""
+    """The one number of an array, or text; None of an empty one."""
+    if isinstance(value, str) or value is None:
+        return value
     flat = np.ravel(value)
-    return flat[0].item() if len(flat) == 1 and hasattr(flat[0], "item") else str(flat[0]) if len(flat) == 1 else None
+    return flat[0].item() if len(flat) == 1 and hasattr(flat[0], "item") else None
 
 
 def _of_cells(name: str, cells: NDArray[Any]) -> Iterator[LogSeries]:
     """Cells of single numbers or text: rows or columns of a table, the longer axis being time."""
     table = cells if cells.shape[0] >= cells.shape[1] else cells.T
-    if table.shape[1] > WIDEST or not all(np.size(one) <= 1 for one in np.ravel(table[:2])):
+    single = (isinstance(one, str) or one is None or np.size(one) <= 1 for one in np.ravel(table[:2]))
+    if table.shape[1] > WIDEST or not all(single):
         return
     for i, column in enumerate(table.T, start=1):
-        title = _single(column[0]) if _is_text(column[0]) else None
+        title = column[0] if isinstance(column[0], str) else None
         values = [_single(one) for one in (column[1:] if title else column)]
         label = f"{name}.{title}" if title else name if table.shape[1] == 1 else f"{name}.{i}"
         found = series(label, values) if any(value is not None for value in values) else None

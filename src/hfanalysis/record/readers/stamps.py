@@ -119,7 +119,7 @@ class StampParser:
 
     def _numbered(self, dates: list[dict[str, str]]) -> list[float]:
         """Days since 1970 of dates in the order in which they come."""
-        self.first = self.first or next(iter(dates), {})
+        self.first = self.first or next((date for date in dates if all(date.values())), {})
         if dates and "a" in dates[0] and self.day_first is None:
             self.day_first = _day_first([self.first, *dates])
         return [_day(date, bool(self.day_first)) for date in dates]
@@ -179,6 +179,8 @@ def _are_milliseconds(count: Array, digits: Array) -> bool | None:
 
 def _day(date: dict[str, str], day_first: bool) -> float:
     """Days since 1970 of a date, NaN of an impossible one."""
+    if not all(date.values()):
+        return float("nan")
     year = int(date["y"]) + (2000 if len(date["y"]) == 2 else 0)
     if "a" in date:
         month, day = (int(date["b"]), int(date["a"])) if day_first else (int(date["a"]), int(date["b"]))
@@ -197,7 +199,10 @@ def _month(name: str) -> int:
 
 def _day_first(dates: list[dict[str, str]]) -> bool | None:
     """Whether dates have their day first; None where one date alone could be either, which then does not matter."""
+    dates = [date for date in dates if date["a"] and date["b"]]
     firsts, seconds = {int(date["a"]) for date in dates}, {int(date["b"]) for date in dates}
+    if not dates:
+        return None
     if max(firsts) > 12 or max(seconds) > 12:
         return max(firsts) > 12
     steps = {}
