@@ -17,6 +17,9 @@ __all__ = ["Chunk", "Progress", "Source", "Text", "find_column", "open_log"]
 
 LOOKED_AT = 4096
 """Bytes by which a format is recognized [B]. Evidence: test_more_formats.py: damage of some bytes does not decide."""
+LARGEST = 1 << 30
+"""Bytes of a spreadsheet unpacked [B]. Evidence: a sheet has at most 2^20 rows; one of 20 columns full of numbers has a
+third."""
 NOT_TEXT = 0.05
 """Share of control characters from which bytes are no text. Evidence: test_more_formats.py: text has none but for
 damage; of bytes of any kind one in twelve is one."""
@@ -59,8 +62,13 @@ def _not_another_zip(path: Path, word: str) -> str:
     """The format of a spreadsheet; a zip archive of anything else is refused."""
     if not zipfile.is_zipfile(path) or word != "excel":
         return word
-    with zipfile.ZipFile(path) as archive:
-        inside = archive.namelist()
+    try:
+        with zipfile.ZipFile(path) as archive:
+            inside, size = archive.namelist(), sum(one.file_size for one in archive.infolist())
+    except (zipfile.BadZipFile, OSError, ValueError) as error:
+        raise InputError(f"{path}: found a damaged zip archive or spreadsheet ({error}); expected a log") from None
+    if size > LARGEST:
+        raise InputError(f"{path}: found a spreadsheet of {size / 1e9:.1f} GB unpacked; expected it exported as CSV")
     if not any(name.startswith("xl/") or name == "content.xml" for name in inside):
         shown = ", ".join(inside[:3]) + (", ..." if len(inside) > 3 else "")
         raise InputError(f"{path}: found a zip archive ({shown}); expected the log unpacked")

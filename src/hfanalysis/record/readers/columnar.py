@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 def open_source(path: Path, spec: FileSpec) -> Table:
     """The file's columns; raises :class:`InputError` where it cannot be read."""
     try:
-        found = list(_series(_table(path)))
+        table = _table(path)
+        table.validate(full=True)  # else places outside of the file are followed
+        found = list(_series(table))
     except Exception as error:  # damaged files fail in every way that there is
         said = str(error).partition("\n")[0] or type(error).__name__
         raise InputError(f"{path}: cannot be read as a Parquet or Arrow file: {said}") from None

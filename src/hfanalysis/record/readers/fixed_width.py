@@ -15,7 +15,7 @@ def edges(lines: Sequence[str]) -> tuple[int, ...]:
     """Places of the beginnings of the columns but the first, in lines some of which have empty cells; () elsewhere."""
     lines = [line.rstrip("\r\n") for line in lines]
     widths = Counter(len(line.split()) for line in lines)
-    most = max(width for width, times in widths.items() if times > 1 or len(lines) == 1)
+    most = max((width for width, times in widths.items() if times > 1), default=0)
     full = [line for line in lines if len(line.split()) == most]
     usual = Counter(len(line) for line in lines).most_common(1)[0]
     if len(widths) == 1 or most < 2 or len(full) < ENOUGH or 10 * usual[1] < 9 * len(lines):

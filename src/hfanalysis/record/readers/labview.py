@@ -42,7 +42,7 @@ def open_source(path: Path, spec: FileSpec) -> Delimited | Table:
     above, names = lines[:row], lines[row]
     mark = spec.delimiter or _MARKS.get(_stated(above, "Separator").strip(), "\t")
     columns = tuple(name.strip() for name in names.split(mark))
-    decimal = spec.decimal or _stated(above, "Decimal_Separator")[:1] or "."
+    decimal = spec.decimal or ("," if _stated(above, "Decimal_Separator")[:1] == "," else ".")
     clocks = _clocks(columns, _stated(above, "X_Columns").strip())
     if (b"\n" + _SEGMENT.encode() + mark.encode()) in sample[sample.find(_NAMES.encode()) :] or _again(path, sample):
         return _segments(path, encoding, mark, decimal, clocks)
@@ -164,4 +164,5 @@ def _clocks(names: Sequence[str], kind: str) -> dict[int, int]:
     if kind not in ("One", "Multi"):
         return {}
     stamps = [i for i, name in enumerate(names) if name == _NAMES]
-    return {i: max(k for k in stamps if k < i) for i in range(len(names)) if i not in stamps}
+    before = {i: max((k for k in stamps if k < i), default=None) for i in range(len(names)) if i not in stamps}
+    return {i: stamp for i, stamp in before.items() if stamp is not None}

@@ -24,7 +24,7 @@ def open_source(path: Path, spec: FileSpec) -> Table:
 
 def _series(path: Path, lines: list[str]) -> Iterator[LogSeries]:
     starts = [i for i, line in enumerate(lines) if line.startswith("# name:")]
-    for start, end in zip(starts, [*starts[1:], len(lines)], strict=True):
+    for start, end in zip(starts, [*starts, len(lines)][1:], strict=True):
         name, about, body = lines[start][7:].strip(), {}, []
         for line in lines[start + 1 : end]:
             if line.startswith("#"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -23,15 +24,17 @@ def open_source(path: Path, spec: FileSpec) -> Table:
     """The file's channels of numbers and of instants; raises :class:`InputError` where it cannot be read."""
     from nptdms import TdmsFile
 
+    logging.getLogger("nptdms").setLevel(logging.ERROR)  # what is cut is told below
     try:
         with path.open("rb") as file:  # by its name the library would take up a .tdms_index beside it, of any content
             channels = [channel for group in TdmsFile.read(file).groups() for channel in group.channels()]
             file.seek(0)
-            resumed = waveforms(file)
+            resumed, is_cut = waveforms(file)
         found = list(_series(channels, resumed))
     except Exception as error:  # damaged files fail in every way that there is
         raise InputError(f"{path}: cannot be read as a TDMS file: {error or type(error).__name__}") from None
-    return Table(path, found)
+    cut = f"{path.name}: its last part is not whole (the recording was interrupted)"
+    return Table(path, found, [cut] if is_cut else [])
 
 
 def _series(channels: list[Any], resumed: dict[str, list[Waveform]]) -> Iterator[LogSeries]:

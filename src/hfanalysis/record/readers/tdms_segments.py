@@ -50,18 +50,24 @@ class _Walk:
     active: list[str] = field(default_factory=list)
     stated: dict[str, dict[str, Any]] = field(default_factory=lambda: defaultdict(dict))
     found: dict[str, list[Waveform]] = field(default_factory=lambda: defaultdict(list))
+    is_cut: bool = False
+    """Whether the last segment is not whole."""
 
 
-def waveforms(file: IO[bytes]) -> dict[str, list[Waveform]]:
-    """By channel path its waveforms, in order; empty where the segments cannot be followed (DAQmx, damage)."""
+def waveforms(file: IO[bytes]) -> tuple[dict[str, list[Waveform]], bool]:
+    """By channel path its waveforms, in order, empty where the segments cannot be followed (DAQmx, damage); and whether
+    the file was interrupted.
+    """
     walk, size = _Walk(), file.seek(0, 2)
     place = 0
     try:
         while place + LEAD_IN <= size:
             place = _segment(file, place, size, walk)
-    except (struct.error, _Unfollowed, UnicodeDecodeError):
-        return {}
-    return dict(walk.found)
+    except _Unfollowed:
+        return {}, False
+    except (struct.error, KeyError, OverflowError, ValueError):
+        return {}, True
+    return dict(walk.found), walk.is_cut
 
 
 class _Unfollowed(Exception):
@@ -75,6 +81,7 @@ def _segment(file: IO[bytes], place: int, size: int, walk: _Walk) -> int:
     if tag != b"TDSm" or toc & (BIG_ENDIAN | DAQMX):
         raise _Unfollowed
     end = size if length == UNKNOWN else place + LEAD_IN + length
+    walk.is_cut |= length == UNKNOWN or end > size
     anew: set[str] = set()
     if toc & METADATA:
         if toc & NEW_LIST:
