@@ -137,7 +137,8 @@ def test_columns_without_names_are_guessed_by_what_they_do(tmp_path: Path) -> No
     line = 14.7 + 500.0 * firing() + noise(0.5, seed=2)
     found = written(
         tmp_path, time=TIME, c1=0.8 + 0.002 * chamber, c2=chamber, c3=line,
-        c4=14.7 + 700.0 * emptying() + noise(0.5, seed=4), c5=7.0 * emptying() + noise(0.02, seed=5), c6=2500.0 * firing() + noise(3.0, seed=6), c7=noise(1.0, seed=7),
+        c4=14.7 + 700.0 * emptying() + noise(0.5, seed=4), c5=7.0 * emptying() + noise(0.02, seed=5),
+        c6=2500.0 * firing() + noise(3.0, seed=6), c7=noise(1.0, seed=7),
     )  # fmt: skip
     best = {one.column.label: one.best.channel if one.best else None for one in found.columns}
     assert best == {

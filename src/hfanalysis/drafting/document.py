@@ -204,7 +204,7 @@ def stand_in(found: Surveyed, several: bool) -> Iterator[str]:
     one = with_numbers[order.index(min(order))] if with_numbers else None
     column = one.column if one else next(c for file in found.files for c in file.columns if c.good.size)
     yield "# No column says both what it is and in which unit. This one stands here so that the file can be read;"
-    yield "# remove it when you have named one as a channel that is known (p_tank, p_run, p_chamber, thrust, m_tank ...)."
+    yield "# remove it when you have named one as a known channel (p_tank, p_run, p_chamber, thrust, m_tank ...)."
     yield from (about(one) if one else ())
     yield f"[channels.{own_name(column)}]"
     yield f"column = {key(column)}"

@@ -19,6 +19,8 @@ from hfanalysis.drafting.survey import Surveyed
 
 PANEL = 170.0
 """Height of a column's panel [px]."""
+AIR = 8.0
+"""Above the first of them [px]."""
 _ALONE = "svg { background: var(--paper); color: var(--ink); font-family: sans-serif; }"
 """What stands on the page's body otherwise."""
 
@@ -26,8 +28,8 @@ _ALONE = "svg { background: var(--paper); color: var(--ink); font-family: sans-s
 def picture(found: Surveyed) -> str:
     """An SVG with a panel per column that holds numbers."""
     panels = [_panel(found, one, i) for i, one in enumerate(found.columns) if one.column.good.size > 1]
-    height = PANEL * len(panels)
-    placed = "".join(part.replace("<svg ", f'<svg y="{PANEL * i:.0f}" ', 1) for i, part in enumerate(panels))
+    height = PANEL * len(panels) + AIR
+    placed = "".join(f'<g transform="translate(0 {PANEL * i + AIR:.0f})">{part}</g>' for i, part in enumerate(panels))
     head = f'<svg class="chart" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {svg.WIDTH:.0f} {height:.0f}"'
     return f"{head}><style><![CDATA[{sheet()}{_ALONE}]]></style>{placed}</svg>\n"
 
@@ -44,7 +46,8 @@ def _panel(found: Surveyed, one: Judged, number: int) -> str:
     svg.axes(plot, "", _title(one, guess.channel if guess else ""))
     data = envelope(time, values, *plot_span(plot))
     svg.line(plot, data, style_of(guess.channel if guess else "raw", number), "")
-    return str(svg.render(plot, f"column-{number}", plain(one.column.shown), plain("; ".join(facts(one)))))
+    drawn = str(svg.render(plot, f"column-{number}", plain(one.column.shown), plain("; ".join(facts(one)))))
+    return drawn.partition(">")[2].removesuffix("</svg>")
 
 
 def plot_span(plot: svg.Plot) -> tuple[float, float]:
