@@ -1,4 +1,4 @@
-"""The log of a stand that nobody has described: an engine of simulated/engine.py as another team's logger would write it.
+"""The log of a stand that nobody has described: an engine of simulated/engine.py as another team's logger writes it.
 
 python -m simulated.stranger fire.csv [--seed 11]
 

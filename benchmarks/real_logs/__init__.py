@@ -1,1 +1,1 @@
-"""Real logs of other teams by ``hfa new`` and the facts their readme states, without a line of code: docs/real-logs.md."""
+"""Real logs of other teams by ``hfa new`` and the facts that their readme states, no code edited: docs/real-logs.md."""

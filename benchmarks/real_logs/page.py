@@ -24,10 +24,10 @@ themselves are not part of the repository. `make real-logs LOGS=FOLDER` writes t
 _SECOND = """
 ## Phases, flow and impulse beside the authors' and hand values
 
-Times in seconds from the instant at which the run line has risen by 60 psi, where a hand analysis counts from there, else
-from the opening. An interval of ours is 95 %, one by hand is judged. *agrees*: the two intervals meet.
-C_i N A is the product of the injector's coefficient and the area of all its holes: the area itself is not stated for most
-firings of the stand MRT.
+Times in seconds from the instant at which the run line has risen by 60 psi, where a hand analysis counts from there,
+else from the opening. An interval of ours is 95 %, one by hand is judged. *agrees*: the two intervals meet.
+C_i N A is the product of the injector's coefficient and the area of all its holes: the area itself is not stated for
+most firings of the stand MRT.
 
 | log | quantity | here | by hand | |
 |---|---|---|---|---|

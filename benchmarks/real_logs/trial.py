@@ -13,7 +13,6 @@ from typing import Any
 
 import h5py
 import numpy as np
-
 from benchmarks.real_logs.facts import Facts, completed
 
 LIMIT = 1800.0
@@ -92,9 +91,11 @@ def _hfa(*arguments: str) -> subprocess.CompletedProcess[str]:
 def _origin(ingested: Path, outcome: Outcome) -> float:
     """When the times of the hand analysis begin, after the opening [s]."""
     opened = outcome.quantity("t_open")
-    if outcome.facts.origin == "t_open" or opened is None or opened["value"] is None:
+    if outcome.facts.origin == "t_open" or not outcome.facts.hand or opened is None or opened["value"] is None:
         return 0.0
     with h5py.File(ingested, "r") as file:
+        if "p_run" not in file:
+            return math.nan
         line = file["p_run"]
         time, pressure = file[line.attrs["clock"]][:], line[:]
     rest = np.nanmedian(pressure[time < opened["value"] - 0.5])

@@ -26,7 +26,9 @@ def ran(command: str, folder: Path, programs: Path) -> str:
     """What a command of the page prints; its exit status is 0 unless the page says another."""
     status = re.search(r"# ends with exit status (\d)", command)
     environment = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}", "COLUMNS": "150"}
-    ended = subprocess.run(["sh", "-c", command], cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        ["sh", "-c", command], cwd=folder, env=environment, capture_output=True, text=True, check=False
+    )
     assert ended.returncode == (int(status[1]) if status else 0), f"{command}: {ended.stderr}"
     return ended.stdout + ended.stderr
 
@@ -62,7 +64,9 @@ def test_every_step_of_the_tutorial_does_what_it_shows(tmp_path: Path, programs:
 
 def test_the_truth_that_the_tutorial_states_is_that_of_its_log(tmp_path: Path) -> None:
     truth = write(tmp_path / "fire.csv").stand
-    stated = re.findall(r"^\| .*?(C_i|m|t_v) \| .* \| ([\d.]+)(?: s)? \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
+    stated = re.findall(
+        r"^\| .*?(C_i|m|t_v) \| .* \| ([\d.]+)(?: s)? \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE
+    )
     assert {name: float(value) for name, value in stated} == pytest.approx(
         {"C_i": truth.C_i, "m": truth.m, "t_v": truth.t_v}, rel=1e-3
     )
@@ -86,7 +90,9 @@ def alike(shown: str, printed: str) -> bool:
     if list(_words(shown)) != list(_words(printed)):
         return False
     pairs = zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=True)
-    return all(abs(_value(one) - _value(other)) <= max(CLOSE * abs(_value(one)), 2.0 * _last(one)) for one, other in pairs)
+    return all(
+        abs(_value(one) - _value(other)) <= max(CLOSE * abs(_value(one)), 2.0 * _last(one)) for one, other in pairs
+    )
 
 
 def _value(number: str) -> float:

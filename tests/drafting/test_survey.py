@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -161,6 +162,15 @@ def test_a_chamber_that_rests_at_zero_is_drafted_as_a_gauge_pressure(tmp_path: P
     chamber, _, tank = text.partition("[channels.p_tank]")
     assert "gauge = true   #" in chamber.partition("[channels.p_chamber]")[2]
     assert not tank.splitlines()[3].startswith("gauge")
+
+
+def test_readings_that_stand_for_none_are_named(tmp_path: Path) -> None:
+    tank = 48.0 * emptying() + noise(0.1, seed=4)
+    tank[[7, 900, 1200]] = -10.0
+    text = document("T", written(tmp_path, **{"time (s)": TIME, "tank (bar)": tank, "chamber (bar)": 20.0 * firing()}))
+    assert re.findall(r"# missing = .*", text) == [
+        "# missing = [-10.0]   # 3 readings of exactly that, far from all others"
+    ]
 
 
 def test_a_long_log_is_thinned_and_its_extremes_are_kept(tmp_path: Path) -> None:

@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
 
+import numpy as np
+
 from hfanalysis.drafting.clocks import Stamps
 from hfanalysis.drafting.columns import Column, LogFile
 from hfanalysis.drafting.guesses import Guess, Judged
@@ -17,6 +19,13 @@ from hfanalysis.units import is_gauge
 
 _DULL = ("constant", "state", "clock", "empty")
 """Shapes of columns that say nothing."""
+SELDOM = 0.2
+"""Share of the readings below which a reading may stand for none: what is there more often is the column's rest."""
+MANY = 10
+"""Different readings below which none is a code among them."""
+CODE_APART = 0.15
+"""Of the range of all other readings: how far from them a reading is that stands for none. Evidence: -10 beside 0 to
+48 bar is; the level that a valve or a saturated sensor holds is not."""
 _NAME, _RESERVED = re.compile(r"[A-Za-z][A-Za-z0-9_]*"), re.compile(r"time(_\d+)?|.*_(flags|raw)|name")
 """What a channel may be called, and what it may not."""
 SHOWN = 3
@@ -172,6 +181,10 @@ def table(column: Column, guess: Guess, several: bool) -> list[str]:
         *([f"file = {quoted(column.file)}"] if several else []),
         f"unit = {quoted(guess.unit)}{_remark(column, guess)}" if guess.unit or guess.channel != "valve" else "",
         *_gauge(guess),
+        *(
+            f"# missing = [{code!r}]   # {count} readings of exactly that, far from all others"
+            for code, count in codes(column)
+        ),
         *_OFTEN.get(guess.channel, ()),
     ]
     return [line for line in lines if line]
@@ -195,6 +208,18 @@ def _gauge(guess: Guess) -> list[str]:
     if unit.endswith("a") and unit != "pa" and unit not in ("kpa", "mpa"):
         return ["# It rests near zero, where an absolute pressure cannot be in the open air: is the unit right?"]
     return ["gauge = true   # it rests at zero, where the open air is"]
+
+
+def codes(column: Column) -> Iterator[tuple[float, int]]:
+    """Readings that may stand for none, and how many of those looked at are so: at an end of the column, there several
+    times, and far from all others.
+    """
+    known, counts = np.unique(column.good, return_counts=True)
+    if known.size < MANY:
+        return
+    for end, inner, others in ((0, 1, known[1:]), (-1, -2, known[:-1])):
+        if 1 < counts[end] < SELDOM * column.good.size and abs(known[end] - known[inner]) > CODE_APART * float(np.ptp(others)):
+            yield float(known[end]), int(counts[end])
 
 
 def stand_in(found: Surveyed, several: bool) -> Iterator[str]:

@@ -58,12 +58,13 @@ def _checked(test_id: str, folder: Path, logs: Sequence[Path]) -> dict[Path, Pat
     """Where which log is to be copied to; raises :class:`InputError` before anything is read or written."""
     if not _ID.fullmatch(test_id) or ".." in test_id:
         raise InputError(f"{test_id!r} cannot name a test; expected letters, digits, '.', '_', '+' and '-'")
+    for log in logs:
+        _is_file(log)
     target = folder / DEFINITION
     if target.exists():
         raise InputError(f"{target}: is there already, and is never overwritten")
     copies: dict[Path, Path] = {}
     for log in logs:
-        _is_file(log)
         copy = folder / log.name
         if copy in copies.values() or copy == target:
             raise InputError(f"{log}: there is another file {log.name!r} of this test; expected every name once")
