@@ -218,7 +218,8 @@ def codes(column: Column) -> Iterator[tuple[float, int]]:
     if known.size < MANY:
         return
     for end, inner, others in ((0, 1, known[1:]), (-1, -2, known[:-1])):
-        if 1 < counts[end] < SELDOM * column.good.size and abs(known[end] - known[inner]) > CODE_APART * float(np.ptp(others)):
+        far = abs(known[end] - known[inner]) > CODE_APART * float(np.ptp(others))
+        if far and 1 < counts[end] < SELDOM * column.good.size:
             yield float(known[end]), int(counts[end])
 
 
