@@ -27,7 +27,8 @@ _SECOND = """
 Times in seconds from the instant at which the run line has risen by 60 psi, where a hand analysis counts from there,
 else from the opening. An interval of ours is 95 %, one by hand is judged. *agrees*: the two intervals meet.
 C_i N A is the product of the injector's coefficient and the area of all its holes: the area itself is not stated for
-most firings of the stand MRT.
+most firings of the stand MRT. t_feed is here when the line's pressure has reached 98 % of its maximum, by hand when the
+feed has settled.
 
 | log | quantity | here | by hand | |
 |---|---|---|---|---|

@@ -34,7 +34,8 @@ SLOWEST = 0.4
 at the slowest."""
 
 STANDS = 0.5
-"""Share of steps that move, below which stamps are truncated: to whole seconds, say, at 40 samples a second."""
+"""Share of steps that move, below which stamps are truncated. Evidence: stamps of published logs repeat in
+up to 6 % of rows, or in half of them where they are whole seconds."""
 
 _TEXT_STAMPS = (
     (

@@ -30,8 +30,8 @@ TYPICAL: dict[str, float] = {
     "p_tank": 50e5, "p_run": 40e5, "p_chamber": 25e5, "p_purge": 50e5, "p_fill": 55e5, "thrust": 1500.0, "m_tank": 8.0,
     "T_tank": 290.0, "T_run": 288.0, "T_chamber": 320.0,
 }  # fmt: skip
-"""A usual highest reading [SI], by which units are ranked that are all possible. Evidence: middle of the stands whose
-logs teams publish."""
+"""A usual highest reading [SI], by which units are ranked that are all possible. Evidence: within a factor of two of
+most stands whose logs are published."""
 
 UNITS = {
     "pressure": ("psi", "bar", "kPa", "MPa", "Pa"),
@@ -42,7 +42,7 @@ UNITS = {
 }
 """Dimension -> units in which loggers write it, the likelier first."""
 RARE = 0.4
-"""Points that rarer units (all but the first two) are behind. Evidence: of the logs of twelve teams none had kPa."""
+"""Points that rarer units (all but the first two) are behind. Evidence: no published log was in kPa, MPa or Pa."""
 
 AIR = (84e3, 106e3)
 """[Pa] between which the open air is. Source: weather at sea level, and stands up to 1500 m (ISO 2533)."""
