@@ -25,6 +25,10 @@ reads wild values is still the gauge that its name says."""
 LEAST = 2.0
 """Points from which on a guess is worth its line. Evidence: a shape alone has 2, one word alone 1."""
 
+ONE_UNIT, ODD_UNIT = ("pressure", "temperature"), 1.0
+"""Dimensions that a logger writes in one unit, and the points that another unit costs. Evidence: a cell that ends at
+0.08 kg was taken for a tank in MPa beside three pressures in psi."""
+
 _PLACES = {
     "pressure": {"tank": "p_tank", "run": "p_run", "chamber": "p_chamber", "purge": "p_purge", "fill": "p_fill"},
     "temperature": {"tank": "T_tank", "run": "T_run", "chamber": "T_chamber"},
@@ -173,7 +177,7 @@ def _possible(channel: str, said: Said, column: Column) -> bool:
 def _guess(channel: str, named: Mapping[str, float], said: Said, column: Column, shape: Shape) -> Guess | None:
     stated = as_meant(column.unit, CANONICAL[channel]) if column.unit else ""
     fits = units_for(channel, shape, stated)
-    if not fits and not named.get(channel):
+    if not fits and named.get(channel, 0.0) < (NAMED if stated else PLACED):
         return None
     points = named.get(channel, 0.0) + _of_shape(channel, shape) + (UNIT if stated else 0.0)
     points += POSSIBLE + fits[0].points if fits else -POSSIBLE
@@ -208,27 +212,30 @@ def _verb(shape: Shape) -> str:
 
 def agreed(found: list[Judged]) -> list[Judged]:
     """Units that are not stated, as the other columns of a test have theirs: a logger writes all pressures in one."""
-    votes: dict[tuple[str, str], float] = {}
+    votes: dict[str, dict[str, float]] = {}
     for one in found:
-        if one.best is not None and one.best.unit:
-            key = CANONICAL[one.best.channel], one.best.unit
-            votes[key] = votes.get(key, 0.0) + one.best.points * (3.0 if one.column.unit else 1.0)
-    return [
-        one if one.column.unit else replace(one, guesses=tuple(_as_most(g, votes) for g in one.guesses))
-        for one in found
-    ]
+        if one.best is not None and CANONICAL[one.best.channel] in ONE_UNIT:
+            units = votes.setdefault(CANONICAL[one.best.channel], {})
+            units[one.best.unit] = units.get(one.best.unit, 0.0) + one.best.points * (3.0 if one.column.unit else 1.0)
+    most = {dimension: max(units, key=lambda unit: units[unit]) for dimension, units in votes.items()}
+    return [one if one.column.unit else _sorted(one, [_in_unit(guess, most) for guess in one.guesses]) for one in found]
 
 
-def _as_most(guess: Guess, votes: Mapping[tuple[str, str], float]) -> Guess:
+def _in_unit(guess: Guess, most: Mapping[str, str]) -> Guess:
+    """A guess in the unit of the others; one that cannot be in it is the less likely."""
     dimension = CANONICAL[guess.channel]
-    possible = (guess.unit, *guess.units)
-    best = max(possible, key=lambda unit: votes.get((dimension, unit), 0.0))
-    if best == guess.unit or dimension not in ("pressure", "temperature"):
+    unit = most.get(dimension, guess.unit)
+    if unit == guess.unit:
         return guess
-    reasons = (*guess.reasons, f"in {best} as the other {dimension}s")
-    return replace(
-        guess, unit=best, units=tuple(unit for unit in possible if unit != best), gauge=False, reasons=reasons
-    )
+    if unit not in guess.units:
+        return replace(guess, points=guess.points - ODD_UNIT)
+    others = tuple(one for one in (guess.unit, *guess.units) if one != unit)
+    reasons = (*guess.reasons, f"in {unit} as the other {dimension}s")
+    return replace(guess, unit=unit, units=others, gauge=False, reasons=reasons)
+
+
+def _sorted(one: Judged, guesses: list[Guess]) -> Judged:
+    return replace(one, guesses=tuple(sorted(guesses, key=lambda guess: -guess.points)))
 
 
 def apart(found: list[Judged]) -> list[Judged]:
@@ -253,11 +260,8 @@ def _both(one: Judged) -> bool:
 
 
 def _no_pressure(one: Judged) -> Judged:
-    lean = [
-        replace(guess, points=guess.points - 1.0) if CANONICAL[guess.channel] == "pressure" else guess
-        for guess in one.guesses
-    ]
-    return replace(one, guesses=tuple(sorted(lean, key=lambda guess: -guess.points)))
+    less = {guess.channel: 1.0 if CANONICAL[guess.channel] == "pressure" else 0.0 for guess in one.guesses}
+    return _sorted(one, [replace(guess, points=guess.points - less[guess.channel]) for guess in one.guesses])
 
 
 def _leaning(one: Judged, channel: str) -> Judged:
@@ -268,4 +272,4 @@ def _leaning(one: Judged, channel: str) -> Judged:
         else guess
         for guess in one.guesses
     ]
-    return replace(one, guesses=tuple(sorted(lean, key=lambda guess: -guess.points)))
+    return _sorted(one, lean)

@@ -44,8 +44,9 @@ UNITS = {
 RARE = 0.4
 """Points that rarer units (all but the first two) are behind. Evidence: no published log was in kPa, MPa or Pa."""
 
-AIR = (84e3, 106e3)
-"""[Pa] between which the open air is. Source: weather at sea level, and stands up to 1500 m (ISO 2533)."""
+AIR = (80e3, 110e3)
+"""[Pa] between which a transducer in the open air reads. Evidence: chambers of published logs rest at 14.2 to 15.8 psi;
+stands may be 1500 m high (ISO 2533: 84.6 kPa)."""
 AT_ZERO = 0.35e5
 """[Pa] about zero within which an absolute pressure is impossible for what is open to the air. Evidence: zeros of
 transducers on real stands are off by up to 0.3 bar."""
