@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -39,6 +41,16 @@ def guessed(label: str, shape: Shape = FIRING) -> str | None:
         ("Brennkammerdruck (bar)", "p_chamber"),
         ("chamber pressure", "p_chamber"),
         ("PT-MAN (psi)", "p_run"),
+        ("n2o_tank_p (bar)", "p_tank"),
+        ("PN2O_INJ (bar)", "p_run"),
+        ("HPN2 (psi)", "p_purge"),
+        ("PT_RUN2 (psi)", "p_run"),  # the second of the line: no nitrogen in it
+        ("OX_TNK_PRES (psi)", "p_tank"),
+        ("Engine Pressure (bar)", "p_chamber"),
+        ("Main axial cell (lbf)", "thrust"),
+        ("N2O weight (kg)", "m_tank"),
+        ("P_AMB (bar)", None),
+        ("dP injector (bar)", None),
         ("inj_press (psi)", "p_run"),
         ("fill line (psi)", "p_fill"),
         ("LC-THRUST (lbf)", "thrust"),
@@ -59,7 +71,7 @@ def guessed(label: str, shape: Shape = FIRING) -> str | None:
     ],
 )
 def test_words_are_weighed_as_test_stands_use_them(label: str, channel: str | None) -> None:
-    shape = EMPTYING if channel in ("p_tank", "m_tank") else FIRING
+    shape = {"p_tank": EMPTYING, "m_tank": replace(EMPTYING, rest=9.0, high=9.0, end=0.1)}.get(channel or "", FIRING)
     assert guessed(label, shape) == channel
 
 
@@ -72,7 +84,7 @@ def test_a_force_in_pounds_is_one_in_pounds_force() -> None:
 
 def test_only_name_and_stated_unit_together_take_a_column_for_a_channel() -> None:
     """A guess without a unit, by a letter or by a shape alone is left to the engineer."""
-    labels = ["PT-CC (psi)", "PT-RUN", "PTR1 (psi)", "P_o (bar)", "(psi)"]
+    labels = ["PT-CC (psi)", "PT-RUN", "PTR1 (psi)", "P_o (bar)", "P_N2O (psi)", "(psi)"]
     columns = [Column("log.csv", i, label, *taken_apart(label), np.zeros(0), 0) for i, label in enumerate(labels)]
     found = [judged(column, FIRING) for column in columns]
     assert [guess.channel for guess in chosen(found).values()] == ["p_chamber"]

@@ -45,9 +45,9 @@ _SHAPES: dict[str, dict[str, float]] = {
     "thrust": {"pulse": 2.0, "dip": 1.0, "falls": -0.5, "fills": -1.0},
     "p_purge": {"falls": 0.5, "fills": -0.5, "wanders": 0.5, "noise": 0.5},
     "p_fill": {"noise": 0.5, "wanders": 0.5, "falls": 0.5},
-    "T_tank": {"falls": 0.5, "wanders": 0.5, "fills": 0.5},
-    "T_run": {"falls": 0.5, "wanders": 0.5},
-    "T_chamber": {"rises": 1.0, "pulse": 0.5, "wanders": 0.5},
+    "T_tank": {"falls": 0.5, "wanders": 0.5, "fills": 0.5, "state": 0.0, "clock": 0.0},
+    "T_run": {"falls": 0.5, "wanders": 0.5, "state": 0.0, "clock": 0.0},
+    "T_chamber": {"rises": 1.0, "pulse": 0.5, "wanders": 0.5, "state": 0.0, "clock": 0.5},
     "valve": {"state": 2.0, "pulse": 1.0},
 }
 """Channel -> what a shape says for it (or against it). Evidence: test_survey.py, columns without names."""
@@ -115,7 +115,7 @@ _KINDS = {
 
 def _whose(said: Said) -> str:
     """What a column measures where no channel is meant."""
-    where = {"": "", "fuel": " of the fuel", "run tank": " of the run tank or its line"}.get(
+    where = {"": "", "fuel": " of the fuel", "run tank": " of the oxidizer's tank or line"}.get(
         said.place, f" at {said.place}"
     )
     return _KINDS.get(said.quantity, f"a {said.quantity}") + where
@@ -153,6 +153,8 @@ def _by_name(said: Said, unit: str) -> Mapping[str, float]:
         return {places["tank"]: NAMED, places["run"]: NAMED}
     if said.place in places and (what == "force" or said.place):
         return {places[said.place]: (PLACED if said.sure else NAMED) + NEARER * bool(set(said.words) & NEAREST)}
+    if not what and said.place == "run tank":
+        return {"p_tank": NAMED, "p_run": NAMED, "m_tank": ALIKE}
     if not what and said.place:
         return {where[said.place]: NAMED for where in _PLACES.values() if said.place in where}
     if said.place or what == "?":

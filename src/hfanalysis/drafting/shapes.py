@@ -32,7 +32,7 @@ chambers and cells of real stands come back to within a quarter of their range."
 WORDS = {
     "empty": "no numbers",
     "constant": "never changes",
-    "clock": "rises all the way, as a clock",
+    "clock": "rises all the way",
     "state": "steps between a few values",
     "noise": "nothing but noise",
     "pulse": "rises and comes back, as with a firing",

@@ -14,12 +14,12 @@ from functools import lru_cache
 QUANTITIES: dict[str, str] = {
     **dict.fromkeys(
         ("p", "pt", "pts", "pr", "pres", "press", "pressure", "ptran", "transducer", "druck", "presion", "pression",
-         "pressione", "dp"), "pressure"),
+         "pressione"), "pressure"),
     **dict.fromkeys(
-        ("t", "tc", "tk", "temp", "temps", "temperature", "therm", "thermo", "thermocouple", "thermistor", "rtd",
+        ("t", "tc", "temp", "temps", "temperature", "therm", "thermo", "thermocouple", "thermistor", "rtd",
          "temperatur", "temperatura"), "temperature"),
     **dict.fromkeys(("l", "lc", "load", "cell", "loadcell", "hx711"), "cell"),
-    **dict.fromkeys(("f", "thrust", "force", "schub", "kraft", "poussee", "empuje", "spinta", "thr"), "force"),
+    **dict.fromkeys(("f", "thrust", "force", "axial", "schub", "kraft", "poussee", "empuje", "spinta", "thr"), "force"),
     **dict.fromkeys(("m", "mass", "weight", "masse", "masa", "massa", "peso", "gewicht", "wt"), "mass"),
     **dict.fromkeys(("valve", "mv", "mov", "sv", "bv", "solenoid", "servo", "ventil", "vanne", "valvula"), "valve"),
     **dict.fromkeys(("flow", "mdot", "mfc", "mfm", "massflow", "flowrate", "flowmeter", "durchfluss"), "flow"),
@@ -28,21 +28,25 @@ QUANTITIES: dict[str, str] = {
         ("mode", "state", "status", "command", "commands", "cmd", "relay", "igniter", "ign", "armed", "arm", "comment",
          "setpoint", "abort", "flag", "ind", "index", "event", "zerocheck"), "state"),
     **dict.fromkeys(
-        ("altitude", "acceleration", "accel", "gyro", "velocity", "humidity", "latitude", "longitude", "vibration"),
+        ("altitude", "acceleration", "accel", "gyro", "velocity", "humidity", "latitude", "longitude", "vibration",
+         "dp", "delta", "diff", "differential"),
         "other"),
 }  # fmt: skip
 """Word -> what is measured; a ``cell`` weighs or pushes. Source: tags of the logs and P&IDs that student teams and
 stands publish (PT pressure transducer, TC thermocouple, LC load cell; ISA-5.1 has P, T, F as first letters)."""
 
 PLACES: dict[str, str] = {
-    **dict.fromkeys(("tank", "reservoir", "vessel", "ullage", "behaelter", "serbatoio", "deposito", "oxtank"), "tank"),
+    **dict.fromkeys(
+        ("tank", "tnk", "reservoir", "vessel", "ullage", "behaelter", "serbatoio", "deposito", "oxtank"), "tank"),
     **dict.fromkeys(
         ("run", "feed", "line", "feedline", "inj", "injector", "injektor", "injecteur", "inyector", "iniettore", "man",
          "mani", "manifold", "plenum", "leitung", "upstream"), "run"),
     **dict.fromkeys(
-        ("chamber", "chmbr", "chmb", "chbr", "chb", "comb", "combustion", "cc", "kammer", "brennkammer", "chambre",
-         "camara", "camera", "precomb", "postcomb", "prechamber", "postchamber"), "chamber"),
+        ("chamber", "cham", "chm", "chmbr", "chmb", "chbr", "chb", "comb", "combustion", "cc", "kammer", "brennkammer",
+         "chambre", "camara", "camera", "precomb", "postcomb", "prechamber", "postchamber", "engine", "motor", "moteur",
+         "triebwerk"), "chamber"),
     **dict.fromkeys(("purge", "spuel", "spuelung"), "purge"),
+    **dict.fromkeys(("ambient", "amb", "atm", "atmospheric", "baro", "barometric", "outside"), "ambient"),
     **dict.fromkeys(("fill", "supply", "bottle", "cylinder", "dewar", "gse", "filling", "flasche"), "fill"),
 }  # fmt: skip
 """Word -> where it is measured; CC combustion chamber, INJ injector, MAN manifold. Source: as above."""
@@ -61,7 +65,10 @@ LETTERS = {"c": "chamber", "i": "run", "o": "tank", "r": "run tank"}
 """Last letters of a tag that say where, if no word does: PTC1, P_i, P_o; R is the run tank or its line."""
 _PREFIXES = ("pt", "tc", "lc", "p", "t", "l", "f", "m")
 _KNOWN = {**QUANTITIES, **PLACES, **FLUIDS}
-_PIECES = re.compile(r"N2O|GN2|N2(?!O)|HX711|RP-?1|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", re.ASCII)
+_PIECES = re.compile(
+    r"(?<![A-Za-z])[dD][pP](?![a-z])|(?i:(?:hp|lp|pt?|t)(?=n2)|n2o|gn2|n2(?!o)|hx711|rp-?1)|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+",
+    re.ASCII,
+)
 _LONG = 4
 """Letters [letters] that a word needs for being looked for within a longer one. Evidence: "man" is in "command", "comb"
 stands alone."""
@@ -72,8 +79,8 @@ class Said:
     """What a name says; "" where it does not say it.
 
     ``quantity``: pressure, temperature, force, mass, cell, valve, flow, electric, state or other; ``place``: tank, run,
-    chamber, purge, fill, "run tank" (the one or the other) or fuel; ``sure``: by a word, not by a letter; ``words``:
-    those that say so, as a reason; ``silent``: how many say nothing.
+    chamber, purge, fill, "run tank" (the one or the other), ambient or fuel; ``sure``: by a word, not by a letter;
+    ``words``: those that say so, as a reason; ``silent``: how many say nothing.
     """
 
     quantity: str = ""
@@ -120,11 +127,11 @@ def _place(words: list[str], fluid: str, quantity: str) -> str:
         return "fuel"
     if "purge" in found or (fluid == "gas" and "chamber" not in found):
         return "purge"
-    stated = next((place for place in ("fill", "chamber", "tank", "run") if place in found), "")
+    stated = next((place for place in ("ambient", "fill", "chamber", "tank", "run") if place in found), "")
     if stated:
         return stated
     if fluid == "oxidizer" and quantity != "valve":
-        return "run" if "flow" in words else "tank"
+        return "run" if "flow" in words else "run tank"
     letters = [word for word in words[1:] if word in LETTERS] if quantity else []
     return LETTERS[letters[0]] if letters else ""
 
