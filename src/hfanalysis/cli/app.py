@@ -274,11 +274,15 @@ def _effects(test: AnyTest = None, root: Root = Path(), out: Out = None, as_json
 @app.command("new")
 def _new(
     test: Annotated[str, typer.Argument(metavar="ID", help="Name of the new test.")],
-    log: Annotated[Path, typer.Option(help="Its log file; copied to raw_tests/ID/ if it is elsewhere.")],
+    log: Annotated[
+        list[Path],
+        typer.Option(help="Its log file, copied to raw_tests/ID/ if it is elsewhere; again for every other."),
+    ],
     root: Root = Path(),
+    edit: Annotated[bool, typer.Option("--edit", help="Ask at the terminal what each column is.")] = False,
 ) -> None:
-    """Draft raw_tests/ID/test.toml from what a log shows. Never overwrites."""
+    """Draft raw_tests/ID/test.toml from what logs show, and draw every column. Never overwrites."""
     with plain_exit():
-        from hfanalysis.record.draft import new_test
+        from hfanalysis.cli import new
 
-        typer.echo(f"{new_test(root, test, log)}: drafted; complete what is marked there, then: hfa calibrate {test}")
+        new.new(root, test, log, edit)
