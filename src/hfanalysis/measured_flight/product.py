@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import h5py
+from hfanalysis.products.hdf5 import created
 import numpy as np
 
 from hfanalysis.arrays import Array
@@ -113,7 +113,7 @@ def write_histories(
     path: Path, launched: MeasuredFlight, stable: stability.StabilityRuns | str, provenance: Mapping[str, Any]
 ) -> None:
     """flight.h5: groups ``ascent``, ``bands``, the ways down, ``balance`` and ``stability``, in SI."""
-    with h5py.File(path, "w") as file:
+    with created(path) as file:
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
         file.attrs["launch_altitude"] = launched.firing.vehicle.launch_altitude
         ascent = {name: launched.ascent.column(name) for name in TRACE}

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from typing import Annotated, Any, Self, TypeVar, cast, dataclass_transform
 
-from pydantic import BeforeValidator, ConfigDict, Field, PlainValidator, model_validator
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, PlainValidator, model_validator
 from pydantic.dataclasses import dataclass as validated
 from pydantic_core import PydanticKnownError
 
@@ -137,7 +137,20 @@ def _column(found: Any) -> str | int:
     return found
 
 
+def unsafe(name: str) -> bool:
+    """Whether a name would be no file of its own in the folder meant, or none that can be read in a message."""
+    separated = any(mark in name for mark in "/\\") or name in (".", "..")
+    return separated or name != name.strip() or not name.isprintable()
+
+
+def _name(found: str) -> str:
+    if unsafe(found):
+        raise ValueError("a name that a file can have, without path separators")
+    return found
+
+
 Text = Annotated[str, Field(pattern=r"\S")]
+Name = Annotated[Text, AfterValidator(_name)]
 YesOrNo = Annotated[bool, Field(strict=True)]
 Count = Annotated[int, Field(strict=True, ge=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]

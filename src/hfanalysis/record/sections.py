@@ -204,9 +204,9 @@ class ObservedSection(Section):
 class EngineSection(Section):
     """[engine] of an engine file."""
 
-    id: Text
+    id: Name
     description: Text = ""
-    stand: Text | None = None
+    stand: Name | None = None
 
 
 @section
