@@ -51,6 +51,7 @@ campaign: $(STAMP) ## every test, several at a time, and what those of one stand
 	@$(BIN)/hfa campaign $(FLAGS)
 
 all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_tests/
+	@[ -z '$(ODD)' ] || sh pipeline/tests.sh each $(HFA) report --quiet --
 
 # A file's tests stay together, for they share what is slow to make, and the files in their order, for the slowest are the
 # first ones; linear algebra on one core, for the workers have the others.

@@ -71,6 +71,14 @@ def stated(title: str = "a title", **change: Any) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.parametrize("title", ['""" + exit() + """', "''' + exit() + '''", "{0.__class__}", "\\", "a\nexit()"])
+def test_a_title_is_text_in_the_script_and_nothing_else(title: str) -> None:
+    plain, hostile = stated(), stated(title)
+    assert hostile.pop("TITLE") == title
+    assert plain.pop("TITLE")
+    assert hostile == plain
+
+
 def test_a_script_states_the_rocket_as_it_is() -> None:
     """A solid cylinder's roll inertia is m r^2 / 2; RocketPy counts places from the tail."""
     found = stated()

@@ -17,6 +17,7 @@ def main() -> None:
             stream.reconfigure(errors="backslashreplace")  # a terminal that lacks a sign must not stop an analysis
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")  # matrices are small here; it is fits that run side by side
+    os.environ.pop("MPLBACKEND", None)  # of a notebook, whose packages need not be here; charts are drawn into files
     try:
         from hfanalysis.cli.app import app
 

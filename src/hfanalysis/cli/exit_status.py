@@ -9,7 +9,8 @@ from contextlib import contextmanager
 
 import typer
 
-from hfanalysis.errors import AnalysisError
+from hfanalysis.errors import AnalysisError, InputError
+from hfanalysis.products.disk import REFUSED
 
 
 @contextmanager
@@ -20,6 +21,11 @@ def plain_exit() -> Iterator[None]:
     except AnalysisError as error:
         tell(str(error))
         raise typer.Exit(error.exit_status) from None
+    except OSError as error:
+        if error.errno not in REFUSED:
+            raise
+        tell(": ".join(filter(None, (str(error.filename or ""), str(error.strerror)))))
+        raise typer.Exit(InputError.exit_status) from None
     except KeyboardInterrupt:
         tell("interrupted; products are as they were before, or complete")
         raise typer.Exit(130) from None

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hfanalysis.products.hdf5 import created
 import numpy as np
 
 from hfanalysis.arrays import Array
@@ -21,6 +20,7 @@ from hfanalysis.measured_flight import stability
 from hfanalysis.measured_flight.firing import Firing
 from hfanalysis.measured_flight.uncertainty import DrawnFlights, Input, disperse, inputs, rows
 from hfanalysis.products import flight as products
+from hfanalysis.products.hdf5 import created
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.rocket.vehicle import gravity

@@ -24,6 +24,9 @@ TEMPORARY = ".tmp-"
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What the system says where no more fits: the disk, the user's share of it, the largest file that is allowed."""
 
+REFUSED = (errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS, *FULL)
+"""What the system says that does not let us write: something that a person can do something about."""
+
 _CHUNK = 1 << 20
 """Bytes read at a time [B]."""
 _SETTLED_NS = 2_000_000_000

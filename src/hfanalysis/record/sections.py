@@ -16,6 +16,7 @@ from hfanalysis.record.schema import (
     Duration,
     Length,
     Mass,
+    Name,
     NotNegative,
     Positive,
     PressureDifference,

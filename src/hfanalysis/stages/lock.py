@@ -81,7 +81,7 @@ def _instead(folder: Path, waiting: Callable[[], None]) -> int:
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
     if not _take(descriptor, waiting):
         os.close(descriptor)
-        raise InputError(f"{folder}: its file system has no locks, nor has {path.parent}; choose another with --out DIR")
+        raise InputError(f"{folder}: found no locks, nor in {path.parent}; choose another file system with --out DIR")
     return descriptor
 
 

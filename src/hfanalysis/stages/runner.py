@@ -7,7 +7,6 @@ time stamps that make goes by are kept in agreement.
 
 from __future__ import annotations
 
-import errno
 import json
 import os
 import platform
@@ -20,7 +19,7 @@ from typing import Any
 
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
 from hfanalysis.products import disk as products
-from hfanalysis.products.disk import FULL, HashCache
+from hfanalysis.products.disk import HashCache
 from hfanalysis.record.definition import load_definition
 from hfanalysis.sources import PACKAGE
 from hfanalysis.stages import ASIDE, ORDER, base, freshness
@@ -29,7 +28,6 @@ from hfanalysis.stages.lock import locked
 from hfanalysis.version import __version__
 
 RUN_LOG = "run.log"
-_REFUSED = {errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS, *FULL}
 _ATTEMPTS = 3
 """Starts of a run whose products somebody removes meanwhile."""
 
@@ -76,7 +74,7 @@ def _plain_refusals(context: Context) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if error.errno not in _REFUSED:
+        if error.errno not in products.REFUSED:
             raise
         place = error.filename or context.out
         raise InputError(f"{place}: {error.strerror}; choose another place for the products with --out DIR") from None
@@ -159,7 +157,7 @@ class _Run:
         started = time.perf_counter()
         self.context.progress(stage.name, None)
         try:
-            stage.run(self.context.at(stage, record=record))
+            self._run(stage, record)
             self._check_untouched(record)
             made = self._commit(stage)
         except AnalysisError as error:
@@ -170,6 +168,14 @@ class _Run:
             raise
         self._note(stage, {"key": key, "products": made, "parameters": record["parameters"]})
         self._log(stage, started, "done")
+
+    def _run(self, stage: Stage, record: dict[str, Any]) -> None:
+        """The stage itself; code of a team's effects that ends the program must not end it as if all were done."""
+        try:
+            stage.run(self.context.at(stage, record=record))
+        except SystemExit as error:
+            own = self.context.root / "effects"
+            raise InputError(f"stage {stage.name}: the code in {own} ended it ({error!r})") from None
 
     def _check_untouched(self, record: dict[str, Any]) -> None:
         """A log that grew while it was read would be recorded under a hash that is not its own."""

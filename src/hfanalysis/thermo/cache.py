@@ -16,7 +16,6 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.sources import closure, digest
 
-
 _SEAL = 32
 """Length of a SHA-256 [B]. Source: definition."""
 
