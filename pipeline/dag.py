@@ -14,8 +14,8 @@ HEAD = """\
 #
 # `hfa` judges by content whether a product is up to date; make's time stamps only tell when to ask it.
 #
-# Only names of letters, digits and . _ + - @ go into rules, for others may mean something to make or to the shell. Where
-# a test or one of its files has another name, `make all` asks hfa for it, without a rule.
+# Only names of letters, digits and . _ + - @ go into rules, for others may mean something to make or to the shell.
+# Where a test or one of its files has another name, `make all` asks hfa for it, without a rule.
 
 HFA     := $(BIN)/hfa
 TESTS   := $(shell sh pipeline/tests.sh plain)

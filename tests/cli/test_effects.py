@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from hfanalysis.cli import main
-from hfanalysis.cli import trust
+from hfanalysis.cli import main, trust
 from hfanalysis.effects import library
 
 Run = Callable[..., tuple[int, str, str]]

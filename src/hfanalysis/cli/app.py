@@ -37,7 +37,7 @@ Set = Annotated[
 ]
 
 
-Trust = Annotated[bool, typer.Option("--trust-effects", help="Run the code in ROOT/effects/, now and until it changes.")]
+Trust = Annotated[bool, typer.Option("--trust-effects", help="Run the code in ROOT/effects/, until it changes.")]
 
 
 def _version(wanted: bool) -> None:

@@ -9,11 +9,12 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
 from hfanalysis.record.readers.table import LogSeries, Table
@@ -30,6 +31,8 @@ def open_source(path: Path, spec: FileSpec) -> Table:
         is_hdf5 = file.read(10) == b"MATLAB 7.3"
     try:
         found = list(_from_hdf5(path) if is_hdf5 else _from_mat5(path))
+    except InputError:
+        raise
     except Exception as error:  # damaged files fail in every way that there is
         raise InputError(f"{path}: cannot be read as a MATLAB file: {error or type(error).__name__}") from None
     return Table(path, found)
@@ -50,17 +53,17 @@ def _from_hdf5(path: Path) -> Iterator[LogSeries]:
     """MATLAB 7.3 is HDF5 with groups for structs, and arrays transposed."""
     import h5py
 
-    def walk(name: str, item: Any) -> Iterator[LogSeries]:
-        if isinstance(item, h5py.Group):
-            for key in item:
-                yield from walk(f"{name}.{key}", item[key])
-        elif item.attrs.get("MATLAB_class", b"double") != b"char" and not item.attrs.get("MATLAB_empty", 0):
-            yield from _series(name, np.asarray(item).T)
+    from hfanalysis.record.readers.hdf5_inside import Stored, datasets
 
     with h5py.File(path, "r") as file:
-        for key in file:
-            if not key.startswith("#"):
-                yield from walk(key, file[key])
+        for names, item in datasets(path, file):
+            own = names[0].startswith("#") or item.attrs.get("MATLAB_class", b"double") == b"char"
+            if own or item.attrs.get("MATLAB_empty", 0) or item.dtype.kind not in "fiub" or item.ndim != 2:
+                continue
+            if 1 in item.shape and item.size > 1:
+                yield LogSeries(".".join(names), cast(Array, Stored(path, item.name, item.shape)))
+            elif item.shape[0] <= WIDEST:
+                yield from _series(".".join(names), np.asarray(item).T)
 
 
 def _series(name: str, value: Any) -> Iterator[LogSeries]:

@@ -22,7 +22,8 @@ def open_source(path: Path, spec: FileSpec) -> Table:
     from nptdms import TdmsFile
 
     try:
-        channels = [channel for group in TdmsFile.read(path).groups() for channel in group.channels()]
+        with path.open("rb") as file:  # by its name the library would take up a .tdms_index beside it, of any content
+            channels = [channel for group in TdmsFile.read(file).groups() for channel in group.channels()]
         found = list(_series(channels))
     except Exception as error:  # damaged files fail in every way that there is
         raise InputError(f"{path}: cannot be read as a TDMS file: {error or type(error).__name__}") from None
