@@ -198,7 +198,7 @@ def _keep(made: Any, function: Callable[..., Any]) -> None:
         folder = _private_folder()
         if folder is None:
             return
-        config.CACHE_DIR = str(folder)
+        config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
         made.enable_caching()
     _stamp(made, function)
 

@@ -164,7 +164,8 @@ def test_products_are_the_groups_where_their_folder_is(root: Path, group: bool) 
 def test_products_of_another_user_are_brought_up_to_date(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only a file's owner may set its times."""
     ran(root, "second")
-    utime, theirs = os.utime, [(root / "processed/T1" / name).stat().st_ino for name in ("first.bin", "first.json")]
+    files = [(root / "processed/T1" / name).open("rb") for name in ("first.bin", "first.json")]
+    utime, theirs = os.utime, [os.fstat(file.fileno()).st_ino for file in files]  # open, so that no new file gets them
 
     def refused(path: Path, *now: Any, **times: Any) -> None:
         if Path(path).stat().st_ino in theirs:
@@ -176,6 +177,8 @@ def test_products_of_another_user_are_brought_up_to_date(root: Path, monkeypatch
     assert ran(root, "second") == []
     assert (root / "processed/T1/first.bin").stat().st_mtime_ns >= toml(root).stat().st_mtime_ns
     assert (root / "processed/T1/first.bin").read_text().endswith("end")
+    for file in files:
+        file.close()
 
 
 @pytest.mark.parametrize("content", ["[]", "3", '{"products": []}', '{"products": {"first.bin": []}}', "\x00"])
