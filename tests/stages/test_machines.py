@@ -196,6 +196,14 @@ def test_a_list_of_hashes_that_is_damaged_is_none(root: Path, content: str) -> N
     assert ran(root, "second") == []
 
 
+def test_output_that_is_full_ends_with_one_plain_message() -> None:
+    for what in (["--help"], ["effects", "--json"]):
+        with open("/dev/full", "w") as full:
+            command = [sys.executable, "-m", "hfanalysis", *what]
+            ended = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        assert (ended.returncode, ended.stderr) == (2, "hfa: No space left on device\n")
+
+
 def test_what_is_kept_of_compiled_code_is_proved_and_never_in_the_way(tmp_path: Path) -> None:
     """A damaged file, a disk that is full, and nowhere to keep anything: each costs time, nothing else."""
     source = tmp_path / "thrust.py"

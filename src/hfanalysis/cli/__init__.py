@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import sys
+
+from hfanalysis.errors import InputError
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C. Source: shells' convention, 128 plus the number of the signal (2)."""
@@ -25,3 +28,8 @@ def main() -> None:
     except KeyboardInterrupt:
         print("hfa: interrupted; products are as they were before, or complete", file=sys.stderr)
         sys.exit(INTERRUPTED)
+    except OSError as error:
+        if error.errno != errno.ENOSPC:
+            raise
+        print(f"hfa: {error.strerror}", file=sys.stderr)
+        sys.exit(InputError.exit_status)

@@ -26,6 +26,9 @@ def plain_exit() -> Iterator[None]:
             raise
         tell(": ".join(filter(None, (str(error.filename or ""), str(error.strerror)))))
         raise typer.Exit(InputError.exit_status) from None
+    except MemoryError:
+        tell("the memory is not enough for this log; close what else runs, or lower its rate")
+        raise typer.Exit(InputError.exit_status) from None
     except KeyboardInterrupt:
         tell("interrupted; products are as they were before, or complete")
         raise typer.Exit(130) from None

@@ -201,10 +201,14 @@ def _check_folder(definition: TestDefinition) -> None:
 
 def _inside(name: str, folder: Path, where: str) -> None:
     """The file must be there, and within the test's own folder."""
-    path = (folder / name).resolve()
-    if not path.is_relative_to(folder) or path == folder:
-        raise InputError(f"{where}: found {name!r}; expected a file inside the test's own folder")
-    if not path.is_file():
+    try:
+        path = (folder / name).resolve()
+        own, there = path.is_relative_to(folder) and path != folder, path.is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        own = there = False
+    if not own:
+        raise InputError(f"{where}: found {name[:80]!r}; expected a file inside the test's own folder")
+    if not there:
         others = [str(p.relative_to(folder)) for p in sorted(folder.rglob("*")) if p.is_file()]
         offer = near(name, others) or f"; the folder holds {', '.join(others)}"
         raise InputError(f"{where}: {name!r} is not in the test's folder{offer}")

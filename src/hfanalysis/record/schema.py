@@ -137,15 +137,19 @@ def _column(found: Any) -> str | int:
     return found
 
 
+LONGEST_NAME = 200
+"""Bytes of a name [B]. Source: file systems take 255, of which the endings of products need some."""
+
+
 def unsafe(name: str) -> bool:
     """Whether a name would be no file of its own in the folder meant, or none that can be read in a message."""
     separated = any(mark in name for mark in "/\\") or name in (".", "..")
-    return separated or name != name.strip() or not name.isprintable()
+    return separated or name != name.strip() or not name.isprintable() or len(name.encode()) > LONGEST_NAME
 
 
 def _name(found: str) -> str:
     if unsafe(found):
-        raise ValueError("a name that a file can have, without path separators")
+        raise ValueError(f"a name that a file can have: no path separators, at most {LONGEST_NAME} bytes")
     return found
 
 

@@ -125,7 +125,7 @@ def _name(nodes: Nodes) -> str:
         made_by = version("cea")
     except PackageNotFoundError:
         raise AbsentError(
-            "the chamber's gas comes from NASA's CEA: its package (cea) is not installed; there is none for Linux on ARM"
+            "the chamber's gas is NASA's CEA's: its package (cea) is not installed, for Linux on ARM there is none"
         ) from None
     return f"combustion-cea-{made_by}-{nodes.pressures}-{nodes.mixtures}-{nodes.shares}"
 
