@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +41,7 @@ def build(number: int, seed: int) -> Case:
     for group, name, mutator in drawn:
         case.mutators.append(f"{group}: {name}")
         if group in ("values", "rows", "clock", "columns", "toml"):
-            mutator(case, rng)
+            _mutate(mutator, case, rng)
     return _written(case, [(group, mutator, rng) for group, _, mutator in drawn])
 
 
@@ -59,8 +60,14 @@ def _written(case: Case, later: list[tuple[str, Mutator, np.random.Generator]]) 
     case.text = document.text(case.toml)
     for group, mutator, rng in later:
         if group in ("text", "bytes", "toml text"):
-            mutator(case, rng)
+            _mutate(mutator, case, rng)
     return case
+
+
+def _mutate(mutator: Mutator, case: Case, rng: np.random.Generator) -> None:
+    """The second of two may find nothing left that it could hit: an empty log, a section that is gone."""
+    with suppress(KeyError, IndexError, ValueError):
+        mutator(case, rng)
 
 
 def put(case: Case, root: Path) -> Path:

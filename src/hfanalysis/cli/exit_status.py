@@ -12,6 +12,9 @@ import typer
 from hfanalysis.errors import AnalysisError, InputError
 from hfanalysis.products.disk import REFUSED
 
+LONGEST = 4000
+"""Length of what is told in one line [characters]. Evidence: a screen holds as much."""
+
 
 @contextmanager
 def plain_exit() -> Iterator[None]:
@@ -35,7 +38,9 @@ def plain_exit() -> Iterator[None]:
 
 
 def tell(text: str) -> None:
-    """One line for people, on standard error."""
+    """One line for people, on standard error; of one that quotes a file at length, both ends."""
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST // 2]} […] {text[-LONGEST // 2 :]}"
     print(f"hfa: {text}", file=sys.stderr)
 
 
