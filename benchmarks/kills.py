@@ -24,7 +24,7 @@ from benchmarks.studies import put
 REPOSITORY = Path(__file__).resolve().parents[1]
 VENV = Path(sys.prefix)
 TWICE, INTERRUPTED, HALF_DONE = 0.1, 0.2, 0.3
-"""Shares of the kills that are two runs at once, interrupts, and of runs over products of an earlier one."""
+"""Shares of the runs that are two at once, that are interrupted, and that begin from some of the products."""
 KEPT_APART = ("run.log", "hashes.json", ".lock")
 """What no product is: a log, hashes by the clock, and the lock."""
 
@@ -88,7 +88,8 @@ def make(folder: Path) -> subprocess.Popen[bytes]:
 def disturbed(folder: Path, rng: random.Random, lasting: float) -> str:
     """One run that does not go its way; returns what was done to it."""
     if rng.random() < HALF_DONE:
-        for path in rng.sample(sorted((folder / "processed").glob("*/*.*")), 3):
+        pages = list((folder / "processed").glob("*/report.html"))  # by these make tells whether it has to ask
+        for path in {*rng.sample(sorted((folder / "processed").glob("*/*.*")), 3), *pages}:
             path.unlink()
     else:
         shutil.rmtree(folder / "processed", ignore_errors=True)

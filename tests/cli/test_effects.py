@@ -13,6 +13,7 @@ import pytest
 
 from hfanalysis.cli import main, trust
 from hfanalysis.effects import library
+from hfanalysis.effects import trust as agreed_to
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -87,6 +88,19 @@ def test_a_teams_own_effect_is_listed_and_a_bound_that_is_not_there_is_null(run:
     assert run("effects", "--root", tmp_path)[0] == 0
     (tmp_path / "effects" / "shim.py").write_text(SHIM + "raise SystemExit(0)\n", encoding="utf-8")
     assert run("effects", "--root", tmp_path)[0] == 2
+
+
+def test_who_has_no_home_agrees_for_one_run(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("XDG_CONFIG_HOME")
+    monkeypatch.setenv("HOME", "~")
+    monkeypatch.setattr(agreed_to, "_agreed", set())
+    (tmp_path / "effects").mkdir()
+    (tmp_path / "effects" / "shim.py").write_text(SHIM, encoding="utf-8")
+    assert run("effects", "--root", tmp_path, "--trust-effects")[0] == 0
+    agreed_to._agreed.clear()  # as in another process
+    assert run("effects", "--root", tmp_path)[0] == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["effects"]
 
 
 def test_somebody_at_a_terminal_is_asked(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -61,6 +61,8 @@ def _held(folder: Path) -> tuple[Path, str]:
 
 
 def _note(folder: Path) -> Path:
-    base = os.environ.get("XDG_CONFIG_HOME") or os.path.join(os.path.expanduser("~"), ".config")
+    base = Path(os.environ.get("XDG_CONFIG_HOME") or os.path.join(os.path.expanduser("~"), ".config"))
+    if not base.is_absolute():
+        base = Path(os.devnull)  # who has no home has no notes: nothing can be read or written below it
     name = sha256(str(folder.resolve()).encode()).hexdigest()[:32]
-    return Path(base) / "hfanalysis" / "trusted-effects" / name
+    return base / "hfanalysis" / "trusted-effects" / name
