@@ -19,9 +19,10 @@ as_word = '$(subst ','\'',$(1))'
 .SECONDEXPANSION:
 .PHONY: always
 
-STAGES := ingest segment calibrate validate diagnose flight report run
+STAGES := ingest health segment calibrate validate diagnose flight report run
 
 ingest: ## TEST=… Read the raw log onto canonical channels in SI, with quality flags per sample
+health: ## TEST=… Judge every channel before it is believed: what cannot be used, what is doubted, and what cures it
 segment: ## TEST=… Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end
 calibrate: ## TEST=… Injector coefficient, feed losses, polytropic exponent and regression, with intervals
 validate: ## TEST=… Measure the performance and run the model against the measurement
@@ -34,7 +35,11 @@ processed/%/ingest.h5: $$(wildcard raw_tests/$$*/*) $(SOURCE) $(STAMP)
 	@$(HFA) ingest --quiet -- $(call as_word,$*)
 	@test $(call as_word,raw_tests/$*/test.toml) -nt $(call as_word,$@) || touch -c $(call as_word,$@)
 
-processed/%/segments.json: processed/%/ingest.h5
+processed/%/health.json: processed/%/ingest.h5
+	@$(HFA) health --quiet -- $(call as_word,$*)
+	@test $(call as_word,raw_tests/$*/test.toml) -nt $(call as_word,$@) || touch -c $(call as_word,$@)
+
+processed/%/segments.json: processed/%/health.json
 	@$(HFA) segment --quiet -- $(call as_word,$*)
 	@test $(call as_word,raw_tests/$*/test.toml) -nt $(call as_word,$@) || touch -c $(call as_word,$@)
 

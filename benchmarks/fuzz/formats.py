@@ -112,15 +112,14 @@ def xlsx(log: Log) -> bytes:
     rows = zip(*(numbers for _, numbers in log.columns), strict=True)
     cells = ["".join("<c/>" if np.isnan(value) else f"<c><v>{value:.7g}</v></c>" for value in row) for row in rows]
     sheet = "".join(f"<row>{row}</row>" for row in [names, *cells])
+    links = f'<Relationships xmlns="{_PACKAGE}/relationships">'
     parts = {
         "[Content_Types].xml": f'<Types xmlns="{_PACKAGE}/content-types">'
         '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
         f'<Override PartName="/xl/workbook.xml" ContentType="{_SHEETS}.sheet.main+xml"/>'
         f'<Override PartName="/xl/worksheets/sheet1.xml" ContentType="{_SHEETS}.worksheet+xml"/></Types>',
-        "_rels/.rels": f'<Relationships xmlns="{_PACKAGE}/relationships">'
-        f'<Relationship Id="r1" Type="{_OFFICE}/relationships/officeDocument" Target="xl/workbook.xml"/></Relationships>',
-        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{_PACKAGE}/relationships">'
-        f'<Relationship Id="r1" Type="{_OFFICE}/relationships/worksheet" Target="worksheets/sheet1.xml"/></Relationships>',
+        "_rels/.rels": links + _relation("officeDocument", "xl/workbook.xml"),
+        "xl/_rels/workbook.xml.rels": links + _relation("worksheet", "worksheets/sheet1.xml"),
         "xl/workbook.xml": f'<workbook xmlns="{_MAIN}" xmlns:r="{_OFFICE}/relationships">'
         '<sheets><sheet name="log" sheetId="1" r:id="r1"/></sheets></workbook>',
         "xl/worksheets/sheet1.xml": f'<worksheet xmlns="{_MAIN}"><sheetData>{sheet}</sheetData></worksheet>',
@@ -130,6 +129,10 @@ def xlsx(log: Log) -> bytes:
         for name, content in parts.items():
             archive.writestr(zipfile.ZipInfo(name), '<?xml version="1.0"?>' + content)
     return file.getvalue()
+
+
+def _relation(kind: str, target: str) -> str:
+    return f'<Relationship Id="r1" Type="{_OFFICE}/relationships/{kind}" Target="{target}"/></Relationships>'
 
 
 _PACKAGE = "http://schemas.openxmlformats.org/package/2006"
