@@ -10,13 +10,16 @@ from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
-from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
-from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
+from hfanalysis.validate.thrust import FIRST, Thrust, burnt_out, thrust_of
 
 SPAN_SHARE = 0.25
 """Part of the cell's accuracy that a tare does not take away [-]: its error of span, as for the pressures."""
+
+EARLY = 0.5
+"""[s] before the burn's end at which the thrust may end and still be flown: the model of a fire that goes out."""
 
 UNSEEN_DRIFT = 0.01
 """Standard deviation of a drift that no settled level after the burn shows, of the peak thrust [-]."""
@@ -60,13 +63,26 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
     if segments is None or segments.t_open.value is None:
         raise AbsentError(f"test {definition.test.id}: no valve opening is known to count the thrust from")
     found = thrust_of(log, segments, definition)
-    end, of = burn_end(segments, definition, float(found.signal.time[-1]))
+    _check_whole(channel, segments, definition, float(found.signal.time[-1]))
+    end, of = burn_end(segments, definition, found.signal)
     burn = found.signal.between(0.0, end)
     if burn.time.size < 8:
         raise AbsentError(f"test {definition.test.id}: the log has {burn.time.size} samples of thrust over the burn")
     time = np.unique(np.concatenate(([0.0], burn.time, [end])))
     notes = (f"burn from the opening to {end:.2f} s: {of}", *_drift_taken(found))
     return MeasuredThrust(time, found.signal.at(time), *_spreads(channel, found, burn), notes)
+
+
+def _check_whole(channel: Channel, segments: Segments, definition: TestDefinition, last: float) -> None:
+    """Raise AbsentError where the cell goes on in the burn after ``last`` [s] and means nothing there."""
+    lost = channel.time[(channel.flags & Flag.UNUSABLE) != 0] - (segments.t_open.value or 0.0)
+    whole = float(channel.time[-1]) - (segments.t_open.value or 0.0)
+    end, _ = _told_end(segments, definition, whole) or (whole, "")
+    if (lost > last).any() and end > last + EARLY:
+        raise AbsentError(
+            f"test {definition.test.id}: the thrust is not usable from {last:.2f} s on, before the burn ends "
+            f"({end:.2f} s): there is no whole thrust to fly"
+        )
 
 
 def _left(thrust: Thrust) -> float:
@@ -81,20 +97,27 @@ def _drift_taken(thrust: Thrust) -> tuple[str, ...]:
     return (text("{taken} of the load cell's drift taken off over the burn", taken=said(taken, "N", ".0f")),)
 
 
-def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tuple[float, str]:
-    """When thrust ends [s after opening], and who says so; ``last``: where the log ends [s].
+def burn_end(segments: Segments, definition: TestDefinition, thrust: Signal) -> tuple[float, str]:
+    """When thrust ends [s after opening], and who says so; ``thrust`` [N] with its zero taken off.
 
-    The engineer, else the later of chamber and fuel, else the log.
+    The engineer, else the later of chamber and fuel, else the thrust itself, else the log.
     """
+    last = float(thrust.time[-1])
+    if (told := _told_end(segments, definition, last)) is not None:
+        return told
+    gone = burnt_out(thrust)
+    return (gone[0], "the thrust's own end") if gone is not None else (last, "the log's end")
+
+
+def _told_end(segments: Segments, definition: TestDefinition, last: float) -> tuple[float, str] | None:
+    """When thrust ends by the engineer or by the later of chamber and fuel, if that is before the ``last`` instant."""
     observed = definition.observed.burn_time if definition.observed is not None else None
     if observed is not None and observed.value <= last:
         return observed.value, "[observed] burn_time"
-    found = {name: segments.time(name) for name in ("t_fuel_out", "t_end")}
+    found = {name: segments.time(name) for name in ("t_fuel_gone", "t_end")}
     times = {name: time for name, time in found.items() if time is not None and 0.0 < time <= last}
-    if times:
-        name = max(times, key=lambda key: times[key])
-        return times[name], name
-    return last, "the log's end"
+    name = max(times, key=lambda key: times[key], default=None)
+    return None if name is None else (times[name], name)
 
 
 def _spreads(channel: Channel, thrust: Thrust, burn: Signal) -> tuple[float, float, float]:

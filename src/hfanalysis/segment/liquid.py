@@ -31,8 +31,8 @@ LEAST_LOSS = 0.05
 GAS_EMPTIES = 0.25
 """Least rate at which the pressure falls by its own part once the liquid is gone, times t_v [-]: what is left is gas
 and leaves by the same injector. That number is m (m_l / m_v) (mdot_v / mdot_l): liquid over vapor 1.5 to 7 for tanks
-filled by 20 to 85 %, flow of the vapor 0.2 of the liquid's or more. The opening's own drop and the end of boiling have
-0.1 and less. Source: choked flow of nitrous oxide vapor against that of its liquid (CoolProp), at 25 to 45 bar."""
+filled by 20 to 85 %, flow of the vapor 0.2 of the liquid's or more. The opening's own drop and the end of late boiling
+have 0.1 and less. Source: choked flow of nitrous oxide vapor against that of its liquid (CoolProp), at 25 to 45 bar."""
 
 DRY_PRESSURE_SPREAD = 0.2
 """Standard deviation of ln(p) about the adiabatic value at which real tanks run dry: heat, mass, stratification."""

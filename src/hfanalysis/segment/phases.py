@@ -24,6 +24,7 @@ from hfanalysis.segment.kind import Kind, Known, recognize
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
+from hfanalysis.segment.purge_by_tank import find_nitrogen_by_tank
 from hfanalysis.segment.sanity import BESIDE_HOLE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation
@@ -297,7 +298,9 @@ class _Search:
 
     def _nitrogen(self) -> tuple[float, float] | str:
         if "p_purge" not in self.signals:
-            return "the log has no p_purge: nitrogen shows in its supply line"
+            if "p_tank" not in self.signals:
+                return "the log has no p_purge: nitrogen shows in its supply line"
+            return find_nitrogen_by_tank(self.signals["p_tank"], self._time("t_v"))
         return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._time("t_v"))
 
     def _unchoking(self, kind: Kind) -> tuple[float, float] | str:

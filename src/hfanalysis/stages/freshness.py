@@ -15,7 +15,7 @@ from hfanalysis.products import disk as products
 from hfanalysis.products.disk import HashCache
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.sources import closure, data, digest, libraries
-from hfanalysis.stages import base, way_to
+from hfanalysis.stages import base, stand, way_to
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.version import __version__
 
@@ -63,6 +63,17 @@ def _distributions() -> Mapping[str, list[str]]:
     return importlib.metadata.packages_distributions()
 
 
+def _of_stand(context: Context, hashes: HashCache) -> dict[str, Any]:
+    """The hashes of what is read of the stand's other tests."""
+    return {other.test.id: _of_test(other, hashes) for other in stand.nearest(context)}
+
+
+def _of_test(other: TestDefinition, hashes: HashCache) -> dict[str, str]:
+    return {
+        path.relative_to(other.folder).as_posix(): _raw_hash(path, hashes) for path in (other.path, *raw_files(other))
+    }
+
+
 def raw_files(definition: TestDefinition) -> list[Path]:
     """The files the test's results rest on, besides its ``test.toml``."""
     tables = [definition.rocket.drag_table] if definition.rocket and definition.rocket.drag_table else []
@@ -81,16 +92,25 @@ def input_files(context: Context, stage: Stage) -> list[Path]:
     return [context.definition.path, *raw_files(context.definition), *effect_files(context, stage)]
 
 
+def edited(context: Context) -> bool:
+    """Whether test.toml no longer is what was read: the products are of the one before."""
+    try:
+        return products.sha256_file(context.definition.path) != context.definition.sha256
+    except OSError:
+        return True
+
+
 def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, Any]:
     """What ``stage``'s products would be made from if it ran now: the ``provenance`` block of a product."""
     made_by = modules(context, stage)
     return {
         "hfanalysis": __version__,
         "code": code_hash(made_by),
-        "test_toml": hashes(context.definition.path),
+        "test_toml": context.definition.sha256,
         "raw": {
             path.relative_to(context.raw).as_posix(): _raw_hash(path, hashes) for path in raw_files(context.definition)
         },
+        **({"stand": _of_stand(context, hashes)} if stage.reads_stand else {}),
         "effects": {path.name: hashes(path) for path in effect_files(context, stage)},
         "libraries": library_versions(made_by),
         "parameters": context.at(stage).parameters(),
@@ -124,9 +144,11 @@ def state_path(context: Context, stage: Stage) -> Path:
 def recorded(context: Context, stage: Stage) -> dict[str, Any]:
     """The note of the last complete run of ``stage``; empty where there is none or it cannot be read."""
     try:
-        return products.read_json(state_path(context, stage))
+        note = products.read_json(state_path(context, stage))
     except (OSError, ValueError):
         return {}
+    whole = isinstance(note, dict) and all(isinstance(note.get(key, {}), dict) for key in ("products", "parameters"))
+    return note if whole else {}
 
 
 def is_fresh(context: Context, stage: Stage, note: Mapping[str, Any], key: str, hashes: HashCache) -> bool:

@@ -14,13 +14,13 @@ from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
 from hfanalysis.inference.full_run import FullRun, moved
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import STATED, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
-from hfanalysis.validate.thrust import Thrust, thrust_of
+from hfanalysis.validate.thrust import OUT, Thrust, burnt_out, thrust_of
 
 NAMES = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust", "average_thrust",
          "oxidizer_mass", "fuel_mass")  # fmt: skip
@@ -34,6 +34,10 @@ SPAN = 0.25
 test_performance_errors.py: a tare takes away three quarters of what a cell may be off by."""
 
 
+EARLY = 0.5
+"""[s] before the burn's end at which a channel may end and still say what it was over the burn."""
+
+
 @dataclass(frozen=True)
 class Fire:
     """When the engine burns: from the opening to ``end`` [s], known to ``std``, as ``source`` says."""
@@ -43,17 +47,21 @@ class Fire:
     source: str
 
 
-def fire_of(segments: Segments, definition: TestDefinition) -> Fire | str:
-    """The burn as seen on video, else until the fuel is gone, else until the chamber unchokes; or why there is none."""
+def fire_of(segments: Segments, definition: TestDefinition, log: TestLog | None = None) -> Fire | str:
+    """The burn as seen on video, else until the fuel is gone, else until the chamber unchokes, else until the ``log``'s
+    thrust is gone; or why there is none."""
     if segments.kind != "hot_fire" or segments.misfire:
         return "nothing burns in this test"
     seen = definition.observed.burn_time if definition.observed else None
     if seen is not None:
         return Fire(seen.value, seen.std if seen.std is not None else VIDEO, "[observed] burn_time")
-    for name, words in (("t_fuel_out", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
+    for name, words in (("t_fuel_gone", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
         found = segments.time(name)
         if found is not None:
             return Fire(found, max(segments.std(name), 1e-3), f"{name}: {words}")
+    gone = burnt_out(thrust_of(log, segments, definition).signal) if log is not None and "thrust" in log else None
+    if gone is not None:
+        return Fire(*gone, f"until the thrust is below {100.0 * OUT:.0f} % of its largest for good")
     return text("the end of the burn is not known: {reason}", reason=segments.t_end.reason)
 
 
@@ -63,7 +71,7 @@ def measured(
     """The measured column [s, N s, Pa, N, kg], and ``total_impulse_of_file`` [N s]: the raw integral over the whole
     file.
     """
-    fire = fire_of(segments, definition)
+    fire = fire_of(segments, definition, log)
     if isinstance(fire, str):
         none = {name: Quantity.absent(fire) for name in NAMES}
         return none | {"oxidizer_mass": _oxidizer(log, segments, definition, calibration)}
@@ -73,7 +81,7 @@ def measured(
     oxidizer, fuel = _oxidizer(log, segments, definition, calibration), _fuel(definition)
     out["specific_impulse"] = specific_impulse(impulse, oxidizer, fuel)
     out["peak_chamber_pressure"] = _peak(log, "p_chamber", _signal(log, segments, "p_chamber"), fire)
-    out["peak_thrust"] = _peak(log, "thrust", thrust.signal if thrust else "the log has no thrust", fire)
+    out["peak_thrust"] = _peak(log, "thrust", thrust.signal if thrust else log.lacks("thrust"), fire)
     out["average_thrust"] = _average(impulse, out["burn_time"])
     out |= {"oxidizer_mass": oxidizer, "fuel_mass": fuel}
     out["mean_chamber_pressure"] = _mean(log, segments, "p_chamber", fire)
@@ -84,7 +92,7 @@ def measured(
 def _signal(log: TestLog, segments: Segments, name: str) -> Signal | str:
     channel = log.get(name)
     if channel is None:
-        return f"the log has no {name}"
+        return log.lacks(name)
     signal = Signal.of(channel).shifted(segments.t_open.value or 0.0)
     return signal if signal.time.size > 8 else f"{name} has too few good samples"
 
@@ -99,12 +107,12 @@ def _bias(channel: Channel) -> float:
 def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     """Integral of the thrust over the burn, the cell's drift taken off."""
     if thrust is None:
-        return Quantity.absent("the log has no thrust")
+        return Quantity.absent(log.lacks("thrust"))
     signal, channel = thrust.signal, log["thrust"]
     if signal.time.size < 9:
         return Quantity.absent("thrust has too few good samples")
-    if signal.time[-1] < fire.end - 0.5:
-        return Quantity.absent(f"the log ends at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)")
+    if signal.time[-1] < fire.end - EARLY:
+        return Quantity.absent(_ends_early("thrust", signal, fire))
     edges = np.array([0.0, fire.end])
     whole, unseen = signal.bridged(), signal.holes(*edges)
     inner = whole.between(*edges)
@@ -122,6 +130,11 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     return Quantity(value, "N s", float(np.linalg.norm(errors)), why=why)
 
 
+def _ends_early(name: str, signal: Signal, fire: Fire) -> str:
+    """How it is said that a channel says nothing of the burn's last part."""
+    return f"the good samples of {name} end at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)"
+
+
 def _across(signal: Signal, start: float, end: float) -> float:
     """What an integral across a hole may be off by: the change may come at any instant of it."""
     first, last = signal.at(np.array([np.nextafter(start, end), np.nextafter(end, start)]))
@@ -132,7 +145,7 @@ def _raw_integral(log: TestLog) -> Quantity:
     """What a plain integral of the raw channel over the file gives."""
     channel = log.get("thrust")
     if channel is None:
-        return Quantity.absent("the log has no thrust")
+        return Quantity.absent(log.lacks("thrust"))
     raw = channel.values if channel.raw is None else channel.raw
     good = channel.good & np.isfinite(raw)
     value = float(np.trapezoid(raw[good], channel.time[good]))
@@ -177,6 +190,8 @@ def _mean(log: TestLog, segments: Segments, name: str, fire: Fire) -> Quantity:
     inner = signal.between(0.0, fire.end)
     if inner.time.size < 8:
         return Quantity.absent(f"{name} has too few good samples in the burn")
+    if signal.time[-1] < fire.end - EARLY:
+        return Quantity.absent(_ends_early(name, signal, fire))
     mean = float(np.trapezoid(inner.value, inner.time) / np.ptp(inner.time))
     return Quantity(mean, log[name].unit, _bias(log[name]))
 
@@ -265,14 +280,13 @@ def _changes(full: FullRun, calibration: Calibration) -> list[dict[str, float]]:
     engine, discharge, m = full.engine, calibration.C_i, calibration.m.std or 0.0
     rate, flux = calibration.regression_rate_reference, calibration.regression.reference_flux
     assert discharge.value is not None
-    assert rate.value is not None
-    assert flux is not None
-    assert flux.value is not None
     area = engine.feed.area * (1.0 + (discharge.std or 0.0) / discharge.value)
     changes = [{"area": area}, {"loss_factor": engine.feed.loss_factor + (calibration.K_loss.std or 0.0)}]
     changes.append({"oxidizer_mass": engine.oxidizer_mass + (calibration.load.std or 0.0)})
     if engine.polytropic_exponent is not None and m > 0.0:
         changes.append({"polytropic_exponent": engine.polytropic_exponent + m})
-    changes.append({"a": engine.a * (1.0 + (rate.std or 0.0) / rate.value)})
     n = engine.n + (calibration.n.std or 0.0)
+    if STATED in (calibration.a.verdict, calibration.n.verdict) or not rate.value or flux is None or not flux.value:
+        return [*changes, {"a": engine.a + (calibration.a.std or 0.0)}, {"n": n}]
+    changes.append({"a": engine.a * (1.0 + (rate.std or 0.0) / rate.value)})
     return [*changes, {"n": n, "a": rate.value / flux.value**n}]
