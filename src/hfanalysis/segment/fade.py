@@ -1,9 +1,9 @@
 """A fade of the fire before the liquid is gone: where it begins, and where it has ended.
 
 The chamber's response to the feed settles to a line while the grain burns whole. From the bend on it falls by a power
-of the time since, until the fuel is gone, and from there on it is a line again. How a grain runs out is not known: every
-power and every length that the samples allow counts by its likelihood, so that a rounded bend is dated as poorly as it
-is seen.
+of the time since, until the fuel is gone, and from there on it is a line again. How a grain runs out is not known:
+every power and every length that the samples allow counts by its likelihood, so that a rounded bend is dated as poorly
+as it is seen.
 """
 
 from __future__ import annotations

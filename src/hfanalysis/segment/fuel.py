@@ -167,7 +167,7 @@ def _faded(fade: Fade, sudden: Sudden | None, t_v: float) -> FuelEnd:
         return FuelEnd(fade.begin, fade.begin_std, fade.gone, fade.gone_std)
     if sudden is not None:
         return FuelEnd(fade.begin, fade.begin_std, sudden.time, sudden.std)
-    hidden = f"the fade that begins at {fade.begin:.2f} s goes on to the end of the liquid at {t_v:.2f} s, which hides its own"
+    hidden = f"the fade from {fade.begin:.2f} s goes on to the end of the liquid at {t_v:.2f} s, which hides its own"
     return FuelEnd(fade.begin, fade.begin_std, None, np.inf, hidden)
 
 

@@ -19,7 +19,7 @@ from hfanalysis.segment.coarse_load import coarse_load
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, QUIET, find_unchoking, pulses_after
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.firings import Flow, find_flows, largest
-from hfanalysis.segment.fuel import FuelEnd, find_fuel_end
+from hfanalysis.segment.fuel import BLURRED, FuelEnd, find_fuel_end
 from hfanalysis.segment.kind import Kind, Known, recognize
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
@@ -301,7 +301,7 @@ class _Search:
             if "p_tank" not in self.signals:
                 return "the log has no p_purge: nitrogen shows in its supply line"
             return find_nitrogen_by_tank(self.signals["p_tank"], self._time("t_v"))
-        return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._time("t_v"))
+        return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._sharp("t_v"))
 
     def _unchoking(self, kind: Kind) -> tuple[float, float] | str:
         if "p_chamber" not in self.signals:
@@ -437,6 +437,10 @@ class _Search:
         early = t_v - t_purge
         if early > 2.0 * np.hypot(self.events["t_v"].std or 0.0, self.events["t_purge"].std or 0.0):
             self.notes.append(f"nitrogen enters {early:.2f} s before the liquid is gone: there is no vapor-only phase")
+
+    def _sharp(self, name: str) -> float | None:
+        """An event's instant [s], where it is dated well enough to leave a corner of its own in another channel."""
+        return self._time(name) if (self.events[name].std or 0.0) < BLURRED else None
 
     def _time(self, name: str) -> float | None:
         return self.events[name].value if name in self.events else None
