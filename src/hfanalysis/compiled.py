@@ -19,7 +19,7 @@ from numba.core.ccallback import CFunc
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic, register_jitable
 
-from hfanalysis.sources import closure, digest
+from hfanalysis.sources import compiled_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -187,7 +187,7 @@ def _stamp(made: Any, function: Callable[..., Any]) -> None:
     index = made._cache._cache_file
     if not (hasattr(index, "_source_stamp") and hasattr(index, "_load_index")):
         raise RuntimeError("this version of numba keeps its cache in another way; hfanalysis.compiled does not know it")
-    index._source_stamp = digest(closure(Path(function.__code__.co_filename), inside=False))
+    index._source_stamp = compiled_digest(Path(function.__code__.co_filename).resolve())
     index._load_index = _readable(index._load_index)
 
 

@@ -11,18 +11,17 @@ import hashlib
 import json
 import os
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+from hfanalysis.sources import SETTLED_NS
 
 TEMPORARY = ".tmp-"
 """How the temporary name of an unfinished product begins."""
 
 _CHUNK = 1 << 20
 """Bytes read at a time [B]."""
-_SETTLED_NS = 2_000_000_000
-"""How old a file must be for its times to vouch for its content [ns]: file systems stamp no finer than 1 to 2 s.
-Source: FAT stamps every 2 s."""
 
 
 def temporary_path(path: Path) -> Path:
@@ -139,7 +138,7 @@ class HashCache:
         return digest
 
     def _remember(self, name: str, path: Path, state: list[int], digest: str) -> None:
-        settled = time.time_ns() - max(state[1], state[2]) > _SETTLED_NS
+        settled = time.time_ns() - max(state[1], state[2]) > SETTLED_NS
         if settled and _state(path) == state:
             self._known[name] = [*state, digest]
         else:
@@ -156,9 +155,10 @@ def _state(path: Path) -> list[int]:
     return [stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns, stat.st_ino]
 
 
-def touch_after(path: Path, inputs: Mapping[Path, int] | list[Path]) -> None:
-    """Make ``path`` no older than any of ``inputs``, so that make, which only knows times, finds it up to date."""
-    newest = max((item.stat().st_mtime_ns for item in inputs), default=0)
+def touch_after(path: Path, inputs: list[Path], since: int) -> None:
+    """Make ``path`` no older than any of ``inputs`` and than ``since`` [ns], so that make, which only knows times,
+    finds it up to date."""
+    newest = max([since, *(item.stat().st_mtime_ns for item in inputs)])
     if path.stat().st_mtime_ns < newest:
         now = max(time.time_ns(), newest)
         os.utime(path, ns=(now, now))
