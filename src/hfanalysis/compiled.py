@@ -18,13 +18,30 @@ from numba.core import cgutils
 from numba.core.ccallback import CFunc
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic, register_jitable
+from numba.np import linalg
 
-from hfanalysis.sources import compiled_digest
+from hfanalysis.sources import source_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 Real = Any
 """A number, or an array of them: what a :func:`law` is given and gives."""
+
+
+def _load_before_scipy() -> None:
+    """numba looks for SciPy at its first function, which takes a tenth of a second.
+
+    Compiled code that multiplies matrices still has it looked for.
+    """
+    looked_for = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None
+    try:
+        from numba.np import arraymath  # noqa: F401
+    finally:
+        linalg.ensure_blas = looked_for
+
+
+_load_before_scipy()
 
 
 @overload
@@ -187,7 +204,7 @@ def _stamp(made: Any, function: Callable[..., Any]) -> None:
     index = made._cache._cache_file
     if not (hasattr(index, "_source_stamp") and hasattr(index, "_load_index")):
         raise RuntimeError("this version of numba keeps its cache in another way; hfanalysis.compiled does not know it")
-    index._source_stamp = compiled_digest(Path(function.__code__.co_filename).resolve())
+    index._source_stamp = source_digest(Path(function.__code__.co_filename), inside=False)
     index._load_index = _readable(index._load_index)
 
 

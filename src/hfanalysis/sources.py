@@ -86,9 +86,10 @@ def remembered(question: str, roots: Iterable[Path], find: Callable[[], Any]) ->
     return _memory()(f"{question} {' '.join(sorted(names))}", find)
 
 
-def compiled_digest(path: Path) -> str:
-    """SHA-256 over what the compiled code in a source can call."""
-    return str(remembered("compiled", [path], lambda: digest(closure(path, inside=False))))
+def source_digest(root: Path, inside: bool = True) -> str:
+    """:func:`digest` of a source's :func:`closure`."""
+    path = root.resolve()
+    return str(remembered(f"digest {inside:d}", [path], lambda: digest(closure(path, inside=inside))))
 
 
 @cache

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
-from scipy.optimize import brentq
 
 from hfanalysis.assembly.engine import combustion_of
 from hfanalysis.engine.effect import Active
@@ -20,6 +19,7 @@ from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import FuelLaw, TankConstants
 from hfanalysis.record.definition import TestDefinition
+from hfanalysis.roots import root
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.combustion import FORMATION_OFFSET, PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
@@ -168,7 +168,7 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
                 instant=instant,
             )
         )
-    return replace(engine, temperature=float(brentq(miss, low, high, xtol=1e-4)))
+    return replace(engine, temperature=root(miss, low, high, 1e-4))
 
 
 def pressure_at(engine: Engine, instant: float) -> float:

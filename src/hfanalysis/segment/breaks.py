@@ -177,7 +177,7 @@ def _linear_std(signal: Signal, design: Design, instant: float, noise: Noise) ->
 
 def _noise_variance(signal: Signal, design: Design, instant: float) -> float:
     """Variance per independent sample: that of the residuals times the length of their memory in samples."""
-    (residual,) = _residuals(signal, design, np.array([instant]))
+    residual: Array = _residuals(signal, design, np.array([instant]))[0]
     variance = float(residual @ residual) / max(residual.size - 6, 1)
     return max(variance * memory_length(residual), 1e-12 * float(np.ptp(signal.value)) ** 2, 1e-300)
 

@@ -214,4 +214,3 @@ class _Run:
     def _upstream_products(self, stage: Stage) -> list[Path]:
         names = (name for name in stage.upstream if name not in self.context.absent)
         return [self.context.product(product) for name in names for product in stage.reads(base.load_stage(name))]
-

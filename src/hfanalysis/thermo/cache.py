@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.sources import closure, digest
+from hfanalysis.sources import source_digest
 
 
 def cache_directory() -> Path:
@@ -27,7 +27,7 @@ def cached(name: str, shape: tuple[int, ...], make: Callable[[], Array]) -> Arra
 
     ``name`` has to say what determines the array and is not in the sources of ``make``: versions of libraries, nodes.
     """
-    path = cache_directory() / f"{name}-{digest(closure(Path(inspect.getfile(make))))[:12]}.npy"
+    path = cache_directory() / f"{name}-{source_digest(Path(inspect.getfile(make)))[:12]}.npy"
     try:
         stored = np.load(path, allow_pickle=False)
         if stored.shape == shape and np.isfinite(stored).all():

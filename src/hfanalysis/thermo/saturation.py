@@ -13,7 +13,6 @@ from enum import IntEnum
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
@@ -47,6 +46,14 @@ LN_VAPOR_CV, LN_VAPOR_CP, VAPOR_GRUENEISEN = 7, 8, 9
 """Rows of the table, as in :class:`Property`."""
 
 
+def splines(theta: Array, values: Array) -> Array:
+    """Cubics (properties, n - 1, 4) through samples (properties, n) [SI] over theta (n,) [-], in ascending power of
+    theta - node."""
+    from scipy.interpolate import CubicSpline
+
+    return np.ascontiguousarray(np.stack([CubicSpline(theta, row).c[::-1].T for row in values]))
+
+
 @dataclass(frozen=True)
 class Saturation:
     """Saturated nitrous oxide from one source, in specific SI units.
@@ -73,14 +80,19 @@ class Saturation:
 
         ``critical_temperature`` [K].
         """
-        rows = [CubicSpline(theta, properties[p]).c[::-1].T for p in Property]
+        coefficients = splines(theta, np.array([properties[p] for p in Property]))
+        return cls.from_splines(source, theta, coefficients, critical_temperature)
+
+    @classmethod
+    def from_splines(cls, source: str, theta: Array, coefficients: Array, critical_temperature: float) -> Saturation:
+        """The same from ``coefficients`` as :func:`splines` gives them."""
         t = critical_temperature * (1.0 - theta**3)
         return cls(
             source,
             critical_temperature,
             float(theta[0]),
             float(theta[1] - theta[0]),
-            np.ascontiguousarray(np.stack(rows)),
+            coefficients,
             float(t.min()),
             float(t.max()),
         )
