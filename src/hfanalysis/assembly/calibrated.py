@@ -182,6 +182,8 @@ def pressure_at(engine: Engine, instant: float) -> float:
         burnt = burn(engine, longest=max(instant, 1e-3))
     except ArithmeticError as error:
         raise AbsentError(f"the tank's pressure at {instant:.2f} s: {error}") from error
+    if instant >= burnt.time[-1]:
+        return burnt.last("tank_pressure")
     return float(np.interp(instant, burnt.time, burnt.output("tank_pressure")))
 
 

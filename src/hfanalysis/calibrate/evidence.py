@@ -14,7 +14,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, starting_for
-from hfanalysis.engine.equations import RADIUS
+from hfanalysis.engine.equations import O_CHAMBER_PRESSURE, RADIUS
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 
@@ -141,9 +141,11 @@ def chamber_at(engine: Engine, burnt: Burn, time: Array, timed: bool = True) -> 
     After the burn it is that of its end where the end itself is ``timed``, so that a burn that is short by a moment is
     not held against the constants twice, and far too heavily; else ambient.
     """
-    pressure = burnt.output("chamber_pressure")
-    later = float(pressure[-1]) if timed else engine.ambient
-    return np.asarray(np.interp(time, burnt.time, pressure, right=later))
+    begin, end = np.searchsorted(burnt.time, (time[0], time[-1]))
+    points = burnt.time[max(begin - 1, 0) : end + 1]
+    pressure = burnt.steps.at(points)[1][:, O_CHAMBER_PRESSURE]
+    later = burnt.last("chamber_pressure") if timed else engine.ambient
+    return np.asarray(np.interp(time, points, pressure, right=later))
 
 
 def _scalars(evidence: Evidence, engine: Engine, burnt: Burn) -> list[float]:
@@ -160,6 +162,6 @@ def burn_time_of(engine: Engine, burnt: Burn) -> float:
     """When the fuel is gone [s]; for a burn that was given up before, carried on at its last rate."""
     if burnt.fuel_out:
         return burnt.burn_time
-    port, last = float(burnt.states[-1, RADIUS]), burnt.output("fuel_flow")[-1]
-    rate = float(last / engine.grain.ring(port))
+    port = float(burnt.steps.end[-1, RADIUS])
+    rate = float(burnt.last("fuel_flow") / engine.grain.ring(port))
     return burnt.burn_time + min((engine.outer_radius - port) / max(rate, 1e-9), 10.0 * burnt.burn_time)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -113,6 +114,10 @@ class Saturation:
         return (self.coefficients, self.theta_start, self.theta_step, self.critical_temperature)
 
     def _evaluate(self, prop: Property, temperature: ArrayLike) -> tuple[Array, Array]:
+        if isinstance(temperature, float):  # of which there are thousands, each on its own
+            held = self.t_min - 1e-9 <= temperature <= self.t_max + 1e-9
+            one = evaluate(*self.kernel_table, int(prop), temperature) if held else (np.nan, np.nan)
+            return np.asarray(one[0]), np.asarray(one[1])
         t = np.asarray(temperature, dtype=np.float64)
         value, slope = _evaluate_many(*self.kernel_table, int(prop), t.ravel())
         inside = (t >= self.t_min - 1e-9) & (t <= self.t_max + 1e-9)
@@ -188,7 +193,7 @@ class Saturation:
         t = _temperatures(*self.kernel_table, np.clip(p, low, high).ravel(), self.t_min, self.t_max)
         return np.where(inside, t.reshape(p.shape), np.nan)
 
-    @property
+    @cached_property
     def pressure_range(self) -> tuple[float, float]:
         """Lowest and highest saturation pressure of the source [Pa]."""
         return float(self.pressure(self.t_min)), float(self.pressure(self.t_max))
