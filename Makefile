@@ -66,13 +66,13 @@ format: $(STAMP) ## format the code with ruff
 	$(BIN)/ruff format
 
 benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers, localisation, a 1 GB log beside pandas
-	$(BIN)/python benchmarks/startup.py
-	PYTHONPATH=. $(BIN)/python benchmarks/engine_speed.py
-	PYTHONPATH=. $(BIN)/python benchmarks/reference_engine.py
-	PYTHONPATH=. $(BIN)/python benchmarks/hrap_run.py
-	$(BIN)/python benchmarks/flights.py
-	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/localisation.py
-	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python benchmarks/ingest_1gb.py --gigabytes 1; fi
+	$(BIN)/python -m benchmarks.startup
+	$(BIN)/python -m benchmarks.engine_speed
+	$(BIN)/python -m benchmarks.reference_engine
+	$(BIN)/python -m benchmarks.hrap_run
+	$(BIN)/python -m benchmarks.flights
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.localisation
+	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python -m benchmarks.ingest_1gb --gigabytes 1; fi
 
 # Only the tests and the benchmark use it: it has an environment of its own, and where it cannot be installed they go on
 # without it and say so.
@@ -82,10 +82,10 @@ rocketpy: ## set up .venv-rocketpy/ with the locked RocketPy, to compare flights
 		echo "make rocketpy: RocketPy cannot be installed here; flights are not compared with it" >&2
 
 random-engines: $(STAMP) ## 10,000 random engines run or are refused with a reason: docs/random-engines.md
-	$(BIN)/python benchmarks/random_engines.py --write
+	$(BIN)/python -m benchmarks.random_engines --write
 
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
-	$(BIN)/python benchmarks/recovery.py $(FLAGS)
+	$(BIN)/python -m benchmarks.recovery $(FLAGS)
 
 mutants: $(STAMP) ## small errors put into a copy of the source, and whether tests notice: docs/mutants.md; FLAGS='--each 40'
 	$(BIN)/python -m benchmarks.mutants --write docs/mutants.md $(FLAGS)

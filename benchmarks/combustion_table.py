@@ -34,7 +34,7 @@ CASES = (
 
 HEAD = """# Combustion: the table and the equilibrium it stands for
 
-Written by `python benchmarks/combustion_table.py`.
+Written by `python -m benchmarks.combustion_table`.
 
 The chamber gas is NASA CEA's equilibrium of nitrous oxide, paraffin and the nitrogen of a pressurant or purge, frozen
 in the nozzle. Engines read it from a table over pressure (0.2 to 120 bar), mixture, the enthalpy with which the nitrous

@@ -14,7 +14,7 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 
-from tests.engine.stand import engine_on_stand
+from simulated.engines import engine_on_stand
 
 from hfanalysis.effects import effect
 from hfanalysis.engine.batch import burn_many
@@ -30,7 +30,7 @@ FIRST = """
 from time import perf_counter
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.engine.sensitivity import run_with_tangents
-from tests.engine.stand import engine_on_stand
+from simulated.engines import engine_on_stand
 engine = engine_on_stand()
 start = perf_counter()
 burn(engine, 17.0, run_on=True)

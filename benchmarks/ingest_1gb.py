@@ -1,6 +1,6 @@
 """How fast and in how much memory a large log is ingested, beside pandas reading the same file.
 
-    python benchmarks/ingest_1gb.py --gigabytes 1
+    python -m benchmarks.ingest_1gb --gigabytes 1
 
 writes a log of 20 channels at 1 kHz into a temporary folder, reads it with ``pandas.read_csv`` in chunks and ingests
 it, each in a process of its own, and prints both times, their ratio and the peak resident memory.

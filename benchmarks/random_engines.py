@@ -1,6 +1,6 @@
 """Random engines, most of them absurd: each runs or is refused with a reason, in bounded time, and never pulls.
 
-python benchmarks/random_engines.py [NUMBER] [--write]
+python -m benchmarks.random_engines [NUMBER] [--write]
 """
 
 from __future__ import annotations

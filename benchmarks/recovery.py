@@ -5,7 +5,7 @@ ingest, segment and calibrate. ``engine``: logs of whole engines (simulated/engi
 ``blind``: the cases without an effect of another generator, where its folder is given.
 Results are written as they come to .cache/recovery-*.jsonl; the table goes to docs/recovery.md.
 
-    python benchmarks/recovery.py --cases 400 [--blind FOLDER]
+    python -m benchmarks.recovery --cases 400 [--blind FOLDER]
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def run(name: str, cases: Iterable[Any], work: Any, processes: int) -> list[dict
 def _code() -> str:
     """Results are of one state of the code: any change to it starts the study anew."""
     digest = hashlib.sha256()
-    for path in sorted([*ROOT.glob("src/**/*.py"), *ROOT.glob("benchmarks/virtual_*.py")]):
+    for path in sorted([*ROOT.glob("src/**/*.py"), *ROOT.glob("simulated/*.py")]):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from hfanalysis.products.campaign import Campaign
+from hfanalysis.products.effects import EffectLibrary
 from hfanalysis.products.engines import Designed, Simulated
 from hfanalysis.products.kinds import KINDS
 from hfanalysis.products.model import Is, Part, Product
@@ -18,7 +19,7 @@ PAGE, SCHEMAS = DOCS / "products.md", DOCS / "schemas"
 BLOCK = re.compile(
     r"(<!-- fields of (?P<file>\S+) \(written by `make readme`\) -->\n).*?(<!-- end of fields -->)", re.DOTALL
 )
-ALL: dict[str, type[Part]] = {**KINDS, **{kind.file: kind for kind in (Campaign, Simulated, Designed)}}
+ALL: dict[str, type[Part]] = {**KINDS, **{kind.file: kind for kind in (Campaign, Simulated, Designed, EffectLibrary)}}
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 NUMBER_OR_NOTHING = ["number", "null"]
@@ -93,7 +94,8 @@ def _table(kind: type[Part]) -> str:
 
 def _rows(kind: type[Part], before: str = "") -> Iterator[tuple[str, str, str]]:
     """Path, unit and words of every field; those of what every product has are told once, above the tables."""
-    own = (item for item in kind.model_fields.items() if before or item[0] not in Product.model_fields)
+    common = Product.model_fields if issubclass(kind, Product) else {}
+    own = (item for item in kind.model_fields.items() if before or item[0] not in common)
     for name, field in own:
         about = next(data for data in field.metadata if isinstance(data, Is))
         path = f"{before}{field.alias or name}"

@@ -46,7 +46,7 @@ def scoring_digest() -> str:
     """The scorer; the generator's own is in its answers."""
     from simulated.blind.version import GENERATOR  # workers, which load this module, load nothing of the generator's
 
-    return digest(REPOSITORY / "tests" / "blind", *GENERATOR)
+    return digest(REPOSITORY / "simulated" / "blind", *GENERATOR)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from tests.calibrate.engine_sample import TRUTH, engine, evidence, rate
 
 from hfanalysis.assembly.calibrated import Regression, pressure_at, starting_for
 from hfanalysis.calibrate.evidence import Evidence, Scalar, burn_time_of
-from hfanalysis.calibrate.likelihood import effective_samples, surface
-from hfanalysis.calibrate.regression import RANGE_N, Fitted, _minimum, fit, fit_together, law_at, result
+from hfanalysis.calibrate.likelihood import effective_samples, surface, weights_from
+from hfanalysis.calibrate.regression import RANGE_N, Fitted, _likeliest, _minimum, fit, fit_together, law_at, result
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.errors import AbsentError
 
@@ -151,6 +151,34 @@ def test_a_burn_given_up_early_is_carried_on_at_its_last_rate() -> None:
     assert not part.fuel_out
     assert burn_time_of(engine(), part) == pytest.approx(whole.burn_time, rel=0.15)
     assert burn_time_of(engine(), whole) == whole.burn_time
+
+
+def test_a_fit_that_leaves_more_is_less_likely_though_its_own_weights_are_wider() -> None:
+    left, nothing = np.sin(np.arange(40.0)), np.zeros((41, 41))
+    residuals = [np.append(size * left, 0.0) for size in (1e4, 2e4)]
+    weights = [weights_from(r, 40, np.array([0.1]), nothing, nothing, 1.0) for r in residuals]
+    assert weights[0].misfit(residuals[0]) == pytest.approx(weights[1].misfit(residuals[1]))
+    deviances = [w.deviance(r, 10.0) for w, r in zip(weights, residuals, strict=True)]
+    assert deviances[1] - deviances[0] == pytest.approx(20.0 * np.log(2.0))
+
+
+def test_of_minima_that_a_test_does_not_tell_apart_the_usual_is_told_and_the_other_said(blurred: Fitted) -> None:
+    region = blurred.surface.points[blurred.surface.rise < 0.5 * blurred.surface.threshold]
+    ends = [region[int(np.argmin(region[:, 1]))], region[int(np.argmax(region[:, 1]))]]
+    minima = _likeliest(blurred.evidence, ends, blurred.flux)
+    distances = [abs(m[1] - 0.45) for m in minima]
+    assert len(minima) == 2
+    assert distances[0] < distances[1]
+    told = result(replace(blurred, rivals=(minima[1],)))
+    assert told.n.verdict == "not identifiable"
+    assert f"{minima[1][1]:.2f}" in (told.n.why or "")
+    assert told.n.ci95 is not None
+    assert told.n.ci95[0] <= minima[1][1] <= told.n.ci95[1]
+
+
+def test_a_minimum_that_is_less_likely_is_no_rival(clear: Fitted) -> None:
+    off = clear.best + np.array([0.3, 0.0])
+    assert [m is clear.best for m in _likeliest(clear.evidence, [off, clear.best], clear.flux)] == [True]
 
 
 def test_the_law_passes_through_its_point() -> None:

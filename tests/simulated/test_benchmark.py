@@ -68,6 +68,11 @@ def test_workers_that_die_or_take_for_ever_are_replaced_and_no_case_is_lost(tmp_
     assert "1.5 s" in found["for-ever"].message
 
 
+def test_every_digest_is_of_files_that_are_there() -> None:
+    of_nothing = fo.digest(ROOT / "no such folder")
+    assert of_nothing not in (fo.code_digest(), fo.scoring_digest())
+
+
 def test_workers_stay_and_say_which_case_was_their_first(tmp_path: Path) -> None:
     found = outcomes(list("abcdefgh"), tmp_path)
     assert len({o.result.settings["worker"] for o in found.values()}) <= 2

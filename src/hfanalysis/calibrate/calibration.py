@@ -17,4 +17,4 @@ class TankCalibration:
 
     def with_law(self, law: FuelLaw) -> Calibration:
         """Together with the fuel's regression."""
-        return Calibration(**law.given, **self.constants.given)
+        return Calibration(**law.content, **self.constants.content)

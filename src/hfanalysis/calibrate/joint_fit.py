@@ -229,7 +229,7 @@ class _Constants:
 
     def _about(self) -> RegressionBasis:
         """What a and n rest on, as :func:`hfanalysis.calibrate.regression.result` has it."""
-        stated = next((test.given for test in self.one_by_one.regression.tests), {})
+        stated = next((test.content for test in self.one_by_one.regression.tests), {})
         names = ", ".join(sorted(active.effect.name for active in self.engine.effects))
         told = f"all channels from the opening to {self._window[1]:.2f} s, together with C_i, K_loss, m and the load"
         mine = {

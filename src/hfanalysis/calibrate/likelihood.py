@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import log
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,17 +65,29 @@ class Weights:
     """``precision``: the inverse covariance of all observations; ``threshold``: rise of r'Pr at the 95 % limit.
 
     ``scatter`` [Pa]: standard deviation of a block mean of the chamber pressure about the model; ``effective``: number
-    of independent ones.
+    of independent ones of the ``samples`` that there are.
     """
 
     precision: Array
     threshold: float
     scatter: float
     effective: float
+    samples: int
 
     def misfit(self, residual: Array) -> float:
         """r' P r [-] of the ``residual`` (n,) [Pa, s, kg], as :attr:`Evidence.observed` has them."""
         return float(residual @ self.precision @ residual)
+
+    def deviance(self, residual: Array, count: float) -> float:
+        """-2 ln of the likelihood [-], but for a constant, by weights that follow from this very ``residual`` (n,).
+
+        A fit that leaves more scatter has wider weights and by its misfit alone would look as good; here the scatter
+        counts, as that of ``count`` independent pressures. What the scalars and the common covariance take counts once.
+        """
+        variance = self.scatter**2 * self.samples / self.effective
+        own = variance * (self.precision @ residual)[: self.samples]
+        by_scatter = float(own @ own) / variance
+        return count * (2.0 * log(self.scatter) + by_scatter / self.effective) + self.misfit(residual) - by_scatter
 
 
 def first_guess(samples: int, level: float, scales: Array) -> Weights:
@@ -84,7 +97,7 @@ def first_guess(samples: int, level: float, scales: Array) -> Weights:
     kg].
     """
     variances = np.concatenate((np.full(samples, (0.03 * level) ** 2 * 10.0), scales**2))
-    return Weights(np.diag(1.0 / variances), 4.0, 0.03 * level, 0.1 * samples)
+    return Weights(np.diag(1.0 / variances), 4.0, 0.03 * level, 0.1 * samples, samples)
 
 
 def weights_from(residual: Array, samples: int, scales: Array, nuisance: Array, wander: Array, least: float) -> Weights:
@@ -119,7 +132,7 @@ def _weights(
         scatter = max(float(np.sqrt(pressures @ pressures / samples * lost)), least)
     precision = np.asarray(np.linalg.inv(common + _diagonal(samples, scatter, effective, scales)), dtype=np.float64)
     freedom = min(max(effective - 2.0, 1.0) + scales.size, known)
-    return Weights(precision, t_95(freedom) ** 2, scatter, effective)
+    return Weights(precision, t_95(freedom) ** 2, scatter, effective, samples)
 
 
 def _diagonal(samples: int, scatter: float, effective: float, scales: Array) -> Array:

@@ -9,7 +9,7 @@ part of the answer.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, log
 from typing import Any
 
@@ -19,7 +19,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.evidence import Evidence, burn_time_of
 from hfanalysis.calibrate.likelihood import Surface, Weights, first_guess, surface, weights_from
-from hfanalysis.engine.grain import oxidizer_flux
+from hfanalysis.engine.grain import USUAL_N, oxidizer_flux
 from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError
@@ -66,6 +66,9 @@ NEAR, EXACT = 1e-4, 1e-7
 """To what ln r and n are found of a minimum that is one of several, and of the one that is told. Evidence: along a
 valley, steps are short before its end is reached, and where a fit stood followed the last digits of a log."""
 
+SAME = 0.01
+"""Of ln r and n [-], within which two minima are one: they are found to far less, and are told to far more."""
+
 FIRST_STEP = 500.0
 """Of the search for a minimum, over what it is found to."""
 
@@ -78,7 +81,7 @@ class Fitted:
     """a and n with their likelihood.
 
     ``best`` is (ln r at ``flux``, n); ``flux`` [kg/m^2/s] a flux of the burn. ``covariance`` is of ``best``; ``misfit``
-    r'Pr at the best.
+    r'Pr at the best; ``rivals``: other points that explain the test as well.
     """
 
     evidence: tuple[Evidence, ...]
@@ -87,6 +90,12 @@ class Fitted:
     best: Array
     surface: Surface
     misfit: float
+    rivals: tuple[Array, ...] = ()
+
+    def interval(self, weights: Array) -> tuple[float, float]:
+        """95 % interval of ``weights`` (2,) times the parameters [-], as far as its rivals."""
+        ends = [*self.surface.interval(weights), *(float(r @ weights) for r in self.rivals)]
+        return min(ends), max(ends)
 
     @property
     def law(self) -> Regression:
@@ -127,8 +136,9 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
         law = law_at(best, flux)
         evidence = [e.with_regression(law) for e in evidence]
         weights = [_weighed(e, law) for e in evidence]
-        best = _least(evidence, weights, flux, best)
-    return _surveyed(evidence, weights, flux, best)
+        best, *rivals = _likeliest(evidence, _minima(evidence, weights, flux, best), flux)
+    found = _surveyed(evidence, weights, flux, best)
+    return replace(found, rivals=tuple(r for r in rivals if abs(r[1] - found.best[1]) > SAME))
 
 
 def _surveyed(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> Fitted:
@@ -185,11 +195,36 @@ def _minimum(
     return np.asarray(solver.optimize(start), dtype=np.float64)
 
 
-def _least(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> Array:
-    """The least of the minima found from the best so far and from other exponents: the valley may have several."""
-    objective = _objective(evidence, weights, flux)
+def _minima(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> list[Array]:
+    """The minima found from the best so far and from other exponents, each once: the valley may have several."""
     starts = [best, *(np.array([best[0], n]) for n in RESTARTS if abs(n - best[1]) > 0.1)]
-    return min((_minimum(evidence, weights, flux, s) for s in starts), key=objective)
+    out: list[Array] = []
+    for found in (_minimum(evidence, weights, flux, start) for start in starts):
+        if not any(np.abs(found - other).max() < SAME for other in out):
+            out.append(found)
+    return out
+
+
+def _likeliest(evidence: Sequence[Evidence], minima: Sequence[Array], flux: float) -> list[Array]:
+    """The minima that the test does not tell apart, the most usual first.
+
+    Each is judged with the weights that follow from what it leaves itself. Where several are as likely, what is known
+    of fuels decides which is told.
+    """
+    if len(minima) == 1:
+        return list(minima)
+    laws = [law_at(point, flux) for point in minima]
+    weights = [[_weighed(e, law) for e in evidence] for law in laws]
+    counts = [min(w.effective for w in of_test) for of_test in zip(*weights, strict=True)]
+    deviances = [
+        sum(w.deviance(_residual(e, law), count) for e, w, count in zip(evidence, own, counts, strict=True))
+        for law, own in zip(laws, weights, strict=True)
+    ]
+    usual = [d + ((law.n - USUAL_N[0]) / USUAL_N[1]) ** 2 for law, d in zip(laws, deviances, strict=True)]
+    best = int(np.argmin(usual))
+    limit = min(deviances) + max(w.threshold for w in weights[best])
+    order = sorted((k for k in range(len(minima)) if k == best or deviances[k] <= limit), key=usual.__getitem__)
+    return [minima[k] for k in order]
 
 
 def _objective(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float) -> Any:
@@ -205,10 +240,14 @@ def _misfit(evidence: Evidence, weights: Weights, law: Regression) -> float:
     return FAILED if predicted is None else weights.misfit(evidence.observed - predicted)
 
 
-def _weighed(evidence: Evidence, law: Regression) -> Weights:
+def _residual(evidence: Evidence, law: Regression) -> Array:
     predicted = evidence.predict(law)
     assert predicted is not None
-    size, residual = evidence.time.size, evidence.observed - predicted
+    return evidence.observed - predicted
+
+
+def _weighed(evidence: Evidence, law: Regression) -> Weights:
+    size, residual = evidence.time.size, _residual(evidence, law)
     wander = np.zeros((residual.size, residual.size))
     wander[:size, :size] = evidence.wander
     return weights_from(residual, size, evidence.scales, _by_nuisances(evidence, law), wander, evidence.least)
@@ -247,13 +286,14 @@ def result(found: Fitted) -> FuelLaw:
     shift = log(flux / found.flux)
     rate = np.array([1.0, shift])
     ln_rate = float(found.best @ rate)
-    low, high = found.surface.interval(rate)
+    low, high = found.interval(rate)
     spread = 0.5 * (high - low) / NORMAL_95
-    n_low, n_high = found.surface.interval(np.array([0.0, 1.0]))
-    a_low, a_high = found.surface.interval(np.array([1.0, -log(found.flux)]))
+    n_low, n_high = found.interval(np.array([0.0, 1.0]))
+    a_low, a_high = found.interval(np.array([1.0, -log(found.flux)]))
     n_std = 0.5 * (n_high - n_low) / NORMAL_95
     law = found.law
-    verdict, why = judge_regression(found.surface.bounded, (n_low, n_high), n_std, flux, spread)
+    rivals = [float(r[1]) for r in found.rivals]
+    verdict, why = judge_regression(found.surface.bounded, (n_low, n_high), n_std, flux, spread, rivals)
     known = spread <= WIDEST_RATE
     a_std = law.a * 0.5 * (a_high - a_low) / NORMAL_95
     return FuelLaw(
@@ -274,7 +314,7 @@ def rate_at(flux: float) -> str:
 
 
 def judge_regression(
-    bounded: bool, interval: tuple[float, float], std: float, flux: float, spread: float
+    bounded: bool, interval: tuple[float, float], std: float, flux: float, spread: float, rivals: Sequence[float] = ()
 ) -> tuple[str, str]:
     """Verdict on a and n, and why.
 
@@ -284,7 +324,11 @@ def judge_regression(
         std: standard deviation of n [-].
         flux: the reference flux [kg/m^2/s].
         spread: relative standard deviation [-] of the rate at it.
+        rivals: other n [-] that explain the test as well.
     """
+    if rivals:
+        others = " or ".join(f"{n:.2f}" for n in rivals)
+        return NOT_IDENTIFIABLE, f"a and n are not told apart: the test is explained as well with n = {others}"
     if not bounded or std > WIDEST_N:
         return NOT_IDENTIFIABLE, (
             f"a and n are not told apart (n to +/- {std:.2f} or worse); what is identified is their combination, the "
@@ -308,9 +352,7 @@ def _about(found: Fitted, flux: float) -> RegressionBasis:
 
 def _about_test(evidence: Evidence, weights: Weights, law: Regression) -> RegressionTest:
     burnt = evidence.burnt(law)
-    predicted = evidence.predict(law)
-    assert predicted is not None
-    residual = (evidence.observed - predicted)[: evidence.time.size]
+    residual = _residual(evidence, law)[: evidence.time.size]
     burn_time = evidence.burn_time
     return RegressionTest(
         test=evidence.test,

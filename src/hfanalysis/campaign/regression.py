@@ -36,4 +36,4 @@ def regression_of(tests: Sequence[str], root: Path, out: Path | None, progress: 
     joint = fit_together(evidence, alone)
     words = "agree" if joint.agree else "disagree: common constants fit worse than chance allows"
     agreement = Agreement(verdict=words, probability=joint.probability)
-    return CommonLaw(tests=tuple(laws), **result(joint.fitted).given, agreement=agreement, alone=laws)
+    return CommonLaw(tests=tuple(laws), **result(joint.fitted).content, agreement=agreement, alone=laws)

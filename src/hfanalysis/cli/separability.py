@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from rich.text import Text
 
@@ -13,10 +11,13 @@ from hfanalysis.cli import tables
 from hfanalysis.cli.exit_status import put
 from hfanalysis.cli.perform import bring
 from hfanalysis.cli.request import Request
+from hfanalysis.diagnose.added_sensors import Sensor
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.separability import NOMINAL, SEEN, TWINS, Outlook, look_ahead
 from hfanalysis.effects import FOLDER, library
 from hfanalysis.errors import AbsentError
+from hfanalysis.products.disk import to_json
+from hfanalysis.products.effects import AddedSensor, EffectLibrary, Pair, Rival, Separability, TwinPair, Visibility
 from hfanalysis.stages.diagnose import subject_of
 from hfanalysis.wording import numbers as wording
 
@@ -34,56 +35,53 @@ def separability(test: str, root: Path, out: Path | None, as_json: bool) -> None
         raise AbsentError(f"{test}: the calibrated engine cannot be run: {error}") from error
     product = product_of(test, outlook)
     if as_json:
-        from hfanalysis.products.disk import to_json
-
-        put(to_json({**listing.product(found), "test": product}))
+        put(to_json(EffectLibrary(effects=listing.product(found).effects, test=product).to_json()))
         return
     show(product)
 
 
-def product_of(test: str, outlook: Outlook) -> dict[str, Any]:
+def product_of(test: str, outlook: Outlook) -> Separability:
     """What can be told apart, as data in SI."""
     twins = outlook.twins
-    return {
-        "id": test,
-        "channels": list(outlook.channels),
-        "seen_from": SEEN,
-        "nominal": NOMINAL,
-        "twins_below": TWINS,
-        "effects": {name: _visibility(name, outlook) for name in outlook.effects},
-        "twins": [{**_pair(p, d), "declared": _declared(p, outlook)} for p, d in twins.items()],
-        "declared_twins_apart": [_pair(p, outlook.now.apart(*p)) for p in _declarations(outlook) if p not in twins],
-        "sensors": {
-            sensor.name: {
-                "words": sensor.words,
-                "accuracy": sensor.accuracy,
-                "unit": sensor.unit,
-                "twins": [_pair(p, d) for p, d in outlook.twins_with(sensor).items()],
-                "shows": outlook.shown(sensor),
-            }
-            for sensor in outlook.extra
-        },
-    }
+    return Separability(
+        id=test,
+        channels=tuple(outlook.channels),
+        seen_from=SEEN,
+        nominal=NOMINAL,
+        twins_below=TWINS,
+        effects={name: _visibility(name, outlook) for name in outlook.effects},
+        twins=tuple(TwinPair(effects=p, apart=d, declared=_declared(p, outlook)) for p, d in twins.items()),
+        declared_twins_apart=tuple(
+            Pair(effects=p, apart=outlook.now.apart(*p)) for p in _declarations(outlook) if p not in twins
+        ),
+        sensors={sensor.name: _added(sensor, outlook) for sensor in outlook.extra},
+    )
 
 
-def _visibility(name: str, outlook: Outlook) -> dict[str, Any]:
+def _added(sensor: Sensor, outlook: Outlook) -> AddedSensor:
+    return AddedSensor(
+        words=sensor.words,
+        accuracy=sensor.accuracy,
+        unit=sensor.unit,
+        twins=tuple(Pair(effects=p, apart=d) for p, d in outlook.twins_with(sensor).items()),
+        shows=tuple(outlook.shown(sensor)),
+    )
+
+
+def _visibility(name: str, outlook: Outlook) -> Visibility:
     effect, strength = outlook.effects[name], outlook.strength_at(name, SEEN)
     rivals = [n for n in outlook.visible if n != name] if name in outlook.visible else []
     closest = sorted((outlook.now.at_nominal(name, rival), rival) for rival in rivals)[:RIVALS]
-    return {
-        "strength": effect.strength.name,
-        "unit": effect.strength.unit,
-        "typical": effect.strength.typical,
-        "detectability": outlook.now.detectability(name),
-        "seen_at": strength if outlook.in_reach(name) else None,
-        "in_reach": outlook.in_reach(name),
-        "decisive": effect.decisive,
-        "rivals": [{"name": n, "apart": d, "correlation": outlook.now.correlation(name, n)} for d, n in closest],
-    }
-
-
-def _pair(pair: tuple[str, str], apart: float) -> dict[str, Any]:
-    return {"effects": list(pair), "apart": apart}
+    return Visibility(
+        strength=effect.strength.name,
+        unit=effect.strength.unit,
+        typical=effect.strength.typical,
+        detectability=outlook.now.detectability(name),
+        seen_at=strength if outlook.in_reach(name) else None,
+        in_reach=outlook.in_reach(name),
+        decisive=effect.decisive,
+        rivals=tuple(Rival(name=n, apart=d, correlation=outlook.now.correlation(name, n)) for d, n in closest),
+    )
 
 
 def _declared(pair: tuple[str, str], outlook: Outlook) -> bool:
@@ -97,44 +95,43 @@ def _declarations(outlook: Outlook) -> list[tuple[str, str]]:
     return [(a, b) for i, a in enumerate(seen) for b in seen[i + 1 :] if _declared((a, b), outlook)]
 
 
-def show(product: Mapping[str, Any]) -> None:
+def show(product: Separability) -> None:
     """Print it for people."""
     console = tables.paper()
-    title = f"{product['id']}: what {', '.join(product['channels'])} can show"
+    title = f"{product.id}: what {', '.join(product.channels)} can show"
     table = tables.new_table("effect", "typical", "d'", "seen from", "closest rivals", title=title)
-    for name, row in product["effects"].items():
-        rivals = ", ".join(f"{r['name']} {r['apart']:.1f}" for r in row["rivals"][:2])
-        table.add_row(name, _size(row, "typical"), f"{row['detectability']:.1f}", _seen(row), rivals)
+    for name, row in product.effects.items():
+        rivals = ", ".join(f"{r.name} {r.apart:.1f}" for r in row.rivals[:2])
+        table.add_row(name, _size(row.typical, row), f"{row.detectability:.1f}", _seen(row), rivals)
     console.print(table)
     for sentence in sentences(product):
         console.print(Text(sentence), soft_wrap=True)
 
 
-def _size(row: Mapping[str, Any], key: str) -> str:
+def _size(strength: float, row: Visibility) -> str:
     """Two digits, in the unit of people at a stand."""
-    factor, unit = wording.people_unit(row["unit"])
-    return f"{wording.tidy(float(f'{factor * row[key]:.2g}'), 6)} {unit.strip('-')}".strip()
+    factor, unit = wording.people_unit(row.unit)
+    return f"{wording.tidy(float(f'{factor * strength:.2g}'), 6)} {unit.strip('-')}".strip()
 
 
-def _seen(row: Mapping[str, Any]) -> str:
-    return _size(row, "seen_at") if row["in_reach"] else "never"
+def _seen(row: Visibility) -> str:
+    return "never" if row.seen_at is None else _size(row.seen_at, row)
 
 
-def sentences(product: Mapping[str, Any]) -> list[str]:
+def sentences(product: Separability) -> list[str]:
     """Twins, what would separate them, and what the numbers mean."""
     out = []
-    for one, other, d in ((*t["effects"], t["apart"]) for t in product["twins"]):
-        out += [f"twins: {one} and {other}: {d:.1f} of {NOMINAL:g}", f"  {_advice(one, other, product)}"]
+    for pair in product.twins:
+        one, other = pair.effects
+        out += [f"twins: {one} and {other}: {pair.apart:.1f} of {NOMINAL:g}", f"  {_advice(one, other, product)}"]
     if not out:
         out = ["twins: none"]
-    declared = [f"{' and '.join(pair['effects'])} {pair['apart']:.1f}" for pair in product["declared_twins_apart"]]
+    declared = [f"{' and '.join(pair.effects)} {pair.apart:.1f}" for pair in product.declared_twins_apart]
     if declared:
         out.append(f"called twins in the library, but told apart here: {', '.join(declared)}")
-    for name, sensor in product["sensors"].items():
-        if sensor["shows"]:
-            out.append(
-                f"{name} ({sensor['words']}) would show {', '.join(sensor['shows'])} of typical strength as well"
-            )
+    for name, sensor in product.sensors.items():
+        if sensor.shows:
+            out.append(f"{name} ({sensor.words}) would show {', '.join(sensor.shows)} of typical strength as well")
     return [
         *out,
         f"d': standard deviations by which the typical strength stands out; seen from: d' = {SEEN:g}; closest rivals: "
@@ -143,19 +140,19 @@ def sentences(product: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _advice(one: str, other: str, product: Mapping[str, Any]) -> str:
+def _advice(one: str, other: str, product: Separability) -> str:
     """What would tell two twins apart."""
     tried = {
-        f"{name} ({sensor['words']})": pair["apart"]
-        for name, sensor in product["sensors"].items()
-        for pair in sensor["twins"]
-        if set(pair["effects"]) == {one, other}
+        f"{name} ({sensor.words})": pair.apart
+        for name, sensor in product.sensors.items()
+        for pair in sensor.twins
+        if set(pair.effects) == {one, other}
     }
-    good = [words for words, d in tried.items() if d >= product["twins_below"]]
+    good = [words for words, d in tried.items() if d >= product.twins_below]
     if good:
         return f"told apart by: {', '.join(good)}"
     best = max(tried, key=lambda words: tried[words], default="none")
-    decisive = dict.fromkeys(product["effects"][n]["decisive"] for n in (one, other))
+    decisive = dict.fromkeys(product.effects[n].decisive for n in (one, other))
     known = "; or ".join(filter(None, decisive)) or "nothing that is known"
     return (
         f"told apart by none of the sensors that were tried; best is {best}: {tried.get(best, 0.0):.1f}. "

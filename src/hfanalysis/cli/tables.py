@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
@@ -21,6 +21,7 @@ from hfanalysis.wording.numbers import Shown, in_words, ordered, shown
 if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
     from hfanalysis.products.calibration import RegressionBasis
     from hfanalysis.products.campaign import CommonLaw
+    from hfanalysis.products.effects import EffectEntry, EffectLibrary
     from hfanalysis.products.engines import Designed, Simulated
     from hfanalysis.products.validation import Validation
 
@@ -264,30 +265,30 @@ def show_engine(product: Simulated | Designed) -> None:
     console.print(Text("  ".join(words), style="bold"))
     console.print(Text(f"oxidizer enthalpy: {product.oxidizer_enthalpy.of}"))
     _values(console, ordered(product.quantities), "engine")
-    for name, part in product.given.items():
+    for name, part in product.content.items():
         if isinstance(part, Part) and part.quantities:
             _values(console, ordered(part.quantities), in_words(name))
 
 
-def show_effects(product: Mapping[str, Any]) -> None:
+def show_effects(product: EffectLibrary) -> None:
     """Print the library of effects: where each acts, when, and how strong it typically is."""
     console = paper()
     table = new_table("effect", "equation", "phases", "typical strength", "", title="effects")
-    for name, found in product["effects"].items():
-        table.add_row(name, found["equation"], _phases(found["phases"]), _strength(found), Text(found["meaning"]))
+    for name, found in product.effects.items():
+        table.add_row(name, found.equation, _phases(found.phases), _strength(found), Text(found.meaning))
     console.print(table)
     console.print(Text("docs/effects.md has their equations, priors and sources; --json all of it"), soft_wrap=True)
 
 
-def _phases(phases: list[str]) -> str:
+def _phases(phases: tuple[str, ...]) -> str:
     return "all" if {"liquid", "vapor", "nitrogen"} <= set(phases) else " ".join(phases)
 
 
-def _strength(effect: Mapping[str, Any]) -> str:
+def _strength(effect: EffectEntry) -> str:
     """Of the first strength: what is typical of it, in the unit of people at a stand."""
-    name, typical = next((name, p) for name, p in effect["parameters"].items() if p["strength"])
-    factor, unit = wording.people_unit(typical["unit"])
-    return f"{name} {wording.tidy(factor * typical['typical'], 6)} {unit.strip('-')}".strip()
+    name, first = next((name, p) for name, p in effect.parameters.items() if p.strength)
+    factor, unit = wording.people_unit(first.unit)
+    return f"{name} {wording.tidy(factor * first.typical, 6)} {unit.strip('-')}".strip()
 
 
 def _values(console: Console, found: Mapping[str, Quantity], title: str) -> None:

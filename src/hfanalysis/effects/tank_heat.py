@@ -23,7 +23,7 @@ EFFECT = Effect(
     plain_name="heat into the tank",
     equation="tank_energy",
     meaning="the oxidizer in the tank receives heat from outside, the less the longer",
-    reference="dU/dt = -mdot h + Qdot: the report's eq. 3.9 with a source; section 4.1: two blankets of 500 W, turned "
+    reference="dU/dt = -mdot h + Qdot: the report's eq. 3.7 with a source; section 4.1: two blankets of 500 W, turned "
     "off before the opening, whose residual heat fades. A lag of a second is that of heat through a centimeter of "
     "aluminum, one of tens of seconds that of its heat capacity over the heat transfer to the liquid; what came in "
     "before the valve opened shows in the temperature",

@@ -13,6 +13,10 @@ from hfanalysis.engine.sites import FUEL_FLOW, OXIDIZER_FLOW
 SMALL_FLUX = 0.01
 """Oxidizer flux [kg/(m^2 s)] below which regression is bent to a finite slope."""
 
+USUAL_N = (0.45, 0.2)
+"""Flux exponent of hybrid fuels and its spread [-]. Source: Karabeyoglu et al., J. Propulsion and Power 20(6), 2004,
+find 0.62 for paraffin with oxygen; small engines show as little as 0.2."""
+
 
 @compiled
 def flux_power(flux: float, n: float) -> float:

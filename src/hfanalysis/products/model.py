@@ -63,7 +63,7 @@ class Part(BaseModel):
         return self.model_copy(update=changes)
 
     @property
-    def given(self) -> dict[str, Any]:
+    def content(self) -> dict[str, Any]:
         """Its fields that were given, by name."""
         own = {name: getattr(self, name) for name in type(self).model_fields if name in self.model_fields_set}
         return own | (self.__pydantic_extra__ or {})

@@ -204,7 +204,7 @@ def likeliest_place(verdict: Verdict, found: Naming, equations: Iterable[str]) -
     likeliest = likeliest_of(equations, verdict.posterior, verdict.evidences, found)
     if likeliest is None:
         return None
-    return Place(**{name: v for name, v in _of_candidate(likeliest, found).given.items() if name != "history"})
+    return Place(**{name: v for name, v in _of_candidate(likeliest, found).content.items() if name != "history"})
 
 
 def _of_candidate(candidate: Candidate, found: Naming) -> Place:

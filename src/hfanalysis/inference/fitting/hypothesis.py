@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import ASSUMED_EXPONENT
 from hfanalysis.engine.effect import Active, Effect
-from hfanalysis.engine.grain import oxidizer_flux
+from hfanalysis.engine.grain import USUAL_N, oxidizer_flux
 from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.inference.splines import Splines
@@ -27,11 +27,6 @@ from hfanalysis.products.calibration import Calibration
 M_RANGE = 2.0
 """Standard deviations that the polytropic exponent may be off. Source: 0.95 to 1.35 bounds what nitrous oxide can do
 near saturation; what a calibration found beyond that is an effect, and has to be found as one."""
-
-USUAL_N = (0.45, 0.2)
-"""Flux exponent of hybrid fuels and its spread [-]. Source: Karabeyoglu et al., J. Propulsion and Power 20(6), 2004,
-find 0.62 for paraffin with oxygen; small engines show as little as 0.2."""
-
 
 LEAST_MASS_ERROR = 0.01
 """Least part of the loaded mass that it may be off, however well it was weighed. Evidence: a practice case without an
