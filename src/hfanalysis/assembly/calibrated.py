@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from math import pi
 
 import numpy as np
@@ -155,6 +156,7 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
     coldest = float(engine.saturation.temperature(pressure))
     low, high = _possible(engine, coldest - (COLDER if engine.effects else 0.0))
 
+    @cache
     def miss(temperature: float) -> float:
         return pressure_at(replace(engine, temperature=temperature), instant) - pressure
 

@@ -7,8 +7,10 @@ carried along as a covariance.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -55,6 +57,16 @@ class Evidence:
     least: float
     wander: Array
     remarks: tuple[str, ...] = ()
+    _known: dict[tuple[str, Regression], Any] = field(default_factory=dict, init=False, compare=False, repr=False)
+
+    def _once(self, what: str, law: Regression, find: Callable[[], Array | None]) -> Array | None:
+        """What has been found with these constants before, for searches come back to where they were."""
+        if (what, law) not in self._known:
+            found = self._known[what, law] = find()
+            if found is not None:
+                found.flags.writeable = False
+        known: Array | None = self._known[what, law]
+        return known
 
     @cached_property
     def observed(self) -> Array:
@@ -80,7 +92,7 @@ class Evidence:
 
     def predict(self, law: Regression) -> Array | None:
         """The model of ``observed`` (n,) [Pa, s, kg]; None where the engine cannot be run with these constants."""
-        return _predicted(self, replace(self.engine, a=law.a, n=law.n))
+        return self._once("predicted", law, lambda: _predicted(self, replace(self.engine, a=law.a, n=law.n)))
 
     def burnt(self, law: Regression) -> Burn:
         """The whole burn with these constants."""
@@ -93,6 +105,11 @@ class Evidence:
 
     def sensitivities(self, law: Regression) -> Array:
         """Change of ``observed`` [Pa, s, kg] per standard deviation of each nuisance, (observations, nuisances)."""
+        found = self._once("slopes", law, lambda: self._sensitivities(law))
+        assert found is not None
+        return found
+
+    def _sensitivities(self, law: Regression) -> Array:
         center = self.predict(law)
         columns = np.zeros((self.observed.size, len(NUISANCES)))
         for j, (name, step) in enumerate(zip(NUISANCES, np.sqrt(np.diag(self.covariance)), strict=True)):
