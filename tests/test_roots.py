@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from hfanalysis.roots import root
+from hfanalysis.roots import root, secant
 
 
 def test_roots_are_those_of_scipy() -> None:
@@ -38,3 +38,20 @@ def test_an_end_may_be_the_root() -> None:
 def test_what_is_no_number_is_no_root() -> None:
     with pytest.raises(ValueError, match=r"no number at 0\.5"):
         root(lambda x: nan if x == 0.5 else x - 0.5, 0.0, 1.0, 1e-9)
+
+
+def test_near_a_root_three_steps_find_it() -> None:
+    asked = []
+
+    def cubic(x: float) -> float:
+        asked.append(x)
+        return x**3 - 2.0
+
+    found = secant(cubic, 1.26, 4.8, 1e-9)
+    assert found == pytest.approx(2.0 ** (1.0 / 3.0), abs=1e-12)
+    assert len(asked) == 3
+
+
+def test_where_steps_do_not_lead_to_a_root_there_is_none() -> None:
+    assert secant(lambda x: x**2 + 1.0, 3.0, 6.0, 1e-9) is None
+    assert secant(lambda x: 1.0, 3.0, 6.0, 1e-9) is None

@@ -8,6 +8,9 @@ from math import isnan
 MOST_TURNS = 100
 """Evaluations after which a search is given up. Evidence: halving alone takes 53 to the last digit."""
 
+SOON = 6
+"""Steps by secants after which a root is looked for otherwise. Evidence: near one, three do (test_roots.py)."""
+
 LAST_DIGITS = 4.0 * 2.0**-52
 """To what a root is found at best, relative to it [-]. Source: of a double's spacing, four."""
 
@@ -47,6 +50,24 @@ def root(function: Callable[[float], float], low: float, high: float, within: fl
         new += step if abs(step) > least else (least if half > 0.0 else -least)
         f_new = _number(function, new)
     raise ValueError(f"no root found between {low:g} and {high:g}")
+
+
+def secant(function: Callable[[float], float], near: float, slope: float, within: float) -> float | None:
+    """Where a function is zero whose slope ``near`` there is about known, to ``within``; None where that is not found
+    soon: then :func:`root` finds it.
+
+    Steps by ``slope`` at first, then by the last two values (the secant method).
+    """
+    old, f_old = near, _number(function, near)
+    new = old - f_old / slope
+    for _ in range(SOON):
+        if abs(new - old) < within:
+            return new
+        f_new = _number(function, new)
+        if f_new == f_old:
+            return new if f_new == 0.0 else None
+        old, f_old, new = new, f_new, new - f_new * (new - old) / (f_new - f_old)
+    return None
 
 
 def _interpolated(old: tuple[float, float], new: tuple[float, float], other: tuple[float, float]) -> float:
