@@ -13,6 +13,7 @@ NORMAL_95 = 1.959963984540054
 IDENTIFIED = "identified"
 NOT_IDENTIFIABLE = "not identifiable"
 UNPHYSICAL = "unphysical"
+DOUBTED = "doubted"
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,16 @@ from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
-from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
 
 SPAN_SHARE = 0.25
 """Part of the cell's accuracy that a tare does not take away [-]: its error of span, as for the pressures."""
+
+EARLY = 0.5
+"""[s] before the burn's end at which the thrust may end and still be flown: the model of a fire that goes out."""
 
 UNSEEN_DRIFT = 0.01
 """Standard deviation of a drift that no settled level after the burn shows, of the peak thrust [-]."""
@@ -60,6 +63,7 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
     if segments is None or segments.t_open.value is None:
         raise AbsentError(f"test {definition.test.id}: no valve opening is known to count the thrust from")
     found = thrust_of(log, segments, definition)
+    _check_whole(channel, segments, definition, float(found.signal.time[-1]))
     end, of = burn_end(segments, definition, float(found.signal.time[-1]))
     burn = found.signal.between(0.0, end)
     if burn.time.size < 8:
@@ -67,6 +71,17 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
     time = np.unique(np.concatenate(([0.0], burn.time, [end])))
     notes = (f"burn from the opening to {end:.2f} s: {of}", *_drift_taken(found))
     return MeasuredThrust(time, found.signal.at(time), *_spreads(channel, found, burn), notes)
+
+
+def _check_whole(channel: Channel, segments: Segments, definition: TestDefinition, last: float) -> None:
+    """Raise AbsentError where the cell goes on in the burn after ``last`` [s] and means nothing there."""
+    lost = channel.time[(channel.flags & Flag.UNUSABLE) != 0] - (segments.t_open.value or 0.0)
+    end, _ = burn_end(segments, definition, float(channel.time[-1]) - (segments.t_open.value or 0.0))
+    if (lost > last).any() and end > last + EARLY:
+        raise AbsentError(
+            f"test {definition.test.id}: the thrust is not usable from {last:.2f} s on, before the burn ends "
+            f"({end:.2f} s): there is no whole thrust to fly"
+        )
 
 
 def _left(thrust: Thrust) -> float:
