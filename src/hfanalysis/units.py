@@ -212,7 +212,7 @@ def parse(text: str | float | int, dimension: str, where: str) -> Value:
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
         raise _refused(text, dimension, where)
     if not isinstance(text, str):
-        return _bare(float(text), dimension, where)
+        return _bare(_float(text), dimension, where)
     number, unit, spread, spread_unit = _split(text, dimension, where)
     if is_gauge(unit) and dimension == "pressure":
         raise InputError(f"{where}: found {text!r}, a gauge pressure; expected an absolute one")
@@ -254,6 +254,14 @@ def _convert(number: float, unit: str, dimension: str, where: str) -> float:
         raise _refused(f"{number:g}", dimension, where)
     scale, offset = unit_factor(unit, dimension, where)
     return number * scale + offset
+
+
+def _float(number: int | float) -> float:
+    """As a float; infinite where a whole number has more digits than one."""
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf
 
 
 def _bare(number: float, dimension: str, where: str) -> Value:
