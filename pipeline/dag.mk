@@ -10,9 +10,10 @@ EFFECTS := $(wildcard engines/*.effects.toml)
 .SECONDARY:
 .SECONDEXPANSION:
 
-STAGES := ingest segment calibrate validate diagnose flight report run
+STAGES := ingest health segment calibrate validate diagnose flight report run
 
 ingest: ## TEST=… Read the raw log onto canonical channels in SI, with quality flags per sample
+health: ## TEST=… Judge every channel before it is believed: what cannot be used, what is doubted, and what cures it
 segment: ## TEST=… Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end
 calibrate: ## TEST=… Injector coefficient, feed losses, polytropic exponent and regression, with intervals
 validate: ## TEST=… Measure the performance and run the model against the measurement
@@ -25,7 +26,11 @@ processed/%/ingest.h5: $$(wildcard raw_tests/$$*/*) $(SOURCE) $(STAMP)
 	@$(HFA) ingest --quiet -- $*
 	@touch -c $@
 
-processed/%/segments.json: processed/%/ingest.h5
+processed/%/health.json: processed/%/ingest.h5
+	@$(HFA) health --quiet -- $*
+	@touch -c $@
+
+processed/%/segments.json: processed/%/health.json
 	@$(HFA) segment --quiet -- $*
 	@touch -c $@
 

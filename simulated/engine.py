@@ -90,21 +90,36 @@ def _with_web(engine: Engine, part: float) -> tuple[Engine, Burn]:
     return cut, done
 
 
+def possible(generator: np.random.Generator) -> tuple[Truth, Engine, Burn]:
+    """The first engine drawn that runs."""
+    while True:
+        try:
+            return draw_engine(generator)
+        except (ValueError, ArithmeticError):
+            continue
+
+
+def made(seed: int) -> tuple[Truth, Engine, Burn, Histories]:
+    """A random engine on its stand and what really happens, before any sensor."""
+    generator = np.random.default_rng([20220305, seed])
+    stand, engine, done = possible(generator)
+    stand, tank, chamber = _ran(stand, engine, done, generator)
+    return stand, engine, done, histories(stand, engine, done, tank, chamber)
+
+
+def _ran(stand: Truth, engine: Engine, done: Burn, generator: np.random.Generator) -> tuple[Truth, TankRun, Array]:
+    """The tank's run and the chamber pressure, and the stand with its phase times."""
+    tank, chamber = _tank(engine, done, np.arange(0.0, 30.0, STEP))
+    t_purge = tank.t_v + generator.uniform(0.25, 1.0)
+    at_purge = float(np.interp(t_purge, tank.time, tank.pressure))
+    return replace(stand, t_v=tank.t_v, t_purge=t_purge, purge_pressure=at_purge + stand.cracking), tank, chamber
+
+
 def make_log(folder: Path, seed: int) -> EngineTruth:
     """Write ``folder``/log.csv and ``folder``/test.toml for a random engine; returns the truth."""
     generator = np.random.default_rng([20220305, seed])
-    while True:
-        try:
-            stand, engine, done = draw_engine(generator)
-            break
-        except (ValueError, ArithmeticError):
-            continue
-    time = np.arange(0.0, 30.0, STEP)
-    tank, chamber = _tank(engine, done, time)
-    t_v = tank.t_v
-    t_purge = t_v + generator.uniform(0.25, 1.0)
-    at_purge = float(np.interp(t_purge, time, tank.pressure))
-    stand = replace(stand, t_v=t_v, t_purge=t_purge, purge_pressure=at_purge + stand.cracking)
+    stand, engine, done = possible(generator)
+    stand, tank, chamber = _ran(stand, engine, done, generator)
     _write_log(folder / "log.csv", stand, engine, done, tank, chamber, generator)
     (folder / "test.toml").write_text(_stated(folder.name, stand, engine, done, generator), encoding="utf-8")
     return EngineTruth(stand, engine, done.burn_time)
@@ -125,26 +140,46 @@ def _tank(engine: Engine, done: Burn, time: Array) -> tuple[TankRun, Array]:
     return tank, chamber
 
 
+@dataclass(frozen=True)
+class Histories:
+    """What really happens [SI], channel by channel: at rest, and on ``time`` [s] after the opening."""
+
+    time: Array
+    rest: dict[str, float]
+    curves: dict[str, Array]
+
+
+def histories(stand: Truth, engine: Engine, done: Burn, tank: TankRun, chamber: Array) -> Histories:
+    """The channels before a sensor sees them."""
+    time = tank.time
+    density = np.where(
+        time < stand.t_v, engine.saturation.liquid_density(np.minimum(tank.temperature, engine.temperature)),
+        tank.mass / stand.volume,
+    )  # fmt: skip
+    at_purge = np.interp(stand.t_purge, time, tank.pressure)
+    curves = {
+        "p_tank": tank.pressure,
+        "p_run": chamber + 0.5 * tank.flow**2 / (density * stand.area**2),
+        "p_chamber": chamber,
+        "p_purge": stand.purge_pressure - np.where(time > stand.t_purge, at_purge - tank.pressure, 0.0),
+        "thrust": np.interp(time, done.time, done.output("thrust"), right=0.0),
+        "m_tank": tank.mass,
+    }
+    rest = {"p_run": AMBIENT, "p_chamber": AMBIENT, "thrust": 0.0, "m_tank": stand.mass}
+    return Histories(time, {name: rest.get(name, float(curve[0])) for name, curve in curves.items()}, curves)
+
+
 def _write_log(
     path: Path, stand: Truth, engine: Engine, done: Burn, tank: TankRun, chamber: Array, generator: np.random.Generator
 ) -> None:
     before = generator.uniform(1.5, 4.0)
     last = max(stand.t_purge, done.burn_time) + 3.0
     time = np.arange(stand.t_open - before, stand.t_open + last, 1.0 / stand.rate)
-    after, grid = time - stand.t_open, tank.time
-    density = np.where(
-        grid < stand.t_v, engine.saturation.liquid_density(np.minimum(tank.temperature, engine.temperature)),
-        tank.mass / stand.volume,
-    )  # fmt: skip
-    run = chamber + 0.5 * tank.flow**2 / (density * stand.area**2)
-    thrust = np.interp(grid, done.time, done.output("thrust"), right=0.0)
-    rest = (tank.pressure[0], AMBIENT, AMBIENT, stand.mass, 0.0)
-    curves = (tank.pressure, run, chamber, tank.mass, thrust)
-    p_t, p_r, p_c, mass, force = (
-        np.where(after < 0.0, r, np.interp(after, grid, c)) for r, c in zip(rest, curves, strict=True)
+    after, true = time - stand.t_open, histories(stand, engine, done, tank, chamber)
+    p_t, p_r, p_c, purge, force, mass = (
+        np.where(after < 0.0, true.rest[name], np.interp(after, true.time, curve))
+        for name, curve in true.curves.items()
     )
-    at_purge = np.interp(stand.t_purge, grid, tank.pressure)
-    purge = stand.purge_pressure - np.where(after > stand.t_purge, at_purge - p_t, 0.0)
     frequency = generator.uniform(20.0, 80.0) + 5.0 * generator.standard_normal(time.size)
     ringing = stand.oscillation * np.sin(2.0 * pi * np.cumsum(frequency) / stand.rate)
     p_c, force = p_c + ringing * (p_c - AMBIENT), force * (1.0 + ringing)

@@ -84,7 +84,9 @@ def test_only_the_pages_own_script_may_run(text: str) -> None:
 def test_the_page_stays_small_whatever_the_logger_wrote(tmp_path: Path) -> None:
     made = material(tmp_path)
     clock = np.arange(95.0, 125.0, 1e-4)
-    busy = replace(channel("p_tank", "Pa", lambda t: t), time=clock, values=np.sin(clock), flags=np.zeros(clock.size))
+    busy = replace(
+        channel("p_tank", "Pa", lambda t: t), time=clock, values=np.sin(clock), flags=np.zeros(clock.size, np.uint8)
+    )
     thermometers = {f"T_{n}": replace(busy, name=f"T_{n}", unit="K") for n in range(24)}
     text = page(replace(made, log=TestLog({**made.log.channels, "p_tank": busy, **thermometers})))
     assert len(text.encode()) < 5_000_000
@@ -259,7 +261,8 @@ def test_the_page_has_its_landmarks_and_a_way_past_them(text: str) -> None:
 
 
 def test_every_section_says_what_it_needs() -> None:
-    known = {"ingest", "segments", "calibration", "validation", "residuals", "performance", "flight", "diagnosis"}
+    known = {"ingest", "health", "segments", "calibration", "validation", "residuals", "performance", "flight"}
+    known |= {"diagnosis"}
     for _, section in sections():
         assert set(section.needs) <= known
 

@@ -60,7 +60,7 @@ class MeasuredPressures:
         burning = segments.kind == "hot_fire"
         for name in ("p_tank", "p_run", *(("p_chamber",) if burning else ())):
             if name not in signals and (name != "p_run" or lost is None):
-                raise AbsentError(f"test {definition.test.id}: the log has no {name} to calibrate with")
+                raise AbsentError(f"test {definition.test.id}: {log.lacks(name)}; a calibration takes it")
         blocks = signals["p_tank"].between(0.0, end).reduced(FINEST_BLOCK)
         if blocks.time.size < 8:
             raise AbsentError("too few good samples of p_tank after the opening")

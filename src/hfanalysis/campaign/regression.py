@@ -14,7 +14,6 @@ from hfanalysis.inference.adopted.effects import read_adopted
 from hfanalysis.products.campaign import Agreement, CommonLaw
 from hfanalysis.products.segments import Segments
 from hfanalysis.progress import Progress, silent
-from hfanalysis.record.log import read_log
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
@@ -25,10 +24,11 @@ def regression_of(tests: Sequence[str], root: Path, out: Path | None, progress: 
     for name in dict.fromkeys(tests):
         context = run_to("segment", open_test(root, name, out, progress=progress))
         segments, effects = context.read(Segments), read_adopted(root, context.definition).acting
-        log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)
+        log, definition = context.believed()
+        log = corrected(log, segments.t_open.value or 0.0, effects)
         try:
-            tank = calibrate(log, segments, context.definition, 400, effects)
-            evidence.append(evidence_for(log, segments, context.definition, tank, effects))
+            tank = calibrate(log, segments, definition, 400, effects)
+            evidence.append(evidence_for(log, segments, definition, tank, effects))
         except AbsentError as error:
             raise AbsentError(f"{name}: {error}") from None
     alone = [fit([e]) for e in evidence]

@@ -133,7 +133,27 @@ def _report(request: Request, pdf: Pdf = False, plots: Plots = False) -> None:
     exports.report(request, pdf, plots)
 
 
-_WITH_OPTIONS: dict[str, Callable[..., None]] = {"diagnose": _diagnose, "flight": _flight, "report": _report}
+Cure = Annotated[bool, typer.Option("--apply", help="Write the cures of what is found into test.toml, after asking.")]
+Yes = Annotated[bool, typer.Option("--yes", help="With --apply: do not ask.")]
+
+
+def _health(request: Request, apply: Cure = False, yes: Yes = False) -> None:
+    from hfanalysis.cli import health, perform
+
+    if yes and not apply:
+        raise InputError("found --yes alone; expected it with --apply")
+    if apply:
+        health.apply(request, yes)
+    else:
+        perform.stage("health", request)
+
+
+_WITH_OPTIONS: dict[str, Callable[..., None]] = {
+    "health": _health,
+    "diagnose": _diagnose,
+    "flight": _flight,
+    "report": _report,
+}
 
 for _name, _text in {**STAGES, RUN: "Every stage; the diagnosis takes longest."}.items():
     _stage(_name, _text, _WITH_OPTIONS.get(_name) or _plain(_name))

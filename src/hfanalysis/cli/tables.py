@@ -12,7 +12,7 @@ from rich.text import Text
 
 from hfanalysis.cli.exit_status import nobody_reads
 from hfanalysis.products.model import AdoptedEffect, Part
-from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL, Quantity
+from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context, load_stage
 from hfanalysis.wording import numbers as wording
@@ -146,6 +146,24 @@ def _ingest(context: Context, console: Console) -> None:
     console.print(table)
 
 
+def _health(context: Context, console: Console) -> None:
+    from hfanalysis.products.health import HEALTHY, SUSPECT, Health
+
+    product = context.read(Health)
+    styles = {HEALTHY: "green", SUSPECT: "yellow"}
+    table = new_table("channel", "verdict", "", title="health of the channels")
+    for name, channel in product.channels.items():
+        what = dict.fromkeys(finding.kind.replace("_", " ") for finding in channel.findings)
+        trust = f"trusted: {channel.trust}; against: " if channel.trust and what else ""
+        verdict = Text(channel.verdict, style=styles.get(channel.verdict, "red"))
+        table.add_row(name, verdict, Text(f"{trust}{', '.join(what)}"))
+    console.print(table)
+    if product.compared:
+        console.print(Text(f"  compared with other tests of the stand: {', '.join(product.compared)}"))
+    if any(f.cure and not f.overruled for channel in product.channels.values() for f in channel.findings):
+        console.print(Text(f"  hfa health {context.id} --apply writes the cures into test.toml, after asking"))
+
+
 def _segment(context: Context, console: Console) -> None:
     from hfanalysis.products.segments import Segments
 
@@ -194,14 +212,15 @@ def show_regression(product: CommonLaw) -> None:
 
 def _performance(product: Validation, console: Console) -> None:
     performance = product.performance
-    table = new_table("", "measured", "± std", "model", "± std ", "unit", title="performance")
+    table = new_table("", "measured", "± std", "model", "± std ", "unit", "", title="performance")
     for column in table.columns[1:5]:
         column.justify = "right"
     for name, measured in performance.measured.quantities.items():
         model = shown(performance.model.quantities.get(name) or Quantity.absent("not modeled"))
         found = shown(measured)
         if measured.value is not None or model.value != "–":
-            table.add_row(in_words(name), found.value, found.std, model.value, model.std, found.unit or model.unit)
+            unit = found.unit or model.unit
+            table.add_row(in_words(name), found.value, found.std, model.value, model.std, unit, _doubt(measured))
     console.print(table)
     for name, reason in product.absent.items():
         console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=True)
@@ -294,7 +313,7 @@ def _strength(effect: EffectEntry) -> str:
 def _values(console: Console, found: Mapping[str, Quantity], title: str) -> None:
     """A table of values, with intervals where any has one, and below it what cannot be had, by reason."""
     spread = any(quantity.std for quantity in found.values())
-    table = new_table("", "value", *(["± std", "95 % interval"] if spread else []), "unit", title=title)
+    table = new_table("", "value", *(["± std", "95 % interval"] if spread else []), "unit", "", title=title)
     absent: dict[str, list[str]] = {}
     for name, quantity in found.items():
         text = shown(quantity)
@@ -302,15 +321,22 @@ def _values(console: Console, found: Mapping[str, Quantity], title: str) -> None
             absent.setdefault(text.why, []).append(in_words(name))
         else:
             extra = [text.std, text.interval] if spread else []
-            table.add_row(_WORDS.get(name, in_words(name)), text.value, *extra, text.unit)
+            table.add_row(_WORDS.get(name, in_words(name)), text.value, *extra, text.unit, _doubt(quantity))
     if table.row_count:
         console.print(table)
     for reason, names in absent.items():
         console.print(Text(f"  without {', '.join(names)}: {reason}"))
 
 
+def _doubt(quantity: Quantity) -> Text:
+    """In a table without verdicts: that a number is doubted, and for which channel; the warnings say more."""
+    doubted = quantity.verdict == DOUBTED and quantity.value is not None
+    return Text(f"doubted: {(quantity.why or '').partition(': ')[0]}" if doubted else "", style="yellow")
+
+
 _SHOWN = {
     "ingest": _ingest,
+    "health": _health,
     "segment": _segment,
     "calibrate": _calibrate,
     "validate": _validate,

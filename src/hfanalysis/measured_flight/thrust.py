@@ -10,13 +10,16 @@ from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
-from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 from hfanalysis.validate.thrust import FIRST, Thrust, burnt_out, thrust_of
 
 SPAN_SHARE = 0.25
 """Part of the cell's accuracy that a tare does not take away [-]: its error of span, as for the pressures."""
+
+EARLY = 0.5
+"""[s] before the burn's end at which the thrust may end and still be flown: the model of a fire that goes out."""
 
 UNSEEN_DRIFT = 0.01
 """Standard deviation of a drift that no settled level after the burn shows, of the peak thrust [-]."""
@@ -60,13 +63,25 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
     if segments is None or segments.t_open.value is None:
         raise AbsentError(f"test {definition.test.id}: no valve opening is known to count the thrust from")
     found = thrust_of(log, segments, definition)
-    end, of = burn_end(segments, definition, found.signal)
+    _check_whole(channel, segments, definition, float(found.signal.time[-1]))
+    end, of = burn_end(segments, definition, float(found.signal.time[-1]), found.signal)
     burn = found.signal.between(0.0, end)
     if burn.time.size < 8:
         raise AbsentError(f"test {definition.test.id}: the log has {burn.time.size} samples of thrust over the burn")
     time = np.unique(np.concatenate(([0.0], burn.time, [end])))
     notes = (f"burn from the opening to {end:.2f} s: {of}", *_drift_taken(found))
     return MeasuredThrust(time, found.signal.at(time), *_spreads(channel, found, burn), notes)
+
+
+def _check_whole(channel: Channel, segments: Segments, definition: TestDefinition, last: float) -> None:
+    """Raise AbsentError where the cell goes on in the burn after ``last`` [s] and means nothing there."""
+    lost = channel.time[(channel.flags & Flag.UNUSABLE) != 0] - (segments.t_open.value or 0.0)
+    end, _ = burn_end(segments, definition, float(channel.time[-1]) - (segments.t_open.value or 0.0))
+    if (lost > last).any() and end > last + EARLY:
+        raise AbsentError(
+            f"test {definition.test.id}: the thrust is not usable from {last:.2f} s on, before the burn ends "
+            f"({end:.2f} s): there is no whole thrust to fly"
+        )
 
 
 def _left(thrust: Thrust) -> float:
@@ -81,12 +96,14 @@ def _drift_taken(thrust: Thrust) -> tuple[str, ...]:
     return (text("{taken} of the load cell's drift taken off over the burn", taken=said(taken, "N", ".0f")),)
 
 
-def burn_end(segments: Segments, definition: TestDefinition, thrust: Signal) -> tuple[float, str]:
-    """When thrust ends [s after opening], and who says so; ``thrust`` [N] with its zero taken off.
+def burn_end(
+    segments: Segments, definition: TestDefinition, last: float, thrust: Signal | None = None
+) -> tuple[float, str]:
+    """When thrust ends [s after opening], and who says so; ``last``: where the log ends [s], ``thrust`` [N] with its
+    zero taken off.
 
     The engineer, else the later of chamber and fuel, else the thrust itself, else the log.
     """
-    last = float(thrust.time[-1])
     observed = definition.observed.burn_time if definition.observed is not None else None
     if observed is not None and observed.value <= last:
         return observed.value, "[observed] burn_time"
@@ -95,7 +112,7 @@ def burn_end(segments: Segments, definition: TestDefinition, thrust: Signal) -> 
     if times:
         name = max(times, key=lambda key: times[key])
         return times[name], name
-    gone = burnt_out(thrust)
+    gone = burnt_out(thrust) if thrust is not None else None
     return (gone[0], "the thrust's own end") if gone is not None else (last, "the log's end")
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.flight import Flight
+from hfanalysis.products.health import Health
 from hfanalysis.products.ingest import Ingest
 from hfanalysis.products.model import Product
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Validation
 
-_KINDS: tuple[type[Product], ...] = (Ingest, Segments, Calibration, Validation, Diagnosis, Flight)
+_KINDS: tuple[type[Product], ...] = (Ingest, Health, Segments, Calibration, Validation, Diagnosis, Flight)
 
 KINDS = {kind.file: kind for kind in _KINDS}

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from hfanalysis import sentences
 from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.sentences import text
 from hfanalysis.units import near
 
 Flags = NDArray[np.uint8]
@@ -35,6 +36,8 @@ class Flag(IntFlag):
     """Its time stamp is not later than that of an earlier sample."""
     EXCLUDED = 32
     """In a stretch that the engineer excluded."""
+    UNUSABLE = 64
+    """In a stretch in which the channel's health says that it means nothing."""
 
 
 @dataclass(frozen=True)
@@ -73,11 +76,12 @@ class Channel:
 
 @dataclass(frozen=True)
 class TestLog:
-    """All channels of one test."""
+    """All channels of one test; ``unusable`` says of those that its health left out why they are not there."""
 
     channels: dict[str, Channel]
     warnings: tuple[str, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    unusable: Mapping[str, str] = field(default_factory=dict)
 
     def get(self, name: str) -> Channel | None:
         """The channel, or None where the log has none of that name."""
@@ -85,6 +89,8 @@ class TestLog:
 
     def __getitem__(self, name: str) -> Channel:
         """The channel; raises :class:`AbsentError` naming it where there is none."""
+        if name in self.unusable:
+            raise AbsentError(self.lacks(name))
         if name not in self.channels:
             offer = near(name, self.channels) or f"; it holds {', '.join(self.channels)}"
             raise AbsentError(f"the log holds no channel {name!r}{offer}")
@@ -92,6 +98,12 @@ class TestLog:
 
     def __contains__(self, name: str) -> bool:
         return name in self.channels
+
+    def lacks(self, name: str) -> str:
+        """Why a channel is not there."""
+        if name not in self.unusable:
+            return f"the log has no {name}"
+        return text("the log has no usable {name}: {why}", name=name, why=self.unusable[name])
 
 
 def read_log(path: Path) -> TestLog:

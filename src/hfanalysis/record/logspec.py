@@ -145,7 +145,7 @@ class ChannelSpec(Section):
 
     ``accuracy`` [SI], one standard deviation of the sensor's bias; None takes the class default. ``missing``: readings
     that stand for none (999 of an open thermocouple), as logged. ``gauge``: the ambient pressure is still to be added,
-    as stated or as the unit says.
+    as stated or as the unit says. ``trust``: why the channel is to be believed, whatever its health seems.
     """
 
     column: Column
@@ -159,6 +159,7 @@ class ChannelSpec(Section):
     zero: Literal["ambient", "none"] | None = None
     tare: Literal["auto", "before", "before_after", "none"] = "none"
     missing: ListOf[Number] = ()
+    trust: Text | None = None
     name: str = field(default="", metadata=DERIVED)
 
     @cached_property

@@ -6,6 +6,7 @@ expected, or :class:`Refused` with the whole sentence; :mod:`hfanalysis.record.d
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
@@ -129,6 +130,14 @@ def read_quantity(found: Any, dimension: str, allowed: Range, *keys: str) -> Val
     if not allowed.holds(value.value):
         raise Refused(f"found {found!r}; expected {_a(dimension)} that is {allowed.words}", *keys)
     return value
+
+
+def changed(made: T, **changes: Any) -> T:
+    """The same section with other values in some fields, which are not checked again."""
+    new = copy.copy(made)
+    for name, value in changes.items():
+        object.__setattr__(new, name, value)
+    return new
 
 
 def _column(found: Any) -> str | int:

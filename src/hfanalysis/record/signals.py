@@ -137,8 +137,12 @@ def sample_noise(value: Array) -> float:
     """
     if value.size < 3:
         return 0.0
-    second = np.diff(value, 2)
-    return float(MAD_TO_STD * np.median(np.abs(second)) / np.sqrt(6.0))
+    return float(second_to_std(np.median(np.abs(np.diff(value, 2)))))
+
+
+def second_to_std(median: Array) -> Array:
+    """Standard deviation of samples from the ``median`` of the sizes of their second differences, both (n,) or one."""
+    return np.asarray(MAD_TO_STD * median / np.sqrt(6.0))
 
 
 def line_at(signal: Signal, instant: float) -> float:

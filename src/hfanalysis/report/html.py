@@ -8,7 +8,7 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from hfanalysis.quantity import IDENTIFIED, UNPHYSICAL, Quantity
+from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.sentences import Quoted, Text
 from hfanalysis.wording.numbers import MINUS, Shown, decimals_for, fixed, in_words, shown, tidy
 from hfanalysis.wording.scales import scale, superscript
@@ -100,6 +100,12 @@ def remark(quantity: Quantity) -> Markup:
     return switchable(quantity.why or quantity.reason or "")
 
 
+def judged(quantity: Quantity) -> Markup:
+    """The remark, after a badge where the number is doubted: for tables without a column of verdicts."""
+    badge = verdict(DOUBTED) + Markup(" ") if quantity.verdict == DOUBTED else Markup()
+    return badge + remark(quantity)
+
+
 def symbol(name: str) -> Markup:
     """A quantity's symbol, with its subscript where it has a short head."""
     head, _, tail = name.partition("_")
@@ -117,13 +123,13 @@ def symbol_and_words(name: str) -> Markup:
     return Markup('{} <span class="words">{}</span>').format(symbol(name), words)
 
 
-MARKS = {"good": "✓", "open": "?", "bad": "✕", "sensor": "!"}
+MARKS = {"good": "✓", "doubt": "?", "open": "?", "bad": "✕", "sensor": "!"}
 """Signs that say without color what a color says."""
 
 
 def mark(verdict: str) -> str:
     """The class of a verdict for the style sheet."""
-    return {IDENTIFIED: "good", UNPHYSICAL: "bad"}.get(verdict, "open")
+    return {IDENTIFIED: "good", UNPHYSICAL: "bad", DOUBTED: "doubt"}.get(verdict, "open")
 
 
 def verdict(text: str) -> Markup:

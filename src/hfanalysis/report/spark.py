@@ -21,7 +21,7 @@ def spark(material: Material) -> dict[str, Any]:
     """The path of the line in a box of WIDTH by HEIGHT, what it is, and its color; empty where there is nothing."""
     for name in _CHANNELS:
         channel = material.log.get(name)
-        path = "" if channel is None else _path(material, name)
+        path = "" if channel is None or not channel.good.any() else _path(material, name)
         if path:
             return {"path": path, "of": LONG_NAMES[name], "style": name}
     return {}

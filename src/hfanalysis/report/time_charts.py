@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
+import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.charts.chart import LOG_TIME, TIME, Chart, Series
-from hfanalysis.record.log import Channel
+from hfanalysis.record.log import Channel, Flag
 from hfanalysis.report.material import Material, event_list, phase_list, window
 
 
@@ -61,6 +62,21 @@ def over_time(
         difference=difference,
         weight=weight,
     )
+
+
+def lines_of(
+    material: Material, channel: Channel, label: str = "", style: str = "other", raw: bool = False
+) -> Iterator[Series]:
+    """A channel's good samples within the page's window, and dashed what its health leaves out, where there is that."""
+    yield of_channel(material, channel, label, style, raw)
+    lost = (channel.flags & Flag.UNUSABLE) != 0
+    if lost.any():
+        values = channel.raw if raw and channel.raw is not None else channel.values
+        start, end = window(material)
+        time = channel.time - material.opening
+        part = (time >= start) & (time <= end)
+        left = np.where(lost, values, np.nan)[part]
+        yield Series(f"{label or channel.name}, not used", style, time[part], left, dashed=True)
 
 
 def of_channel(

@@ -1,6 +1,6 @@
 """The way through, one thin file per stage::
 
-    raw_tests/TEST ──ingest──► segment ──► calibrate ──► validate ──► diagnose ──► flight ──► report
+    raw_tests/TEST ──ingest──► health ──► segment ──► calibrate ──► validate ──► diagnose ──► flight ──► report
 
 Each stage module names what it needs and what it writes (`STAGE`, see :mod:`hfanalysis.stages.base`); the runner
 (:mod:`hfanalysis.stages.runner`) does what a stage needs first and redoes only what changed.
@@ -8,6 +8,7 @@ Each stage module names what it needs and what it writes (`STAGE`, see :mod:`hfa
 
 STAGES = {
     "ingest": "Read the raw log onto canonical channels in SI, with quality flags per sample.",
+    "health": "Judge every channel before it is believed: what cannot be used, what is doubted, and what cures it.",
     "segment": "Find the phases of the test: valve opening, full feed line, end of the liquid, nitrogen, end.",
     "calibrate": "Injector coefficient, feed losses, polytropic exponent and regression, with intervals.",
     "validate": "Measure the performance and run the model against the measurement.",

@@ -4,11 +4,11 @@ A stage is a module of this package that says what it needs, what it writes and 
 
     # stages/segment.py
     def run(context: Context) -> None:
-        log = read_log(context.product("ingest.h5"))             # a finished product of a stage this one needs
+        log = context.log()                                      # the log of ingest, without what is unusable
         ...
         context.write(find_phases(log, context.definition))      # a product's model; test and provenance are added
 
-    STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run)
+    STAGE = Stage(name="segment", needs=("ingest", "health"), products=("segments.json",), run=run)
 
 Products that are not JSON are written to ``context.scratch("residuals.h5")``, a temporary name in the product folder.
 Nothing appears under its final name before ``run`` has returned. Optional fields: ``wants`` (stages to run first whose
@@ -18,7 +18,8 @@ smallest value of those that have one) and ``adopts``
 (False for a stage that adopted effects do not change: neither their file nor products made with them are its input),
 ``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input), ``runs``
 (stages that this one runs itself, on other tests: what their code and that of the stages before them says is part of
-what it rests on, as everything is that the module imports).
+what it rests on, as everything is that the module imports) and ``reads_stand`` (True for one that reads the raw files
+of the stand's other tests: they are its input, too).
 """
 
 from __future__ import annotations
@@ -37,9 +38,13 @@ from hfanalysis.stages import ORDER
 from hfanalysis.units import near
 
 if TYPE_CHECKING:
+    from hfanalysis.products.health import Health
     from hfanalysis.products.model import Product
+    from hfanalysis.record.log import TestLog
 
 P = TypeVar("P", bound="Product")
+HEALTH = "health"
+"""The stage that says what of the log can be believed."""
 BASE = "base_"
 """How a product's name begins that is made without adopted effects, by a stage that also makes one with them."""
 
@@ -58,6 +63,7 @@ class Stage:
     adopts: bool = True
     tries_effects: bool = False
     runs: tuple[str, ...] = ()
+    reads_stand: bool = False
 
     def reads(self, other: Stage) -> tuple[str, ...]:
         """The products of an upstream stage that this one's products follow from."""
@@ -133,8 +139,51 @@ class Context:
         return product.from_json(self.read_json(name or product.file))
 
     def write(self, product: Product, name: str = "") -> None:
-        """Write a JSON product of the running stage, with the test's name first and its provenance last."""
+        """Write a JSON product of the running stage, with the test's name first and its provenance last.
+
+        Its quantities that rest on a suspect channel are doubted in it.
+        """
+        if self._judged:
+            from hfanalysis.health.doubts import doubted
+
+            product = doubted(product, self._health())
         self.write_json(name or product.file, product.to_json())
+
+    def log(self, *, widened: bool = True) -> TestLog:
+        """The log that a stage works with: that of ingest, without what is unusable.
+
+        ``widened``: with the accuracy of suspect channels as wide as what is found may mean.
+        """
+        from hfanalysis.health import usable
+        from hfanalysis.record.log import read_log
+
+        log, health = read_log(self.product("ingest.h5")), self._health()
+        used = usable.usable(log, health, self.definition)
+        return usable.widened(used, health) if widened else used
+
+    def marked(self) -> TestLog:
+        """The log of ingest with all that it has, for people to look at; what is unusable is flagged."""
+        from hfanalysis.health import usable
+        from hfanalysis.record.log import read_log
+
+        return usable.marked(read_log(self.product("ingest.h5")), self._health(), self.definition)
+
+    def believed(self) -> tuple[TestLog, TestDefinition]:
+        """That log, and test.toml with its accuracies."""
+        from hfanalysis.health.usable import as_accurate
+
+        log = self.log()
+        return log, as_accurate(self.definition, log)
+
+    @property
+    def _judged(self) -> bool:
+        """Whether the running stage comes after the channels' health."""
+        return self.stage is not None and HEALTH in self.stage.upstream
+
+    def _health(self) -> Health:
+        from hfanalysis.products.health import Health
+
+        return self.read(Health)
 
     def write_json(self, name: str, data: Mapping[str, Any]) -> None:
         """Write a JSON product of the running stage, with the test's name first and its provenance last."""

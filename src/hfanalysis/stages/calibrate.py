@@ -1,8 +1,8 @@
 """calibrate: the injector coefficient, the feed loss, the vapor's polytropic exponent and the fuel's regression.
 
-Reads ``ingest.h5`` and ``segments.json``; writes ``calibration.json``, the calibration with the adopted effects acting,
-and ``base_calibration.json``, that of the base model, which a diagnosis starts from. Without adopted effects they are
-the same.
+Reads ``ingest.h5``, ``health.json`` and ``segments.json``; writes ``calibration.json``, the calibration with the
+adopted effects acting, and ``base_calibration.json``, that of the base model, which a diagnosis starts from. Without
+adopted effects they are the same.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
     from hfanalysis.calibrate.joint_fit import fitted_together
     from hfanalysis.inference.subject import Subject
     from hfanalysis.products.segments import Segments
-    from hfanalysis.record.log import read_log
 
     found = _calibration(context, effects)
     if all(active.effect.of_sensor for active in effects):
         return found
     context.progress("fitting all constants together, adopted effects in", None)
     segments = context.read(Segments)
-    subject = Subject(read_log(context.product("ingest.h5")), segments, base, context.definition)
+    log, definition = context.believed()
+    subject = Subject(log, segments, base, definition)
     try:
         return fitted_together(subject, effects, found)
     except AbsentError as missing:
@@ -56,22 +56,22 @@ def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.inference.adopted.corrected_log import corrected
     from hfanalysis.products.segments import Segments
-    from hfanalysis.record.log import read_log
 
     segments = context.read(Segments)
-    log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, effects)
+    log, definition = context.believed()
+    log = corrected(log, segments.t_open.value or 0.0, effects)
     context.progress("repeating the calibration with drawn inputs", None)
-    result = calibrate(log, segments, context.definition, int(context.parameter("samples")), effects)
+    result = calibrate(log, segments, definition, int(context.parameter("samples")), effects)
     context.progress("fitting the regression", None)
-    found = result.with_law(regress(log, segments, context.definition, result, effects))
-    if said := contradiction(context.definition, found):
+    found = result.with_law(regress(log, segments, definition, result, effects))
+    if said := contradiction(definition, found):
         found = found.but(warnings=(*found.warnings, said))
-    return held_against(log, segments, context.definition, found)
+    return held_against(log, segments, definition, found)
 
 
 STAGE = Stage(
     name="calibrate",
-    needs=("ingest", "segment"),
+    needs=("ingest", "health", "segment"),
     products=("calibration.json", "base_calibration.json"),
     run=run,
     parameters={"samples": 400},

@@ -9,7 +9,6 @@ whose engine cannot be run, gets what its channels show by themselves. Writes ``
 from __future__ import annotations
 
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
@@ -50,9 +49,9 @@ def subject_of(context: Context) -> Subject:
     from hfanalysis.inference.subject import Subject
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.products.segments import Segments
-    from hfanalysis.record.log import read_log
 
-    log = read_log(context.product("ingest.h5"))
+    # what may be wrong with a sensor is a hypothesis of the diagnosis: no accuracy is widened for it
+    log = context.log(widened=False)
     segments = context.read(Segments)
     if "p_tank" in log and "p_run" not in log:
         with suppress(AbsentError):
@@ -99,29 +98,14 @@ def _other(context: Context) -> OtherTest | None:
 
 def _siblings(context: Context) -> list[str]:
     """Other tests of the same stand, hot fires, by name."""
-    from hfanalysis.record.definition import load_definition
+    from hfanalysis.stages.stand import others
 
-    stand = context.definition.test.stand
-    if stand is None:
-        return []
-    out = []
-    for path in sorted(_definitions(context.root)):
-        try:
-            test = load_definition(path).test
-        except InputError:
-            continue
-        if test.stand == stand and test.id != context.id and test.kind == "hot_fire":
-            out.append(test.id)
-    return out
-
-
-def _definitions(root: Path) -> list[Path]:
-    return list((root / "raw_tests").glob("*/test.toml"))
+    return [other.test.id for other in others(context) if other.test.kind == "hot_fire"]
 
 
 STAGE = Stage(
     name="diagnose",
-    needs=("ingest", "segment"),
+    needs=("ingest", "health", "segment"),
     wants=("calibrate",),
     products=("diagnosis.json", "diagnosis.h5"),
     run=run,

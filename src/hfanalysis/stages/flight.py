@@ -1,7 +1,7 @@
 """flight: the rocket's flight on the measured thrust, with bands, and engine files for flight simulators.
 
-Reads ``ingest.h5`` and, where they are there, ``segments.json`` and ``calibration.json``; writes ``flight.json``,
-``flight.h5``, ``TEST.eng`` and ``TEST.rse``.
+Reads ``ingest.h5``, ``health.json`` and, where they are there, ``segments.json`` and ``calibration.json``; writes
+``flight.json``, ``flight.h5``, ``TEST.eng`` and ``TEST.rse``.
 """
 
 from __future__ import annotations
@@ -20,14 +20,13 @@ def run(context: Context) -> None:
     from hfanalysis.measured_flight.stability import stability
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.products.segments import Segments
-    from hfanalysis.record.log import read_log
 
     definition = context.definition
     if definition.rocket is None:
         raise AbsentError(f"test {context.id}: test.toml has no [rocket] to fly")
     adopted, segments = read_adopted(context.root, definition), context.read(Segments)
     # physics that was adopted is in the measured thrust; what sensors add to it is taken off
-    log = corrected(read_log(context.product("ingest.h5")), segments.t_open.value or 0.0, adopted.acting)
+    log = corrected(context.log(), segments.t_open.value or 0.0, adopted.acting)
     calibration = None if "calibrate" in context.absent else context.read(Calibration)
     flown = firing(log, segments, calibration, definition, bool(context.parameter("raw_thrust")))
     found = fly_measured(
@@ -45,7 +44,7 @@ def run(context: Context) -> None:
 
 STAGE = Stage(
     name="flight",
-    needs=("ingest", "segment"),
+    needs=("ingest", "health", "segment"),
     wants=("calibrate",),
     products=("flight.json", "flight.h5", "{test}.eng", "{test}.rse", "{test}_rocketpy.py"),
     run=run,

@@ -15,7 +15,7 @@ from hfanalysis.products import disk as products
 from hfanalysis.products.disk import HashCache
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.sources import closure, data, digest, libraries
-from hfanalysis.stages import base, way_to
+from hfanalysis.stages import base, stand, way_to
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.version import __version__
 
@@ -63,6 +63,17 @@ def _distributions() -> Mapping[str, list[str]]:
     return importlib.metadata.packages_distributions()
 
 
+def _of_stand(context: Context, hashes: HashCache) -> dict[str, Any]:
+    """The hashes of what is read of the stand's other tests."""
+    return {other.test.id: _of_test(other, hashes) for other in stand.nearest(context)}
+
+
+def _of_test(other: TestDefinition, hashes: HashCache) -> dict[str, str]:
+    return {
+        path.relative_to(other.folder).as_posix(): _raw_hash(path, hashes) for path in (other.path, *raw_files(other))
+    }
+
+
 def raw_files(definition: TestDefinition) -> list[Path]:
     """The files the test's results rest on, besides its ``test.toml``."""
     tables = [definition.rocket.drag_table] if definition.rocket and definition.rocket.drag_table else []
@@ -91,6 +102,7 @@ def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, A
         "raw": {
             path.relative_to(context.raw).as_posix(): _raw_hash(path, hashes) for path in raw_files(context.definition)
         },
+        **({"stand": _of_stand(context, hashes)} if stage.reads_stand else {}),
         "effects": {path.name: hashes(path) for path in effect_files(context, stage)},
         "libraries": library_versions(made_by),
         "parameters": context.at(stage).parameters(),

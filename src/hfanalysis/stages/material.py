@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from hfanalysis.products.kinds import KINDS
-from hfanalysis.record.log import read_log
 from hfanalysis.report.material import Material, read_store
 from hfanalysis.stages.base import BASE, Context, load_stage
 
@@ -22,4 +21,4 @@ def load(context: Context) -> Material:
                 products[path.stem] = context.read(KINDS[path.name])
             elif path.suffix == ".h5" and path.name != _LOG:
                 stores[path.stem] = read_store(path)
-    return Material(context.definition, read_log(context.product(_LOG)), products, stores, absent)
+    return Material(context.definition, context.marked(), products, stores, absent)

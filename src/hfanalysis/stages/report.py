@@ -20,8 +20,8 @@ def run(context: Context) -> None:
 
 STAGE = Stage(
     name="report",
-    needs=("ingest",),
-    wants=tuple(name for name in ORDER if name not in ("ingest", "report")),
+    needs=("ingest", "health"),
+    wants=tuple(name for name in ORDER if name not in ("ingest", "health", "report")),
     products=("report.html",),
     run=run,
 )

@@ -1,6 +1,6 @@
 """segment: when what happens - the phases of the test, from the physics of its signals.
 
-Reads ``ingest.h5``; writes ``segments.json``.
+Reads ``ingest.h5`` and ``health.json``; writes ``segments.json``.
 """
 
 from __future__ import annotations
@@ -10,11 +10,10 @@ from hfanalysis.stages.base import Context, Stage
 
 def run(context: Context) -> None:
     """Find the phases of the test."""
-    from hfanalysis.record.log import read_log
     from hfanalysis.segment.phases import find_phases
 
-    log = read_log(context.product("ingest.h5"))
-    context.write(find_phases(log, context.definition))
+    log, definition = context.believed()
+    context.write(find_phases(log, definition))
 
 
-STAGE = Stage(name="segment", needs=("ingest",), products=("segments.json",), run=run, adopts=False)
+STAGE = Stage(name="segment", needs=("ingest", "health"), products=("segments.json",), run=run, adopts=False)

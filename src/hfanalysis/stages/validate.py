@@ -1,7 +1,7 @@
 """validate: the performance of the test, and the calibrated model against the measurement in three modes.
 
-Reads ``ingest.h5``, ``segments.json`` and, where there is one, ``calibration.json``; writes ``residuals.h5``,
-``performance.h5`` and ``validation.json``.
+Reads ``ingest.h5``, ``health.json``, ``segments.json`` and, where there is one, ``calibration.json``; writes
+``residuals.h5``, ``performance.h5`` and ``validation.json``.
 """
 
 from __future__ import annotations
@@ -14,17 +14,16 @@ def run(context: Context) -> None:
     from hfanalysis.inference.adopted.effects import read_adopted
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.products.segments import Segments
-    from hfanalysis.record.log import read_log
     from hfanalysis.validate.histories import write_histories
     from hfanalysis.validate.residuals import write_residuals
     from hfanalysis.validate.validation import validate
 
-    log = read_log(context.product("ingest.h5"))
+    log, definition = context.believed()
     segments = context.read(Segments)
     absent = context.absent.get("calibrate")
     calibration = None if absent else context.read(Calibration)
     adopted = read_adopted(context.root, context.definition)
-    found = validate(log, segments, context.definition, calibration, absent, adopted.acting)
+    found = validate(log, segments, definition, calibration, absent, adopted.acting)
     write_residuals(context.scratch("residuals.h5"), found.residuals, context.provenance())
     write_histories(context.scratch("performance.h5"), found.histories, context.provenance())
     context.write(found.product.but(effects=adopted.product()))
@@ -32,7 +31,7 @@ def run(context: Context) -> None:
 
 STAGE = Stage(
     name="validate",
-    needs=("ingest", "segment"),
+    needs=("ingest", "health", "segment"),
     wants=("calibrate",),
     products=("residuals.h5", "performance.h5", "validation.json"),
     run=run,

@@ -34,6 +34,10 @@ SPAN = 0.25
 test_performance_errors.py: a tare takes away three quarters of what a cell may be off by."""
 
 
+EARLY = 0.5
+"""[s] before the burn's end at which a channel may end and still say what it was over the burn."""
+
+
 @dataclass(frozen=True)
 class Fire:
     """When the engine burns: from the opening to ``end`` [s], known to ``std``, as ``source`` says."""
@@ -77,7 +81,7 @@ def measured(
     oxidizer, fuel = _oxidizer(log, segments, definition, calibration), _fuel(definition)
     out["specific_impulse"] = specific_impulse(impulse, oxidizer, fuel)
     out["peak_chamber_pressure"] = _peak(log, "p_chamber", _signal(log, segments, "p_chamber"), fire)
-    out["peak_thrust"] = _peak(log, "thrust", thrust.signal if thrust else "the log has no thrust", fire)
+    out["peak_thrust"] = _peak(log, "thrust", thrust.signal if thrust else log.lacks("thrust"), fire)
     out["average_thrust"] = _average(impulse, out["burn_time"])
     out |= {"oxidizer_mass": oxidizer, "fuel_mass": fuel}
     out["mean_chamber_pressure"] = _mean(log, segments, "p_chamber", fire)
@@ -88,7 +92,7 @@ def measured(
 def _signal(log: TestLog, segments: Segments, name: str) -> Signal | str:
     channel = log.get(name)
     if channel is None:
-        return f"the log has no {name}"
+        return log.lacks(name)
     signal = Signal.of(channel).shifted(segments.t_open.value or 0.0)
     return signal if signal.time.size > 8 else f"{name} has too few good samples"
 
@@ -103,12 +107,12 @@ def _bias(channel: Channel) -> float:
 def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     """Integral of the thrust over the burn, the cell's drift taken off."""
     if thrust is None:
-        return Quantity.absent("the log has no thrust")
+        return Quantity.absent(log.lacks("thrust"))
     signal, channel = thrust.signal, log["thrust"]
     if signal.time.size < 9:
         return Quantity.absent("thrust has too few good samples")
-    if signal.time[-1] < fire.end - 0.5:
-        return Quantity.absent(f"the log ends at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)")
+    if signal.time[-1] < fire.end - EARLY:
+        return Quantity.absent(_ends_early("thrust", signal, fire))
     edges = np.array([0.0, fire.end])
     whole, unseen = signal.bridged(), signal.holes(*edges)
     inner = whole.between(*edges)
@@ -126,6 +130,11 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     return Quantity(value, "N s", float(np.linalg.norm(errors)), why=why)
 
 
+def _ends_early(name: str, signal: Signal, fire: Fire) -> str:
+    """How it is said that a channel says nothing of the burn's last part."""
+    return f"the good samples of {name} end at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)"
+
+
 def _across(signal: Signal, start: float, end: float) -> float:
     """What an integral across a hole may be off by: the change may come at any instant of it."""
     first, last = signal.at(np.array([np.nextafter(start, end), np.nextafter(end, start)]))
@@ -136,7 +145,7 @@ def _raw_integral(log: TestLog) -> Quantity:
     """What a plain integral of the raw channel over the file gives."""
     channel = log.get("thrust")
     if channel is None:
-        return Quantity.absent("the log has no thrust")
+        return Quantity.absent(log.lacks("thrust"))
     raw = channel.values if channel.raw is None else channel.raw
     good = channel.good & np.isfinite(raw)
     value = float(np.trapezoid(raw[good], channel.time[good]))
@@ -181,6 +190,8 @@ def _mean(log: TestLog, segments: Segments, name: str, fire: Fire) -> Quantity:
     inner = signal.between(0.0, fire.end)
     if inner.time.size < 8:
         return Quantity.absent(f"{name} has too few good samples in the burn")
+    if signal.time[-1] < fire.end - EARLY:
+        return Quantity.absent(_ends_early(name, signal, fire))
     mean = float(np.trapezoid(inner.value, inner.time) / np.ptp(inner.time))
     return Quantity(mean, log[name].unit, _bias(log[name]))
 

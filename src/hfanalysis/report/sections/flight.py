@@ -44,7 +44,7 @@ def render(material: Material) -> Iterator[Block]:
 
 
 def _row(name: str, quantity: Quantity) -> tuple[Any, ...]:
-    return in_words(name), html.value(quantity, name), html.interval(quantity, name), html.remark(quantity)
+    return in_words(name), html.value(quantity, name), html.interval(quantity, name), html.judged(quantity)
 
 
 def _check(name: str, check: Check) -> Markup:

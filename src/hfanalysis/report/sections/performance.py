@@ -30,7 +30,7 @@ def render(material: Material) -> Iterator[Block]:
 
 
 def _closure(found: Mapping[str, Quantity]) -> Markup | None:
-    rows = [(in_words(name), html.value(q, name), html.remark(q)) for name, q in found.items()]
+    rows = [(in_words(name), html.value(q, name), html.judged(q)) for name, q in found.items()]
     caption = "Whether masses and energy close."
     return html.table("Closure", caption, ("quantity", ">value", "remark"), rows) if rows else None
 
@@ -42,7 +42,7 @@ def _row(name: str, measured: Quantity, model: Quantity | None) -> tuple[Any, ..
         html.interval(measured, name),
         html.value(model, name) if model else Markup("–"),
         _share(measured.value, model.value if model else None),
-        html.remark(measured),
+        html.judged(measured),
     )
 
 

@@ -49,8 +49,8 @@ def _rows(material: Material) -> Iterator[tuple[Any, ...]]:
 
 def _row(name: str, quantity: Quantity, by_hand: bool) -> tuple[Any, ...]:
     hand = Markup("<strong>set by the engineer</strong> ") if by_hand else Markup()
-    why = quantity.why or quantity.reason or ""
-    return html.symbol(name), in_words(name), html.value(quantity), html.interval(quantity), hand + why
+    why = hand + html.judged(quantity)
+    return html.symbol(name), in_words(name), html.value(quantity), html.interval(quantity), why
 
 
 SECTION = Section("Phases", 20, ("segments",), render)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from hfanalysis.charts.chart import Series
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.time_charts import of_channel, over_time
+from hfanalysis.report.time_charts import lines_of, over_time
 
 PRESSURES = {"p_tank": "tank", "p_run": "run line", "p_chamber": "chamber", "p_purge": "purge line", "p_fill": "fill"}
 _CAPTION = "Absolute. Line: mean of the samples; lighter: their extremes. Flagged samples are left out."
@@ -18,7 +18,7 @@ def series(material: Material) -> Iterator[Series]:
     for name, label in PRESSURES.items():
         channel = material.log.get(name)
         if channel is not None:
-            yield of_channel(material, channel, label, name)
+            yield from lines_of(material, channel, label, name)
 
 
 def render(material: Material) -> Iterator[Block]:

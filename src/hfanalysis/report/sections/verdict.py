@@ -12,7 +12,7 @@ from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.ingest import Ingest
 from hfanalysis.products.validation import Finding, Validation
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import DOUBTED, Quantity
 from hfanalysis.record.flag_notes import of_one, with_flag
 from hfanalysis.record.zero import not_back
 from hfanalysis.report import html
@@ -71,8 +71,17 @@ def _numbers(found: Mapping[str, Quantity]) -> Markup | None:
     if not found:
         return None
     item = Markup("<div><dt>{}</dt><dd>{}</dd></div>")
-    items = (item.format(in_words(name), html.value(quantity, name, True)) for name, quantity in found.items())
+    items = (item.format(in_words(name), _key_number(name, quantity)) for name, quantity in found.items())
     return Markup('<dl class="key-numbers">{}</dl>').format(Markup().join(items))
+
+
+def _key_number(name: str, quantity: Quantity) -> Markup:
+    """With a badge where it is doubted, which says why."""
+    number = html.value(quantity, name, True)
+    if quantity.verdict != DOUBTED:
+        return number
+    badge = Markup('{} <span class="doubt" title="{}">{}</span>')
+    return badge.format(number, quantity.why or "", html.verdict(DOUBTED))
 
 
 def sentence(material: Material) -> str:
@@ -83,7 +92,10 @@ def sentence(material: Material) -> str:
         return " ".join(["This test could not be calibrated; the reason is given below.", *_sensor_sentence(material)])
     names = {kind: [in_words(name) for name in found] for kind, found in by_mark(material).items()}
     parts = [
-        f"Identified: {listed(names['good'])}." if names["good"] else "Nothing could be identified.",
+        f"Identified: {listed(names['good'])}."
+        if names["good"]
+        else ("" if names["doubt"] else "Nothing could be identified."),
+        f"Doubted, for what a sensor shows: {listed(names['doubt'])}." if names["doubt"] else "",
         f"Outside its physical range: {listed(names['bad'])}." if names["bad"] else "",
         f"Not identifiable from this test: {listed(names['open'])}." if names["open"] else "",
     ]
@@ -109,7 +121,7 @@ def _of_channels(fault: Finding) -> str:
 def by_mark(material: Material) -> dict[str, dict[str, Quantity]]:
     """What a calibration is asked for first [SI], by how far it can be trusted."""
     calibration = material.get(Calibration)
-    out: dict[str, dict[str, Quantity]] = {"good": {}, "bad": {}, "open": {}}
+    out: dict[str, dict[str, Quantity]] = {"good": {}, "doubt": {}, "bad": {}, "open": {}}
     found = calibration.quantities if calibration is not None else {}
     for name, quantity in ((name, found[name]) for name in wording.MASTHEAD if name in found):
         out[html.mark(quantity.verdict or "")][name] = quantity
@@ -117,7 +129,7 @@ def by_mark(material: Material) -> dict[str, dict[str, Quantity]]:
 
 
 def _findings(material: Material) -> Iterator[Markup]:
-    heads = {"good": "Identified", "bad": "Outside its physical range", "open": "Not identified"}
+    heads = {"good": "Identified", "doubt": "Doubted", "bad": "Outside its physical range", "open": "Not identified"}
     for kind, found in by_mark(material).items():
         if found:
             yield _finding(kind, heads[kind], map(_judged, *zip(*_by_reason(found, kind), strict=True)))

@@ -1,0 +1,81 @@
+"""Stretches without a reading: codes that stand for none, a transmitter's fault current, pressures below vacuum."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hfanalysis.health.cures import exclude
+from hfanalysis.health.seen import Seen
+from hfanalysis.health.shape import running_median, stretches
+from hfanalysis.health.words import level
+from hfanalysis.products.health import Finding
+from hfanalysis.record.holes import holes
+from hfanalysis.record.log import Flag
+from hfanalysis.sentences import text
+
+BELOW = 3.0
+"""Deviations of the sensor's accuracy below vacuum from which on a pressure is none [-]."""
+FEWEST = 3
+"""Samples that a stretch below vacuum lasts at least: fewer are spikes."""
+BRIDGED = 0.1
+"""[s] between two stretches below which they are told as one."""
+TOLD = 5
+"""Stretches that are told one by one."""
+
+
+def find(seen: Seen) -> Iterator[Finding]:
+    """Below vacuum, and where every reading of a stretch stands for none."""
+    if seen.dimension == "pressure":
+        yield from _below_vacuum(seen)
+    yield from _coded(seen)
+
+
+def _below_vacuum(seen: Seen) -> Iterator[Finding]:
+    time, values = seen.trace.time, seen.trace.values
+    if len(values) < 4 * FEWEST:
+        return
+    rest = seen.coarse.rest.value if seen.coarse.rest else seen.ambient
+    if _reversed(seen, rest):
+        return
+    limit = min(0.0, rest) - BELOW * seen.channel.accuracy
+    bridge = max(FEWEST, round(BRIDGED * seen.coarse.rate))
+    found = [(a, b) for a, b in stretches(running_median(values) < limit, bridge) if b - a >= FEWEST]
+    for a, b in found[:TOLD]:
+        start, end = float(time[a]), float(time[b - 1])
+        mean = float(np.median(values[a:b]))
+        words = "reads {value} absolute from {start:.2f} to {end:.2f} s ({n} samples), and no pressure is below vacuum"
+        evidence = text(words, value=level(mean, "pressure"), start=start, end=end, n=b - a)
+        yield _none(seen, start, end, evidence, "a code for no reading, a transmitter's fault current or a broken wire")
+
+
+def _reversed(seen: Seen, rest: float) -> bool:
+    """Whether it goes below vacuum as far as others go up, and comes back: a reversed sign, which is another kind."""
+    if seen.fire is None:
+        return False
+    part = seen.trace.between(*seen.fire).values
+    if len(part) < 4 * FEWEST:
+        return False
+    low, high = np.percentile(part, (10.0, 90.0))
+    last = seen.coarse.last
+    return bool(high - rest < 0.3 * (rest - low) and last is not None and last.value - low > 0.5 * (rest - low))
+
+
+def _coded(seen: Seen) -> Iterator[Finding]:
+    """Holes in which the log has rows, but no reading that is one."""
+    none = (seen.channel.flags & np.uint8(Flag.DROPOUT)) != 0
+    if seen.dimension in ("dimensionless", "temperature") or not none.any() or none.mean() > 0.9:
+        return
+    stamps = seen.channel.time[none]
+    for start, end in holes(seen.trace.time)[:TOLD]:
+        inside = int(np.count_nonzero((stamps > start) & (stamps < end)))
+        if inside >= FEWEST:
+            words = "its {n} readings between {start:.2f} and {end:.2f} s stand for none"
+            evidence = text(words, n=inside, start=float(start), end=float(end))
+            yield _none(seen, float(start), float(end), evidence, "the logger had no value there: a code or a blank")
+
+
+def _none(seen: Seen, start: float, end: float, evidence: str, means: str) -> Finding:
+    cure = exclude([seen.name], start, end)
+    return seen.finding("dropout", "unusable", start=start, end=end, evidence=evidence, means=means, cure=cure)

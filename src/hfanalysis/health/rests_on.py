@@ -1,0 +1,111 @@
+"""Which channels a quantity rests on, by product and name: a doubt about one of them is a doubt about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from hfanalysis.quantity import Quantity
+
+PRESSURES = ("p_tank", "p_run", "p_chamber")
+FIRE = ("p_chamber", "thrust")
+
+SEGMENTS = {
+    "t_open": ("p_run", "p_chamber", "thrust"),
+    "t_feed": ("p_run",),
+    "t_v": ("p_tank", "p_run"),
+    "t_purge": ("p_purge", "p_tank"),
+    "t_fuel_out": FIRE,
+    "t_fuel_gone": FIRE,
+    "t_end": ("p_chamber",),
+}
+
+CALIBRATION = {
+    "C_i": PRESSURES,
+    "m": PRESSURES,
+    "Z": ("p_tank",),
+    "K_loss": PRESSURES,
+    "p_loss_liquid": ("p_tank", "p_run"),
+    "p_loss_vapor": ("p_tank", "p_run"),
+    "vapor_mass_at_t_v": ("p_tank",),
+    "oxidizer_flow_peak": PRESSURES,
+    "mass_at_t_feed": PRESSURES,
+    "oxidizer_mass_liquid_phase": ("p_tank",),
+    "oxidizer_mass": (),
+    "oxidizer_mass_fitted": (*PRESSURES, "thrust"),
+    "tank_temperature": (*PRESSURES, "thrust"),
+    "a": PRESSURES,
+    "n": PRESSURES,
+    "regression_rate_reference": PRESSURES,
+    "reference_flux": PRESSURES,
+    "pressure": ("p_tank",),
+    "temperature": ("p_tank",),
+    "bulk_temperature": ("p_tank",),
+    "liquid_fraction": ("p_tank",),
+    "blowdown_mass": ("p_tank",),
+    "liquid_phase_heat": PRESSURES,
+    "load_cell_mass": ("m_tank",),
+}
+
+VALIDATION = {
+    "burn_time": FIRE,
+    "total_impulse": ("thrust",),
+    "specific_impulse": ("thrust",),
+    "peak_chamber_pressure": ("p_chamber",),
+    "mean_chamber_pressure": ("p_chamber",),
+    "peak_thrust": ("thrust",),
+    "average_thrust": ("thrust",),
+    "total_impulse_of_file": ("thrust",),
+    "oxidizer_mass": (),
+    "fuel_mass": (),
+    "oxidizer_through_injector": PRESSURES,
+    "fuel_burned": PRESSURES,
+    "propellant_through_nozzle": ("p_chamber",),
+    "oxidizer_loaded": (),
+    "fuel_loaded": (),
+    "liquid_phase_heat": PRESSURES,
+}
+
+FLOWN = (
+    "apogee", "time_to_apogee", "rail_departure_velocity", "peak_velocity", "peak_mach", "peak_acceleration",
+    "time_to_main", "main_deployment_acceleration", "landing_time", "impact_velocity_ballistic",
+    "pad_thrust_to_weight", "total_impulse", "burn_time", "average_thrust", "margin_at_rail_departure",
+)  # fmt: skip
+FLIGHT = dict.fromkeys(FLOWN, ("thrust",))
+
+Rests = Mapping[str, tuple[str, ...]]
+TABLES: Mapping[str, Rests] = {
+    "segments.json": SEGMENTS,
+    "calibration.json": CALIBRATION,
+    "validation.json": VALIDATION,
+    "flight.json": FLIGHT,
+}
+"""By product and quantity, the channels. A quantity that is not named rests on none."""
+
+TOGETHER = " together"
+"""How the name of a product ends here whose constants were fitted together, with the thrust."""
+
+OUTSIDE = ("[observed]", "set by the engineer", "as stated", "held as")
+"""How the reason of a quantity begins that comes from test.toml, not from the log."""
+FROM_CELL = ("from the load cell",)
+"""How it is said that a mass comes from the tank's cell."""
+
+OF_LEVEL = ("zero", "drift", "scale", "unit", "gauge_or_absolute", "gross_mass")
+"""Kinds of finding that shift or stretch a channel and leave it the shape, and with it the instants of its bends."""
+BY_LEVEL = ("t_end",)
+"""Instants at which a channel passes a level."""
+
+
+def channels_of(product: str, name: str, quantity: Quantity) -> tuple[str, ...]:
+    """The channels that a quantity of a product (its file's name) rests on."""
+    told = quantity.why or ""
+    if told.startswith(OUTSIDE):
+        return ()
+    if any(words in told for words in FROM_CELL):
+        return ("m_tank",)
+    found = TABLES.get(product.removesuffix(TOGETHER), {}).get(name, ())
+    return (*found, "thrust") if product.endswith(TOGETHER) and found == PRESSURES else found
+
+
+def concerns(product: str, name: str, kind: str) -> bool:
+    """Whether a kind of finding concerns a quantity of a channel: shifts do not move the bends of a curve."""
+    return product != "segments.json" or name in BY_LEVEL or kind not in OF_LEVEL

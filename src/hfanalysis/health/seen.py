@@ -1,0 +1,150 @@
+"""What a detector sees: one channel, one test, the other tests of its stand. And the forms a detector has.
+
+A detector is a module with ``find``; its name is that of the kind or the tie, and its first line says what it looks
+for::
+
+    # kinds/dead.py                                   # ties/chamber_and_thrust.py, stand/scale.py
+    def find(seen: Seen) -> Iterable[Finding]: ...    def find(test: SeenTest) -> Iterable[Finding]: ...
+
+Findings of a channel may leave ``channels`` to :meth:`Seen.finding`, which fills it in; those of ties and of the stand
+name the channels that they point to: each of these gets the finding among its own. What the stand says only ever makes
+suspect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from hfanalysis.arrays import Array
+from hfanalysis.health.coarse import Coarse, Span, as_said, coarse, live_span
+from hfanalysis.products.health import Finding
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.logspec import ChannelSpec
+from hfanalysis.record.quiet import Trace
+from hfanalysis.sentences import Text, said
+from hfanalysis.wording.numbers import people_unit
+
+FIRING = ("p_chamber", "thrust", "p_run", "p_tank")
+"""Channels that say when the firing is, the most telling first."""
+TOGETHER = 1.5
+"""[s] within which channels agree on the beginning of the firing: ignition may be late by a second. Evidence:
+test_seen.py: a chamber gauge that is dead until seconds into the burn is outvoted."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """One channel: its samples, what test.toml says of it, coarse estimates, and the firing's span by all channels."""
+
+    channel: Channel
+    spec: ChannelSpec
+    coarse: Coarse
+    definition: TestDefinition
+    fire: Span | None
+
+    @property
+    def name(self) -> str:
+        """Its canonical name."""
+        return self.channel.name
+
+    @property
+    def dimension(self) -> str:
+        """pressure, force, mass, temperature …"""
+        return self.spec.dimension
+
+    @property
+    def ambient(self) -> float:
+        """Ambient pressure [Pa]."""
+        return self.definition.ambient_pressure.value
+
+    @cached_property
+    def said(self) -> Array:
+        """What the sensor said (n,) [SI], before zero and tare, every sample in the log's order; NaN: no number."""
+        return as_said(self.channel)
+
+    @cached_property
+    def trace(self) -> Trace:
+        """The same for the good samples only."""
+        good = self.channel.good
+        return Trace(self.channel.time[good], self.said[good])
+
+    @cached_property
+    def logged(self) -> Array:
+        """The readings (n,) as the logger wrote them, in the log's unit (to name a code such as 999)."""
+        scale, offset = self.spec.factor
+        ambient = self.ambient if self.spec.gauge else 0.0
+        return (self.said - ambient - offset) / scale * self.spec.scale + self.spec.offset
+
+    def amount(self, value: float, form: str = ".4g") -> Text:
+        """A value or a difference [SI] in the unit of people at a stand, as findings say it."""
+        factor, unit = people_unit(self.channel.unit)
+        return said(value, unit, form, size=1.0 / factor) if unit else Text(f"{value:{form}}")
+
+    def finding(self, kind: str, verdict: Any, **about: Any) -> Finding:
+        """A finding of this channel alone."""
+        return Finding(kind=kind, verdict=verdict, channels=(self.name,), **about)
+
+
+@dataclass(frozen=True)
+class Sister:
+    """Another test of the stand: what its test.toml says, and its channels' coarse estimates."""
+
+    definition: TestDefinition
+    channels: Mapping[str, Coarse]
+
+    @property
+    def name(self) -> str:
+        """Of the test."""
+        return self.definition.test.id
+
+
+@dataclass(frozen=True)
+class SeenTest:
+    """All channels of a test, when the firing is by most of them, and the other tests of the stand."""
+
+    channels: Mapping[str, Seen]
+    definition: TestDefinition
+    fire: Span | None
+    sisters: tuple[Sister, ...] = ()
+    found: tuple[Finding, ...] = field(default=())
+    """What the channels showed by themselves (in ties), and what ties showed too (in the stand's comparison)."""
+
+    def get(self, name: str) -> Seen | None:
+        """A channel that can be compared: None where the log has none of that name, or it is unusable throughout."""
+        lost = any(f.verdict == "unusable" and f.whole and name in f.channels for f in self.found)
+        return None if lost else self.channels.get(name)
+
+    @property
+    def ambient(self) -> float:
+        """Ambient pressure [Pa]."""
+        return self.definition.ambient_pressure.value
+
+
+def look(log: TestLog, definition: TestDefinition) -> SeenTest:
+    """All channels of a log with their coarse estimates, each computed once."""
+    live = {name: live_span(channel) for name, channel in log.channels.items()}
+    fire = firing_of(live)
+    estimates = {name: coarse(channel, live[name], fire) for name, channel in log.channels.items()}
+    seen = {
+        name: Seen(channel, definition.channels[name], estimates[name], definition, fire)
+        for name, channel in log.channels.items()
+    }
+    return SeenTest(seen, definition, fire)
+
+
+def firing_of(live: Mapping[str, Span | None]) -> Span | None:
+    """From when to when [s, log time] the firing lasts, by the channel that most others agree with on its beginning.
+
+    A tank's pressure, which filling raises long before, is asked only where no other channel moves.
+    """
+    there = [span for span in map(live.get, FIRING[:-1]) if span is not None]
+    if not there:
+        return live.get(FIRING[-1])
+    starts = np.array([start for start, _ in there])
+    votes = [int(np.count_nonzero(np.abs(starts - start) <= TOGETHER)) for start in starts]
+    return there[int(np.argmax(votes))]

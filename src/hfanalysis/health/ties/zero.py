@@ -1,0 +1,142 @@
+"""Zeros that are off: at rest before the firing, or shifted by it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hfanalysis.health.firing import EMPTY_LINE, OPEN_TO_AIR, burn_of, usable
+from hfanalysis.health.seen import Seen, SeenTest
+from hfanalysis.health.words import level
+from hfanalysis.products.health import Finding
+from hfanalysis.record.quiet import FiringSpan, Level, Trace, after
+from hfanalysis.record.quiet import level as level_of
+from hfanalysis.sentences import text
+
+SHIFT_SHARE = {"force": 0.015, "pressure": 0.02}
+"""Part of the rise in the firing from which on a shift of the zero is called so [-]: below, heat and hysteresis of a
+sound sensor do it. Source: data sheets' temperature effects on zero, a few tenths of a percent per 10 K."""
+NOISES = 5.0
+"""Deviations of both levels' means that a shift has to exceed [-]."""
+ACCURACIES = {"force": 3.0, "pressure": 2.0}
+"""Deviations of the stated accuracy that a shift has to exceed [-]; where none is stated, the share alone counts."""
+TAKEN_OFF, LEFT_IN = 12.0**-0.5, 3.0**-0.5
+"""Deviation of a mean over the firing for a shift of one [-], where a linear drift was taken off and where it was not.
+Source: of a shift at any instant a uniform share is in the mean; its deviation from one half, and from nothing."""
+MOST = 0.5
+"""Part of the rise above which what is left is no zero any more [-]: a channel that does not come back at all."""
+AT_REST = 4.0
+"""Deviations of its accuracy by which the rest itself may be off [-]."""
+EMPTY = 3e5
+"""[Pa] below which a tank holds nothing that flows for long. Source: definition."""
+BACK = 0.1
+"""Part of its rise within which a pressure counts as back at rest [-]. Source: definition."""
+
+
+def find(test: SeenTest) -> Iterator[Finding]:
+    """Of the thrust cell, the chamber and the run line."""
+    for name in ("thrust", *OPEN_TO_AIR):
+        seen = test.get(name)
+        if seen is None or test.fire is None or seen.coarse.rest is None:
+            continue
+        if seen.dimension == "pressure" and seen.coarse.rest.value > EMPTY_LINE:
+            continue
+        found = _at_rest(test, seen) or _shifted(test, seen)
+        if found is not None:
+            yield found
+
+
+def _at_rest(test: SeenTest, seen: Seen) -> Finding | None:
+    """A rest that is not zero (not ambient) and that nobody has asked to take off."""
+    assert seen.coarse.rest is not None
+    if seen.spec.tare != "none" or seen.channel.zero_std is not None or _told(test, seen):
+        return None
+    should = 0.0 if seen.dimension == "force" else seen.ambient
+    off, rise = seen.coarse.rest.value - should, abs(seen.coarse.rise or 0.0)
+    if abs(off) < max(AT_REST * seen.channel.accuracy, 0.01 * rise) or (should and off > should):
+        return None
+    cure = 'tare = "auto"' if seen.dimension == "force" else 'zero = "ambient"'
+    words = "reads {rest} at rest before the firing, where it should read {should}"
+    evidence = text(
+        words, rest=level(seen.coarse.rest.value, seen.dimension), should=level(should, seen.dimension)
+    )  # fmt: skip
+    means = "its zero is off by that, and so is every reading"
+    return seen.finding("zero", "suspect", evidence=evidence, means=means, cure=cure, bias=abs(off))
+
+
+def _told(test: SeenTest, seen: Seen) -> bool:
+    """Whether the rest is another kind's already."""
+    from_gauge = [f for f in test.found if f.kind in ("gauge_or_absolute", "sign") and seen.name in f.channels]
+    rest = seen.coarse.rest.value if seen.coarse.rest else 0.0
+    other = seen.ambient * (2.0 if seen.spec.gauge else 0.0)
+    near = seen.dimension == "pressure" and abs(rest - other) < 0.5 * abs(rest - seen.ambient)
+    return bool(from_gauge) or near
+
+
+def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
+    """The level after the firing against the one before, less what still pushes."""
+    trace = usable(test, seen)
+    last = _settled(test, trace)
+    if last is None or seen.coarse.rest is None:
+        return None
+    rise = float(np.percentile(np.abs(trace.values - seen.coarse.rest.value), 99.0))
+    left = _still(test, seen, last)
+    if left is None:
+        return None
+    before = seen.coarse.rest
+    error = float(np.hypot(before.noise / np.sqrt(20.0), NOISES * last.std))
+    shift = last.value - before.value
+    stated = ACCURACIES[seen.dimension] * seen.channel.accuracy if seen.channel.accuracy_stated else 0.0
+    least = max(SHIFT_SHARE[seen.dimension] * rise, error, stated, 2.0 * left[1])
+    if not (least < abs(shift) < MOST * rise and least < abs(shift - left[0])):
+        return None
+    words = "reads {after} after the firing and {before} before it: {shift} of {rise} of its largest rise"
+    evidence = text(
+        words, after=level(last.value, seen.dimension), before=level(before.value, seen.dimension),
+        shift=f"{100.0 * shift / rise:+.1f} %", rise=level(rise, seen.dimension),
+    )  # fmt: skip
+    means = "its zero moved while it fired, nobody knows when: readings in the firing may be off by as much"
+    return seen.finding("zero", "suspect", evidence=evidence, means=means, cure=None, bias=_bias(seen, shift))
+
+
+def _bias(seen: Seen, shift: float) -> float:
+    """What a mean over the firing may be off by [SI] for a zero that moved at an instant that nobody knows."""
+    return abs(shift) * (TAKEN_OFF if seen.channel.drift else LEFT_IN)
+
+
+def _settled(test: SeenTest, trace: Trace) -> Level | None:
+    assert test.fire is not None
+    window = after(trace, FiringSpan(*test.fire, "")) if len(trace.time) else None
+    return level_of(window) if window is not None else None
+
+
+def _still(test: SeenTest, seen: Seen, last: Level) -> tuple[float, float] | None:
+    """What is still there after the firing for other reasons than the zero, and its error [SI]; None: unknown."""
+    if seen.dimension == "pressure":
+        # oxidizer or purge gas that still flows keeps a chamber above ambient, nothing keeps it below
+        assert seen.coarse.rest is not None
+        low = last.value < seen.coarse.rest.value
+        return (0.0, 0.0) if low or _line_is_empty(test, seen, last.time) else None
+    chamber, burn = test.get("p_chamber"), burn_of(test, "p_chamber", "thrust")
+    if chamber is None or burn is None or chamber.coarse.rest is None:
+        return 0.0, 0.0
+    now = usable(test, chamber).between(last.time - 0.5, last.time + 0.5).values
+    excess = float(np.mean(now)) - chamber.coarse.rest.value if len(now) else 0.0
+    per = burn.mean("thrust") / max(burn.mean("p_chamber") - test.ambient, 1.0)
+    pushes = per * max(excess, 0.0)
+    return pushes, 0.5 * pushes + 0.003 * abs(burn.mean("thrust"))
+
+
+def _line_is_empty(test: SeenTest, seen: Seen, time: float) -> bool:
+    """Whether the pressure upstream is back at rest too."""
+    other = test.get("p_run" if seen.name == "p_chamber" else "p_tank")
+    if other is None or other.coarse.rise is None:
+        return seen.name == "p_chamber"
+    now = usable(test, other).between(time - 0.5, time + 0.5).values
+    floor = other.coarse.trough if other.name == "p_tank" else (other.coarse.rest.value if other.coarse.rest else 0.0)
+    return (
+        bool(len(now))
+        and abs(float(np.mean(now)) - floor) < BACK * (other.coarse.peak - other.coarse.trough)
+        and (other.name != "p_tank" or floor < EMPTY)
+    )

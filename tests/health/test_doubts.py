@@ -1,0 +1,143 @@
+"""Doubts beside the numbers: which get one, and how it reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, get_args
+
+import pytest
+from tests.health.test_judge import finding
+from tests.products.filled import filled
+
+from hfanalysis.health.doubts import doubted, with_doubt
+from hfanalysis.health.rests_on import TABLES
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.health import ChannelHealth, Health
+from hfanalysis.products.kinds import KINDS
+from hfanalysis.products.model import AdoptedEffect, Part
+from hfanalysis.products.segments import Segments
+from hfanalysis.products.validation import Validation
+from hfanalysis.quantity import Quantity
+
+
+def health_of(name: str, verdict: Any, firing: tuple[float, float] | None = (0.0, 8.0), **about: Any) -> Health:
+    trust = about.pop("trust", None)
+    found = finding(verdict, name, overruled=bool(trust), **about)
+    channel = ChannelHealth(verdict="healthy" if trust else verdict, trust=trust, findings=(found,))
+    return Health(channels={name: channel}, between=(), firing=firing, warnings=())
+
+
+IMPULSE = {"performance": {"measured": {
+    "total_impulse": Quantity(16e3, "N s", 150.0, why="over the burn"),
+    "peak_chamber_pressure": Quantity(12e5, "Pa", 1e4),
+}}}  # fmt: skip
+
+
+def test_a_number_that_rests_on_a_suspect_channel_is_doubted_with_the_reason_in_its_line() -> None:
+    product = doubted(filled(Validation, IMPULSE), health_of("thrust", "suspect"))
+    assert isinstance(product, Validation)
+    measured = product.performance.measured
+    assert measured.total_impulse.verdict == "doubted"
+    assert measured.total_impulse.why == "thrust (zero): it reads 76 N; over the burn"
+    assert measured.total_impulse.value == 16e3
+    assert measured.peak_chamber_pressure.verdict is None
+
+
+def test_without_findings_a_product_is_the_same() -> None:
+    product = filled(Validation, IMPULSE)
+    assert doubted(product, Health(channels={}, between=(), warnings=())) is product
+
+
+def test_constants_fitted_together_rest_on_the_thrust_as_well() -> None:
+    law = {"a": Quantity(1e-4, verdict="identified")}
+    for fitted, verdict in (({}, "identified"), ({"oxidizer_mass_fitted": Quantity(8.3, "kg")}, "doubted")):
+        found = doubted(filled(Calibration, law | fitted), health_of("thrust", "suspect"))
+        assert isinstance(found, Calibration)
+        assert found.a.verdict == verdict
+
+
+def test_worse_verdicts_stay_and_get_the_reason() -> None:
+    why = [(True, "p_tank (zero): it reads low")]
+    bad = with_doubt(Quantity(-3.0, verdict="unphysical", why="outside"), why)
+    assert (bad.verdict, bad.why) == ("unphysical", "outside; p_tank (zero): it reads low")
+    none = with_doubt(Quantity.absent("too short", verdict="not identifiable"), why)
+    assert (none.verdict, none.reason) == ("not identifiable", "too short; p_tank (zero): it reads low")
+
+
+def test_trust_is_told_beside_the_number_and_leaves_the_verdict() -> None:
+    calibration = filled(Calibration, {"C_i": Quantity(0.29, verdict="identified")})
+    found = doubted(calibration, health_of("p_run", "suspect", trust="calibrated last week"))
+    assert isinstance(found, Calibration)
+    assert found.C_i.verdict == "identified"
+    assert found.C_i.why is not None
+    assert "p_run trusted (calibrated last week) against (zero): it reads 76 N" in found.C_i.why
+
+
+@pytest.mark.parametrize(("span", "is_doubted"), [((3.0, 4.0), True), ((-5.0, -3.0), False), ((9.0, None), False)])
+def test_a_stretch_that_is_left_out_is_a_doubt_only_in_the_firing(span: Any, is_doubted: bool) -> None:
+    health = health_of("thrust", "unusable", start=span[0], end=span[1])
+    product = doubted(filled(Validation, IMPULSE), health)
+    assert isinstance(product, Validation)
+    assert (product.performance.measured.total_impulse.verdict == "doubted") is is_doubted
+
+
+def test_a_zero_that_is_off_moves_no_bend_of_a_curve() -> None:
+    events = {"t_v": Quantity(5.0, "s", 0.01), "t_end": Quantity(8.0, "s", 0.01)}
+    for kind, expected in (("zero", (None, None)), ("lag", ("doubted", None))):
+        found = doubted(filled(Segments, events), health_of("p_tank", "suspect", kind=kind))
+        assert isinstance(found, Segments)
+        assert (found.t_v.verdict, found.t_end.verdict) == expected
+    found = doubted(filled(Segments, events), health_of("p_chamber", "suspect"))
+    assert isinstance(found, Segments)
+    assert found.t_end.verdict == "doubted"
+
+
+def test_a_stretch_is_a_doubt_about_the_events_near_it() -> None:
+    events = {"t_open": Quantity(100.0, "s"), "t_v": Quantity(5.0, "s", 0.01)}
+    for span, expected in (((102.0, 103.0), (None, None)), ((104.5, 106.0), (None, "doubted"))):
+        health = health_of("p_run", "unusable", (100.0, 108.0), kind="stuck", start=span[0], end=span[1])
+        found = doubted(filled(Segments, events), health)
+        assert isinstance(found, Segments)
+        assert (found.t_open.verdict, found.t_v.verdict) == expected
+
+
+def test_what_the_engineer_states_rests_on_no_channel() -> None:
+    burn = {"performance": {"measured": {"burn_time": Quantity(17.0, "s", 0.1, why="[observed] burn_time")}}}
+    product = doubted(filled(Validation, burn), health_of("thrust", "suspect"))
+    assert isinstance(product, Validation)
+    assert product.performance.measured.burn_time.verdict is None
+
+
+NO_CHANNEL = {
+    "flight.json": {
+        "terminal_velocity_drogue", "terminal_velocity_main", "wet_mass", "static_margin_on_pad",
+        "normal_force_slope", "center_of_pressure", "center_of_gravity_loaded", "center_of_gravity_empty",
+    },
+    "validation.json": {"size"},
+    "calibration.json": {"one_by_one"},
+}  # fmt: skip
+"""Quantities that come from test.toml alone; ``size`` is of a sensor's error, a doubt
+itself; what is in ``one_by_one`` has names of its own."""
+
+
+@pytest.mark.parametrize("product", TABLES)
+def test_of_every_quantity_it_is_known_what_it_rests_on(product: str) -> None:
+    named = set(_quantities(KINDS[product]))
+    assert named <= set(TABLES[product]) | NO_CHANNEL.get(product, set())
+
+
+def _quantities(kind: type[Part]) -> Iterator[str]:
+    """Names of the quantities in a model and in the models in it, but for those of adopted effects."""
+    for name, field in kind.model_fields.items():
+        for part in (field.annotation, *get_args(field.annotation)):
+            if part is Quantity:
+                yield name
+            elif isinstance(part, type) and issubclass(part, Part) and part is not AdoptedEffect:
+                yield from _quantities(part)
+
+
+def test_constants_told_one_by_one_are_doubted_by_their_own_names() -> None:
+    calibration = filled(Calibration, {"one_by_one": {"C_i": Quantity(0.29), "oxidizer_mass": Quantity(8.0)}})
+    found = doubted(calibration, health_of("p_run", "suspect"))
+    assert isinstance(found, Calibration)
+    assert [found.one_by_one[name].verdict for name in ("C_i", "oxidizer_mass")] == ["doubted", None]

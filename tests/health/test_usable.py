@@ -1,0 +1,95 @@
+"""The log that stages get: without what is unusable, its zeros taken without it, as accurate as what is suspect."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.health import fire
+from tests.health.test_judge import finding
+
+from hfanalysis.errors import AbsentError
+from hfanalysis.health.usable import as_accurate, marked, usable, widened
+from hfanalysis.products.health import ChannelHealth, Health
+
+
+def health_of(name: str, verdict: Any, **about: Any) -> Health:
+    """A channel with one finding."""
+    channel = ChannelHealth(verdict=verdict, findings=(finding(verdict, name, **about),))
+    return Health(channels={name: channel}, between=(), warnings=())
+
+
+def test_an_unusable_stretch_is_not_good(tmp_path: Path) -> None:
+    log, definition = fire.ingested(tmp_path, fire.columns())
+    found = usable(log, health_of("p_run", "unusable", start=2.0, end=3.0), definition)
+    lost = log["p_run"].good & ~found["p_run"].good
+    assert log["p_run"].time[lost].min() == 2.0
+    assert log["p_run"].time[lost].max() == 3.0
+    assert found["p_tank"] is log["p_tank"]
+
+
+def test_a_channel_without_any_other_samples_is_absent_with_its_reason(tmp_path: Path) -> None:
+    log, definition = fire.ingested(tmp_path, fire.columns())
+    found = usable(log, health_of("thrust", "unusable"), definition)
+    assert "thrust" not in found
+    assert found.get("thrust") is None
+    with pytest.raises(AbsentError, match="no usable thrust: zero: it reads 76 N"):
+        found["thrust"]
+    assert "thrust" in marked(log, health_of("thrust", "unusable"), definition)
+
+
+def test_what_the_engineer_trusts_is_used(tmp_path: Path) -> None:
+    log, definition = fire.ingested(tmp_path, fire.columns())
+    assert usable(log, health_of("thrust", "unusable", overruled=True), definition) is not log
+    assert "thrust" in usable(log, health_of("thrust", "unusable", overruled=True), definition)
+
+
+def test_a_healthy_log_is_as_it_was(tmp_path: Path) -> None:
+    log, definition = fire.ingested(tmp_path, fire.columns())
+    health = Health(channels={}, between=(), warnings=())
+    found = widened(usable(log, health, definition), health)
+    assert all(found[name] is log[name] for name in fire.CHANNELS)
+    assert as_accurate(definition, found).channels == definition.channels
+
+
+def test_a_tare_is_taken_anew_without_the_noise_after_a_cell_has_died(tmp_path: Path) -> None:
+    columns = fire.columns()
+    died = columns["time"] > 2.0
+    columns["thrust"][died] = np.random.default_rng(9).normal(-5000.0, 10.0, int(died.sum()))
+    log, definition = fire.ingested(tmp_path, columns)
+    assert log["thrust"].drift < -1000.0
+    found = usable(log, health_of("thrust", "unusable", start=2.0), definition)["thrust"]
+    assert found.drift == 0.0
+    assert found.zero == pytest.approx(12.0, abs=2.0)
+    burning = found.good & (found.time > 0.5)
+    assert found.values[burning].mean() == pytest.approx(2000.0 * np.exp(-1.25 / 20.0), rel=0.01)
+
+
+def test_zeros_are_taken_anew_where_the_channel_that_dated_the_firing_is_gone(tmp_path: Path) -> None:
+    columns = fire.columns()
+    columns["p_chamber"] = np.where(columns["time"] > -4.0, 20.0, 1.0) + 0.01 * fire.columns(3)["p_run"]
+    log, definition = fire.ingested(tmp_path, columns)
+    found = usable(log, health_of("p_chamber", "unusable"), definition)
+    assert found["thrust"].zero == pytest.approx(12.0, abs=1.0)
+    assert found["thrust"].zero_std != log["thrust"].zero_std
+
+
+def test_accuracy_is_as_wide_as_what_is_found_may_mean(tmp_path: Path) -> None:
+    log, definition = fire.ingested(tmp_path, fire.columns())
+    found = widened(log, health_of("thrust", "suspect", bias=30.0))
+    assert found["thrust"].accuracy == pytest.approx(np.hypot(7.0, 30.0))
+    zero_std = log["thrust"].zero_std
+    assert zero_std is not None
+    assert found["thrust"].zero_std == pytest.approx(np.hypot(zero_std, 30.0))
+    accuracy = as_accurate(definition, found).channels["thrust"].accuracy
+    assert accuracy is not None
+    assert accuracy.value == found["thrust"].accuracy
+    assert definition.channels["thrust"].accuracy != accuracy
+
+
+def test_a_factor_counts_as_an_offset_at_the_plateau(tmp_path: Path) -> None:
+    log, _ = fire.ingested(tmp_path, fire.columns())
+    found = widened(log, health_of("thrust", "suspect", gain=0.1))
+    assert found["thrust"].zero_std == pytest.approx(200.0, rel=0.1)
