@@ -61,6 +61,10 @@ class MeasuredPressures:
         for name in ("p_tank", "p_run", *(("p_chamber",) if burning else ())):
             if name not in signals and (name != "p_run" or lost is None):
                 raise AbsentError(f"test {definition.test.id}: {log.lacks(name)}; a calibration takes it")
+            if name in signals and signals[name].between(0.0, end).time.size < 2:
+                last = f"{signals[name].time[-1]:.2f} s" if signals[name].time.size else "no time"
+                until = f"says nothing after the opening: its last good sample is at {last}"
+                raise AbsentError(f"test {definition.test.id}: {name} {until}")
         blocks = signals["p_tank"].between(0.0, end).reduced(FINEST_BLOCK)
         if blocks.time.size < 8:
             raise AbsentError("too few good samples of p_tank after the opening")

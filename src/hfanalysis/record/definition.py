@@ -16,7 +16,7 @@ from hfanalysis.record.channels import CANONICAL
 from hfanalysis.record.document import place, read_toml, validate
 from hfanalysis.record.logspec import Channels, ChannelSpec, Exclusion, FileSpec, LogSpec, TimeSpec
 from hfanalysis.record.rocket import Rocket
-from hfanalysis.record.schema import Instant, ListOf, Refused, Section, Text, section, unknown_key
+from hfanalysis.record.schema import Instant, ListOf, Name, Refused, Section, Text, section, unknown_key, unsafe
 from hfanalysis.record.sections import (
     Chamber,
     Feed,
@@ -62,29 +62,19 @@ def _date(found: Any) -> datetime.date:
     return found.date() if isinstance(found, datetime.datetime) else found
 
 
-def _id(found: str) -> str:
-    if _unsafe(found):
-        raise ValueError("the name of the test's folder, without path separators")
-    return found
-
-
-def _unsafe(name: str) -> bool:
-    return any(mark in name for mark in "/\\\0") or name in (".", "..") or name != name.strip()
-
-
 @section
 class Test(Section):
     """[test]: which test this is."""
 
-    id: Annotated[Text, AfterValidator(_id)]
+    id: Name
     kind: Literal["hot_fire", "cold_flow", "water_flow"]
     date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
     source: Literal["measured", "replica", "synthetic"] = "measured"
     description: Text = ""
-    stand: Text | None = None
+    stand: Name | None = None
 
 
-_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
 
 
 def _known_events(found: dict[str, Value]) -> dict[str, Value]:
@@ -181,7 +171,7 @@ def find_definition(root: Path, test_id: str) -> Path:
 
     Raises :class:`InputError` where the name is not one of a folder there, or the folder has no test.toml.
     """
-    if not test_id or _unsafe(test_id):
+    if not test_id or unsafe(test_id):
         raise InputError(f"test {test_id!r}: expected the name of a folder in raw_tests, without path separators")
     tests = root / "raw_tests"
     path = tests / test_id / "test.toml"
@@ -232,10 +222,14 @@ def _check_folder(definition: TestDefinition) -> None:
 
 def _inside(name: str, folder: Path, where: str) -> None:
     """The file must be there, and within the test's own folder."""
-    path = (folder / name).resolve()
-    if not path.is_relative_to(folder) or path == folder:
-        raise InputError(f"{where}: found {name!r}; expected a file inside the test's own folder")
-    if not path.is_file():
+    try:
+        path = (folder / name).resolve()
+        own, there = path.is_relative_to(folder) and path != folder, path.is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        own = there = False
+    if not own:
+        raise InputError(f"{where}: found {name[:80]!r}; expected a file inside the test's own folder")
+    if not there:
         others = [str(p.relative_to(folder)) for p in sorted(folder.rglob("*")) if p.is_file()]
         offer = near(name, others) or f"; the folder holds {', '.join(others)}"
         raise InputError(f"{where}: {name!r} is not in the test's folder{offer}")

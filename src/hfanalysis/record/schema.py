@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from typing import Annotated, Any, Self, TypeVar, cast, dataclass_transform
 
-from pydantic import BeforeValidator, ConfigDict, Field, PlainValidator, model_validator
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, PlainValidator, model_validator
 from pydantic.dataclasses import dataclass as validated
 from pydantic_core import PydanticKnownError
 
@@ -148,7 +148,24 @@ def _column(found: Any) -> str | int:
     return found
 
 
+LONGEST_NAME = 200
+"""Bytes of a name [B]. Source: file systems take 255, of which the endings of products need some."""
+
+
+def unsafe(name: str) -> bool:
+    """Whether a name would be no file of its own in the folder meant, or none that can be read in a message."""
+    separated = any(mark in name for mark in "/\\") or name in (".", "..")
+    return separated or name != name.strip() or not name.isprintable() or len(name.encode()) > LONGEST_NAME
+
+
+def _name(found: str) -> str:
+    if unsafe(found):
+        raise ValueError(f"a name that a file can have: no path separators, at most {LONGEST_NAME} bytes")
+    return found
+
+
 Text = Annotated[str, Field(pattern=r"\S")]
+Name = Annotated[Text, AfterValidator(_name)]
 YesOrNo = Annotated[bool, Field(strict=True)]
 Count = Annotated[int, Field(strict=True, ge=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]

@@ -17,6 +17,7 @@ from hfanalysis.record.schema import (
     Factor,
     Length,
     Mass,
+    Name,
     PressureDifference,
     Refused,
     Remainder,
@@ -206,9 +207,9 @@ class ObservedSection(Section):
 class EngineSection(Section):
     """[engine] of an engine file."""
 
-    id: Text
+    id: Name
     description: Text = ""
-    stand: Text | None = None
+    stand: Name | None = None
 
 
 @section

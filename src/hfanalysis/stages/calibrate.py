@@ -39,7 +39,7 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
     if all(active.effect.of_sensor for active in effects):
         return found
     context.progress("fitting all constants together, adopted effects in", None)
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     log, definition = context.believed()
     subject = Subject(log, segments, base, definition)
     try:
@@ -57,7 +57,7 @@ def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     from hfanalysis.inference.adopted.corrected_log import corrected
     from hfanalysis.products.segments import Segments
 
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     log, definition = context.believed()
     log = corrected(log, segments.t_open.value or 0.0, effects)
     context.progress("repeating the calibration with drawn inputs", None)

@@ -52,7 +52,7 @@ def subject_of(context: Context) -> Subject:
 
     # what may be wrong with a sensor is a hypothesis of the diagnosis: no accuracy is widened for it
     log = context.log(widened=False)
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     if "p_tank" in log and "p_run" not in log:
         with suppress(AbsentError):
             found = lumped_calibration(log, segments, context.definition)
