@@ -222,6 +222,8 @@ def _performance(product: Validation, console: Console) -> None:
             unit = found.unit or model.unit
             table.add_row(in_words(name), found.value, found.std, model.value, model.std, unit, _doubt(measured))
     console.print(table)
+    if performance.motor_class:
+        console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=True)
     for name, reason in product.absent.items():
         console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=True)
 

@@ -84,7 +84,7 @@ TABLES: Mapping[str, Rests] = {
 TOGETHER = " together"
 """How the name of a product ends here whose constants were fitted together, with the thrust."""
 
-OUTSIDE = ("[observed]", "set by the engineer", "as stated")
+OUTSIDE = ("[observed]", "set by the engineer", "as stated", "held as")
 """How the reason of a quantity begins that comes from test.toml, not from the log."""
 FROM_CELL = ("from the load cell",)
 """How it is said that a mass comes from the tank's cell."""
