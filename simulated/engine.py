@@ -107,9 +107,7 @@ def made(seed: int) -> tuple[Truth, Engine, Burn, Histories]:
     return stand, engine, done, histories(stand, engine, done, tank, chamber)
 
 
-def _ran(
-    stand: Truth, engine: Engine, done: Burn, generator: np.random.Generator
-) -> tuple[Truth, TankRun, Array]:
+def _ran(stand: Truth, engine: Engine, done: Burn, generator: np.random.Generator) -> tuple[Truth, TankRun, Array]:
     """The tank's run and the chamber pressure, and the stand with its phase times."""
     tank, chamber = _tank(engine, done, np.arange(0.0, 30.0, STEP))
     t_purge = tank.t_v + generator.uniform(0.25, 1.0)

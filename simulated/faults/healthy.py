@@ -175,9 +175,9 @@ def _damaged(rng: np.random.Generator, values: dict[str, Array], std: dict[str, 
     out = {}
     for name, value in values.items():
         made_ = value.copy()
-        inner = slice(6, len(made_) - 6)
         for _ in range(int(rng.integers(0, 4))):
-            made_[6 + int(rng.integers(0, len(made_[inner])))] += float(rng.choice([-1, 1]) * rng.uniform(15, 60)) * std[name]
+            at, times = int(rng.integers(6, len(made_) - 6)), float(rng.choice([-1, 1]) * rng.uniform(15, 60))
+            made_[at] += times * std[name]
         made_[rng.random(len(made_)) < 0.001] = np.nan
         out[name] = made_
     return out
@@ -193,7 +193,8 @@ def _stated(rng: np.random.Generator, sizes: dict[str, float], cold: bool) -> st
         lines.append(f'oxidizer_mass = "{mass:.5g}{spread} kg"')
     lines += ["[injector]", f"holes = {int(sizes['holes'])}", 'hole_area = "3.142 mm^2"']
     if rng.random() < 0.7 and not cold:
-        lines += ["[nozzle]", f'throat_radius = "{1e3 * sizes["throat"]:.5g} mm"', f'exit_radius = "{1e3 * sizes["exit"]:.5g} mm"']
+        radii = {name: f'{name}_radius = "{1e3 * sizes[name]:.5g} mm"' for name in ("throat", "exit")}
+        lines += ["[nozzle]", *radii.values()]
     if rng.random() < 0.7 and not cold:
         lines += [
             "[grain]", f'mass = "{1e3 * sizes["fuel"]:.5g} g"', f'length = "{1e3 * sizes["length"]:.5g} mm"',

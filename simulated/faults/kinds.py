@@ -165,7 +165,8 @@ def unit(rng: Rng, log: Log) -> Faulty:
 def _stated_in(log: Log, names: list[str], other: str) -> Log:
     """The readings stay as they are, the unit is stated to be another."""
     factor = {n: size_of(other) / size_of(log.unit[n]) for n in names}
-    keys = {n: [k for k in lines if n not in names or not k.startswith(("accuracy", "gauge"))] for n, lines in log.keys.items()}
+    of_unit = ("accuracy", "gauge")
+    keys = {n: [k for k in own if n not in names or not k.startswith(of_unit)] for n, own in log.keys.items()}
     return replace(log, unit={**log.unit, **dict.fromkeys(names, other)}, factor=factor, keys=keys)
 
 
@@ -226,14 +227,15 @@ def edge(rng: Rng, log: Log) -> Faulty:
     far = float(rng.choice([8388607.0, 32767.0, 65535.0, 4095.0])) * size_of(log.unit[name])
     if name == "T_tank":
         far = 85.0 + 273.15
-    value[at] = far if abs(far) > 3.0 * float(np.nanmax(np.abs(value))) or name == "T_tank" else 100.0 * np.nanmax(value)
+    most = float(np.nanmax(np.abs(value)))
+    value[at] = far if abs(far) > 3.0 * most or name == "T_tank" else 100.0 * most
     return Faulty(log.but(name, value), (name,), f"{count} of {far:.3g}")
 
 
 NEEDS: dict[str, tuple[str, ...]] = {
     "gross_mass": ("m_tank", "oxidizer_mass"), "scale": ("[nozzle]", "oxidizer_mass", "[grain]", "hot_fire"),
-    "unit": ("[nozzle]", "oxidizer_mass", "[grain]", "hot_fire", "thrust"), "lag": ("thrust",), "swapped": ("hot_fire",),
-    "zero": ("thrust",), "sign": ("thrust",),
+    "unit": ("[nozzle]", "oxidizer_mass", "[grain]", "hot_fire", "thrust"), "swapped": ("hot_fire",),
+    "lag": ("thrust",), "zero": ("thrust",), "sign": ("thrust",),
 }  # fmt: skip
 """What a log has to hold or state for a fault to be told at all: channels, words of test.toml, the kind of test."""
 

@@ -88,7 +88,7 @@ def _flat(blocks: list[Trace], size: float) -> bool:
     """Whether the blocks' means scatter no more than those of the noise that is in them, some of it slow."""
     means = np.array([block.values.mean() for block in blocks])
     alone = size / np.sqrt(len(blocks[0].values))
-    return float(np.std(means)) < 4.0 * alone + 0.1 * size
+    return bool(np.std(means) < 4.0 * alone + 0.1 * size)
 
 
 def _shaken(seen: Seen, start: float) -> bool:

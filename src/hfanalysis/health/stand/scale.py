@@ -152,9 +152,7 @@ def _gain(channels: Mapping[str, Coarse], name: str, raw: str) -> float | None:
     return size / of if size > 0.0 and of > 0.0 else None
 
 
-def _finding(
-    test: SeenTest, found: list[Off], off: float, std: float, raw: tuple[str, float, str] | None
-) -> Finding:
+def _finding(test: SeenTest, found: list[Off], off: float, std: float, raw: tuple[str, float, str] | None) -> Finding:
     channels = (raw[0],) if raw else _blamed(test, found)
     alone = channels[0] if len(channels) == 1 else None
     factor = 1.0 / raw[1] if raw else exp(off if alone == "p_chamber" else -off)

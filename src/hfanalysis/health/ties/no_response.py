@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import sqrt
 
 import numpy as np
 
@@ -72,7 +73,7 @@ def _nothing(test: SeenTest, seen: Seen, other: Seen) -> bool:
     rise, rest = _rise(test, seen), seen.coarse.rest
     if rise is None or rest is None:
         return False
-    noise = NOISES * rest.noise / np.sqrt(10.0)
+    noise = NOISES * rest.noise / sqrt(10.0)
     if seen.name == "p_tank":
         # a regulated tank does not fall, but what it feeds is never above it
         other_level = (_rise(test, other) or 0.0) + test.ambient

@@ -135,6 +135,8 @@ def _line_is_empty(test: SeenTest, seen: Seen, time: float) -> bool:
         return seen.name == "p_chamber"
     now = usable(test, other).between(time - 0.5, time + 0.5).values
     floor = other.coarse.trough if other.name == "p_tank" else (other.coarse.rest.value if other.coarse.rest else 0.0)
-    return bool(len(now)) and abs(float(np.mean(now)) - floor) < BACK * (other.coarse.peak - other.coarse.trough) and (
-        other.name != "p_tank" or floor < EMPTY
+    return (
+        bool(len(now))
+        and abs(float(np.mean(now)) - floor) < BACK * (other.coarse.peak - other.coarse.trough)
+        and (other.name != "p_tank" or floor < EMPTY)
     )
