@@ -8,7 +8,8 @@ from typing import Any, TypeVar
 
 from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.health import HEALTHY, UNUSABLE, Finding, Health
+from hfanalysis.products.diagnosis import Diagnosis
+from hfanalysis.products.health import HEALTHY, TRUSTED, UNUSABLE, Finding, Health
 from hfanalysis.products.model import Part, Product
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import DOUBTED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
@@ -31,6 +32,8 @@ def doubted(product: Product, health: Health) -> Product:
         return product
     if isinstance(product, Segments):
         return _events(product, health)
+    if isinstance(product, Diagnosis):
+        return product.but(warnings=tuple(dict.fromkeys((*product.warnings, *health.warnings))))
     together = isinstance(product, Calibration) and product.oxidizer_mass_fitted is not None
     return _part(product, product.file + TOGETHER * together, health)
 
@@ -79,7 +82,7 @@ def reasons(
             if trust or finding.verdict != UNUSABLE or _in_firing(finding, health):
                 whose.setdefault((not trust, trust or "", _words(finding)), []).append(channel)
     for (doubt, trust, words), names in whose.items():
-        trusted = f" trusted ({trust}) against" if trust else ""
+        trusted = f"{TRUSTED}{trust}) against" if trust else ""
         yield doubt, text("{names}{trusted} {words}", names=", ".join(names), trusted=trusted, words=words)
 
 
@@ -113,6 +116,6 @@ def with_doubt(quantity: Quantity, why: list[tuple[bool, str]]) -> Quantity:
         return replace(quantity, reason=joined("; ", [str(quantity.reason), *said]))
     doubt = any(is_doubt for is_doubt, _ in why) and quantity.verdict not in WORSE
     told = [quantity.why] if quantity.why else []
-    # what makes a number doubtful comes before where it is from
-    line = joined("; ", [*said, *told] if doubt else [*told, *said])
+    # what makes a number doubtful, or the engineer vouch for it, comes before where it is from
+    line = joined("; ", [*told, *said] if quantity.verdict in WORSE else [*said, *told])
     return replace(quantity, verdict=DOUBTED if doubt else quantity.verdict, why=line)

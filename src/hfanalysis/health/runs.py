@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
+from hfanalysis.health.coarse import Span
+from hfanalysis.record.quiet import LONGEST_QUIET
 
 BY_CHANCE = 1e-6
 """Expected number of runs by chance [-] in a whole log below which a run is none. Source: definition: one log in a
@@ -38,6 +40,11 @@ def true_runs(mask: NDArray[np.bool_]) -> NDArray[np.int64]:
 def certain(length: int, chance: float, tries: float) -> bool:
     """Whether ``length`` matches in a row, each of a ``chance`` [-], are none by chance in so many ``tries``."""
     return bool(np.log(tries) + length * np.log(chance) < np.log(BY_CHANCE))
+
+
+def asked_for(fire: Span | None, start: float, end: float) -> bool:
+    """Whether a number may rest on a stretch [s]: on the firing, or on the quiet time about it."""
+    return fire is None or (start < fire[1] + LONGEST_QUIET and end > fire[0] - LONGEST_QUIET)
 
 
 def gap_edges(time: Array, first: int, last: int) -> tuple[float, float]:

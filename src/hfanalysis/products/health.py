@@ -13,6 +13,9 @@ UNUSABLE: Verdict = "unusable"
 SEVERITY: tuple[Verdict, ...] = (HEALTHY, SUSPECT, UNUSABLE)
 """The verdicts, from good to bad."""
 
+TRUSTED = " trusted ("
+"""How it is said, after a channel's name, that the engineer trusts it."""
+
 KINDS = {
     "dead": "dead",
     "railed": "at its rail",

@@ -9,21 +9,19 @@ from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
 from hfanalysis.health import cures
-from hfanalysis.health.runs import certain, gap_edges, true_runs
+from hfanalysis.health.runs import asked_for, certain, gap_edges, true_runs
 from hfanalysis.health.seen import Seen
 from hfanalysis.products.health import UNUSABLE, Finding
 from hfanalysis.record.log import Flag
 from hfanalysis.record.signals import second_to_std
 from hfanalysis.sentences import text
 
-WINDOW = 64
+WINDOW = 32
 """Samples in which noise is asked for [samples]."""
-QUIETEST = 0.1
-"""Share of the windows that may be quieter than what counts as the channel's noise [-]."""
 NOISY = 1.0
-"""Noise in steps of its resolution from which on a channel cannot hold a reading for long: below, its resolution
-swallows the noise, and a quiet sensor stands still. Source: with a deviation of one step two readings are equal with a
-probability of 0.28."""
+"""Noise of the quietest window, in steps of the channel's resolution, from which on it cannot hold a reading for long:
+below, its resolution swallows the noise, and a quiet sensor stands still. Evidence: test_repeats.py; a mass flow
+controller that reads nothing below its cut-off, and a cell at rest, hold a reading for seconds."""
 AT_REST = 5.0
 """Deviations of its noise within which a channel is at its rest. Source: normal noise is within, but for one sample
 in a million."""
@@ -35,38 +33,36 @@ def find(seen: Seen) -> Iterator[Finding]:
     """Runs of equal readings that chance does not make, but for those at an end of the range, which are a rail's."""
     kept = ((seen.channel.flags & np.uint8(NOT_READ)) == 0) & np.isfinite(seen.said)
     time, values = seen.channel.time[kept], seen.said[kept]
-    if len(values) < 2 * WINDOW or seen.coarse.repetition == 1.0:
-        return
     equal = np.r_[False, np.diff(values) == 0.0]
     runs = true_runs(equal)
-    if not any(certain(int(last - first + 1), 1.0 / len(values), len(values)) for first, last in runs):
-        return  # not even if readings repeated next to never
-    chance = _chance(values, equal, runs, seen.coarse.quantum)
-    if chance is None:
-        return
-    for first, last in runs:
-        if not certain(int(last - first + 1), chance, len(values)) or _extreme(values, int(first)):
+    # most logs have no run that would be certain even if readings repeated next to never
+    runs = runs[[certain(int(last - first + 1), 1.0 / len(values), len(values)) for first, last in runs]]
+    noises = window_noises(values) if len(runs) else values[:0]
+    for first, last in runs.tolist():
+        start, end = float(time[first]), float(time[last])
+        if not asked_for(seen.fire, start, end) or _idle(seen, float(values[first]), start, end):
             continue
-        if not _idle(seen, float(values[first]), float(time[first]), float(time[last])):
-            yield _finding(seen, time, values, int(first), int(last))
+        if _frozen(seen, values, equal, noises, (first, last)):
+            yield _finding(seen, time, values, first, last)
 
 
-def _chance(values: Array, equal: NDArray[np.bool_], runs: NDArray[np.int64], quantum: float) -> float | None:
-    """The chance [-] that a reading equals the one before, from what is noise outside the long runs; None where the
-    channel's resolution swallows its noise."""
-    outside = np.ones(len(values), dtype=bool)
-    for first, last in runs:
-        if last - first + 1 >= WINDOW // 8:
-            outside[first - 1 : last + 1] = False
-    rest = values[outside]
-    whole = len(rest) // WINDOW
-    if whole < 1:
-        return None
-    second = np.abs(np.diff(rest[: whole * WINDOW].reshape(whole, WINDOW), 2, axis=1))
-    noises = np.sort(second_to_std(np.median(second, axis=1)))
-    if noises[int(QUIETEST * whole)] < NOISY * quantum:
-        return None
-    return float((np.count_nonzero(equal & outside) + 1.0) / (outside.sum() + 2.0))
+def window_noises(values: Array) -> Array:
+    """The noise of every window (k,), in the unit of ``values`` (n,)."""
+    whole = len(values) // WINDOW
+    second = np.abs(np.diff(values[: whole * WINDOW].reshape(whole, WINDOW), 2, axis=1))
+    return second_to_std(np.median(second, axis=1))
+
+
+def _frozen(seen: Seen, values: Array, equal: NDArray[np.bool_], noises: Array, run: tuple[int, int]) -> bool:
+    """Whether a run of equal readings is none of the channel's own habits: everywhere else its noise shows, and
+    readings repeat so seldom that this many do not by chance."""
+    first, last = run
+    others = np.r_[noises[: max(first - 1, 0) // WINDOW], noises[last // WINDOW + 1 :]]
+    if _extreme(values, first) or not len(others) or others.min() < NOISY * seen.coarse.quantum:
+        return False
+    length = last - first + 1
+    chance = (np.count_nonzero(equal) - length + 1.0) / (len(values) - length + 2.0)
+    return certain(length, float(chance), len(values))
 
 
 def _idle(seen: Seen, value: float, start: float, end: float) -> bool:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
 from hfanalysis.health import cures
-from hfanalysis.health.runs import Run, certain, gap_edges, row_hashes, true_runs
+from hfanalysis.health.runs import Run, asked_for, certain, gap_edges, row_hashes, true_runs
 from hfanalysis.health.seen import FIRING, Seen, SeenTest
 from hfanalysis.products.health import UNUSABLE, Finding
 from hfanalysis.record.log import Flag
@@ -37,7 +37,7 @@ def find(test: SeenTest) -> Iterator[Finding]:
         time, rows = seen[0].channel.time[kept], row_hashes([s.said[kept] for s in seen])
         blocks = (run for run in _blocks(rows) if run.length % run.lag == 0 and _live(test, time, run))
         for run in (*blocks, *_held(rows)):
-            if not _told(test, seen, run, time):
+            if asked_for(test.fire, time[run.first], time[run.last]) and not _told(test, seen, run, time):
                 yield _finding(seen, time, run)
 
 
