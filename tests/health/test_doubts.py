@@ -64,6 +64,20 @@ def test_worse_verdicts_stay_and_get_the_reason() -> None:
     assert (none.verdict, none.reason) == ("not identifiable", "too short; p_tank (zero): it reads low")
 
 
+def test_what_is_not_there_says_which_channel_is_left_out() -> None:
+    none = {"t_end": Quantity.absent("the log has no p_chamber"), "t_feed": Quantity.absent("the log has no p_run")}
+    found = doubted(filled(Segments, none), health_of("p_chamber", "unusable", kind="dead"))
+    assert isinstance(found, Segments)
+    assert found.t_end.reason == "the log has no p_chamber; p_chamber (dead, left out): it reads 76 N"
+    assert found.t_feed.reason == "the log has no p_run"
+
+
+def test_a_coefficient_by_law_rests_on_what_the_whole_does() -> None:
+    found = doubted(filled(Calibration, {"C_d": {"spi": Quantity(0.6)}}), health_of("p_run", "suspect"))
+    assert isinstance(found, Calibration)
+    assert found.C_d["spi"].verdict == "doubted"
+
+
 def test_trust_is_told_beside_the_number_and_leaves_the_verdict() -> None:
     calibration = filled(Calibration, {"C_i": Quantity(0.29, verdict="identified")})
     found = doubted(calibration, health_of("p_run", "suspect", trust="calibrated last week"))

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns, power_of_time
+from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns, power_of_time, rests
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.health import HEALTHY, TRUSTED, UNUSABLE, Finding, Health
@@ -62,7 +62,9 @@ def _value(name: str, value: Any, product: str, health: Health) -> Any:
     if isinstance(value, Part):
         return _part(value, product, health)
     if isinstance(value, Mapping) and any(isinstance(inner, (Quantity, Part)) for inner in value.values()):
-        return {key: _value(key, inner, product, health) for key, inner in value.items()}
+        # of a number by law, which is no name, the whole's counts
+        names = {key: key if rests(product, key) or not rests(product, name) else name for key in value}
+        return {key: _value(names[key], inner, product, health) for key, inner in value.items()}
     return value
 
 
@@ -101,7 +103,9 @@ def _doubts(product: str, name: str, quantity: Quantity, health: Health, instant
     for channel in channels_of(product, name, quantity):
         trust = health.of(channel).trust
         for finding in health.of(channel).findings:
-            if not concerns(product, name, finding.kind) or not _counts(finding, health, trust, instant):
+            if not concerns(product, name, finding.kind):
+                continue
+            if not (_why_not(finding, trust) if quantity.value is None else _counts(finding, health, trust, instant)):
                 continue
             key = (trust, finding.kind, finding.evidence)
             before = whose[key].channels if key in whose else ()
@@ -114,6 +118,11 @@ def _counts(finding: Finding, health: Health, trust: str | None, instant: float 
     if finding.verdict == HEALTHY or (instant is not None and not _near(finding, instant)):
         return False
     return bool(trust) or finding.verdict != UNUSABLE or _in_firing(finding, health)
+
+
+def _why_not(finding: Finding, trust: str | None) -> bool:
+    """Whether it may be why a number is not there: its channel is left out, or nobody could say more of the number."""
+    return finding.verdict != HEALTHY and not trust
 
 
 def _near(finding: Finding, instant: float) -> bool:
@@ -151,7 +160,9 @@ def _wider(quantity: Quantity, product: str, name: str, findings: Sequence[Findi
 
 def with_doubts(quantity: Quantity, found: Sequence[Doubt]) -> Quantity:
     """A quantity with these beside it; doubted where one of them is not overruled, unless it is worse already."""
-    if not found or (quantity.value is None and quantity.verdict not in WORSE):
+    if quantity.value is None and quantity.verdict not in WORSE:
+        found = [doubt for doubt in found if doubt.finding.verdict == UNUSABLE]
+    if not found:
         return quantity
     said = list(dict.fromkeys(doubt.words for doubt in found))
     if quantity.value is None:

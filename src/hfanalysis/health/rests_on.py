@@ -21,6 +21,7 @@ SEGMENTS = {
 
 CALIBRATION = {
     "C_i": PRESSURES,
+    "C_d": ("p_run", "m_tank"),
     "m": PRESSURES,
     "Z": ("p_tank",),
     "K_loss": PRESSURES,
@@ -111,8 +112,13 @@ def channels_of(product: str, name: str, quantity: Quantity) -> tuple[str, ...]:
         return ()
     if any(words in told for words in FROM_CELL):
         return ("m_tank",)
-    found = TABLES.get(product.removesuffix(TOGETHER), {}).get(name, ())
+    found = rests(product, name)
     return (*found, "thrust") if product.endswith(TOGETHER) and found == PRESSURES else found
+
+
+def rests(product: str, name: str) -> tuple[str, ...]:
+    """The channels that a quantity of this name rests on in a product, wherever it comes from in one test."""
+    return TABLES.get(product.removesuffix(TOGETHER), {}).get(name, ())
 
 
 def concerns(product: str, name: str, kind: str) -> bool:
