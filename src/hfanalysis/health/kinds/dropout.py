@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.health.cures import exclude
 from hfanalysis.health.seen import Seen
 from hfanalysis.health.shape import running_median, stretches
@@ -13,12 +14,19 @@ from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
 from hfanalysis.record.holes import holes
 from hfanalysis.record.log import Flag
+from hfanalysis.record.signals import sample_noise
 from hfanalysis.sentences import text
 
 BELOW = 3.0
 """Deviations of the sensor's accuracy below vacuum from which on a pressure is none [-]."""
 FEWEST = 3
 """Samples that a stretch below vacuum lasts at least: fewer are spikes."""
+HELD = 5
+"""Equal readings in a row that noise does not make [samples]."""
+OFTEN_EQUAL = 0.3
+"""Share of readings that equal the one before from which on a channel may well hold a level [-]."""
+JUMP = 20.0
+"""Deviations of a sample from the one before that a jump has at least [-]."""
 BRIDGED = 0.1
 """[s] between two stretches below which they are told as one."""
 TOLD = 5
@@ -30,10 +38,11 @@ def find(seen: Seen) -> Iterator[Finding]:
     if seen.dimension == "pressure":
         yield from _below_vacuum(seen)
     yield from _coded(seen)
+    yield from _held(seen)
 
 
 def _below_vacuum(seen: Seen) -> Iterator[Finding]:
-    time, values = seen.trace.time, seen.trace.values
+    time, values = _read(seen)
     if len(values) < 4 * FEWEST:
         return
     rest = seen.coarse.rest.value if seen.coarse.rest else seen.ambient
@@ -60,6 +69,30 @@ def _reversed(seen: Seen, rest: float) -> bool:
     low, high = np.percentile(part, (10.0, 90.0))
     last = seen.coarse.last
     return bool(high - rest < 0.3 * (rest - low) and last is not None and last.value - low > 0.5 * (rest - low))
+
+
+def _read(seen: Seen) -> tuple[Array, Array]:
+    """Time and values (n,) of all that is a number: what ingest takes for stuck or cut off is a reading still."""
+    lost = (seen.channel.flags & np.uint8(Flag.DROPOUT | Flag.TIME | Flag.EXCLUDED)) != 0
+    kept = np.isfinite(seen.said) & ~lost
+    return seen.channel.time[kept], seen.said[kept]
+
+
+def _held(seen: Seen) -> Iterator[Finding]:
+    """One level to the last digit between two jumps, in a channel that is never twice the same otherwise."""
+    time, values = _read(seen)
+    if seen.dimension not in ("pressure", "force", "mass") or len(values) < 20 * HELD:
+        return
+    step = max(sample_noise(values), seen.coarse.quantum)
+    if seen.coarse.repetition > OFTEN_EQUAL or not step > 0.0:
+        return
+    jump = np.abs(np.diff(values)) > max(JUMP * step, 3.0 * seen.channel.accuracy)
+    for a, b in stretches(np.diff(values) == 0.0):
+        if b - a >= HELD and a > 0 and b < len(jump) and jump[a - 1] and jump[b]:
+            start, end = float(time[a]), float(time[b])
+            words = "stands at {value} to the last digit from {start:.2f} to {end:.2f} s, and jumps there and back"
+            evidence = text(words, value=level(float(values[a]), seen.dimension), start=start, end=end)
+            yield _none(seen, start, end, evidence, "a code for no reading, or a signal that is lost for a while")
 
 
 def _coded(seen: Seen) -> Iterator[Finding]:
