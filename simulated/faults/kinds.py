@@ -234,7 +234,7 @@ def edge(rng: Rng, log: Log) -> Faulty:
 
 
 NEEDS: dict[str, tuple[str, ...]] = {
-    "gross_mass": ("m_tank", "oxidizer_mass"), "scale": ("[nozzle]", "oxidizer_mass", "[grain]", "hot_fire"),
+    "gross_mass": ("m_tank", "oxidizer_mass"), "scale": ("[nozzle]", "oxidizer_mass", "[grain]", "hot_fire", "thrust"),
     "unit": ("[nozzle]", "oxidizer_mass", "[grain]", "hot_fire", "thrust"), "swapped": ("hot_fire",),
     "lag": ("thrust",), "zero": ("thrust",), "sign": ("thrust",),
 }  # fmt: skip

@@ -27,6 +27,8 @@ OFTEN_EQUAL = 0.3
 """Share of readings that equal the one before from which on a channel may well hold a level [-]."""
 JUMP = 20.0
 """Deviations of a sample from the one before that a jump has at least [-]."""
+MAJORITY = 0.5
+"""Part of the firing for which a cell is so far below that it is no drop-out but its sign [-]. Source: definition."""
 BRIDGED = 0.1
 """[s] between two stretches below which they are told as one."""
 TOLD = 5
@@ -39,6 +41,7 @@ def find(seen: Seen) -> Iterator[Finding]:
         yield from _below_vacuum(seen)
     yield from _coded(seen)
     yield from _held(seen)
+    yield from _below(seen)
 
 
 def _below_vacuum(seen: Seen) -> Iterator[Finding]:
@@ -92,6 +95,30 @@ def _held(seen: Seen) -> Iterator[Finding]:
             start, end = float(time[a]), float(time[b])
             words = "stands at {value} to the last digit from {start:.2f} to {end:.2f} s, and jumps there and back"
             evidence = text(words, value=level(float(values[a]), seen.dimension), start=start, end=end)
+            yield _none(seen, start, end, evidence, "a code for no reading, or a signal that is lost for a while")
+
+
+def _below(seen: Seen) -> Iterator[Finding]:
+    """Forces and masses farther below all else than all else ranges: a cell that is pulled comes back slower."""
+    time, values = _read(seen)
+    if seen.dimension not in ("force", "mass") or len(values) < 20 * HELD or seen.fire is None:
+        return
+    ordered = np.sort(values)
+    gap = int(np.argmax(np.diff(ordered[: len(ordered) // 3])))
+    rest = ordered[gap + 1 :]
+    if ordered[gap + 1] - ordered[gap] < max(float(np.ptp(rest)), 6.0 * seen.channel.accuracy):
+        return
+    low = values < ordered[gap + 1]
+    if np.mean(low[(time > seen.fire[0]) & (time < seen.fire[1])]) > MAJORITY:
+        return
+    for a, b in list(stretches(low))[:TOLD]:
+        if b - a >= FEWEST and a >= FEWEST:
+            start, end = float(time[a]), float(time[b - 1])
+            words = "reads {value} from {start:.2f} to {end:.2f} s ({n} samples), and {low} to {high} otherwise"
+            evidence = text(
+                words, value=level(float(np.median(values[a:b])), seen.dimension), start=start, end=end, n=b - a,
+                low=level(float(rest[0]), seen.dimension), high=level(float(rest[-1]), seen.dimension),
+            )  # fmt: skip
             yield _none(seen, start, end, evidence, "a code for no reading, or a signal that is lost for a while")
 
 
