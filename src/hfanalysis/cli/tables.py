@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hfanalysis.cli.exit_status import nobody_reads
+from hfanalysis.products.health import TRUSTED
 from hfanalysis.products.model import AdoptedEffect, Part
 from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
@@ -331,9 +332,12 @@ def _values(console: Console, found: Mapping[str, Quantity], title: str) -> None
 
 
 def _doubt(quantity: Quantity) -> Text:
-    """In a table without verdicts: that a number is doubted, and for which channel; the warnings say more."""
+    """In a table without verdicts: that a number is doubted, or rests on a channel that is trusted, and for which
+    channel; the warnings say more."""
+    told = (quantity.why or "").partition(": ")[0]
+    trusted = TRUSTED in told and quantity.value is not None
     doubted = quantity.verdict == DOUBTED and quantity.value is not None
-    return Text(f"doubted: {(quantity.why or '').partition(': ')[0]}" if doubted else "", style="yellow")
+    return Text(f"doubted: {told}" if doubted else told if trusted else "", style="yellow")
 
 
 _SHOWN = {
