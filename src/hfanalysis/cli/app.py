@@ -36,6 +36,11 @@ Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="STAGE.NAME=VALUE", help="Set a parameter of a stage for this run.")
 ]
 
+Firing = Annotated[
+    int | None,
+    typer.Option("--firing", min=1, metavar="N", help="Take this firing of the log; products go to TEST.firing-N/."),
+]
+
 
 Trust = Annotated[bool, typer.Option("--trust-effects", help="Run the code in ROOT/effects/, until it changes.")]
 
@@ -63,11 +68,13 @@ def _common(
     force: Force = False,
     quiet: Quiet = False,
     settings: Set = None,
+    firing: Firing = None,
     trust_effects: Trust = False,
 ) -> Request:
     """What every stage is asked with."""
     ask(root, trust_effects)
-    return Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+    request = Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+    return request if firing is None else request.setting(f"segment.firing={firing}")
 
 
 def _stage(name: str, text: str, does: Callable[..., None]) -> None:
@@ -286,11 +293,15 @@ def _effects(
 @app.command("new")
 def _new(
     test: Annotated[str, typer.Argument(metavar="ID", help="Name of the new test.")],
-    log: Annotated[Path, typer.Option(help="Its log file; copied to raw_tests/ID/ if it is elsewhere.")],
+    log: Annotated[
+        list[Path],
+        typer.Option(help="Its log file, copied to raw_tests/ID/ if it is elsewhere; again for every other."),
+    ],
     root: Root = Path(),
+    edit: Annotated[bool, typer.Option("--edit", help="Ask at the terminal what each column is.")] = False,
 ) -> None:
-    """Draft raw_tests/ID/test.toml from what a log shows. Never overwrites."""
+    """Draft raw_tests/ID/test.toml from what logs show, and draw every column. Never overwrites."""
     with plain_exit():
-        from hfanalysis.record.draft import new_test
+        from hfanalysis.cli import new
 
-        typer.echo(f"{new_test(root, test, log)}: drafted; complete what is marked there, then: hfa calibrate {test}")
+        new.new(root, test, log, edit)

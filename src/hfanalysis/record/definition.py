@@ -19,6 +19,7 @@ from hfanalysis.record.rocket import Rocket
 from hfanalysis.record.schema import Instant, ListOf, Name, Refused, Section, Text, section, unknown_key, unsafe
 from hfanalysis.record.sections import (
     Chamber,
+    Feed,
     GrainSection,
     Injector,
     Model,
@@ -28,6 +29,7 @@ from hfanalysis.record.sections import (
     Site,
     Tank,
 )
+from hfanalysis.record.unused import OF_TESTS, SPREADS_OF_TESTS, unused
 from hfanalysis.units import Value, near
 
 __all__ = ["ChannelSpec", "Exclusion", "FileSpec", "LogSpec", "TestDefinition", "TimeSpec", "Value", "find_definition",
@@ -65,14 +67,14 @@ class Test(Section):
     """[test]: which test this is."""
 
     id: Name
-    kind: Literal["hot_fire", "cold_flow"]
+    kind: Literal["hot_fire", "cold_flow", "water_flow"]
     date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
     source: Literal["measured", "replica", "synthetic"] = "measured"
     description: Text = ""
     stand: Name | None = None
 
 
-_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
 
 
 def _known_events(found: dict[str, Value]) -> dict[str, Value]:
@@ -101,6 +103,7 @@ class Statements(Section):
     model: Model = Model()
     tank: Tank | None = None
     injector: Injector | None = None
+    feed: Feed | None = None
     purge: Purge | None = None
     grain: GrainSection | None = None
     chamber: Chamber | None = None
@@ -119,6 +122,23 @@ class Statements(Section):
                 raise Refused(f"{channel.file!r} is not in log.files{offer}", "channels", name, "file")
         for i, exclusion in enumerate(self.exclude):
             exclusion.check_channels(self.channels, "exclude", i)
+        self._check_left()
+        if self.feed is not None and self.feed.p_loss is not None:
+            raise Refused("a test has K_loss here, which a log may bear out; not a constant loss", "feed", "p_loss")
+
+    def _check_left(self) -> None:
+        """No more can be left after a test than there was before it."""
+        for key, part, loaded in (
+            ("fuel_mass_after", "[grain] mass", self.grain.mass if self.grain else None),
+            ("oxidizer_mass_after", "[tank] oxidizer_mass", self.tank.oxidizer_mass if self.tank else None),
+        ):
+            left = getattr(self.observed, key, None)
+            if left is not None and loaded is not None and left.value > loaded.value:
+                raise Refused(
+                    f"found {left.value:.4g} kg; expected no more than the {loaded.value:.4g} kg of {part}",
+                    "observed",
+                    key,
+                )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,7 +192,8 @@ def load_definition(path: Path) -> TestDefinition:
     """The test.toml at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
     raw, content = read_toml(path)
     stated = validate(Statements, {"schema": None, **content}, path)
-    digest, warnings = hashlib.sha256(raw).hexdigest(), _odd_names(stated.channels)
+    idle = unused(stated, OF_TESTS, SPREADS_OF_TESTS, "test.toml")
+    digest, warnings = hashlib.sha256(raw).hexdigest(), (*_odd_names(stated.channels), *idle)
     definition = TestDefinition(**vars(stated), path=path, sha256=digest, warnings=warnings)
     _check_folder(definition)
     return definition

@@ -117,6 +117,8 @@ def quantity(dimension: str, allowed: Range = ANY) -> PlainValidator:
 
 def _a(dimension: str) -> str:
     """A dimension with its article."""
+    if dimension == "dimensionless":
+        return "a number"
     words = dimension.replace("_", " ")
     return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
 
@@ -168,11 +170,12 @@ YesOrNo = Annotated[bool, Field(strict=True)]
 Count = Annotated[int, Field(strict=True, ge=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0.0)]
-NotNegative = Annotated[Number, Field(ge=0.0)]
-UpToTwo = Annotated[NotNegative, Field(le=2.0)]
 Column = Annotated[str | int, BeforeValidator(_column)]
 ListOf = Annotated[tuple[T, ...], Field(min_length=1)]
 
+Factor = Annotated[Value, quantity("dimensionless", POSITIVE)]
+Share = Annotated[Value, quantity("dimensionless", NOT_NEGATIVE)]
+UpToTwo = Annotated[Value, quantity("dimensionless", between(0.0, 2.0, "between 0 and 2"))]
 Length = Annotated[Value, quantity("length", POSITIVE)]
 Place = Annotated[Value, quantity("length", NOT_NEGATIVE)]
 Altitude = Annotated[Value, quantity("length", between(-500.0, 9000.0, "between -500 and 9000 m"))]
