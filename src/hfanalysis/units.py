@@ -206,6 +206,8 @@ def parse(text: str | float | int, dimension: str, where: str) -> Value:
     Value(value=8.35, std=0.05)
     >>> parse("5 degC", "temperature", "tank.temperature").value
     278.15
+    >>> parse("0.3 +/- 10 %", "dimensionless", "injector.C_i")
+    Value(value=0.3, std=0.03)
     """
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
         raise _refused(text, dimension, where)
@@ -217,6 +219,8 @@ def parse(text: str | float | int, dimension: str, where: str) -> Value:
     value = _convert(number, unit, dimension, where)
     if spread is None:
         return Value(value)
+    if spread_unit == "%" and not unit:  # of a pure number: of itself, as of any other
+        return Value(value, abs(value) * spread / 100.0)
     return Value(value, _spread(spread, spread_unit or unit, value, dimension, where))
 
 
@@ -232,7 +236,8 @@ def _split(text: str, dimension: str, where: str) -> tuple[float, str, float | N
         return number, unit, None, ""
     if float(spread) < 0:
         raise InputError(f"{where}: found {text!r}; expected a standard deviation that is not negative")
-    return number, unit or spread_unit, float(spread), spread_unit
+    own = "" if dimension == "dimensionless" and spread_unit == "%" else spread_unit
+    return number, unit or own, float(spread), spread_unit
 
 
 def _spread(spread: float, unit: str, value: float, dimension: str, where: str) -> float:

@@ -16,7 +16,7 @@ from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_unchoking
 from hfanalysis.segment.falls import abrupt_falls
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.fuel import _dated, find_fuel_end
-from hfanalysis.segment.kind import recognize
+from hfanalysis.segment.kind import Known, recognize
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.thermo.nitrous import SOURCES, saturation
@@ -383,15 +383,15 @@ def standing(chamber: float, run: float = 35e5) -> dict[str, Signal]:
 def test_a_fire_is_told_from_a_cold_flow(
     geometry: tuple[float | None, float | None], chamber: float, stated: str, kind: str, misfire: bool
 ) -> None:
-    found = recognize(standing(chamber), stated, AMBIENT, (0.1, 5.0), *geometry)
+    found = recognize(standing(chamber), stated, (0.1, 5.0), Known(AMBIENT, *geometry))
     assert (found.name, found.misfire) == (kind, misfire)
     assert found.why
 
 
 def test_without_a_chamber_pressure_the_kind_is_as_stated() -> None:
     signals = {"p_run": standing(0.0)["p_run"]}
-    assert recognize(signals, "cold_flow", AMBIENT, (0.1, 5.0), None, None).name == "cold_flow"
-    assert "as stated" in recognize(signals, "hot_fire", AMBIENT, (0.1, 5.0), None, None).why
+    assert recognize(signals, "cold_flow", (0.1, 5.0), Known(AMBIENT, None, None)).name == "cold_flow"
+    assert "as stated" in recognize(signals, "hot_fire", (0.1, 5.0), Known(AMBIENT, None, None)).why
 
 
 @pytest.mark.parametrize(("seconds", "kind"), [(0.5, "cold_flow"), (1.5, "hot_fire")])
@@ -400,6 +400,6 @@ def test_a_fire_that_is_out_early_in_the_liquid_phase_is_one_and_an_igniter_is_n
     fire = (time > 0.1) & (time < 0.1 + seconds)
     pressure = AMBIENT + np.where(fire, 16e5, np.where(time > 0.0, 2e5, 0.0))
     signals = {"p_chamber": Signal("p_chamber", time, pressure, 1e3, 1e-3)}
-    found = recognize(signals, "hot_fire", AMBIENT, (0.1, 5.0), 1.2, 1.1e-3)
+    found = recognize(signals, "hot_fire", (0.1, 5.0), Known(AMBIENT, 1.2, 1.1e-3))
     assert (found.name, found.misfire) == (kind, kind == "cold_flow")
     assert (" s" in found.why.partition(", from ")[2]) == (kind == "hot_fire")

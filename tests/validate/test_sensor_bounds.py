@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from tests.segment.stand import AMBIENT, THROAT, Trial, channel, definition, fire, log_of, segments_of
 
+from hfanalysis.engine.thrust_coefficient import GAMMAS
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.sections import GrainSection
 from hfanalysis.thermo.combustion import Gas, equilibrium
 from hfanalysis.units import Value
 from hfanalysis.validate.full import _cell_reads
 from hfanalysis.validate.performance import Fire
-from hfanalysis.validate.sensor_faults import GAMMAS, _throat, findings
+from hfanalysis.validate.sensor_faults import _throat, findings
 
 FIRE = Fire(9.0, 0.1, "video")
 

@@ -23,7 +23,7 @@ def regression_of(tests: Sequence[str], root: Path, out: Path | None, progress: 
     evidence = []
     for name in dict.fromkeys(tests):
         context = run_to("segment", open_test(root, name, out, progress=progress))
-        segments, effects = context.read(Segments), read_adopted(root, context.definition).acting
+        segments, effects = context.read(Segments).fired, read_adopted(root, context.definition).acting
         log, definition = context.believed()
         log = corrected(log, segments.t_open.value or 0.0, effects)
         try:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import gc
 import io
 import os
 import sys
+
+from hfanalysis.errors import InputError
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C. Source: shells' convention, 128 plus the number of the signal (2)."""
@@ -23,6 +26,7 @@ def main() -> None:
             stream.reconfigure(errors="backslashreplace")  # a terminal that lacks a sign must not stop an analysis
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")  # matrices are small here; it is fits that run side by side
+    os.environ.pop("MPLBACKEND", None)  # of a notebook, whose packages need not be here; charts are drawn into files
     try:
         from hfanalysis.cli.app import app
 
@@ -30,3 +34,8 @@ def main() -> None:
     except KeyboardInterrupt:
         print("hfa: interrupted; products are as they were before, or complete", file=sys.stderr)
         sys.exit(INTERRUPTED)
+    except OSError as error:
+        if error.errno != errno.ENOSPC:
+            raise
+        print(f"hfa: {error.strerror}", file=sys.stderr)
+        sys.exit(InputError.exit_status)

@@ -88,7 +88,7 @@ def _look(log: Path, root: Path, as_json: bool) -> None:
 
 def _as_test(log: Path, root: Path, place: Path) -> tuple[str, Facts]:
     """The log as a test in a root of its own: the test's name, and whose test.toml it has."""
-    from hfanalysis.record.draft import new_test
+    from hfanalysis.drafting.new import new_test
     from hfanalysis.record.lent import last_alike, lend
     from hfanalysis.validate.quick import Facts
 
@@ -100,7 +100,7 @@ def _as_test(log: Path, root: Path, place: Path) -> tuple[str, Facts]:
         if lend(known, folder, log.name) is not None:
             lender = known.test.id
             return name, Facts(f"that of {lender}, the last test with these columns{_load(known)}", lender)
-    new_test(place, name, log)
+    new_test(place, name, [log])
     return name, Facts(f"a draft, for no test here has these columns: no masses, no C_i (hfa new ID --log {log})")
 
 

@@ -23,7 +23,6 @@ Design = Callable[[Array, float | Array], Array]
 RELAXATIONS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.008, 0.013, 0.02, 0.03, 0.05, 0.08, 0.13, 0.2, 0.3, 0.6)
 """Time constants tried for what follows a break [s]; 0 is a step."""
 
-
 SHAPE = 0.3
 """Part of the sample interval that the shape of an onset leaves open, whatever the noise. Evidence: without it onsets
 of other shapes were dated too surely (test_breaks.py)."""
@@ -76,8 +75,9 @@ def rounded_kink(width: float) -> Design:
     return columns
 
 
-def relaxation(time_constant: float, before: int = 1) -> Design:
-    """A curve of order ``before``, then a change that relaxes with a time constant [s] onto another straight line."""
+def relaxation(time_constant: float, before: int = 1, jumps: bool = False) -> Design:
+    """A curve of order ``before``, then a change that relaxes with a time constant [s] onto another straight line;
+    ``jumps``: a part of it comes at once."""
 
     def columns(time: Array, instant: float | Array) -> Array:
         x = time - instant
@@ -85,7 +85,8 @@ def relaxation(time_constant: float, before: int = 1) -> Design:
         after = (x >= 0.0).astype(np.float64)
         change = after if time_constant == 0.0 else 1.0 - np.exp(-future / time_constant)
         powers = [past**k for k in range(1, before + 1)]
-        return np.stack([np.ones_like(x), *powers, future, change], axis=-1)
+        at_once = [after] if jumps else []
+        return np.stack([np.ones_like(x), *powers, future, change, *at_once], axis=-1)
 
     return columns
 
@@ -96,13 +97,19 @@ def find_break(
     designs: Sequence[Design],
     constants: Sequence[float] = (0.0,),
     noise: Noise | None = None,
+    richer: int = 0,
 ) -> Break:
     """The most likely instant [s] of a break in a signal (a window around it), over the candidate instants (k,) [s].
 
     ``designs`` are the shapes tried; each instant takes its best. ``constants`` are their time constants [s], for the
-    record. ``noise`` is the sensor's, with its slow wander, which the residuals of so short a window do not show.
+    record. ``noise`` is the sensor's, with its slow wander, which the residuals of so short a window do not show. The
+    last ``richer`` designs have a parameter more, and must pay for it (Schwarz, Annals of Statistics 6, 1978, 461-464).
     """
     sums = np.array([_sums_of_squares(signal, design, candidates) for design in designs])
+    if richer:
+        shape, at = divmod(int(np.argmin(sums)), candidates.size)
+        fitted = _noise_variance(signal, designs[shape], float(candidates[at]))
+        sums[-richer:] += np.log(max(signal.time.size, 2)) * fitted
     best = int(np.argmin(sums.min(axis=1)))
     profile = sums.min(axis=0)
     instant = float(candidates[int(np.argmin(profile))])

@@ -132,13 +132,21 @@ def input_files(context: Context, stage: Stage) -> list[Path]:
     return [context.definition.path, *raw_files(context.definition), *effect_files(context, stage)]
 
 
+def edited(context: Context) -> bool:
+    """Whether test.toml no longer is what was read: the products are of the one before."""
+    try:
+        return products.sha256_file(context.definition.path) != context.definition.sha256
+    except OSError:
+        return True
+
+
 def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, Any]:
     """What ``stage``'s products would be made from if it ran now: the ``provenance`` block of a product."""
     code, names = made_by(context, stage)
     return {
         "hfanalysis": __version__,
         "code": code,
-        "test_toml": hashes(context.definition.path),
+        "test_toml": context.definition.sha256,
         "raw": {
             path.relative_to(context.raw).as_posix(): _raw_hash(path, hashes) for path in raw_files(context.definition)
         },
@@ -176,9 +184,11 @@ def state_path(context: Context, stage: Stage) -> Path:
 def recorded(context: Context, stage: Stage) -> dict[str, Any]:
     """The note of the last complete run of ``stage``; empty where there is none or it cannot be read."""
     try:
-        return products.read_json(state_path(context, stage))
+        note = products.read_json(state_path(context, stage))
     except (OSError, ValueError):
         return {}
+    whole = isinstance(note, dict) and all(isinstance(note.get(key, {}), dict) for key in ("products", "parameters"))
+    return note if whole else {}
 
 
 def is_fresh(context: Context, stage: Stage, note: Mapping[str, Any], key: str, hashes: HashCache) -> bool:

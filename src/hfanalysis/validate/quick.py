@@ -75,8 +75,8 @@ def quick_look(
 def nothing_happened(definition: TestDefinition, health: Health, why: str, facts: Facts = OWN) -> QuickLook:
     """That of a log without a firing: its sensors, and ``why`` there is no more."""
     return QuickLook(
-        test=definition.test.id, source=definition.test.source, facts=facts.words, **judged(health), kind=None, phases={},
-        performance={}, C_i=Quantity.absent(why), warnings=tuple(definition.warnings),
+        test=definition.test.id, source=definition.test.source, facts=facts.words, **judged(health), kind=None,
+        phases={}, performance={}, C_i=Quantity.absent(why), warnings=tuple(definition.warnings),
     )  # fmt: skip
 
 

@@ -102,7 +102,7 @@ def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
 
 def _bias(seen: Seen, shift: float) -> float:
     """What a mean over the firing may be off by [SI] for a zero that moved at an instant that nobody knows."""
-    return abs(shift) * (TAKEN_OFF if seen.channel.drift else LEFT_IN)
+    return float(abs(shift) * (TAKEN_OFF if seen.channel.drift else LEFT_IN))
 
 
 def _settled(test: SeenTest, trace: Trace) -> Level | None:
