@@ -59,7 +59,7 @@ def fire_of(segments: Segments, definition: TestDefinition, log: TestLog | None 
     seen = definition.observed.burn_time if definition.observed else None
     if seen is not None:
         return Fire(seen.value, seen.std if seen.std is not None else VIDEO, "[observed] burn_time")
-    for name, words in (("t_fuel_out", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
+    for name, words in (("t_fuel_gone", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
         found = segments.time(name)
         if found is not None:
             return Fire(found, max(segments.std(name), 1e-3), f"{name}: {words}")
