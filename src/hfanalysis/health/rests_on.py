@@ -94,7 +94,7 @@ PACED = {
 """With which power of the clock's pace a quantity goes, about: a clock at half its pace makes flows of twice the size.
 Source: the definitions; of a flight's numbers no more than their size."""
 
-OUTSIDE = ("[observed]", "set by the engineer", "as stated")
+OUTSIDE = ("[observed]", "set by the engineer", "as stated", "held as")
 """How the reason of a quantity begins that comes from test.toml, not from the log."""
 FROM_CELL = ("from the load cell",)
 """How it is said that a mass comes from the tank's cell."""
