@@ -66,7 +66,7 @@ def _clipped(seen: Seen, time: Array, values: Array) -> list[Finding]:
     live = (time >= seen.fire[0]) & (time <= seen.fire[1])
     found = []
     for sign, side in ((1.0, "highest"), (-1.0, "lowest")):
-        rail = _rail(sign * values[live])
+        rail = _rail(sign * values[live]) if live.any() else None
         if rail is None or np.count_nonzero(sign * values > rail) > SPIKES * np.count_nonzero(sign * values == rail):
             continue
         # at rest a channel may well stand at its lower end: only what is cut off of the firing matters
@@ -78,7 +78,7 @@ def _clipped(seen: Seen, time: Array, values: Array) -> list[Finding]:
 def _rail(values: Array) -> float | None:
     """The level (of ``values`` (n,), looked at from above) at which they are cut off; None where they are not."""
     levels, counts = np.unique(values, return_counts=True)
-    if len(levels) < 3 or counts.max() < OFTEN:
+    if not len(levels) or counts.max() < OFTEN:
         return None
     top = int(np.argmax(np.where(counts >= max(OFTEN, 0.005 * len(values)), np.arange(len(levels)), -1)))
     above, count = int(counts[top + 1 :].sum()), int(counts[top])
