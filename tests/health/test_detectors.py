@@ -57,7 +57,7 @@ CASES = {
     "constant": ("dead", "p_tank", lambda t, v: np.full(v.size, 142.4)),
     "no thrust": ("dead", "thrust", lambda t, v: 12.0 + 8.0 * np.sin(997.0 * t)),
     "no chamber pressure": ("dead", "p_chamber", lambda t, v: 1.0 + 0.08 * np.sin(997.0 * t)),
-    "line lost for a second": ("dead", "p_run", lambda t, v: np.where(abs(t - 3.0) < 0.5, 1 + 0.1 * np.sin(997 * t), v)),
+    "line lost for a second": ("dead", "p_run", lambda t, v: np.where(abs(t - 3) < 0.5, 1 + 0.1 * np.sin(997 * t), v)),
     "clipped": ("railed", "p_chamber", lambda t, v: np.minimum(v, 12.0)),
     "clipped, with spikes": ("railed", "thrust", lambda t, v: np.minimum(v, np.where(np.arange(v.size) % 211, 900, v))),
     "cell dies": ("noise", "thrust", lambda t, v: np.where(t < 2.0, v, WILD)),
