@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy recovery health-rates mutants last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates recovery mutants fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -51,6 +51,7 @@ campaign: $(STAMP) ## every test, several at a time, and what those of one stand
 	@$(BIN)/hfa campaign $(FLAGS)
 
 all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_tests/
+	@[ -z '$(ODD)' ] || sh pipeline/tests.sh each $(HFA) report --quiet --
 
 # A file's tests stay together, for they share what is slow to make, and the files in their order, for the slowest are the
 # first ones; linear algebra on one core, for the workers have the others.
@@ -87,11 +88,22 @@ random-engines: $(STAMP) ## 10,000 random engines run or are refused with a reas
 health-rates: $(STAMP) ## faults found and healthy logs blamed: docs/health-rates.md; goes on where stopped, FLAGS='--each 10'
 	$(BIN)/python -m benchmarks.health_rates --write $(FLAGS)
 
+# They are no part of the repository: make real-logs LOGS=FOLDER, a folder per log.
+LOGS ?= ../shared/real_tests
+real-logs: $(STAMP) ## logs of other teams by hfa new, their facts and hfa run: docs/real-logs.md; LOGS=FOLDER
+	$(BIN)/python -m benchmarks.real_logs --logs '$(LOGS)' --write docs/real-logs.md $(FLAGS)
+
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 	$(BIN)/python -m benchmarks.recovery $(FLAGS)
 
 mutants: $(STAMP) ## small errors put into a copy of the source, and whether tests notice: docs/mutants.md; FLAGS='--each 40'
 	$(BIN)/python -m benchmarks.mutants --write docs/mutants.md $(FLAGS)
+
+fuzz: $(STAMP) ## 10,000 spoilt logs and test.toml files, none ends in a traceback: docs/fuzz.md; goes on where stopped
+	$(BIN)/python -m benchmarks.fuzz run --n 10000 --jobs 2 --write docs/fuzz.md $(FLAGS)
+
+kills: $(STAMP) ## 200 times `make all` killed, interrupted or run twice at once: into docs/fuzz.md
+	$(BIN)/python -m benchmarks.kills --n 200 --write docs/fuzz.md $(FLAGS)
 
 last-digits: $(STAMP) ## how far numbers move by the last digits of logs, FLAGS='--cases FOLDER' with others too: docs/last-digits.md
 	$(BIN)/python -m benchmarks.last_digits --write docs/last-digits.md $(FLAGS)
@@ -140,12 +152,13 @@ blind-calibrate: $(STAMP) ## fit the stated probabilities on 600 tests of the ca
 	$(BLIND) run --split calibration --n 600 --jobs 2 $(FLAGS) || [ $$? -eq 1 ]
 	$(BLIND) calibrate --split calibration
 
-readme: $(STAMP) ## write anew what comes of the code: samples in README.md, docs/effects.md, docs/constants.md, docs/products.md, docs/schemas, make's rules
+readme: $(STAMP) ## write anew what comes of the code: samples in README.md, docs/effects.md, docs/constants.md, docs/channels.md, docs/products.md, docs/schemas, make's rules
 	@$(BIN)/python pipeline/readme.py
 	@$(BIN)/python pipeline/effects_page.py
 	@$(BIN)/python pipeline/products_page.py
 	@$(BIN)/python pipeline/dag.py
 	@$(BIN)/python pipeline/constants_page.py
+	@$(BIN)/python pipeline/channels_page.py
 
 COMPILE := $(BIN)/uv pip compile --universal --python-version 3.11 --only-binary :all: --upgrade --generate-hashes \
 	--no-emit-index-url --custom-compile-command 'make lock' --quiet

@@ -13,14 +13,23 @@ HEAD = """\
 # The way through, as rules on real files: what each stage reads and what it writes. Written by `make readme`.
 #
 # `hfa` judges by content whether a product is up to date; make's time stamps only tell when to ask it.
+#
+# Only names of letters, digits and . _ + - @ go into rules, for others may mean something to make or to the shell.
+# Where a test or one of its files has another name, `make all` asks hfa for it, without a rule.
 
 HFA     := $(BIN)/hfa
-TESTS   := $(notdir $(patsubst %/test.toml,%,$(wildcard raw_tests/*/test.toml)))
+TESTS   := $(shell sh pipeline/tests.sh plain)
+ODD     := $(shell sh pipeline/tests.sh odd)
 SOURCE  := $(shell find src/hfanalysis -type f ! -path '*/__pycache__/*')
-EFFECTS := $(wildcard engines/*.effects.toml)
+EFFECTS := $(shell find engines -name '*.effects.toml' ! -name '*[!A-Za-z0-9._+@-]*' 2>/dev/null)
+EFFECTS += $(if $(shell find engines -name '*[!A-Za-z0-9._+@-]*.effects.toml' -exec echo odd ';' 2>/dev/null),always)
+
+# One word for the shell, whatever is in it.
+as_word = '$(subst ','\\'',$(1))'
 
 .SECONDARY:
 .SECONDEXPANSION:
+.PHONY: always
 """
 
 RAW = "$$(wildcard raw_tests/$$*/*) $(SOURCE)"
@@ -41,7 +50,9 @@ def rules() -> str:
 
 def _rule(stage: Stage) -> str:
     return (
-        f"processed/%/{stage.products[0]}: {_made_from(stage)}\n\t@$(HFA) {stage.name} --quiet -- $*\n\t@touch -c $@\n"
+        f"processed/%/{stage.products[0]}: {_made_from(stage)}\n"
+        f"\t@$(HFA) {stage.name} --quiet -- $(call as_word,$*)\n"
+        "\t@test $(call as_word,raw_tests/$*/test.toml) -nt $(call as_word,$@) || touch -c $(call as_word,$@)\n"
     )
 
 

@@ -8,23 +8,49 @@ module of the package that it imports, directly or not*, read as they did; how o
 
 from __future__ import annotations
 
+import os
+import pickle
+import stat
+import tempfile
 from collections.abc import Callable
-from functools import cached_property
+from contextlib import suppress
+from functools import cached_property, partial
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
-from numba import njit, types
+from numba import config, njit, types
 from numba.core import cgutils
 from numba.core.ccallback import CFunc
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic, register_jitable
+from numba.np import linalg
 
-from hfanalysis.sources import closure, digest
+from hfanalysis.sources import source_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+_SEAL = 32
+"""Length of a SHA-256 [B]. Source: definition."""
+
 Real = Any
 """A number, or an array of them: what a :func:`law` is given and gives."""
+
+
+def _load_before_scipy() -> None:
+    """numba looks for SciPy at its first function, which takes a tenth of a second.
+
+    Compiled code that multiplies matrices still has it looked for.
+    """
+    looked_for = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None
+    try:
+        from numba.np import arraymath  # noqa: F401
+    finally:
+        linalg.ensure_blas = looked_for
+
+
+_load_before_scipy()
 
 
 @overload
@@ -44,8 +70,7 @@ def compiled(function: Callable[..., Any] | None = None, **options: Any) -> Any:
 
 def _compiled(function: Callable[..., Any], **options: Any) -> Any:
     made = njit(error_model="numpy", **options)(function)
-    made.enable_caching()
-    _stamp(made, function)
+    _keep(made, function)
     return made
 
 
@@ -78,8 +103,7 @@ class Callback:
     def made(self) -> Any:
         """numba's own object for it."""
         made = CFunc(self.function, (self.signature.args, self.signature.return_type), {}, {"error_model": "numpy"})
-        made.enable_caching()
-        _stamp(made, self.function)
+        _keep(made, self.function)
         made.compile()
         return made
 
@@ -182,13 +206,71 @@ def _borrowed(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     return value
 
 
+def _keep(made: Any, function: Callable[..., Any]) -> None:
+    """Have compiled code kept from run to run, in a folder for temporary files where no other can be written to; where
+    that cannot be either, it is compiled by each run."""
+    try:
+        made.enable_caching()
+    except RuntimeError:  # numba found no folder
+        folder = _private_folder()
+        if folder is None:
+            return
+        config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
+        made.enable_caching()
+    _stamp(made, function)
+
+
+def _private_folder() -> Path | None:
+    """A folder that only this user can write to, for what is loaded from it is run; None where there is none."""
+    try:
+        folder = Path(tempfile.gettempdir()) / f"hfanalysis-{os.geteuid()}"
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.lstat()
+    except OSError:
+        return None
+    own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & 0o022
+    return folder if own else None
+
+
 def _stamp(made: Any, function: Callable[..., Any]) -> None:
-    """Let numba's cache compare sources instead of the age of one of them, and pass over one that cannot be read."""
-    index = made._cache._cache_file
-    if not (hasattr(index, "_source_stamp") and hasattr(index, "_load_index")):
+    """Let numba's cache compare sources instead of the age of one of them, and pass over what is damaged or cannot be
+    written."""
+    cache = made._cache
+    index = cache._cache_file
+    known = ("_source_stamp", "_load_index", "_load_data", "_save_data", "_dump", "_data_path", "_open_for_write")
+    if not all(hasattr(index, name) for name in known):
         raise RuntimeError("this version of numba keeps its cache in another way; hfanalysis.compiled does not know it")
-    index._source_stamp = digest(closure(Path(function.__code__.co_filename), inside=False))
+    index._source_stamp = source_digest(Path(function.__code__.co_filename), inside=False)
     index._load_index = _readable(index._load_index)
+    index._save_data, index._load_data = partial(_seal, index), partial(_unseal, index)
+    cache.save_overload = _if_possible(cache.save_overload)
+
+
+def _seal(index: Any, name: str, data: Any) -> None:
+    """Write machine code behind its own SHA-256: run from a damaged file it ends in anything."""
+    content = index._dump(data)
+    with index._open_for_write(index._data_path(name)) as file:
+        file.write(sha256(content).digest())
+        file.write(content)
+
+
+def _unseal(index: Any, name: str) -> Any:
+    """What :func:`_seal` wrote; raises OSError, at which numba compiles anew, where it is that no more."""
+    content = Path(index._data_path(name)).read_bytes()
+    seal, content = content[:_SEAL], content[_SEAL:]
+    if sha256(content).digest() != seal:
+        raise OSError(f"{name} is damaged")
+    return pickle.loads(content)
+
+
+def _if_possible(save: Callable[..., None]) -> Callable[..., None]:
+    """Saving that a full disk or a folder without permission does not stop: it only costs the next run its time."""
+
+    def saved(*args: Any) -> None:
+        with suppress(OSError):
+            save(*args)
+
+    return saved
 
 
 def _readable(load: Callable[[], dict[Any, Any]]) -> Callable[[], dict[Any, Any]]:
@@ -196,8 +278,9 @@ def _readable(load: Callable[[], dict[Any, Any]]) -> Callable[[], dict[Any, Any]
 
     def loaded() -> dict[Any, Any]:
         try:
-            return load()
+            found = load()
         except Exception:  # unpickling raises whatever it meets
             return {}
+        return found if isinstance(found, dict) else {}
 
     return loaded

@@ -14,6 +14,15 @@ IDENTIFIED = "identified"
 NOT_IDENTIFIABLE = "not identifiable"
 UNPHYSICAL = "unphysical"
 DOUBTED = "doubted"
+"""What it rests on cannot be quite believed; ``why`` says what, and the interval has what that may mean."""
+STATED = "stated"
+"""Held as test.toml has it."""
+DERIVED = "derived"
+"""It follows from others that are stated or found."""
+CONDITIONAL = "conditional"
+"""It holds on a condition that ``why`` names."""
+
+HOLDS_ZERO = "its 95 % interval holds zero"
 
 
 @dataclass(frozen=True)
@@ -22,6 +31,9 @@ class Quantity:
 
     ``value`` is in the SI unit named by ``unit`` ("" for a pure number); ``std`` is one standard deviation. ``ci95``
     defaults to the normal interval. Where ``value`` is None, ``reason`` says why. ``verdict`` and ``why`` judge it.
+
+    A value lies within its own interval: ValueError, a defect of ours, where it does not. What is not told from zero is
+    not identified, whoever says so.
     """
 
     value: float | None
@@ -37,6 +49,19 @@ class Quantity:
             raise ValueError("a quantity without a value must say why")
         if self.value is not None and not math.isfinite(self.value):
             raise ValueError(f"a quantity must be finite, not {self.value}")
+        if self.std is not None and not (math.isfinite(self.std) and self.std >= 0.0):
+            raise ValueError(f"a standard deviation must be finite and not negative, not {self.std}")
+        self._check_interval()
+
+    def _check_interval(self) -> None:
+        if self.value is None or self.interval is None:
+            return
+        low, high = self.interval
+        if not (math.isfinite(low) and math.isfinite(high) and low <= self.value <= high):
+            raise ValueError(f"a value must lie within its own interval, not {self.value} in {low} to {high}")
+        if self.verdict == IDENTIFIED and low <= 0.0 <= high:
+            object.__setattr__(self, "verdict", NOT_IDENTIFIABLE)
+            object.__setattr__(self, "why", f"{HOLDS_ZERO}{f'; {self.why}' if self.why else ''}")
 
     @classmethod
     def absent(cls, reason: str, *, verdict: str | None = None) -> Quantity:
@@ -56,6 +81,24 @@ class Quantity:
             return None
         half = NORMAL_95 * self.std
         return (self.value - half, self.value + half)
+
+    def doubted(self, why: str, reach: tuple[float, float] | None = None) -> Quantity:
+        """The same in doubt: its interval has ``reach`` [``unit``] too, what it may be if the doubt is right.
+
+        A worse verdict stays, with ``why`` beside its own.
+
+        >>> Quantity(0.6, "", 0.01, verdict=IDENTIFIED).doubted("half the pace", (0.3, 0.3)).interval[0]
+        0.3
+        """
+        if self.value is None:
+            return self
+        low, high = self.interval or (self.value, self.value)
+        if reach is not None:
+            low, high = min(low, *reach), max(high, *reach)
+        std = self.std if reach is None else max(self.std or 0.0, 0.5 * (high - low) / NORMAL_95)
+        verdict = self.verdict if self.verdict in (NOT_IDENTIFIABLE, UNPHYSICAL, STATED) else DOUBTED
+        said = f"{why}; {self.why}" if self.why and self.why not in why else why
+        return Quantity(self.value, self.unit, std, (low, high), verdict=verdict, why=said)
 
     def to_json(self) -> dict[str, Any]:
         """The form the products use."""

@@ -206,17 +206,21 @@ def parse(text: str | float | int, dimension: str, where: str) -> Value:
     Value(value=8.35, std=0.05)
     >>> parse("5 degC", "temperature", "tank.temperature").value
     278.15
+    >>> parse("0.3 +/- 10 %", "dimensionless", "injector.C_i")
+    Value(value=0.3, std=0.03)
     """
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
         raise _refused(text, dimension, where)
     if not isinstance(text, str):
-        return _bare(float(text), dimension, where)
+        return _bare(text, dimension, where)
     number, unit, spread, spread_unit = _split(text, dimension, where)
     if is_gauge(unit) and dimension == "pressure":
         raise InputError(f"{where}: found {text!r}, a gauge pressure; expected an absolute one")
     value = _convert(number, unit, dimension, where)
     if spread is None:
         return Value(value)
+    if spread_unit == "%" and not unit:  # of a pure number: of itself, as of any other
+        return Value(value, abs(value) * spread / 100.0)
     return Value(value, _spread(spread, spread_unit or unit, value, dimension, where))
 
 
@@ -232,7 +236,8 @@ def _split(text: str, dimension: str, where: str) -> tuple[float, str, float | N
         return number, unit, None, ""
     if float(spread) < 0:
         raise InputError(f"{where}: found {text!r}; expected a standard deviation that is not negative")
-    return number, unit or spread_unit, float(spread), spread_unit
+    own = "" if dimension == "dimensionless" and spread_unit == "%" else spread_unit
+    return number, unit or own, float(spread), spread_unit
 
 
 def _spread(spread: float, unit: str, value: float, dimension: str, where: str) -> float:
@@ -251,10 +256,14 @@ def _convert(number: float, unit: str, dimension: str, where: str) -> float:
     return number * scale + offset
 
 
-def _bare(number: float, dimension: str, where: str) -> Value:
-    if dimension != "dimensionless" or not math.isfinite(number):
+def _bare(number: float | int, dimension: str, where: str) -> Value:
+    try:
+        value = float(number)
+    except OverflowError:  # a whole number of more digits than a float has
+        value = math.inf
+    if dimension != "dimensionless" or not math.isfinite(value):
         raise _refused(number, dimension, where)
-    return Value(number)
+    return Value(value)
 
 
 def _refused(found: Any, dimension: str, where: str) -> InputError:

@@ -177,6 +177,15 @@ CASES = [
     toml("schema = 1\n", "", "schema"),
     toml('id = "HF1"', 'id = "HF1"\nid = "HF1"', "TOML", "line"),
     toml('description = "a small test"', "description = 'a", "TOML"),
+    toml("schema = 1", f"schema = {'[' * 5000}", "TOML"),
+    toml("schema = 1", f"schema = {'9' * 5000}", "TOML"),
+    # names that are places elsewhere, or nowhere
+    toml('stand = "here"', 'stand = "../../x"', "test.stand", "path separators"),
+    toml('stand = "here"', f'stand = "{"x" * 300}"', "test.stand", "bytes"),
+    toml('stand = "here"', 'stand = "a\\nb"', "test.stand"),
+    toml('files = ["log.csv"]', 'files = ["log\\u0000.csv"]', "log.files", "own folder"),
+    toml('files = ["log.csv"]', f'files = ["{"x" * 999}"]', "log.files", "own folder"),
+    Bad("a name longer than files have", _nothing, ("path separators",), "x" * 300),
     # sections and keys
     toml("[tank]", "[tnak]", "'tnak'", "did you mean 'tank'"),
     toml("[injector]", "[injectors]", "'injectors'", "did you mean 'injector'"),

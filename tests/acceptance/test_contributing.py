@@ -18,6 +18,7 @@ from tests.record import make
 from tests.report.sample import material, without
 
 from hfanalysis.effects import effect
+from hfanalysis.effects.trust import agree
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.errors import InputError
 from hfanalysis.record import formats, readers
@@ -60,7 +61,9 @@ def with_feed_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[
 
 
 def test_the_effect_lets_more_flow_the_longer_the_engine_burns(tmp_path: Path) -> None:
-    wear = effect("injector_wear", placed("effects/injector_wear.py", tmp_path))
+    folder = placed("effects/injector_wear.py", tmp_path)
+    agree(folder)
+    wear = effect("injector_wear", folder)
     drained = [burn(engine_on_stand(effects=(wear.at(rate=rate),)), 4.0).states[-1, 0] for rate in (0.0, 0.05)]
     plain = burn(engine_on_stand(), 4.0).states[-1, 0]
     assert drained[0] == plain

@@ -89,12 +89,56 @@ def test_a_name_that_is_no_test_ends_with_one_clear_message(checkout: Path, name
     assert "Traceback" not in ended.stderr
 
 
+ODD = ("2022-04-03_12:30", "a b", "`touch stray`", "a&touch stray", "$(touch stray)", "$$(shell touch stray)", "it's",
+       "-x", "Zündung", "a;touch stray;", "#1", "50%", "a=b", "two\nlines")  # fmt: skip
+
+
+@pytest.fixture
+def named(tmp_path: Path) -> Path:
+    """A checkout with tests of such names, one with a plain name, and in hfa's place what writes down how it is
+    called."""
+    for name in ("Makefile", "pyproject.toml", "requirements.lock"):
+        shutil.copy(REPOSITORY / name, tmp_path)
+    shutil.copytree(REPOSITORY / "pipeline", tmp_path / "pipeline")
+    for name in (*ODD, "HF5"):
+        (tmp_path / "raw_tests" / name).mkdir(parents=True)
+        (tmp_path / "raw_tests" / name / "test.toml").touch()
+    hfa = tmp_path / "venv/bin/hfa"
+    hfa.parent.mkdir(parents=True)
+    hfa.write_text('#!/bin/sh\nprintf "%s\\0" "$1 $2 $3 $4" >> asked\n')
+    hfa.chmod(0o755)
+    return tmp_path
+
+
+def asked(folder: Path, *arguments: str) -> list[str]:
+    """What hfa is asked for; nothing else may come of a name."""
+    ended = make(folder, "VENV=venv", "-o", "venv/.set-up", *arguments)
+    assert ended.returncode == 0, ended.stderr
+    assert not (folder / "stray").exists()
+    return (folder / "asked").read_text().split("\0")[:-1]
+
+
+def test_every_test_is_made_whatever_its_name(named: Path) -> None:
+    assert sorted(asked(named, "all")) == sorted(f"report --quiet -- {name}" for name in (*ODD, "HF5"))
+
+
+def test_a_file_of_any_name_makes_no_rule(named: Path) -> None:
+    (named / "raw_tests/HF5/burn $(touch stray): 1.csv").touch()
+    (named / "engines").mkdir()
+    (named / "engines/a `touch stray`.effects.toml").touch()
+    assert "report --quiet -- HF5" in asked(named, "all")
+
+
+def test_a_product_of_any_name_is_asked_for_by_its_name(named: Path) -> None:
+    assert asked(named, "processed/a';touch stray '/ingest.h5") == ["ingest --quiet -- a';touch stray '"]
+
+
 def test_products_are_real_files_made_once(checkout: Path) -> None:
     product = "processed/HF5/segments.json"
     log = checkout / "processed/HF5/run.log"
     assert make(checkout, product).returncode == 0
     runs = len(log.read_text().splitlines())
-    assert runs == 2
+    assert runs == 3  # ingest, health, segment
     assert "is up to date" in make(checkout, product).stdout
     (checkout / "raw_tests/HF5/log.csv").touch()
     assert make(checkout, product).returncode == 0

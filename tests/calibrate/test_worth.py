@@ -11,7 +11,7 @@ import pytest
 from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.calibrate.blowdown import Inputs, Reduction
-from hfanalysis.calibrate.diagnostics import _mass_remarks
+from hfanalysis.calibrate.diagnostics import other_masses
 from hfanalysis.calibrate.loaded_mass import LoadedMass
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.calibrate.uncertainty import Draws
@@ -131,7 +131,7 @@ def test_masses_that_disagree_by_three_deviations_are_remarked(cell: float, own:
         Rest,
         SimpleNamespace(load_cell_mass=Quantity(cell, "kg", 0.05), blowdown_mass=Quantity(own, "kg", 0.5)),
     )
-    assert len(_mass_remarks(at_rest, LoadedMass(10.0, 0.05, "as stated"))) == remarks
+    assert len(other_masses(at_rest, LoadedMass(10.0, 0.05, "as stated"))) == remarks
 
 
 @pytest.mark.parametrize(("samples", "known"), [(2, True), (6, False)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -65,6 +66,12 @@ def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> 
 
 def test_the_version(run: Run) -> None:
     assert run("--version").out == f"hfa {hfanalysis.__version__}\n"
+
+
+def test_a_notebooks_way_to_draw_has_no_effect(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MPLBACKEND", "module://of_a_notebook")
+    run("--version")
+    assert "MPLBACKEND" not in os.environ
 
 
 def test_calibrate_prints_a_table_for_people(run: Run, root: Path) -> None:

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from hfanalysis.cli import main
+from hfanalysis.cli import main, trust
 from hfanalysis.effects import library
+from hfanalysis.effects import trust as agreed_to
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -77,15 +78,44 @@ def test_json_has_all_of_it_in_si(run: Run, tmp_path: Path) -> None:
 def test_a_teams_own_effect_is_listed_and_a_bound_that_is_not_there_is_null(run: Run, tmp_path: Path) -> None:
     (tmp_path / "effects").mkdir()
     (tmp_path / "effects" / "shim.py").write_text(SHIM, encoding="utf-8")
-    status, out, _ = run("effects", "--json", "--root", tmp_path)
+    status, out, said = run("effects", "--json", "--root", tmp_path)
+    assert (status, out) == (2, "")
+    assert "--trust-effects" in said
+    status, out, said = run("effects", "--json", "--root", tmp_path, "--trust-effects")
     assert status == 0
     assert json.loads(out)["effects"]["shim"]["parameters"]["share"]["high"] is None
+    assert "shim.py is run from now on" in said
+    assert run("effects", "--root", tmp_path)[0] == 0
+    (tmp_path / "effects" / "shim.py").write_text(SHIM + "raise SystemExit(0)\n", encoding="utf-8")
+    assert run("effects", "--root", tmp_path)[0] == 2
+
+
+def test_who_has_no_home_agrees_for_one_run(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("XDG_CONFIG_HOME")
+    monkeypatch.setenv("HOME", "~")
+    monkeypatch.setattr(agreed_to, "_agreed", set())
+    (tmp_path / "effects").mkdir()
+    (tmp_path / "effects" / "shim.py").write_text(SHIM, encoding="utf-8")
+    assert run("effects", "--root", tmp_path, "--trust-effects")[0] == 0
+    agreed_to._agreed.clear()  # as in another process
+    assert run("effects", "--root", tmp_path)[0] == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["effects"]
+
+
+def test_somebody_at_a_terminal_is_asked(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "effects").mkdir()
+    (tmp_path / "effects" / "shim.py").write_text(SHIM, encoding="utf-8")
+    answers = iter([False, True])
+    monkeypatch.setattr(trust, "_yes", lambda folder, names: next(answers))
+    monkeypatch.setattr(trust, "_somebody", lambda: True)
+    assert [run("effects", "--root", tmp_path)[0] for _ in range(3)] == [2, 0, 0]
 
 
 def test_a_broken_file_ends_with_one_plain_message(run: Run, tmp_path: Path) -> None:
     (tmp_path / "effects").mkdir()
     (tmp_path / "effects" / "shim.py").write_text("EFFECT = 3", encoding="utf-8")
-    status, out, said = run("effects", "--root", tmp_path)
+    status, out, said = run("effects", "--root", tmp_path, "--trust-effects")
     assert (status, out) == (2, "")
     assert "shim.py: found no EFFECT" in said
 

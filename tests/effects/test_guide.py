@@ -13,6 +13,7 @@ from tests.effects.runs import SECONDS, base
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.effects import effect, library
+from hfanalysis.effects.trust import agree
 from hfanalysis.engine.effect import Effect
 from hfanalysis.engine.sensitivity import run_with_tangents
 from hfanalysis.engine.unsteady import Burn, burn
@@ -29,6 +30,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("root") / "effects"
     root.mkdir()
     (root / code[0][1]).write_text(code[0][0], encoding="utf-8")
+    agree(root)
     return root
 
 
@@ -83,6 +85,7 @@ def test_the_examples_tangents_cross_its_switch(seal: Effect) -> None:
         ("tank_heat.py", lambda example: example, "name of its own"),
         ("seal.py", lambda example: example, "calls itself 'tank_seal'"),
         ("broken.py", lambda example: "1/0", "ZeroDivisionError"),
+        ("ended.py", lambda example: "raise SystemExit", "SystemExit"),
         ("empty.py", lambda example: "", "found no EFFECT"),
     ],
 )
@@ -91,6 +94,7 @@ def test_a_file_that_holds_no_effect_of_its_name_is_refused(
 ) -> None:
     example = (folder / "tank_seal.py").read_text(encoding="utf-8")
     (tmp_path / name).write_text(text(example), encoding="utf-8")
+    agree(tmp_path)
     with pytest.raises(InputError, match=message):
         library(tmp_path)
 

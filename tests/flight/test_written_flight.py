@@ -53,14 +53,14 @@ def test_a_quantity_has_the_deviation_of_the_drawn_flights() -> None:
     assert found["peak_velocity"].std is None
 
 
-def stated(**change: Any) -> dict[str, Any]:
+def stated(title: str = "a title", **change: Any) -> dict[str, Any]:
     """What the script states, by name."""
     time = np.array([0.0, 1.0, 2.0])
     points = Points(time, np.array([10.0, 2000.0, 0.0]), np.array([8.0, 4.0, 0.0]), np.full(3, 0.5))
     whole = Scripted(
         ROCKET, Motor("M", 0.13, 1.2, 8.0, 20.0, "us"), points, SHAPE, (DROGUE, MAIN), 6.05, 12.0, 60.0, 1.5, 0.038
     )
-    tree = ast.parse(script(replace(whole, **change), "a.py", "a title"))
+    tree = ast.parse(script(replace(whole, **change), title))
     found = {}
     for node in tree.body:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
@@ -69,6 +69,14 @@ def stated(**change: Any) -> dict[str, Any]:
             except ValueError:
                 continue
     return found
+
+
+@pytest.mark.parametrize("title", ['""" + exit() + """', "''' + exit() + '''", "{0.__class__}", "\\", "a\nexit()"])
+def test_a_title_is_text_in_the_script_and_nothing_else(title: str) -> None:
+    plain, hostile = stated(), stated(title)
+    assert hostile.pop("TITLE") == title
+    assert plain.pop("TITLE")
+    assert hostile == plain
 
 
 def test_a_script_states_the_rocket_as_it_is() -> None:

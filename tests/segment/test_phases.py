@@ -86,7 +86,6 @@ def test_fuel_that_goes_within_tenths_of_a_second_of_the_liquid_is_not_mixed_up_
     [
         ("p_tank", "t_v", "no p_tank"),
         ("p_run", "t_feed", "no p_run"),
-        ("p_purge", "t_purge", "no p_purge"),
         ("p_chamber", "t_end", "no p_chamber"),
         ("p_chamber", "t_fuel_out", "no p_chamber"),
         ("p_run", "t_fuel_out", "without p_run"),

@@ -58,7 +58,8 @@ def test_the_equation_of_state_is_asked_once(source: Source, tmp_path: Path) -> 
         pytest.param(lambda raw: raw[:7], id="cut within the header"),
         pytest.param(lambda raw: raw[: len(raw) // 2], id="cut within the numbers"),
         pytest.param(lambda raw: b"not a table\n" * 1000, id="something else"),
-        pytest.param(lambda raw: raw[:-8] + np.array([np.nan]).tobytes(), id="not a number in it"),
+        pytest.param(lambda raw: raw[:-40] + np.array([1.0]).tobytes() + raw[-32:], id="another number in it"),
+        pytest.param(lambda raw: raw[:-32], id="without its checksum"),
     ],
 )
 def test_a_spoilt_table_is_made_anew(source: Source, tmp_path: Path, spoil: object) -> None:
@@ -74,7 +75,7 @@ def test_a_spoilt_table_is_made_anew(source: Source, tmp_path: Path, spoil: obje
 
 def test_a_table_of_other_code_is_made_anew(source: Source, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     coolprop_nitrous.build()
-    monkeypatch.setattr(cache, "digest", lambda files: "of other code")
+    monkeypatch.setattr(cache, "source_digest", lambda path: "of other code")
     coolprop_nitrous.build()
     assert source.asked == 2
     assert len(list((tmp_path / "cache").iterdir())) == 2
@@ -100,11 +101,11 @@ def test_where_nothing_can_be_kept_the_table_is_made_each_time(
 def test_a_full_disk_leaves_nothing_half_written(
     source: Source, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def save(path: Path, values: Array) -> None:
-        Path(path).write_bytes(b"half")
+    def write(path: Path, content: bytes) -> None:
+        path.write_text("half")
         raise OSError("no space left on device")
 
-    monkeypatch.setattr(np, "save", save)
+    monkeypatch.setattr(Path, "write_bytes", write)
     assert coolprop_nitrous.build().pressure(250.0) == pytest.approx(expected_pressure(), rel=1e-12)
     assert list((tmp_path / "cache").iterdir()) == []
 
@@ -116,3 +117,5 @@ def test_the_tables_are_kept_in_the_users_cache_folder(monkeypatch: pytest.Monke
     monkeypatch.delenv("XDG_CACHE_HOME")
     monkeypatch.setenv("HOME", str(tmp_path))
     assert cache_directory() == tmp_path / ".cache" / "hfanalysis"
+    monkeypatch.setenv("HOME", "~")  # what the system leaves of it where there is none
+    assert cache_directory().is_absolute()

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from tests.segment.stand import AMBIENT, THROAT, Trial, channel, definition, fire, log_of, segments_of
 
+from hfanalysis.engine.thrust_coefficient import GAMMAS
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.sections import GrainSection
 from hfanalysis.thermo.combustion import Gas, equilibrium
 from hfanalysis.units import Value
 from hfanalysis.validate.full import _cell_reads
 from hfanalysis.validate.performance import Fire
-from hfanalysis.validate.sensor_faults import GAMMAS, _throat, findings
+from hfanalysis.validate.sensor_faults import _throat, findings
 
 FIRE = Fire(9.0, 0.1, "video")
 
@@ -94,6 +95,16 @@ def test_a_tank_cell_is_compared_where_it_reads_what_is_loaded_to_a_twentieth(
     log = log_of(burn)
     weighed = replace(log, channels={**log.channels, "m_tank": channel("m_tank", burn.time + 100.0, read)})
     assert _cell_reads(weighed, segments_of(burn), loaded) is reads
+
+
+def test_a_doubt_about_the_zero_does_not_hide_it(burn: Trial) -> None:
+    log, drift = log_of(burn), 0.05 * float(np.percentile(burn.values["thrust"], 99.0))
+    wide = float(np.hypot(1.0, drift))
+    warm = replace(log["thrust"], zero=0.0, zero_std=wide, drift=drift, doubt=drift)
+    found = findings(
+        replace(log, channels={**log.channels, "thrust": warm}), segments_of(burn), definition(burn.stand), FIRE
+    )
+    assert "does not return to zero" in [f.verdict for f in found]
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.012, False), (0.03, True), (-0.03, True)])

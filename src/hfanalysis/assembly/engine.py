@@ -19,6 +19,7 @@ from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo import atmosphere, combustion, combustion_table
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
+from hfanalysis.units import Value
 
 _STANDARD = 101_325.0
 """Ambient pressure [Pa] where none is stated. Source: standard atmosphere."""
@@ -127,7 +128,7 @@ def _volume(needs: Needs, source: Saturation, mass: float, t: float) -> TankBuil
 def _sized(needs: Needs, source: Saturation, mass: float, t: float) -> TankBuilt:
     stated = needs.file.tank
     if stated.length is None:
-        ullage = needs.value(stated.ullage, "tank", "volume (or length, or ullage)")
+        ullage = needs.value(stated.ullage, "tank", "volume (or length, or ullage)").value
         size = _for_ullage(needs, source, mass, t, ullage)
         return TankBuilt(size.volume, size)
     diameter = needs.value(stated.inner_diameter, "tank", "inner_diameter").value
@@ -152,7 +153,7 @@ def feed(needs: Needs, volume: float) -> FeedSystem:
     enough."""
     injector, line = needs.file.injector, needs.file.feed
     key = "hole_area (or hole_diameter)" if injector.holes is not None else "holes"
-    area = needs.value(injector.area, "injector", key).value * needs.value(injector.C_i, "injector", "C_i")
+    area = needs.value(injector.area, "injector", key).value * needs.value(injector.C_i, "injector", "C_i").value
     if not area > 0.0:
         raise InputError(f"{needs.file.where('injector', 'C_i')}: found 0; expected a number that is more than zero")
     if line.K_loss is not None:
@@ -185,8 +186,8 @@ def steady_grain(needs: Needs) -> Grain:
         length=needs.value(grain.length, "grain", "length").value,
         outer_radius=needs.value(grain.outer_radius, "grain", "outer_radius").value,
         density=needs.value(grain.density, "grain", "density").value,
-        a=needs.value(grain.a, "grain", "a"),
-        n=needs.value(grain.n, "grain", "n"),
+        a=needs.value(grain.a, "grain", "a").value,
+        n=needs.value(grain.n, "grain", "n").value,
     )
 
 
@@ -253,7 +254,7 @@ def _exponent(needs: Needs) -> float | None:
     """The polytropic exponent; None for c_p/c_v of the vapor when the liquid runs out."""
     found = needs.file.tank.polytropic_exponent
     needs.value(found, "tank", "polytropic_exponent")
-    return None if isinstance(found, str) else found
+    return found.value if isinstance(found, Value) else None
 
 
 def _dead_volume(needs: Needs) -> float:

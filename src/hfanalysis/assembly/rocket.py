@@ -33,7 +33,7 @@ def vehicle(rocket: Rocket | None, folder: Path, launch_altitude: float) -> Vehi
     assert rocket.launch_angle is not None
     site = (area, rocket.launch_angle.value, launch_altitude)
     if rocket.drag_coefficient is not None:
-        return Vehicle(rocket.dry_mass.value, rocket.drag_coefficient, *site)
+        return Vehicle(rocket.dry_mass.value, rocket.drag_coefficient.value, *site)
     if rocket.drag_table is not None:
         table = read_drag_table(folder / rocket.drag_table)
         return Vehicle(rocket.dry_mass.value, table.coefficient[0], *site, table.mach, table.coefficient)
@@ -62,6 +62,6 @@ def parachutes(rocket: Rocket | None) -> tuple[Parachute, Parachute] | str:
         return "[rocket.drogue] and [rocket.main] are not both given"
     if rocket.main.deploy_altitude is None:
         return "rocket.main.deploy_altitude is not given"
-    drogue = Parachute(rocket.drogue.drag_coefficient, rocket.drogue.area.value)
-    main = Parachute(rocket.main.drag_coefficient, rocket.main.area.value, rocket.main.deploy_altitude.value)
+    drogue = Parachute(rocket.drogue.drag_coefficient.value, rocket.drogue.area.value)
+    main = Parachute(rocket.main.drag_coefficient.value, rocket.main.area.value, rocket.main.deploy_altitude.value)
     return drogue, main

@@ -15,8 +15,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
-from scipy.optimize import brentq
 
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
@@ -26,6 +24,7 @@ from hfanalysis.engine.equations import TANK
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.injector import mass_flow
 from hfanalysis.engine.tank import compressibility
+from hfanalysis.roots import root
 from hfanalysis.thermo.saturation import Saturation
 
 EXPONENTS = (0.05, 6.0)
@@ -50,7 +49,8 @@ class Inputs:
 
     ``mass``: oxidizer loaded [kg]; ``volume``: tank and line [m^3]; ``area``: all injector holes [m^2]; ``t_feed``,
     ``t_v``, ``t_end``: line full, liquid gone, end of the pure vapor phase [s] (NaN: there is none); ``p_v``,
-    ``p_end``: tank pressure at the last two [Pa].
+    ``p_end``: tank pressure at the last two [Pa]. ``C_i`` [-], ``K_loss`` [1/m^4] and ``m`` [-] are held where they are
+    given (NaN: found).
     """
 
     mass: float
@@ -61,6 +61,9 @@ class Inputs:
     t_end: float
     p_v: float
     p_end: float
+    C_i: float = np.nan
+    K_loss: float = np.nan
+    m: float = np.nan
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,9 @@ class Tables:
 
     @cached_property
     def _totals(self) -> list[Array]:
-        return [cumulative_trapezoid(x, self.time, initial=0.0) for x in (self.loss, self.chamber)]
+        step = np.diff(self.time)
+        parts = (step * (x[1:] + x[:-1]) / 2.0 for x in (self.loss, self.chamber))
+        return [np.concatenate([[0.0], np.cumsum(part)]) for part in parts]
 
     def behind(self, at: Array) -> list[Array]:
         """Feed loss and chamber pressure [Pa], each (k,), at increasing times (k,) [s]: means over the cells about
@@ -145,7 +150,7 @@ class VaporPhase:
         ``area``: effective, of the injector [m^2].
         """
         if not (inputs.t_end > inputs.t_v and area > 0.0):
-            return np.nan, np.nan
+            return inputs.m, np.nan
         tank, time = self._start(inputs, shift, area), np.linspace(inputs.t_v, inputs.t_end, VAPOR_STEPS + 1)
         loss, chamber = tables.behind(time)
         loss, chamber = loss + shift.tank - shift.run, chamber + shift.chamber
@@ -158,8 +163,10 @@ class VaporPhase:
             # a tank whose pressure hardly falls may run empty
             return (reached if np.isfinite(reached) else inputs.p_v) - inputs.p_end - shift.tank
 
+        if np.isfinite(inputs.m):
+            return inputs.m, float(end(inputs.m).states[-1, TANK])
         try:
-            m = float(brentq(miss, *EXPONENTS, xtol=ROOT))
+            m = root(miss, *EXPONENTS, ROOT)
         except ValueError:  # the pressure falls too far, or not far enough, with any
             return np.nan, np.nan
         return m, float(end(m).states[-1, TANK])
@@ -193,8 +200,10 @@ def reduce(
         inputs.t_v,
     )
     C_i = (inputs.mass - vapor) / (inputs.area * flow_integral) if flow_integral > 0.0 else np.nan
+    C_i = inputs.C_i if np.isfinite(inputs.C_i) else C_i
     area = C_i * inputs.area
     factor = loss_sum / (2.0 * area**2 * square_sum) if square_sum > 0.0 else np.nan
+    factor = inputs.K_loss if np.isfinite(inputs.K_loss) else factor
     z = compressibility(p_v, inputs.volume, vapor, t_v)
     m, end_mass = (phase or VaporPhase.plain(saturation, inputs)).shoot(tables, inputs, shift, area)
     dry = (tables.time >= inputs.t_v) & (tables.time < inputs.t_end)

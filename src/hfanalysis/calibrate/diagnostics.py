@@ -145,7 +145,7 @@ def rest_of(
         liquid_phase_heat=heat,
         load_cell_mass=_cell(log, segments),
     )
-    remarks += _stratified(rest) + _mass_remarks(rest, mass)
+    remarks += [*_stratified(rest), *other_masses(rest, mass)]
     return rest.but(remarks=tuple(remarks)), remarks
 
 
@@ -186,17 +186,20 @@ def _stratified(rest: Rest) -> list[str]:
     ]
 
 
-def _mass_remarks(rest: Rest, mass: LoadedMass) -> list[str]:
-    out = []
+def other_masses(rest: Rest, mass: LoadedMass) -> dict[str, float]:
+    """What cell and blowdown have instead of the loaded ``mass`` [kg], by the sentences that say so."""
+    out = {}
     cell, own = rest.load_cell_mass, rest.blowdown_mass
     if (
         cell.value is not None
         and abs(cell.value - mass.value) > 3.0 * np.hypot(cell.std or 0.0, mass.std) + 0.02 * mass.value
     ):
-        out.append(f"the load cell reads {cell.value:.2f} kg at rest, the calibration works with {mass.value:.2f} kg")
+        words = f"the load cell reads {cell.value:.2f} kg at rest, the calibration works with {mass.value:.2f} kg"
+        out[words] = cell.value
     if own.value is not None and abs(own.value - mass.value) > 3.0 * np.hypot(own.std or 0.0, mass.std):
-        out.append(
+        words = (
             f"the blowdown fits {own.value:.1f} kg, not {mass.value:.1f} kg: the mass is off by kilograms, or heat or "
             "nitrogen carries the pressure; C_i scales with the mass that is right"
         )
+        out[words] = own.value
     return out

@@ -34,7 +34,7 @@ from hfanalysis.inference.gap import flowing, residuals_of
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.subject import Subject
 from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, Calibration, RegressionBasis, RegressionTest
-from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, STATED, UNPHYSICAL, Quantity
 
 M_NOT_TOLD = 0.8
 """Standard deviation of m, over what is known of it before, from which on the channels do not tell it."""
@@ -74,7 +74,9 @@ class _Constants:
 
     def product(self) -> Calibration:
         """The content of calibration.json."""
-        mine, before = {**self._of_tank(), **self._derived(), **self._law()}, self.one_by_one.quantities
+        fitted, before = {**self._of_tank(), **self._derived(), **self._law()}, self.one_by_one.quantities
+        held = {name for name, quantity in before.items() if quantity.verdict == STATED}
+        mine = {name: quantity for name, quantity in fitted.items() if name not in held}
         about = "C_i, K_loss, m, the load and its temperature, a and n: fitted together to all channels, with the "
         note = about + "adopted effects held; one by one they are under one_by_one"
         return self.one_by_one.but(
@@ -216,7 +218,7 @@ class _Constants:
         assert n.ci95 is not None
         along = np.array([1.0, log(flux)])
         spread = float(np.sqrt(along @ self._covariance_of_law @ along))
-        verdict, why = judge_regression(True, n.ci95, n.std or 0.0, flux, spread)
+        verdict, why = judge_regression("", n.ci95, n.std or 0.0, flux, spread)
         rate, around = a.value * flux**n.value, exp(NORMAL_95 * spread)
         return {
             "a": replace(a, verdict=verdict, why=why),

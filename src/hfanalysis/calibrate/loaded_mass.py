@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.calibrate.rest import MODEL_MASS_SPREAD, blowdown_mass
 from hfanalysis.products.segments import Segments
+from hfanalysis.quantity import NORMAL_95
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.sections import Tank
 from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.saturation import Saturation
 
@@ -18,14 +21,31 @@ UNSTATED = 0.01
 """Relative standard deviation of a loaded mass that is stated without one. Evidence: test_rest.py: it counts as known
 to one percent."""
 
+ULLAGE_READ = 0.05
+"""Standard deviation of a stated ullage without one: vapor over liquid volume [-]. Evidence: a fill that is stopped
+when the vent spits is known to some per cent of the tank."""
+WARMTH_READ = 4.0
+"""How much colder than its top the liquid may be [K], one standard deviation. Evidence: 6.6 K of HF5, 8.5 K of HF4 by
+their gauges (docs/calibration.md)."""
+
 
 @dataclass(frozen=True)
 class LoadedMass:
-    """The mass [kg], its standard deviation, and in words where it comes from."""
+    """The mass [kg], its standard deviation, and in words where it comes from; ``doubts``: what speaks against it.
+
+    It was ``weighed``, or follows from what the log and other statements say.
+    """
 
     value: float
     std: float
     source: str
+    weighed: bool = True
+    doubts: tuple[str, ...] = ()
+
+    def against(self, doubts: Mapping[str, float]) -> LoadedMass:
+        """The same with the other masses [kg] by the words that say them within its 95 %."""
+        away = max((abs(other - self.value) for other in doubts.values()), default=0.0)
+        return replace(self, std=float(np.hypot(self.std, away / NORMAL_95)), doubts=tuple(doubts))
 
 
 def loaded_mass(
@@ -36,7 +56,8 @@ def loaded_mass(
     histories: MeasuredPressures,
     p_v: float,
 ) -> LoadedMass | None:
-    """The stated mass [kg], else the load cell's quiet reading, else what the blowdown itself says; else None.
+    """The stated mass [kg], else the load cell's quiet reading, else by volume and fill, else what the blowdown itself
+    says; else None.
 
     ``p_v``: tank pressure [Pa] at the end of the liquid.
     """
@@ -50,6 +71,9 @@ def loaded_mass(
         return LoadedMass(*cell, f"{cell[0]:.3f} +/- {cell[1]:.3f} kg from the load cell at rest; none is stated")
     if tank is None or tank.volume is None:
         return None
+    by_fill = _by_fill(log, segments, tank, saturation)
+    if by_fill is not None:
+        return by_fill
     return _from_blowdown(saturation, histories, tank.volume.value, segments, p_v)
 
 
@@ -62,6 +86,30 @@ def load_cell_mass(log: TestLog, segments: Segments) -> tuple[float, float] | No
     if quiet.size < 8 or np.median(quiet) <= 0.0:
         return None
     return float(np.median(quiet)), channel.zero_std if channel.zero_std is not None else channel.accuracy
+
+
+def _by_fill(log: TestLog, segments: Segments, tank: Tank, saturation: Saturation) -> LoadedMass | None:
+    """By the stated volume and ullage, of saturated liquid and vapor at the stated temperature or the pressure at rest;
+    None where these are not known."""
+    if tank.ullage is None or tank.volume is None:
+        return None
+    warm = tank.temperature.value if tank.temperature is not None else _at_rest(log, segments, saturation)
+    liquid, vapor = float(saturation.liquid_density(warm)), float(saturation.vapor_density(warm))
+    share, volume = 1.0 / (1.0 + tank.ullage.value), tank.volume
+    mass = volume.value * (share * liquid + (1.0 - share) * vapor)
+    if not np.isfinite(mass):
+        return None
+    by_ullage = volume.value * (liquid - vapor) * share**2 * (tank.ullage.std or ULLAGE_READ)
+    by_warmth = volume.value * share * abs(float(saturation.liquid_density(warm - WARMTH_READ)) - liquid)
+    std = float(np.linalg.norm([by_ullage, by_warmth, mass * (volume.std or 0.0) / volume.value]))
+    source = f"{mass:.2f} +/- {std:.2f} kg from [tank] volume and ullage at {warm - 273.15:.0f} degC; none was weighed"
+    return LoadedMass(mass, std, source, weighed=False)
+
+
+def _at_rest(log: TestLog, segments: Segments, saturation: Saturation) -> float:
+    """Temperature [K] of saturation at the pressure before the opening; NaN where there is none."""
+    rest = Signal.of(log["p_tank"]).shifted(segments.t_open.value or 0.0).mean(-2.0, -0.1)
+    return float(saturation.temperature(rest))
 
 
 def _from_blowdown(
@@ -78,5 +126,8 @@ def _from_blowdown(
         return None
     std = 2.0 * MODEL_MASS_SPREAD * mass
     return LoadedMass(
-        mass, std, f"{mass:.2f} +/- {std:.2f} kg from the blowdown itself; none is stated and there is no load cell"
+        mass,
+        std,
+        f"{mass:.2f} +/- {std:.2f} kg from the blowdown itself; none is stated and there is no load cell",
+        weighed=False,
     )

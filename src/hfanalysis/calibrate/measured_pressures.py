@@ -48,32 +48,36 @@ class MeasuredPressures:
     assumed: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, log: TestLog, segments: Segments, definition: TestDefinition, end: float) -> MeasuredPressures:
-        """From the opening to ``end`` [s]. Raises AbsentError where the log has no p_tank or no p_run."""
+    def of(
+        cls, log: TestLog, segments: Segments, definition: TestDefinition, end: float, lost: float | None = None
+    ) -> MeasuredPressures:
+        """From the opening to ``end`` [s]. Raises AbsentError where the log has no p_tank, or no p_run and nothing is
+        said of what the line loses: ``lost`` [-] of p_tank - p_chamber.
+        """
         origin = segments.t_open.value or 0.0
         signals = {name: signal.shifted(origin) for name, signal in live_signals(log).items() if name in PRESSURES}
         noises = _noises(signals, segments)
         burning = segments.kind == "hot_fire"
         for name in ("p_tank", "p_run", *(("p_chamber",) if burning else ())):
-            if name not in signals:
+            if name not in signals and (name != "p_run" or lost is None):
                 raise AbsentError(f"test {definition.test.id}: {log.lacks(name)}; a calibration takes it")
+            if name in signals and signals[name].between(0.0, end).time.size < 2:
+                last = f"{signals[name].time[-1]:.2f} s" if signals[name].time.size else "no time"
+                until = f"says nothing after the opening: its last good sample is at {last}"
+                raise AbsentError(f"test {definition.test.id}: {name} {until}")
         blocks = signals["p_tank"].between(0.0, end).reduced(FINEST_BLOCK)
         if blocks.time.size < 8:
             raise AbsentError("too few good samples of p_tank after the opening")
         time = blocks.time
-        run = _on(signals["p_run"], time)
+        assumed: tuple[str, ...] = ()
         if "p_chamber" in signals:
-            return cls(time, blocks.value, run, _on(signals["p_chamber"], time), signals, noises)
-        ambient = np.full(time.size, definition.ambient_pressure.value)
-        return cls(
-            time,
-            blocks.value,
-            run,
-            ambient,
-            signals,
-            noises,
-            ("p_chamber is not in the log of this cold flow: ambient pressure taken",),
-        )
+            chamber = _on(signals["p_chamber"], time)
+        else:
+            chamber = np.full(time.size, definition.ambient_pressure.value)
+            assumed = ("p_chamber is not in the log of this cold flow: ambient pressure taken",)
+        tank = blocks.value
+        run = _on(signals["p_run"], time) if "p_run" in signals else tank - (lost or 0.0) * (tank - chamber)
+        return cls(time, tank, run, chamber, signals, noises, assumed)
 
     def mean(self, values: Array, start: float, end: float) -> float:
         """Mean of ``values`` (n,) on this clock, in their unit, over [start, end) [s]."""

@@ -14,7 +14,6 @@ from math import exp, log
 from typing import Any
 
 import numpy as np
-from scipy.special import chdtrc
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
@@ -41,6 +40,11 @@ turbulent boundary layer has 0.8, paraffin 0.5 and more (docs/calibration.md).""
 RANGE_N = (-0.3, 1.3)
 """Where n [-] is looked for. Evidence: HF4 has 0.04, whose interval reaches -0.02 (docs/calibration.md); a start beyond
 is moved to the border (test_regression.py)."""
+RANGE_RATE = (1e-5, 5e-2)
+"""Regression rate [m/s] at the middle flux within which a and n are looked for: beyond it no fuel of a grain burns.
+Source: 0.1 mm/s of polymers at low flux to some mm/s of paraffin (report, 4.3.1), a decade of room on both sides."""
+AT_LIMIT = 0.05
+"""Of the logarithm of the rate [-], within which of the end of its range it counts as cut off by it."""
 SCAN_N = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Exponents [-] from which the best start is taken."""
 RESTARTS = (0.15, 0.45, 0.75)
@@ -50,6 +54,8 @@ SCAN_RATE = (0.6, 0.85, 1.2, 1.7)
 
 LARGEST_STEP = 0.2
 """Standard deviation of n [-] to which the likelihood's surface is followed at most."""
+LARGEST_RATE_STEP = 1.0
+"""The same of the logarithm of the rate [-], which is let grow to this where nothing tells it."""
 
 ROUNDS = 2
 """Times that the weights follow from what a fit leaves, and the fit from the weights."""
@@ -111,8 +117,10 @@ class Fitted:
         flux = oxidizer_flux(burnt.output("oxidizer_flow"), burnt.state("port_radius"))
         burn = flux[burnt.time > 0.1]
         covariance = self.surface.covariance
-        best = self.flux * exp(-covariance[0, 1] / covariance[1, 1])
-        return float(np.clip(best, max(burn.min(), 0.05 * self.flux), burn.max()))
+        # in logarithms: a valley that hardly shows n may point beyond any number
+        shift = -covariance[0, 1] / covariance[1, 1] if covariance[1, 1] > 0.0 else 0.0
+        low, high = max(burn.min(), 0.05 * self.flux), burn.max()
+        return float(exp(np.clip(log(self.flux) + shift, log(low), log(max(low, high)))))
 
 
 def law_at(point: Array, flux: float) -> Regression:
@@ -230,10 +238,21 @@ def _likeliest(evidence: Sequence[Evidence], minima: Sequence[Array], flux: floa
 
 def _objective(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float) -> Any:
     def misfit(point: Array) -> float:
+        if not possible(point):
+            return FAILED
         law = law_at(point, flux)
         return sum(_misfit(e, w, law) for e, w in zip(evidence, weights, strict=True))
 
     return misfit
+
+
+def possible(point: Array) -> bool:
+    """Whether a rate (ln r [m/s], n) is one that a fuel may have.
+
+    >>> possible(np.array([log(1e-3), 0.5])), possible(np.array([-177.0, 0.5]))
+    (True, False)
+    """
+    return bool(log(RANGE_RATE[0]) <= point[0] <= log(RANGE_RATE[1]))
 
 
 def _misfit(evidence: Evidence, weights: Weights, law: Regression) -> float:
@@ -243,7 +262,8 @@ def _misfit(evidence: Evidence, weights: Weights, law: Regression) -> float:
 
 def _residual(evidence: Evidence, law: Regression) -> Array:
     predicted = evidence.predict(law)
-    assert predicted is not None
+    if predicted is None:
+        raise AbsentError("the engine's model cannot be run with the a and n that fit best so far")
     return evidence.observed - predicted
 
 
@@ -268,6 +288,7 @@ def _covariance(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: 
     for e, w in zip(evidence, weights, strict=True):
         slopes = _slopes(e, flux, best)
         information += slopes.T @ w.precision @ slopes
+    information[0, 0] = max(information[0, 0], LARGEST_RATE_STEP**-2)
     return np.asarray(np.linalg.inv(information + np.diag([0.0, LARGEST_STEP**-2])), dtype=np.float64)
 
 
@@ -281,27 +302,60 @@ def _slopes(evidence: Evidence, flux: float, best: Array, step: float = 0.01) ->
     return np.column_stack(columns)
 
 
+@dataclass(frozen=True)
+class _Told:
+    """What a fit tells of one combination of ln r and n [-]: its value, and 95 % of what it may be."""
+
+    value: float
+    low: float
+    high: float
+    outside: bool
+
+    @classmethod
+    def of(cls, found: Fitted, along: tuple[float, float]) -> _Told:
+        """``along``: the weights of ln r and n."""
+        weights = np.array(along)
+        value, (low, high) = float(found.best @ weights), found.interval(weights)
+        return cls(value, min(low, value), max(high, value), not low <= value <= high)
+
+    @property
+    def std(self) -> float:
+        return 0.5 * (self.high - self.low) / NORMAL_95
+
+
+def _not_told(found: Fitted, *told: _Told) -> str:
+    """Why the region of the likelihood is none that tells a and n; empty where it is one."""
+    if _at_limit(found):
+        low, high = (1e3 * rate for rate in RANGE_RATE)
+        return f"the rate comes to the end of what any fuel has, {low:g} to {high:g} mm/s"
+    if not RANGE_N[0] + NEAR < found.best[1] < RANGE_N[1] - NEAR:
+        return f"n comes to the end of where it is looked for, {RANGE_N[0]:g} to {RANGE_N[1]:g}"
+    if any(t.outside for t in told):
+        return "the least misfit is not where the fit has come to: it has several valleys, or none"
+    return "" if found.surface.bounded else "the likelihood has no end where it was followed"
+
+
+def _at_limit(found: Fitted) -> bool:
+    rate = found.surface.points[found.surface.rise <= found.surface.threshold][:, 0]
+    return not (log(RANGE_RATE[0]) + AT_LIMIT < rate.min() and rate.max() < log(RANGE_RATE[1]) - AT_LIMIT)
+
+
 def result(found: Fitted) -> FuelLaw:
     """Judge a fit and say what it rests on."""
-    flux = found.reference_flux
-    shift = log(flux / found.flux)
-    rate = np.array([1.0, shift])
-    ln_rate = float(found.best @ rate)
-    low, high = found.interval(rate)
-    spread = 0.5 * (high - low) / NORMAL_95
-    n_low, n_high = found.interval(np.array([0.0, 1.0]))
-    a_low, a_high = found.interval(np.array([1.0, -log(found.flux)]))
-    n_std = 0.5 * (n_high - n_low) / NORMAL_95
-    law = found.law
+    flux, law = found.reference_flux, found.law
+    ln_rate, ln_a, n = (_Told.of(found, along) for along in ((1.0, log(flux / found.flux)), (1.0, -log(found.flux)),
+                                                             (0.0, 1.0)))  # fmt: skip
     rivals = [float(r[1]) for r in found.rivals]
-    verdict, why = judge_regression(found.surface.bounded, (n_low, n_high), n_std, flux, spread, rivals)
-    known = spread <= WIDEST_RATE
-    a_std = law.a * 0.5 * (a_high - a_low) / NORMAL_95
+    not_told = _not_told(found, ln_rate, ln_a, n)
+    verdict, why = judge_regression(not_told, (n.low, n.high), n.std, flux, ln_rate.std, rivals)
+    known = ln_rate.std <= WIDEST_RATE and not _at_limit(found)
     return FuelLaw(
-        a=Quantity(law.a, UNIT_OF_A, a_std, (exp(a_low), exp(a_high)), verdict=verdict, why=why),
-        n=Quantity(law.n, "", n_std, (n_low, n_high), verdict=verdict, why=why),
+        a=Quantity(
+            exp(ln_a.value), UNIT_OF_A, law.a * ln_a.std, (exp(ln_a.low), exp(ln_a.high)), verdict=verdict, why=why
+        ),
+        n=Quantity(n.value, "", n.std, (n.low, n.high), verdict=verdict, why=why),
         regression_rate_reference=Quantity(
-            exp(ln_rate), "m/s", exp(ln_rate) * spread, (exp(low), exp(high)),
+            exp(ln_rate.value), "m/s", exp(ln_rate.value) * ln_rate.std, (exp(ln_rate.low), exp(ln_rate.high)),
             verdict=IDENTIFIED if known else NOT_IDENTIFIABLE,
             why=rate_at(flux),
         ),
@@ -315,12 +369,12 @@ def rate_at(flux: float) -> str:
 
 
 def judge_regression(
-    bounded: bool, interval: tuple[float, float], std: float, flux: float, spread: float, rivals: Sequence[float] = ()
+    not_told: str, interval: tuple[float, float], std: float, flux: float, spread: float, rivals: Sequence[float] = ()
 ) -> tuple[str, str]:
     """Verdict on a and n, and why.
 
     Args:
-        bounded: whether the interval is one, and not the end of where it was looked.
+        not_told: why the interval is none, as where it is the end of where it was looked; empty where it is one.
         interval: 95 % interval of n [-].
         std: standard deviation of n [-].
         flux: the reference flux [kg/m^2/s].
@@ -330,10 +384,14 @@ def judge_regression(
     if rivals:
         others = " or ".join(f"{n:.2f}" for n in rivals)
         return NOT_IDENTIFIABLE, f"a and n are not told apart: the test is explained as well with n = {others}"
-    if not bounded or std > WIDEST_N:
+    if spread > WIDEST_RATE:
+        because = not_told or f"the rate at {flux:.0f} kg/(m^2 s) is known to {100.0 * spread:.0f} % only"
+        return NOT_IDENTIFIABLE, f"neither a nor n is told: {because}"
+    if not_told or std > WIDEST_N:
+        because = f"; {not_told}" if not_told else ""
         return NOT_IDENTIFIABLE, (
-            f"a and n are not told apart (n to +/- {std:.2f} or worse); what is identified is their combination, the "
-            f"rate at {flux:.0f} kg/(m^2 s), to {100.0 * spread:.1f} %"
+            f"a and n are not told apart (n to +/- {std:.2f} or worse{because}); what is identified is their "
+            f"combination, the rate at {flux:.0f} kg/(m^2 s), to {100.0 * spread:.1f} %"
         )
     if interval[1] < PHYSICAL_N[0] or interval[0] > PHYSICAL_N[1]:
         return (
@@ -399,5 +457,7 @@ def fit_together(tests: Sequence[Evidence], alone: Sequence[Fitted]) -> Joint:
     start = _scan(evidence, weights, flux)
     best = _minimum(evidence, weights, flux, start)
     together = _surveyed(evidence, weights, flux, best)
+    from scipy.special import chdtrc
+
     rise = together.misfit - sum(f.misfit for f in alone)
     return Joint(together, float(chdtrc(2 * (len(alone) - 1), max(rise, 0.0))))

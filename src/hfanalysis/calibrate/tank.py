@@ -3,28 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
 from hfanalysis.calibrate.calibration import TankCalibration
-from hfanalysis.calibrate.diagnostics import coefficient_history, rest_of, tank_history
-from hfanalysis.calibrate.loaded_mass import LoadedMass, loaded_mass
+from hfanalysis.calibrate.diagnostics import coefficient_history, other_masses, rest_of, tank_history
+from hfanalysis.calibrate.feed_loss import estimated_share
+from hfanalysis.calibrate.loaded_mass import UNSTATED, LoadedMass, loaded_mass
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at_break
-from hfanalysis.calibrate.uncertainty import Draws, InputSpread, draw
+from hfanalysis.calibrate.stated import Held
+from hfanalysis.calibrate.uncertainty import HELD, Draws, InputSpread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
+from hfanalysis.calibrate.water_flow import calibrate_water, is_water
 from hfanalysis.calibrate.with_effects import acting
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.injector import mass_flows
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankConstants, TankHistory
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
+from hfanalysis.quantity import CONDITIONAL, DERIVED, IDENTIFIED, NOT_IDENTIFIABLE, STATED, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.signals import live_signals
 from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
+from hfanalysis.units import Value
 
 VAPOR_PRESSURE_SHARE = 0.6
 """Without nitrogen the vapor phase is followed until the tank has this share of its pressure at t_v. Evidence:
@@ -47,6 +53,12 @@ Evidence: test_rest.py: a mass that does not fit the tank at all is an error of 
 NAMES = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase",
          "vapor_mass_at_t_v", "mass_at_t_feed", "oxidizer_mass")  # fmt: skip
 
+BY_RUN_LINE = ("C_i", "K_loss", "p_loss_liquid", "p_loss_vapor", "oxidizer_flow_peak", "mass_at_t_feed")
+"""Of these, those that rest on the pressure before the injector."""
+
+BY_MASS = ("C_i", "oxidizer_flow_peak", "oxidizer_mass_liquid_phase", "mass_at_t_feed", "oxidizer_mass")
+"""Of these, those that are worth what the loaded mass is worth."""
+
 
 def calibrate(
     log: TestLog, segments: Segments, definition: TestDefinition, samples: int, effects: Sequence[Active] = ()
@@ -55,6 +67,8 @@ def calibrate(
 
     Raises AbsentError where neither C_i nor anything else can be had because p_tank, p_run or t_v is missing.
     """
+    if is_water(segments, definition):
+        return TankCalibration(calibrate_water(log, segments, definition))
     t_v = segments.time("t_v")
     if t_v is None:
         raise AbsentError(
@@ -74,7 +88,12 @@ class _Work:
         self.saturation: Saturation = saturation_of(definition.model.properties)
         self.notes: list[str] = []
         self.warnings: list[str] = []
-        self.histories = MeasuredPressures.of(log, segments, definition, self._last(t_v))
+        self.lost: Value | None = None
+        if "p_run" not in live_signals(log) and "p_tank" in log:
+            self.lost, self.estimated = estimated_share(log, segments, definition, self.saturation)
+            self.warnings.append(self.estimated)
+        lost = self.lost.value if self.lost is not None else None
+        self.histories = MeasuredPressures.of(log, segments, definition, self._last(t_v), lost)
         self.notes.extend(self.histories.assumed)
         self.t_feed = segments.time("t_feed") or 0.0
         self.volume = definition.tank.volume if definition.tank else None
@@ -82,39 +101,83 @@ class _Work:
         self.at_v = self._read(t_v, 0.3, self._after_t_v())
         self.t_end, self.t_end_std, self.end_reason = self._vapor_end()
         self.at_end = self._read(self.t_end, self.t_end - t_v, 0.3) if np.isfinite(self.t_end) else None
+        low, high = self.saturation.pressure_range
+        at_end = float(self.saturation.temperature(np.clip(self.at_v.value, low, 0.999 * high)))
+        self.held = Held.of(definition, self.saturation, at_end)
 
     def result(self, samples: int) -> TankCalibration:
         """Reduce, draw, judge."""
         losses_only = self._losses()
         blocked = self._blocked()
-        mass = loaded_mass(self.log, self.segments, self.definition, self.saturation, self.histories, self.at_v.value)
+        mass = self._mass() if not blocked else None
         if blocked or mass is None or self.volume is None or self.area is None:
             reason = blocked or self._missing(mass)
             quantities = {n: Quantity.absent(reason, verdict=NOT_IDENTIFIABLE) for n in NAMES} | losses_only
-            return TankCalibration(self._constants(quantities))
+            held = {name: self.held.quantity(name) for name in self.held.values}
+            return TankCalibration(self._constants(quantities | held))
         return self._reduced(mass, samples)
 
-    def _reduced(self, mass: LoadedMass, samples: int) -> TankCalibration:
+    def _mass(self) -> LoadedMass | None:
+        """What was loaded [kg]; where nobody weighed it, what the stated injector has let through and left."""
+        found = loaded_mass(self.log, self.segments, self.definition, self.saturation, self.histories, self.at_v.value)
+        if "C_i" not in self.held.values or self.volume is None or self.area is None or (found and found.weighed):
+            return found
+        inputs = self._inputs(1.0)
+        nominal = reduce(Tables.of(self.histories, self.saturation), self.saturation, inputs)
+        gone = float(np.interp(self.t_v, self.histories.time, self._mass_left(nominal, inputs)))
+        std = gone * float(np.hypot(self.held.std("C_i") / self.held.value("C_i"), UNSTATED))
+        mass = nominal.vapor_mass + gone
+        return LoadedMass(
+            mass, std, f"{mass:.2f} +/- {std:.2f} kg from the stated C_i; none was weighed", weighed=False
+        )
+
+    def _inputs(self, mass: float) -> Inputs:
+        """Of a reduction with a loaded ``mass`` [kg]."""
         assert self.volume is not None
         assert self.area is not None
         p_end = self.at_end.value if self.at_end else float("nan")
         times = (self.t_feed, self.t_v, self.t_end)
-        inputs = Inputs(mass.value, self.volume.value, self.area.value, *times, self.at_v.value, p_end)
+        found = Inputs(mass, self.volume.value, self.area.value, *times, self.at_v.value, p_end)
+        return replace(found, **{name: self.held.value(name) for name in HELD})
+
+    def _reduced(self, mass: LoadedMass, samples: int) -> TankCalibration:
+        inputs = self._inputs(mass.value)
         self._check_fit(inputs)
         tables = Tables.of(self.histories, self.saturation)
         inputs, vapor = self._acting(tables, inputs)
         nominal = reduce(tables, self.saturation, inputs, phase=vapor)
-        draws = draw(tables, self.saturation, inputs, self._spread(mass), samples, vapor)
         self.notes.append(f"loaded mass: {mass.source}")
         left = self._mass_left(nominal, inputs)
         rest, remarks = rest_of(self.log, self.segments, self.saturation, self.histories, inputs, nominal, left, mass)
         self.warnings.extend(remarks)
+        mass = mass.against(other_masses(rest, mass))
+        draws = draw(tables, self.saturation, inputs, self._spread(mass), samples, vapor)
         history = coefficient_history(self.saturation, self.histories, inputs, left)
         content = tank_history(self.saturation, self.histories, inputs, left)
         quantities = self._quantities(nominal, draws, inputs, left)
-        loaded = Quantity(mass.value, "kg", mass.std, verdict="identified", why=mass.source)
-        quantities["oxidizer_mass"] = loaded
+        if self.held.values:
+            by_log = self._by_log(tables, inputs, mass, samples, vapor)
+            quantities |= {name: self.held.quantity(name, by_log[name]) for name in by_log}
+            self.warnings.extend(self.held.contradictions(by_log))
+        verdict = IDENTIFIED if mass.weighed else DERIVED
+        quantities["oxidizer_mass"] = Quantity(mass.value, "kg", mass.std, verdict=verdict, why=mass.source)
+        for words in mass.doubts:
+            quantities |= {name: quantities[name].doubted(words) for name in BY_MASS}
         return TankCalibration(self._constants(quantities, rest, history, content), draws)
+
+    def _by_log(
+        self, tables: Tables, inputs: Inputs, mass: LoadedMass, samples: int, vapor: VaporPhase | None
+    ) -> dict[str, Quantity]:
+        """What the log says of what is held."""
+        loose = replace(inputs, **dict.fromkeys(HELD, np.nan))
+        nominal = reduce(tables, self.saturation, loose, phase=vapor)
+        draws = draw(tables, self.saturation, loose, self._spread(mass), samples, vapor)
+        found = {"m": judge_exponent(nominal, draws, loose, self.end_reason, self.saturation)}
+        found["K_loss"] = judged("K_loss", nominal.K_loss, "1/m^4", draws)
+        found["C_i"] = judge_discharge(nominal, draws, self._excluded_share())
+        if not mass.weighed and "C_i" in self.held.values:
+            found["C_i"] = Quantity.absent("the load was not weighed, and follows from it")
+        return {name: quantity for name, quantity in found.items() if name in self.held.values}
 
     def _constants(
         self,
@@ -153,7 +216,23 @@ class _Work:
             )
 
     def _quantities(self, r: Reduction, draws: Draws, inputs: Inputs, left: Array) -> dict[str, Quantity]:
-        discharge = judge_discharge(r, draws, self._excluded_share())
+        return self._conditional(self._judged(r, draws, inputs, left))
+
+    def _conditional(self, found: dict[str, Quantity]) -> dict[str, Quantity]:
+        """What rests on a pressure before the injector that was estimated holds on that condition."""
+        if self.lost is None:
+            return found
+        resting = {n: q for n, q in found.items() if n in BY_RUN_LINE and q.verdict in (IDENTIFIED, NOT_IDENTIFIABLE)}
+        told = {
+            n: replace(q, verdict=CONDITIONAL, why=self.estimated) for n, q in resting.items() if q.value is not None
+        }
+        if "m" in found and "m" not in self.held.values:  # how fast the vapor leaves hangs on it
+            told["m"] = Quantity.absent(self.estimated, verdict=NOT_IDENTIFIABLE)
+        return found | told
+
+    def _judged(self, r: Reduction, draws: Draws, inputs: Inputs, left: Array) -> dict[str, Quantity]:
+        held = "C_i" in self.held.values
+        discharge = self.held.quantity("C_i") if held else judge_discharge(r, draws, self._excluded_share())
         known = np.isfinite(r.C_i) and 0.0 < r.C_i < 10.0
         out = {"C_i": discharge, "m": judge_exponent(r, draws, inputs, self.end_reason, self.saturation)}
         out["Z"] = judged("Z", r.Z, "", draws)
@@ -170,7 +249,7 @@ class _Work:
             out["oxidizer_flow_peak"] = Quantity.absent("no C_i to take it from", verdict=NOT_IDENTIFIABLE)
         else:
             relative = (discharge.std or 0.0) / r.C_i
-            out["oxidizer_flow_peak"] = Quantity(flow, "kg/s", flow * relative, verdict=discharge.verdict)
+            out["oxidizer_flow_peak"] = Quantity(flow, "kg/s", flow * relative, verdict=_worth(discharge))
         at_feed = inputs.mass - float(np.interp(self.t_feed, self.histories.time, left))
         out["mass_at_t_feed"] = _mass(at_feed, self._mass_std, discharge)
         spread = float(np.hypot(draws.std("vapor_mass"), self._mass_std))
@@ -191,6 +270,7 @@ class _Work:
             self._reading_factor(),
             (self.at_v.slope, self.at_end.slope if self.at_end else 0.0),
             (self._bias("p_tank"), self._bias("p_run"), self._bias("p_chamber")),
+            (self.held.std("C_i"), self.held.std("K_loss"), self.held.std("m")),
         )
 
     def _reading_factor(self) -> Array:
@@ -204,6 +284,9 @@ class _Work:
 
     def _bias(self, name: str) -> float:
         channel = self.log.get(name)
+        if name == "p_run" and self.lost is not None:
+            h = self.histories
+            return (self.lost.std or 0.0) * h.mean(h.tank - h.chamber, self.t_feed, self.t_v)
         if channel is None:
             return self.definition.ambient_pressure.std or 0.0
         if channel.zero_std is None:
@@ -307,12 +390,17 @@ class _Work:
                 why = f"{lacking} has no good samples for {gap:.2f} s of the {end - start:.2f} s of this phase"
                 out[name] = Quantity.absent(why, verdict=NOT_IDENTIFIABLE)
             else:
-                out[name] = Quantity(value, "Pa", error, verdict="identified")
-        return out
+                out[name] = Quantity(value, "Pa", error, verdict=IDENTIFIED)
+        return self._conditional(out)
 
 
 def _mass(value: float, std: float, discharge: Quantity) -> Quantity:
     """A mass [kg] that is worth what C_i is worth."""
     if not (np.isfinite(value) and np.isfinite(std)):
         return Quantity.absent("the reduction has no answer", verdict=NOT_IDENTIFIABLE)
-    return Quantity(value, "kg", std, verdict=discharge.verdict)
+    return Quantity(value, "kg", std, verdict=_worth(discharge))
+
+
+def _worth(discharge: Quantity) -> str | None:
+    """The verdict on what follows from C_i."""
+    return DERIVED if discharge.verdict == STATED else discharge.verdict

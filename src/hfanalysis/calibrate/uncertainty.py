@@ -18,6 +18,9 @@ from hfanalysis.thermo.saturation import Saturation
 SEED = 20230101
 """Of the generator: every run of a test draws the same numbers, so that its intervals do not change."""
 
+HELD = ("C_i", "K_loss", "m")
+"""What may be held: as stated, and within what is stated of it."""
+
 
 @dataclass(frozen=True)
 class InputSpread:
@@ -36,6 +39,7 @@ class InputSpread:
     reading: Array
     slopes: tuple[float, float]
     bias: tuple[float, float, float]
+    held: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -78,11 +82,18 @@ def draw(
     """Repeat the reduction ``samples`` times with inputs drawn from normal distributions (same seed each time)."""
     generator = np.random.default_rng(SEED)
     z = generator.standard_normal((samples, 11))
-    drawn = [_drawn(inputs, spread, row) for row in z]
+    own = generator.standard_normal((samples, len(HELD)))
+    drawn = [_drawn(_held(inputs, spread, held), spread, row) for row, held in zip(z, own, strict=True)]
     phase = vapor_phase or VaporPhase.plain(saturation, inputs)
     results = [reduce(tables, saturation, *row, phase) for row in drawn]
     values = {n: np.array([getattr(r, n) for r in results]) for n in Reduction.__dataclass_fields__}
     return Draws(values, _what_was_drawn(drawn))
+
+
+def _held(inputs: Inputs, spread: InputSpread, z: Array) -> Inputs:
+    """With what is held drawn, too; a factor stays positive."""
+    shifted = {n: getattr(inputs, n) + s * float(x) for n, s, x in zip(HELD, spread.held, z, strict=True)}
+    return replace(inputs, **{n: max(v, 1e-3 * getattr(inputs, n)) for n, v in shifted.items() if v == v})
 
 
 def _what_was_drawn(drawn: list[tuple[Inputs, Shift]]) -> dict[str, Array]:

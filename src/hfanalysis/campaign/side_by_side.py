@@ -52,7 +52,7 @@ def run_all(
 
 
 def _run(test: str, arguments: Sequence[str]) -> Ended:
-    command = [sys.executable, "-m", "hfanalysis", "run", test, "--quiet", *arguments]
+    command = [sys.executable, "-m", "hfanalysis", "run", "--quiet", *arguments, "--", test]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     return Ended(done.returncode, _said(done.stderr) if done.returncode else "")
 

@@ -11,6 +11,7 @@ import typer
 
 from hfanalysis.cli.exit_status import plain_exit
 from hfanalysis.cli.request import Request
+from hfanalysis.cli.trust import ask
 from hfanalysis.errors import InputError
 from hfanalysis.stages import RUN, STAGES
 from hfanalysis.version import __version__
@@ -34,6 +35,14 @@ Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No table and no prog
 Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="STAGE.NAME=VALUE", help="Set a parameter of a stage for this run.")
 ]
+
+Firing = Annotated[
+    int | None,
+    typer.Option("--firing", min=1, metavar="N", help="Take this firing of the log; products go to TEST.firing-N/."),
+]
+
+
+Trust = Annotated[bool, typer.Option("--trust-effects", help="Run the code in ROOT/effects/, until it changes.")]
 
 
 def _version(wanted: bool) -> None:
@@ -59,9 +68,13 @@ def _common(
     force: Force = False,
     quiet: Quiet = False,
     settings: Set = None,
+    firing: Firing = None,
+    trust_effects: Trust = False,
 ) -> Request:
     """What every stage is asked with."""
-    return Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+    ask(root, trust_effects)
+    request = Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
+    return request if firing is None else request.setting(f"segment.firing={firing}")
 
 
 def _stage(name: str, text: str, does: Callable[..., None]) -> None:
@@ -148,11 +161,31 @@ def _health(request: Request, apply: Cure = False, yes: Yes = False) -> None:
         perform.stage("health", request)
 
 
+Quick = Annotated[
+    bool,
+    typer.Option(
+        "--quick", help="Within seconds: phases, peaks, impulse, C_i and which sensors to believe. Only shown."
+    ),
+]
+
+
+def _run(request: Request, quick: Quick = False) -> None:
+    if quick:
+        from hfanalysis.cli import quick as at_stand
+
+        at_stand.quick(request)
+    else:
+        from hfanalysis.cli import perform
+
+        perform.stage(RUN, request)
+
+
 _WITH_OPTIONS: dict[str, Callable[..., None]] = {
     "health": _health,
     "diagnose": _diagnose,
     "flight": _flight,
     "report": _report,
+    RUN: _run,
 }
 
 for _name, _text in {**STAGES, RUN: "Every stage; the diagnosis takes longest."}.items():
@@ -168,12 +201,31 @@ def _compare(
     as_json: Json = False,
     quiet: Quiet = False,
     pdf: Pdf = False,
+    trust_effects: Trust = False,
 ) -> None:
     """Lay two tests over each other: TEST/compare_OTHER.html, curves from the valve's opening, numbers side by side."""
     with plain_exit():
         from hfanalysis.cli import exports
 
+        ask(root, trust_effects)
         exports.compare(Request(test, root, out, as_json, False, quiet), other, pdf)
+
+
+@app.command("watch")
+def _watch(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder into which the logger writes.")],
+    root: Root = Path(),
+    once: Annotated[bool, typer.Option("--once", help="Look at the logs that are there, and end.")] = False,
+    as_json: Json = False,
+) -> None:
+    """A quick look (as hfa run --quick) at each log as it lands in FOLDER; nothing is written.
+
+    Its test.toml is that of the last test with the same columns, else a draft, without masses and C_i.
+    """
+    with plain_exit():
+        from hfanalysis.cli.landing import watch_folder
+
+        watch_folder(folder, root, once, as_json)
 
 
 EngineToml = Annotated[Path, typer.Argument(metavar="ENGINE.toml", help="An engine file, see engines/.")]
@@ -213,11 +265,13 @@ def _regression(
     root: Root = Path(),
     out: Out = None,
     as_json: EngineJson = False,
+    trust_effects: Trust = False,
 ) -> None:
     """Regression constants a and n common to several tests, and whether the tests agree on them."""
     with plain_exit():
         from hfanalysis.cli import regression
 
+        ask(root, trust_effects)
         regression.regression(tests, root, out, as_json)
 
 
@@ -234,12 +288,14 @@ def _campaign(
     as_json: EngineJson = False,
     force: Force = False,
     quiet: Quiet = False,
+    trust_effects: Trust = False,
 ) -> None:
     """Every stage of all tests, several at a time, and what those of one stand say together: campaign.html, .json."""
     with plain_exit():
         from hfanalysis.cli import campaign
 
-        request = campaign.CampaignRequest(tuple(tests or ()), root, out, jobs, as_json, force, quiet)
+        ask(root, trust_effects)
+        request = campaign.CampaignRequest(tuple(tests or ()), root, out, jobs, as_json, force, quiet, trust_effects)
         status = campaign.campaign(request)
         if status:
             raise typer.Exit(status)
@@ -251,9 +307,16 @@ AnyTest = Annotated[
 
 
 @app.command("effects")
-def _effects(test: AnyTest = None, root: Root = Path(), out: Out = None, as_json: EngineJson = False) -> None:
+def _effects(
+    test: AnyTest = None,
+    root: Root = Path(),
+    out: Out = None,
+    as_json: EngineJson = False,
+    trust_effects: Trust = False,
+) -> None:
     """List the effects that can be added to the model; for a TEST, what its channels can tell apart."""
     with plain_exit():
+        ask(root, trust_effects)
         if test is None:
             from hfanalysis.cli import effects
 
@@ -267,11 +330,15 @@ def _effects(test: AnyTest = None, root: Root = Path(), out: Out = None, as_json
 @app.command("new")
 def _new(
     test: Annotated[str, typer.Argument(metavar="ID", help="Name of the new test.")],
-    log: Annotated[Path, typer.Option(help="Its log file; copied to raw_tests/ID/ if it is elsewhere.")],
+    log: Annotated[
+        list[Path],
+        typer.Option(help="Its log file, copied to raw_tests/ID/ if it is elsewhere; again for every other."),
+    ],
     root: Root = Path(),
+    edit: Annotated[bool, typer.Option("--edit", help="Ask at the terminal what each column is.")] = False,
 ) -> None:
-    """Draft raw_tests/ID/test.toml from what a log shows. Never overwrites."""
+    """Draft raw_tests/ID/test.toml from what logs show, and draw every column. Never overwrites."""
     with plain_exit():
-        from hfanalysis.record.draft import new_test
+        from hfanalysis.cli import new
 
-        typer.echo(f"{new_test(root, test, log)}: drafted; complete what is marked there, then: hfa calibrate {test}")
+        new.new(root, test, log, edit)

@@ -39,6 +39,7 @@ class CampaignRequest:
     as_json: bool
     force: bool
     quiet: bool
+    trust_effects: bool = False
 
 
 def campaign(request: CampaignRequest) -> int:
@@ -86,6 +87,7 @@ def _definitions(request: CampaignRequest) -> tuple[dict[str, TestDefinition], d
 def _run(tests: list[str], request: CampaignRequest, progress: Progress) -> Mapping[str, Ended]:
     arguments = ["--root", str(request.root), *(("--out", str(request.out)) if request.out is not None else ())]
     arguments += ["--force"] if request.force else []
+    arguments += ["--trust-effects"] if request.trust_effects else []
     done: list[str] = []
 
     def ended(test: str, how: Ended) -> None:

@@ -9,7 +9,11 @@ from contextlib import contextmanager
 
 import typer
 
-from hfanalysis.errors import AnalysisError
+from hfanalysis.errors import AnalysisError, InputError
+from hfanalysis.products.disk import REFUSED
+
+LONGEST = 4000
+"""Length of what is told in one line [characters]. Evidence: a screen holds as much."""
 
 
 @contextmanager
@@ -20,13 +24,23 @@ def plain_exit() -> Iterator[None]:
     except AnalysisError as error:
         tell(str(error))
         raise typer.Exit(error.exit_status) from None
+    except OSError as error:
+        if error.errno not in REFUSED:
+            raise
+        tell(": ".join(filter(None, (str(error.filename or ""), str(error.strerror)))))
+        raise typer.Exit(InputError.exit_status) from None
+    except MemoryError:
+        tell("the memory is not enough for this log; close what else runs, or lower its rate")
+        raise typer.Exit(InputError.exit_status) from None
     except KeyboardInterrupt:
         tell("interrupted; products are as they were before, or complete")
         raise typer.Exit(130) from None
 
 
 def tell(text: str) -> None:
-    """One line for people, on standard error."""
+    """One line for people, on standard error; of one that quotes a file at length, both ends."""
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST // 2]} […] {text[-LONGEST // 2 :]}"
     print(f"hfa: {text}", file=sys.stderr)
 
 

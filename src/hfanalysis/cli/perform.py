@@ -13,6 +13,7 @@ from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.stages import ASIDE, ORDER, way_to
 from hfanalysis.stages.base import BASE, Context, load_stage
+from hfanalysis.stages.freshness import edited
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 from hfanalysis.units import near
@@ -49,6 +50,9 @@ def stage(name: str, request: Request) -> Context:
     _show(name, context, request)
     for text in _warnings(context, name):
         tell(f"warning: {text}")
+    if edited(context):
+        path = context.definition.path
+        tell(f"warning: {path} was edited while this ran: these numbers are of the file as it was; run again")
     if name == "run":
         _check_spine(context)
     return context

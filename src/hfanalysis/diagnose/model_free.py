@@ -88,7 +88,7 @@ class ShownByChannels:
 
 def shown(log: TestLog, segments: Segments, definition: TestDefinition) -> ShownByChannels:
     """Everything that takes no model to see."""
-    wrong = findings(log, segments, definition, fire_of(segments, definition))
+    wrong = findings(log, segments, definition, fire_of(segments, definition, log))
     return ShownByChannels(tuple(wrong), tuple(signs_of(log, segments)))
 
 

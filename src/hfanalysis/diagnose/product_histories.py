@@ -21,11 +21,11 @@ def write_histories(path: Path, found: Diagnosed, provenance: Mapping[str, Any])
 
     A second source at a site is ``sources/SITE 2``.
     """
-    import h5py
+    from hfanalysis.products.hdf5 import created
 
     observed = found.naming.bench.observed
     before, after = (residuals_of(f, observed) for f in (found.naming.base.fit, found.verdict.chosen.fit))
-    with h5py.File(path, "w", libver="latest") as file:
+    with created(path, libver="latest") as file:
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
         rows = found.product.localisation
         for name, row in zip(numbered([row.site for row in rows]), rows, strict=True):
@@ -59,9 +59,9 @@ def numbered(names: Sequence[str]) -> list[str]:
 
 def write_empty(path: Path, provenance: Mapping[str, Any]) -> None:
     """The file of a test for which no model could be run."""
-    import h5py
+    from hfanalysis.products.hdf5 import created
 
-    with h5py.File(path, "w", libver="latest") as file:
+    with created(path, libver="latest") as file:
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
 
 

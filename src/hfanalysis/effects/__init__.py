@@ -10,23 +10,27 @@ from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
 
+from hfanalysis.effects import trust
 from hfanalysis.engine.effect import Effect
 from hfanalysis.errors import InputError
 
 FOLDER = "effects"
 """Folder below the root of the tests in which a team keeps effects of its own."""
 
+_NO_EFFECTS = ("trust",)
+
 
 def library(folder: Path | None = None) -> dict[str, Effect]:
     """Every effect by its name, in the order of names: those that come along, and those of the files in ``folder``.
 
-    Files whose names begin with an underscore are no effects. Raises InputError for a file that does not hold an effect
-    of its name, or that takes the name of one that comes along.
+    Files whose names begin with an underscore are no effects. Raises InputError for a folder that nobody has agreed to
+    run, for a file that does not hold an effect of its name, or that takes the name of one that comes along.
     """
     if folder is None or not folder.is_dir():
         return dict(_built_in())
+    trust.check(folder)
     found = {**_built_in()}
-    for path in sorted(folder.glob("[!_]*.py")):
+    for path in trust.files(folder):
         if path.stem in _built_in():
             raise InputError(f"{path}: an effect called {path.stem!r} is there already; expected a name of its own")
         found[path.stem] = _from_file(path.resolve(), path.stat().st_mtime_ns)
@@ -43,7 +47,7 @@ def effect(name: str, folder: Path | None = None) -> Effect:
 
 @lru_cache(maxsize=1)
 def _built_in() -> dict[str, Effect]:
-    names = sorted(m.name for m in iter_modules(__path__) if not m.name.startswith("_"))
+    names = sorted(m.name for m in iter_modules(__path__) if m.name not in _NO_EFFECTS)
     return {name: _named(import_module(f"{__name__}.{name}"), name, f"{name}.py") for name in names}
 
 
@@ -58,7 +62,7 @@ def _from_file(path: Path, changed: int) -> Effect:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise InputError(f"{path}: cannot be loaded ({type(error).__name__}: {error})") from error
     return _named(module, path.stem, str(path))
 

@@ -19,11 +19,9 @@ NOSES = {"cone": "conical", "ogive": "ogive", "von_karman": "von karman", "ellip
 RAIL_UNKNOWN = 5.0
 """Length of a rail that is not stated [m]. Evidence: RocketPy cannot do without one."""
 
-HEAD = '''"""{title}
+HEAD = '''"""A rocket on a measured motor. Written by hfanalysis. Needs RocketPy (pip install rocketpy).
 
-Written by hfanalysis. Needs RocketPy (pip install rocketpy).
-
-Usage: python {name} [--inclination DEGREES]
+Usage: python THIS_FILE [--inclination DEGREES]
 """
 
 import argparse
@@ -128,8 +126,11 @@ class Scripted:
     nozzle_radius: float
 
 
-def script(of: Scripted, name: str, title: str) -> str:
-    """The script's text, to be saved as ``name``. Raises ValueError for a curve without a mass history."""
+def script(of: Scripted, title: str) -> str:
+    """The script's text. Raises ValueError for a curve without a mass history.
+
+    Whatever it states is written as a literal: a title is text there, not code.
+    """
     if of.points.mass is None:
         raise ValueError("a flight needs the propellant's mass over time")
     statements = {
@@ -152,7 +153,7 @@ def script(of: Scripted, name: str, title: str) -> str:
         "PROPELLANT": _pairs(of.points.time, of.points.mass, 6),
     }
     stated = "\n".join(f"{key} = {_literal(value)}" for key, value in statements.items())
-    return HEAD.format(title=title, name=name) + stated + "\n" + BODY
+    return HEAD.format(title=title) + stated + "\n" + BODY
 
 
 def _literal(value: object) -> str:

@@ -64,7 +64,6 @@ def rocketpy(launched: MeasuredFlight, definition: TestDefinition, stable: Stabi
             center_of_mass=length - (float(weighed.place.fixed[0].center) if weighed is not None else 0.5 * length),
             nozzle_radius=motor.radii[1],
         ),
-        f"{definition.test.id}_rocketpy.py",
         motor.comments[0],
     )
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 
 from hfanalysis.arrays import Array
@@ -21,6 +20,7 @@ from hfanalysis.measured_flight import stability
 from hfanalysis.measured_flight.firing import Firing
 from hfanalysis.measured_flight.uncertainty import DrawnFlights, Input, disperse, inputs, rows
 from hfanalysis.products import flight as products
+from hfanalysis.products.hdf5 import created
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.rocket.vehicle import gravity
@@ -113,7 +113,7 @@ def write_histories(
     path: Path, launched: MeasuredFlight, stable: stability.StabilityRuns | str, provenance: Mapping[str, Any]
 ) -> None:
     """flight.h5: groups ``ascent``, ``bands``, the ways down, ``balance`` and ``stability``, in SI."""
-    with h5py.File(path, "w") as file:
+    with created(path) as file:
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
         file.attrs["launch_altitude"] = launched.firing.vehicle.launch_altitude
         ascent = {name: launched.ascent.column(name) for name in TRACE}

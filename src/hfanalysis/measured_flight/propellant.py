@@ -82,7 +82,7 @@ def propellant(
     thrust: MeasuredThrust,
 ) -> Propellant:
     """The propellant over the burn. Raises AbsentError where a loaded mass is not known."""
-    loaded, grain = _loaded(log, segments, definition), definition.grain
+    loaded, grain = _loaded(log, segments, calibration, definition), definition.grain
     if grain is None or grain.mass is None:
         raise AbsentError("[grain] mass is not given: the rocket's mass is not known")
     time = np.linspace(0.0, thrust.burn_time, POINTS)
@@ -91,7 +91,7 @@ def propellant(
     rest = observed.oxidizer_mass_after if observed is not None else None
     mass = tank.mass if rest is None else _ending_at(tank.mass, rest.value)
     flow = np.maximum(-np.gradient(mass, time), 0.0)
-    fuel_out = segments.time("t_fuel_out") if segments is not None else None
+    fuel_out = segments.time("t_fuel_gone") if segments is not None else None
     burning = flow if fuel_out is None else np.where(time <= fuel_out, flow, 0.0)
     fuel, how_fuel = _fuel(definition, calibration, time, burning)
     fuel_flow = np.maximum(-np.gradient(fuel, time), 0.0)
@@ -103,14 +103,19 @@ def propellant(
     return Propellant(time, mass, liquid, tank.temperature, fuel, ratio, spread, stated, how)
 
 
-def _loaded(log: TestLog, segments: Segments | None, definition: TestDefinition) -> Value:
-    """The loaded oxidizer [kg]: stated, or the load cell's quiet reading."""
+def _loaded(
+    log: TestLog, segments: Segments | None, calibration: Calibration | None, definition: TestDefinition
+) -> Value:
+    """The loaded oxidizer [kg]: stated, or the load cell's quiet reading, or what the calibration worked with."""
     if definition.tank is not None and definition.tank.oxidizer_mass is not None:
         return definition.tank.oxidizer_mass
     cell = load_cell_mass(log, segments) if segments is not None else None
-    if cell is None:
+    if cell is not None:
+        return Value(*cell)
+    found = calibration.oxidizer_mass if calibration is not None else None
+    if found is None or found.value is None:
         raise AbsentError("[tank] oxidizer_mass is not given and no load cell shows it: the rocket's mass is not known")
-    return Value(*cell)
+    return Value(found.value, found.std)
 
 
 def _std(mass: Value) -> float:
@@ -137,7 +142,9 @@ def _oxidizer(
     time: Array,
     loaded: float,
 ) -> Oxidizer:
-    if calibration is not None and segments is not None and calibration.alone("C_i").value:
+    tank, injector = definition.tank, definition.injector
+    known = tank is not None and tank.volume is not None and injector is not None and injector.area is not None
+    if known and calibration is not None and segments is not None and calibration.alone("C_i").value:
         return _through_injector(log, segments, calibration, definition, time, loaded)
     unknown = np.full(time.size, np.nan)
     cell = log.get("m_tank")
@@ -174,7 +181,8 @@ def _through_injector(
     assert discharge is not None
     volume, area = definition.tank.volume.value, discharge * definition.injector.area.value
     source = saturation_of(definition.model.properties)
-    histories = MeasuredPressures.of(log, segments, definition, float(time[-1]))
+    line = 2.0 * (calibration.alone("K_loss").value or 0.0) * area**2  # its loss over the injector's own
+    histories = MeasuredPressures.of(log, segments, definition, float(time[-1]), line / (1.0 + line))
     t_v = segments.time("t_v") or float(time[-1])
     temperature = np.interp(time, histories.time, histories.tank_temperature(source))
     drop = np.interp(time, histories.time, np.maximum(histories.run - histories.chamber, 0.0))
@@ -230,7 +238,7 @@ def _fuel(definition: TestDefinition, calibration: Calibration | None, time: Arr
 def _exponent(definition: TestDefinition, calibration: Calibration | None) -> tuple[float, str]:
     grain = definition.grain
     if grain is not None and grain.n is not None:
-        return grain.n, "[grain] n"
+        return grain.n.value, "[grain] n"
     found = calibration.alone("n").value if calibration is not None else None
     if found is not None and 0.0 < found <= 2.0:
         return found, "calibrated n"

@@ -13,7 +13,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
-from hfanalysis.validate.thrust import FIRST, Thrust, thrust_of
+from hfanalysis.validate.thrust import FIRST, Thrust, burnt_out, thrust_of
 
 SPAN_SHARE = 0.25
 """Part of the cell's accuracy that a tare does not take away [-]: its error of span, as for the pressures."""
@@ -64,7 +64,7 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
         raise AbsentError(f"test {definition.test.id}: no valve opening is known to count the thrust from")
     found = thrust_of(log, segments, definition)
     _check_whole(channel, segments, definition, float(found.signal.time[-1]))
-    end, of = burn_end(segments, definition, float(found.signal.time[-1]))
+    end, of = burn_end(segments, definition, found.signal)
     burn = found.signal.between(0.0, end)
     if burn.time.size < 8:
         raise AbsentError(f"test {definition.test.id}: the log has {burn.time.size} samples of thrust over the burn")
@@ -76,7 +76,8 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
 def _check_whole(channel: Channel, segments: Segments, definition: TestDefinition, last: float) -> None:
     """Raise AbsentError where the cell goes on in the burn after ``last`` [s] and means nothing there."""
     lost = channel.time[(channel.flags & Flag.UNUSABLE) != 0] - (segments.t_open.value or 0.0)
-    end, _ = burn_end(segments, definition, float(channel.time[-1]) - (segments.t_open.value or 0.0))
+    whole = float(channel.time[-1]) - (segments.t_open.value or 0.0)
+    end, _ = _told_end(segments, definition, whole) or (whole, "")
     if (lost > last).any() and end > last + EARLY:
         raise AbsentError(
             f"test {definition.test.id}: the thrust is not usable from {last:.2f} s on, before the burn ends "
@@ -96,20 +97,27 @@ def _drift_taken(thrust: Thrust) -> tuple[str, ...]:
     return (text("{taken} of the load cell's drift taken off over the burn", taken=said(taken, "N", ".0f")),)
 
 
-def burn_end(segments: Segments, definition: TestDefinition, last: float) -> tuple[float, str]:
-    """When thrust ends [s after opening], and who says so; ``last``: where the log ends [s].
+def burn_end(segments: Segments, definition: TestDefinition, thrust: Signal) -> tuple[float, str]:
+    """When thrust ends [s after opening], and who says so; ``thrust`` [N] with its zero taken off.
 
-    The engineer, else the later of chamber and fuel, else the log.
+    The engineer, else the later of chamber and fuel, else the thrust itself, else the log.
     """
+    last = float(thrust.time[-1])
+    if (told := _told_end(segments, definition, last)) is not None:
+        return told
+    gone = burnt_out(thrust)
+    return (gone[0], "the thrust's own end") if gone is not None else (last, "the log's end")
+
+
+def _told_end(segments: Segments, definition: TestDefinition, last: float) -> tuple[float, str] | None:
+    """When thrust ends by the engineer or by the later of chamber and fuel, if that is before the ``last`` instant."""
     observed = definition.observed.burn_time if definition.observed is not None else None
     if observed is not None and observed.value <= last:
         return observed.value, "[observed] burn_time"
-    found = {name: segments.time(name) for name in ("t_fuel_out", "t_end")}
+    found = {name: segments.time(name) for name in ("t_fuel_gone", "t_end")}
     times = {name: time for name, time in found.items() if time is not None and 0.0 < time <= last}
-    if times:
-        name = max(times, key=lambda key: times[key])
-        return times[name], name
-    return last, "the log's end"
+    name = max(times, key=lambda key: times[key], default=None)
+    return None if name is None else (times[name], name)
 
 
 def _spreads(channel: Channel, thrust: Thrust, burn: Signal) -> tuple[float, float, float]:

@@ -71,7 +71,7 @@ class Input:
 def inputs(firing: Firing, rocket: Rocket) -> dict[str, Input]:
     """Every uncertain input of a flight by name."""
     thrust, angle, wind = firing.thrust, rocket.launch_angle, rocket.wind_speed
-    drag, load = rocket.drag_uncertainty, firing.propellant
+    drag, load = _drag(rocket), firing.propellant
     speed = _wind(wind)
     return {
         "thrust_gain": Input(thrust.gain_std, "", False, "relative, of the load cell"),
@@ -88,6 +88,14 @@ def inputs(firing: Firing, rocket: Rocket) -> dict[str, Input]:
 def _stated(value: Value | None, default: float, unit: str) -> tuple[float, str, bool]:
     known = value is not None and value.std is not None
     return (value.std if value is not None and value.std is not None else default), unit, known
+
+
+def _drag(rocket: Rocket) -> float | None:
+    """What is stated of the drag's error, relative: on its own, or with the coefficient."""
+    stated = rocket.drag_coefficient
+    if rocket.drag_uncertainty is not None or stated is None or stated.std is None:
+        return rocket.drag_uncertainty
+    return stated.std / stated.value
 
 
 def _wind(stated: Value | None) -> tuple[float, float]:

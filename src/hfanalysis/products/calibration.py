@@ -100,6 +100,7 @@ class TankConstants(Part):
     rest: Annotated[Rest | None, Is("the tank before the valve opens")]
     C_i_history: Annotated[CoefficientHistory | None, Is("C_i over the liquid phase")]
     tank_history: Annotated[TankHistory | None, Is("content of the tank over the liquid phase")]
+    C_d: Annotated[Mapping[str, Quantity], Is("discharge coefficient by law; spi: incompressible liquid")] = {}
     notes: Notes
     warnings: Warnings
 

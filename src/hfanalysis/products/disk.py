@@ -7,22 +7,30 @@ A product is first written under a temporary name in its own folder and renamed 
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import json
 import os
+import shutil
+import stat
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+from hfanalysis.sources import SETTLED_NS
 
 TEMPORARY = ".tmp-"
 """How the temporary name of an unfinished product begins."""
 
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What the system says where no more fits: the disk, the user's share of it, the largest file that is allowed."""
+
+REFUSED = (errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS, *FULL)
+"""What the system says that does not let us write: something that a person can do something about."""
+
 _CHUNK = 1 << 20
 """Bytes read at a time [B]."""
-_SETTLED_NS = 2_000_000_000
-"""How old a file must be for its times to vouch for its content [ns]: file systems stamp no finer than 1 to 2 s.
-Source: FAT stamps every 2 s."""
 
 
 def temporary_path(path: Path) -> Path:
@@ -42,14 +50,37 @@ def fsync(path: Path) -> None:
 @contextlib.contextmanager
 def atomic(path: Path) -> Iterator[Path]:
     """A temporary path to write to, renamed to ``path`` if the block ends well and removed if it does not."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     scratch = temporary_path(path)
     try:
         yield scratch
         fsync(scratch)
+        share(scratch)
         os.replace(scratch, path)
     finally:
         scratch.unlink(missing_ok=True)
+
+
+def make_folder(folder: Path) -> None:
+    """The folder and those above it, open to whom the folder is open that they are made in."""
+    for new in reversed([folder, *folder.parents]):
+        if not new.is_dir():
+            new.mkdir(exist_ok=True)
+            share(new)
+
+
+def share(path: Path) -> None:
+    """Give a new file or folder to the group of the folder it lies in, where that may write there: who works in one
+    ``processed/`` goes on with what another has made."""
+    folder, own = path.parent.stat(), path.stat()
+    if not folder.st_mode & stat.S_IWGRP or own.st_uid != os.geteuid():
+        return
+    with contextlib.suppress(OSError):  # not a member of that group, or a file system without owners
+        if own.st_gid != folder.st_gid:
+            os.chown(path, -1, folder.st_gid)
+        wider = stat.S_IRGRP | stat.S_IWGRP
+        wider |= stat.S_IXGRP | folder.st_mode & stat.S_ISGID if path.is_dir() else 0
+        os.chmod(path, stat.S_IMODE(own.st_mode) | wider)
 
 
 def remove_temporaries(folder: Path) -> None:
@@ -132,14 +163,14 @@ class HashCache:
         """The file's SHA-256. Raises OSError where it cannot be read."""
         name, state = str(path.resolve()), _state(path)
         known = self._known.get(name)
-        if known is not None and known[:-1] == state:
+        if isinstance(known, list) and known[:-1] == state:
             return str(known[-1])
         digest = sha256_file(path)
         self._remember(name, path, state, digest)
         return digest
 
     def _remember(self, name: str, path: Path, state: list[int], digest: str) -> None:
-        settled = time.time_ns() - max(state[1], state[2]) > _SETTLED_NS
+        settled = time.time_ns() - max(state[1], state[2]) > SETTLED_NS
         if settled and _state(path) == state:
             self._known[name] = [*state, digest]
         else:
@@ -156,9 +187,24 @@ def _state(path: Path) -> list[int]:
     return [stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns, stat.st_ino]
 
 
-def touch_after(path: Path, inputs: Mapping[Path, int] | list[Path]) -> None:
-    """Make ``path`` no older than any of ``inputs``, so that make, which only knows times, finds it up to date."""
-    newest = max((item.stat().st_mtime_ns for item in inputs), default=0)
+def touch_after(path: Path, inputs: list[Path], since: int) -> None:
+    """Make ``path`` no older than any of ``inputs`` and than ``since`` [ns], so that make, which only knows times,
+    finds it up to date."""
+    newest = max([since, *(item.stat().st_mtime_ns for item in inputs)])
     if path.stat().st_mtime_ns < newest:
-        now = max(time.time_ns(), newest)
-        os.utime(path, ns=(now, now))
+        _set_time(path, max(time.time_ns(), newest))
+
+
+def touch_before(path: Path, newer: Path) -> None:
+    """Make ``path`` older than the file ``newer``, by more than file systems' stamps can blur."""
+    _set_time(path, newer.stat().st_mtime_ns - SETTLED_NS)
+
+
+def _set_time(path: Path, when: int) -> None:
+    """Set both times [ns]; of somebody else's file, which only a copy in its place can have others."""
+    try:
+        os.utime(path, ns=(when, when))
+    except PermissionError:
+        with atomic(path) as scratch:
+            shutil.copyfile(path, scratch)
+            os.utime(scratch, ns=(when, when))

@@ -30,6 +30,7 @@ class Performance(Part):
 
     measured: Annotated[Column, Is("by the log")]
     model: Annotated[Column, Is("of the calibrated engine, run by itself")]
+    motor_class: Annotated[Words | None, Is("letter of the measured total impulse, and its limits")] = None
 
 
 class PhaseGap(Part):

@@ -16,9 +16,10 @@ from hfanalysis.record.channels import CANONICAL
 from hfanalysis.record.document import place, read_toml, validate
 from hfanalysis.record.logspec import Channels, ChannelSpec, Exclusion, FileSpec, LogSpec, TimeSpec
 from hfanalysis.record.rocket import Rocket
-from hfanalysis.record.schema import Instant, ListOf, Refused, Section, Text, section, unknown_key
+from hfanalysis.record.schema import Instant, ListOf, Name, Refused, Section, Text, section, unknown_key, unsafe
 from hfanalysis.record.sections import (
     Chamber,
+    Feed,
     GrainSection,
     Injector,
     Model,
@@ -28,6 +29,7 @@ from hfanalysis.record.sections import (
     Site,
     Tank,
 )
+from hfanalysis.record.unused import OF_TESTS, SPREADS_OF_TESTS, unused
 from hfanalysis.units import Value, near
 
 __all__ = ["ChannelSpec", "Exclusion", "FileSpec", "LogSpec", "TestDefinition", "TimeSpec", "Value", "find_definition",
@@ -60,29 +62,19 @@ def _date(found: Any) -> datetime.date:
     return found.date() if isinstance(found, datetime.datetime) else found
 
 
-def _id(found: str) -> str:
-    if _unsafe(found):
-        raise ValueError("the name of the test's folder, without path separators")
-    return found
-
-
-def _unsafe(name: str) -> bool:
-    return any(mark in name for mark in "/\\\0") or name in (".", "..") or name != name.strip()
-
-
 @section
 class Test(Section):
     """[test]: which test this is."""
 
-    id: Annotated[Text, AfterValidator(_id)]
-    kind: Literal["hot_fire", "cold_flow"]
+    id: Name
+    kind: Literal["hot_fire", "cold_flow", "water_flow"]
     date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
     source: Literal["measured", "replica", "synthetic"] = "measured"
     description: Text = ""
-    stand: Text | None = None
+    stand: Name | None = None
 
 
-_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+_EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
 
 
 def _known_events(found: dict[str, Value]) -> dict[str, Value]:
@@ -111,6 +103,7 @@ class Statements(Section):
     model: Model = Model()
     tank: Tank | None = None
     injector: Injector | None = None
+    feed: Feed | None = None
     purge: Purge | None = None
     grain: GrainSection | None = None
     chamber: Chamber | None = None
@@ -129,6 +122,23 @@ class Statements(Section):
                 raise Refused(f"{channel.file!r} is not in log.files{offer}", "channels", name, "file")
         for i, exclusion in enumerate(self.exclude):
             exclusion.check_channels(self.channels, "exclude", i)
+        self._check_left()
+        if self.feed is not None and self.feed.p_loss is not None:
+            raise Refused("a test has K_loss here, which a log may bear out; not a constant loss", "feed", "p_loss")
+
+    def _check_left(self) -> None:
+        """No more can be left after a test than there was before it."""
+        for key, part, loaded in (
+            ("fuel_mass_after", "[grain] mass", self.grain.mass if self.grain else None),
+            ("oxidizer_mass_after", "[tank] oxidizer_mass", self.tank.oxidizer_mass if self.tank else None),
+        ):
+            left = getattr(self.observed, key, None)
+            if left is not None and loaded is not None and left.value > loaded.value:
+                raise Refused(
+                    f"found {left.value:.4g} kg; expected no more than the {loaded.value:.4g} kg of {part}",
+                    "observed",
+                    key,
+                )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,7 +171,7 @@ def find_definition(root: Path, test_id: str) -> Path:
 
     Raises :class:`InputError` where the name is not one of a folder there, or the folder has no test.toml.
     """
-    if not test_id or _unsafe(test_id):
+    if not test_id or unsafe(test_id):
         raise InputError(f"test {test_id!r}: expected the name of a folder in raw_tests, without path separators")
     tests = root / "raw_tests"
     path = tests / test_id / "test.toml"
@@ -182,7 +192,8 @@ def load_definition(path: Path) -> TestDefinition:
     """The test.toml at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
     raw, content = read_toml(path)
     stated = validate(Statements, {"schema": None, **content}, path)
-    digest, warnings = hashlib.sha256(raw).hexdigest(), _odd_names(stated.channels)
+    idle = unused(stated, OF_TESTS, SPREADS_OF_TESTS, "test.toml")
+    digest, warnings = hashlib.sha256(raw).hexdigest(), (*_odd_names(stated.channels), *idle)
     definition = TestDefinition(**vars(stated), path=path, sha256=digest, warnings=warnings)
     _check_folder(definition)
     return definition
@@ -211,10 +222,14 @@ def _check_folder(definition: TestDefinition) -> None:
 
 def _inside(name: str, folder: Path, where: str) -> None:
     """The file must be there, and within the test's own folder."""
-    path = (folder / name).resolve()
-    if not path.is_relative_to(folder) or path == folder:
-        raise InputError(f"{where}: found {name!r}; expected a file inside the test's own folder")
-    if not path.is_file():
+    try:
+        path = (folder / name).resolve()
+        own, there = path.is_relative_to(folder) and path != folder, path.is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        own = there = False
+    if not own:
+        raise InputError(f"{where}: found {name[:80]!r}; expected a file inside the test's own folder")
+    if not there:
         others = [str(p.relative_to(folder)) for p in sorted(folder.rglob("*")) if p.is_file()]
         offer = near(name, others) or f"; the folder holds {', '.join(others)}"
         raise InputError(f"{where}: {name!r} is not in the test's folder{offer}")

@@ -46,7 +46,7 @@ def read_toml(path: Path) -> tuple[bytes, dict[str, Any]]:
         return raw, tomllib.loads(raw.decode("utf-8-sig").replace("\r\n", "\n"))
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: byte {error.start} is not UTF-8; expected TOML text in UTF-8") from None
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f'{path}: not valid TOML: {error}; expected lines such as key = "value"') from None
 
 

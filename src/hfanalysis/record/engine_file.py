@@ -27,6 +27,7 @@ from hfanalysis.record.sections import (
     Site,
     Tank,
 )
+from hfanalysis.record.unused import OF_ENGINES, unused
 
 T = TypeVar("T")
 
@@ -64,6 +65,7 @@ class EngineFile(EngineStatements):
 
     path: Path
     sha256: str
+    warnings: tuple[str, ...] = ()
 
     def where(self, *keys: str) -> str:
         """A place in this file, for messages."""
@@ -74,7 +76,8 @@ def load_engine(path: Path) -> EngineFile:
     """The engine file at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
     raw, content = read_toml(path)
     stated = validate(EngineStatements, {"schema": None, **content}, path)
-    return EngineFile(**vars(stated), path=path, sha256=hashlib.sha256(raw).hexdigest())
+    idle = unused(stated, OF_ENGINES, (), str(path))
+    return EngineFile(**vars(stated), path=path, sha256=hashlib.sha256(raw).hexdigest(), warnings=idle)
 
 
 @dataclass(frozen=True)

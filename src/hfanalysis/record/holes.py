@@ -17,6 +17,9 @@ HOLE_STEPS = 10.0
 """Usual steps between samples that it lasts at least. Evidence: test_holes.py: a log without holes has none, whatever
 its rate."""
 
+STEPS_ASKED = 20_000
+"""Steps, spread over a long log, whose median is the usual one. Evidence: its error is that of 20,000 samples, 1 %."""
+
 HOLES_TOLD = 3
 """Holes that a warning places; of more it gives the number."""
 
@@ -28,15 +31,18 @@ def holes(time: Array) -> Array:
     [[0.2, 3.0]]
     """
     steps = np.diff(time)
-    if not steps.size:
+    if not steps.size or steps.max() <= SHORTEST_HOLE:
         return np.empty((0, 2))
-    places = np.flatnonzero(steps > max(SHORTEST_HOLE, HOLE_STEPS * float(np.median(steps))))
+    usual = float(np.median(steps[:: max(1, steps.size // STEPS_ASKED)]))
+    places = np.flatnonzero(steps > max(SHORTEST_HOLE, HOLE_STEPS * usual))
     return np.column_stack([time[places], time[places + 1]])
 
 
 def not_excluded(channel: Channel) -> Array:
     """The holes [s] (holes, 2) of a channel that are not stretches which the engineer excluded."""
-    found = holes(channel.time[channel.good])
+    found = holes(channel.time[channel.good] if channel.flags.any() else channel.time)
+    if not found.size:
+        return found
     left_out = channel.time[(channel.flags & Flag.EXCLUDED) != 0]
     asked = [bool(((left_out > start) & (left_out < end)).any()) for start, end in found]
     return found[~np.array(asked, dtype=bool)] if asked else found

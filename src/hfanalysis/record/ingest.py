@@ -6,7 +6,7 @@ The files are read once, in chunks; then a few channels at a time are in memory,
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -15,12 +15,13 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.products.disk import sha256_file
-from hfanalysis.record import holes
+from hfanalysis.record import alignment, holes
 from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.record.clocks import Clock, read_clock
-from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.definition import TestDefinition, TimeSpec
 from hfanalysis.record.flag_notes import flag_warnings, flagged
 from hfanalysis.record.log import Channel
 from hfanalysis.record.plan import Plan, make_plans, open_files
@@ -86,12 +87,61 @@ class _Ingest:
                     plan.stamps if plan.stamps is not None else plan.column
                 )
             self._fits(plan, lengths[plan.clock])
+        self._align()
+
+    def _align(self) -> None:
+        """The clocks on one zero: by dates, by offsets that are stated, by what the channels show together."""
+        files = {plan.clock: plan.file for plan in self.plans}
+        self.clocks, notes = alignment.on_one_zero(self.clocks, files)
+        self.warnings += notes
+        own = {plan.clock: plan.time for plan in self.plans}
+        fixed = [plan for plan in self.plans if plan.time.offset is not None]
+        for file in dict.fromkeys(files.values()):
+            asked = [key for key in self.clocks if files[key] == file and own[key].offset is None]
+            others = [plan for plan in fixed if plan.file != file]
+            doubtful = [key for key in self.clocks if files[key] == file and self._is_unplaced(key, own[key])]
+            if asked and others:
+                self._place(file, asked, others)
+            elif asked:
+                raise InputError(f"{self.definition.path}: offset = 'auto' of {file}: no other file to compare it with")
+            elif doubtful and file != self.plans[0].file and others:
+                self._doubt(file, doubtful, [plan for plan in others if plan.file == self.plans[0].file])
+
+    def _is_unplaced(self, key: Hashable, time: TimeSpec) -> bool:
+        return self.clocks[key].epoch is None and time.offset is not None and time.offset.value == 0.0
+
+    def _readings(self, plans: Iterable[Plan]) -> list[tuple[Array, Array]]:
+        """Time [s] and readings of channels, in the order of time."""
+        return [self.clocks[plan.clock].good(self.spools[plan.file].look(plan.column)) for plan in plans]
+
+    def _offset_of(self, keys: list[Hashable], others: list[Plan]) -> alignment.Offset | None:
+        mine = self._readings(plan for plan in self.plans if plan.clock in keys)
+        return alignment.find_offset(self._readings(others), mine)
+
+    def _place(self, file: str, keys: list[Hashable], others: list[Plan]) -> None:
+        """Puts a file's clocks where its channels show that they belong."""
+        found = self._offset_of(keys, others)
+        if found is None or not found.told:
+            how = "nothing changes in its channels" if found is None else found.words
+            expected = 'expected offset = "... s" beside its time column'
+            raise InputError(f"{self.definition.path}: offset = 'auto' of {file}: {how}; {expected}")
+        for key in keys:
+            self.clocks[key] = replace(self.clocks[key], time=self.clocks[key].time + found.value)
+        self.warnings.append(f"{file}: {found.words}; its clock is set so, as test.toml asks")
+
+    def _doubt(self, file: str, keys: list[Hashable], others: list[Plan]) -> None:
+        """Says where a file's channels show that it belongs elsewhere than its clock puts it."""
+        found = self._offset_of(keys, others) if others else None
+        if found is not None and found.told and abs(found.value) > alignment.ELSEWHERE * found.std:
+            cure = "if its clock is its own, state offset = 'auto' beside its time column"
+            self.warnings.append(f"{file}: {found.words}, not where its stamps put it; {cure}")
 
     def _read_file(self, file: str, source: Source, progress: Progress) -> None:
         plans = {plan.column: plan for plan in self.plans if plan.file == file}
         stamps = sorted({plan.stamps for plan in plans.values() if plan.stamps is not None})
         spool = self.spools[file] = Spool(source, self.folder)
         spool.fill(sorted(plans), stamps, lambda share: progress(file, share))
+        self.warnings += source.notes
         for column, text in spool.text.items():
             if column in plans:
                 cells = f"{text.count} cells hold text, the first {text.first!r} in line {text.line}"

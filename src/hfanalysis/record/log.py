@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntFlag
 from pathlib import Path
 from typing import Any
@@ -48,7 +48,8 @@ class Channel:
     is no number, and corrected for zero and tare. ``accuracy`` is one standard deviation of the bias [SI]. ``zero``:
     what was subtracted at the zero [SI]; ``zero_std``: standard deviation of the bias that is left, None where no zero
     was taken (then it is ``accuracy``). ``drift``: total drift removed between the two zeros. ``raw``: values before
-    zero and tare, None where neither was applied.
+    zero and tare, None where neither was applied. ``doubt``: what of ``accuracy`` and ``zero_std`` [SI] is there for
+    what the channel's health may mean, added in squares.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Channel:
     drift: float = 0.0
     raw: Array | None = None
     history: tuple[str, ...] = ()
+    doubt: float = 0.0
 
     @property
     def good(self) -> NDArray[np.bool_]:
@@ -72,6 +74,12 @@ class Channel:
         """
         good: NDArray[np.bool_] = (self.flags == 0) & np.isfinite(self.values)
         return good
+
+    def between(self, start: float, end: float) -> Channel:
+        """The samples with start <= time < end [s, log time]."""
+        kept = (self.time >= start) & (self.time < end)
+        raw = None if self.raw is None else self.raw[kept]
+        return replace(self, time=self.time[kept], values=self.values[kept], flags=self.flags[kept], raw=raw)
 
 
 @dataclass(frozen=True)
@@ -82,6 +90,13 @@ class TestLog:
     warnings: tuple[str, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
     unusable: Mapping[str, str] = field(default_factory=dict)
+
+    def between(self, start: float | None, end: float | None) -> TestLog:
+        """The log from ``start`` up to ``end`` [s, log time]; None: as far as it goes."""
+        if start is None and end is None:
+            return self
+        first, last = -np.inf if start is None else start, np.inf if end is None else end
+        return replace(self, channels={name: c.between(first, last) for name, c in self.channels.items()})
 
     def get(self, name: str) -> Channel | None:
         """The channel, or None where the log has none of that name."""

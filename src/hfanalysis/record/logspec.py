@@ -9,11 +9,12 @@ from dataclasses import KW_ONLY, field, replace
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, SkipValidation
+from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, SkipValidation
 
 from hfanalysis.record.channels import CANONICAL
 from hfanalysis.record.formats import FORMATS
 from hfanalysis.record.schema import (
+    ANY,
     DERIVED,
     NOT_NEGATIVE,
     POSITIVE,
@@ -33,6 +34,8 @@ from hfanalysis.record.schema import (
 )
 from hfanalysis.units import Value, dimension_of, is_gauge, near, unit_factor
 
+AUTO = "auto"
+"""What stands for an offset that is to be found."""
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "pipe": "|", "space": " ", "whitespace": " "}
 
 
@@ -57,6 +60,10 @@ def _time_unit(found: str) -> str:
     return found
 
 
+def _offset(found: Any) -> Value | None:
+    return None if found == AUTO else read_quantity(found, "time", ANY)
+
+
 def _not_zero(found: float) -> float:
     if found == 0.0:
         raise ValueError("a number that is not zero")
@@ -68,21 +75,26 @@ def _under(key: str) -> BeforeValidator:
     return BeforeValidator(lambda found: found if isinstance(found, (Mapping, Section)) else {key: found})
 
 
+Offset = Annotated[Value | None, PlainValidator(_offset)]
+"""A time, None where it is to be found."""
+
+
 @section
 class TimeSpec(Section):
     """Where a file's or a channel's time stamps are.
 
     ``column``: name or number from 1; ``rate`` [Hz] stands for it in logs without stamps. ``unit``: of time, or
     "datetime" and "clock" for stamps written as dates or times of day (found by themselves). ``offset`` [s] is added to
-    the stamps, which brings files with their own clocks together. ``spread``: samples that share a truncated stamp are
-    spread evenly up to the next one.
+    the stamps, which brings files with their own clocks together; "auto" (None here): found by what the channels show
+    together. ``spread``: samples that share a truncated stamp are spread evenly up to the next one; None: where as many
+    share each.
     """
 
     column: Column | None = None
     unit: Annotated[Text, AfterValidator(_time_unit)] = "s"
-    offset: Instant = Value(0.0)
+    offset: Offset = Value(0.0)
     rate: Annotated[Value, quantity("frequency", POSITIVE)] | None = None
-    spread: YesOrNo = False
+    spread: YesOrNo | None = None
 
     def check(self) -> None:
         if (self.column is None) == (self.rate is None):
@@ -118,9 +130,13 @@ class FileSpec(ReadingOptions):
 
 @section
 class LogSpec(ReadingOptions):
-    """[log]: the files; what is given beside ``files`` holds for every file that does not say otherwise."""
+    """[log]: the files; what is given beside ``files`` holds for every file that does not say otherwise.
+
+    ``firing``: which of several in the log is analysed, counted from 1; None takes the largest.
+    """
 
     files: ListOf[Annotated[FileSpec, _under("file")]]
+    firing: Annotated[int, Field(strict=True, ge=1)] | None = None
 
     def check(self) -> None:
         super().check()

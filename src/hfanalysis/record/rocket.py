@@ -11,6 +11,7 @@ from hfanalysis.record.schema import (
     Altitude,
     Area,
     Count,
+    Factor,
     Length,
     Mass,
     Place,
@@ -92,7 +93,7 @@ class Geometry(Section):
 class ParachuteSection(Section):
     """[rocket.drogue]: drag coefficient and area [m^2]."""
 
-    drag_coefficient: Positive
+    drag_coefficient: Factor
     area: Area
 
 
@@ -111,7 +112,7 @@ class Rocket(Section):
     """
 
     dry_mass: Mass
-    drag_coefficient: Positive | None = None
+    drag_coefficient: Factor | None = None
     drag_table: Text | None = None
     drag_uncertainty: Annotated[Positive, Field(lt=1.0)] | None = None
     diameter: Length | None = None

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from typing import Annotated, Any, Self, TypeVar, cast, dataclass_transform
 
-from pydantic import BeforeValidator, ConfigDict, Field, PlainValidator, model_validator
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, PlainValidator, model_validator
 from pydantic.dataclasses import dataclass as validated
 from pydantic_core import PydanticKnownError
 
@@ -117,6 +117,8 @@ def quantity(dimension: str, allowed: Range = ANY) -> PlainValidator:
 
 def _a(dimension: str) -> str:
     """A dimension with its article."""
+    if dimension == "dimensionless":
+        return "a number"
     words = dimension.replace("_", " ")
     return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
 
@@ -146,16 +148,34 @@ def _column(found: Any) -> str | int:
     return found
 
 
+LONGEST_NAME = 200
+"""Bytes of a name [B]. Source: file systems take 255, of which the endings of products need some."""
+
+
+def unsafe(name: str) -> bool:
+    """Whether a name would be no file of its own in the folder meant, or none that can be read in a message."""
+    separated = any(mark in name for mark in "/\\") or name in (".", "..")
+    return separated or name != name.strip() or not name.isprintable() or len(name.encode()) > LONGEST_NAME
+
+
+def _name(found: str) -> str:
+    if unsafe(found):
+        raise ValueError(f"a name that a file can have: no path separators, at most {LONGEST_NAME} bytes")
+    return found
+
+
 Text = Annotated[str, Field(pattern=r"\S")]
+Name = Annotated[Text, AfterValidator(_name)]
 YesOrNo = Annotated[bool, Field(strict=True)]
 Count = Annotated[int, Field(strict=True, ge=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0.0)]
-NotNegative = Annotated[Number, Field(ge=0.0)]
-UpToTwo = Annotated[NotNegative, Field(le=2.0)]
 Column = Annotated[str | int, BeforeValidator(_column)]
 ListOf = Annotated[tuple[T, ...], Field(min_length=1)]
 
+Factor = Annotated[Value, quantity("dimensionless", POSITIVE)]
+Share = Annotated[Value, quantity("dimensionless", NOT_NEGATIVE)]
+UpToTwo = Annotated[Value, quantity("dimensionless", between(0.0, 2.0, "between 0 and 2"))]
 Length = Annotated[Value, quantity("length", POSITIVE)]
 Place = Annotated[Value, quantity("length", NOT_NEGATIVE)]
 Altitude = Annotated[Value, quantity("length", between(-500.0, 9000.0, "between -500 and 9000 m"))]

@@ -14,20 +14,22 @@ from hfanalysis.record.schema import (
     Area,
     Count,
     Duration,
+    Factor,
     Length,
     Mass,
-    NotNegative,
-    Positive,
+    Name,
     PressureDifference,
     Refused,
     Remainder,
     Room,
     Section,
+    Share,
     Text,
     UpToTwo,
     Volume,
     between,
     quantity,
+    read_quantity,
     section,
 )
 from hfanalysis.units import Value
@@ -61,12 +63,13 @@ class DipTubeSection(Section):
             raise Refused("the inner diameter is not smaller than the outer diameter")
 
 
-def _exponent(found: Any) -> float | str:
+def _exponent(found: Any) -> Value | str:
     if found == "c_p/c_v":
         return "c_p/c_v"
-    if isinstance(found, bool) or not isinstance(found, (int, float)) or not 0.0 < found < math.inf:
-        raise ValueError("'c_p/c_v', or a number that is more than zero")
-    return float(found)
+    try:
+        return read_quantity(found, "dimensionless", POSITIVE)
+    except Refused:
+        raise ValueError("'c_p/c_v', or a number that is more than zero") from None
 
 
 @section
@@ -78,9 +81,9 @@ class Tank(Section):
     temperature: Annotated[Value, quantity("temperature", _LOADABLE)] | None = None
     inner_diameter: Length | None = None
     length: Length | None = None
-    ullage: NotNegative | None = None
+    ullage: Share | None = None
     dip_tube: DipTubeSection | None = None
-    polytropic_exponent: Annotated[float | str, PlainValidator(_exponent)] | None = None
+    polytropic_exponent: Annotated[Value | str, PlainValidator(_exponent)] | None = None
 
     def check(self) -> None:
         if self.volume is None or self.oxidizer_mass is None:
@@ -141,7 +144,7 @@ class GrainSection(Section):
     length: Length | None = None
     density: Annotated[Value, quantity("density", _DENSITY)] | None = None
     outer_radius: Length | None = None
-    a: Positive | None = None
+    a: Factor | None = None
     n: UpToTwo | None = None
 
     def check(self) -> None:
@@ -204,9 +207,9 @@ class ObservedSection(Section):
 class EngineSection(Section):
     """[engine] of an engine file."""
 
-    id: Text
+    id: Name
     description: Text = ""
-    stand: Text | None = None
+    stand: Name | None = None
 
 
 @section

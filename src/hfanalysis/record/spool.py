@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array
 from hfanalysis.record.readers import Source, Text
 
-IN_MEMORY = 1 << 30
+IN_MEMORY = 1 << 28
 """Bytes of one log file's columns that may stay in memory [B]."""
 WORKERS = 2
 """Threads that put columns away: most of it is waiting for the system to hand out memory."""
@@ -68,6 +68,8 @@ class Spool:
     text: dict[int, Text] = field(default_factory=dict)
     written: set[int] = field(default_factory=set)
     """Columns of stamps that are dates or times of day, here in seconds."""
+    epochs: dict[int, float] = field(default_factory=dict)
+    """Column of stamps -> the instant of its zero [s since 1970], where the log says so."""
     idle: NDArray[np.bool_] | None = None
     """Rows in which every column reads exactly zero; None where that says nothing."""
     _columns: dict[int, Growing] = field(default_factory=dict)
@@ -91,6 +93,7 @@ class Spool:
                     size = 0
                 self._note(chunk.text)
                 self.written |= chunk.written
+                self.epochs |= chunk.epochs
         self.idle = _if_rare(np.concatenate(idle)) if idle and len(columns) > 1 else None
 
     def _append(self, numbers: Sequence[tuple[int, Array]]) -> int:

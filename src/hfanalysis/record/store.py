@@ -8,11 +8,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis import sentences
+from hfanalysis.products.hdf5 import created
 from hfanalysis.record.log import Channel, Flag
 
 _FLAG_MEANINGS = " ".join(flag.name.lower() for flag in Flag if flag.name)
@@ -23,14 +23,15 @@ class Store:
     """Writes channels one at a time, so that only one is in memory."""
 
     def __init__(self, path: Path) -> None:
-        self._file = h5py.File(path, "w", track_order=False)
+        self._opened = created(path, track_order=False)
+        self._file = self._opened.__enter__()
         self._names: list[str] = []
 
     def __enter__(self) -> Store:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
-        self._file.close()
+        self._opened.__exit__(kind, error, at)
 
     def clock(self, name: str, time: NDArray[np.float64]) -> None:
         """A dimension: the stamps (n,) [s, log time] of the channels on it."""

@@ -8,7 +8,7 @@ load runs dry.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +27,12 @@ Evidence: test_events.py: of two knees the one at the dry pressure is taken, a t
 
 LEAST_LOSS = 0.05
 """By the end of the liquid a tank has lost at least this part of its pressure."""
+
+GAS_EMPTIES = 0.25
+"""Least rate at which the pressure falls by its own part once the liquid is gone, times t_v [-]: what is left is gas
+and leaves by the same injector. That number is m (m_l / m_v) (mdot_v / mdot_l): liquid over vapor 1.5 to 7 for tanks
+filled by 20 to 85 %, flow of the vapor 0.2 of the liquid's or more. The opening's own drop and the end of late boiling
+have 0.1 and less. Source: choked flow of nitrous oxide vapor against that of its liquid (CoolProp), at 25 to 45 bar."""
 
 DRY_PRESSURE_SPREAD = 0.2
 """Standard deviation of ln(p) about the adiabatic value at which real tanks run dry: heat, mass, stratification."""
@@ -77,13 +83,18 @@ def dry_pressure(saturation: Saturation, volume: float, mass: float, pressure: f
     return float(saturation.pressure(np.interp(mass, masses[order], ends[order])))
 
 
-def find_liquid_end(signals: Mapping[str, Signal], end: float, expected: float | None) -> LiquidEnd | None:
+def find_liquid_end(
+    signals: Mapping[str, Signal],
+    end: float,
+    expected: float | None,
+    impossible: Callable[[float], bool] = lambda _: False,
+) -> LiquidEnd | None:
     """t_v from signals with time from the opening, searched up to ``end`` [s]; ``expected``: the dry pressure [Pa].
 
-    None where the tank pressure shows no knee.
+    None where the tank pressure shows no knee. A knee that is ``impossible`` [s] leaves its place to the next best.
     """
     tank = signals["p_tank"]
-    rough = _rough_knee(tank, end, expected)
+    rough = _rough_knee(tank, end, expected, impossible)
     if rough is None:
         return None
     noise = Noise.of(tank, tank.between(-3.0, -0.05))
@@ -129,7 +140,7 @@ def _run_line_fall(run: Signal, about: float, wide: float) -> float | None:
     return float(times[best]) if np.isfinite(drop[best]) and drop[best] > 0.5 * abs(usual) else None
 
 
-def _rough_knee(tank: Signal, end: float, expected: float | None) -> float | None:
+def _rough_knee(tank: Signal, end: float, expected: float | None, impossible: Callable[[float], bool]) -> float | None:
     coarse = tank.reduced(max(0.01, tank.step))
     width = float(np.clip(0.05 * end, max(0.1, 5 * tank.step), max(0.4, 8 * tank.step)))
     times = np.arange(0.5 * width, end - 0.4 * width, 0.25 * width)
@@ -146,9 +157,14 @@ def _rough_knee(tank: Signal, end: float, expected: float | None) -> float | Non
     typical = float(np.nanmedian(np.abs(before[np.isfinite(before)]))) if np.isfinite(before).any() else 0.0
     uncertain = 6.0 * tank.noise * np.sqrt(2.0 * tank.step / width) / width
     steeper = after < STEEPER * unlikely * np.minimum(before, -0.2 * typical)
-    score = np.where(steeper & lost & (before < 0.0) & (fall > uncertain), fall / unlikely, 0.0)
-    best = int(np.nanargmax(score)) if np.isfinite(score).any() else 0
-    return float(times[best]) if np.isfinite(score[best]) and score[best] > 0.0 else None
+    empties = -after * times > GAS_EMPTIES * pressure
+    score = np.where(steeper & lost & empties & (before < 0.0) & (fall > uncertain), fall / unlikely, 0.0)
+    for k in np.argsort(-np.nan_to_num(score)):
+        if not score[k] > 0.0:
+            break
+        if not impossible(float(times[k])):
+            return float(times[k])
+    return None
 
 
 def _slope(signal: Signal, start: float, end: float) -> float:
@@ -162,7 +178,7 @@ def _slope(signal: Signal, start: float, end: float) -> float:
 def _dated_by_steps(signals: Mapping[str, Signal], knee: Break, half: float) -> LiquidEnd:
     """Chamber pressure and thrust fall within milliseconds when the liquid ends: where they do, they date it best."""
     steps: list[Break] = []
-    other_times: dict[str, float] = {}
+    others: list[Break] = []
     for name in ("p_chamber", "thrust"):
         found = _sudden_fall(signals[name], knee, half) if name in signals else None
         if found is None:
@@ -170,11 +186,14 @@ def _dated_by_steps(signals: Mapping[str, Signal], knee: Break, half: float) -> 
         if found.relaxation <= SHARP and abs(found.time - knee.time) < 4.0 * np.hypot(knee.std, found.std) + 0.06:
             steps.append(found)
         else:
-            other_times[name] = found.time
+            others.append(found)
+    other_times = {one.channels[0]: one.time for one in others}
     if not steps:
         return LiquidEnd(knee.time, knee.std, ("p_tank",), other_times)
-    best = _weighted(steps)
-    return LiquidEnd(best[0], best[1], ("p_tank", *(s.channels[0] for s in steps)), other_times)
+    time, std = _weighted(steps)
+    doubt = max(0.5 * (abs(one.time - time) - 2.0 * one.std) for one in (knee, *others))
+    channels = ("p_tank", *(s.channels[0] for s in steps))
+    return LiquidEnd(time, float(np.hypot(std, max(doubt, 0.0))), channels, other_times)
 
 
 def _weighted(steps: list[Break]) -> tuple[float, float]:

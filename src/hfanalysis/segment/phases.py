@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from hfanalysis.errors import AbsentError, InputError
-from hfanalysis.products.segments import EVENTS, Segments
+from hfanalysis.products.segments import EVENTS, NOTHING, Segments
+from hfanalysis.products.segments import Opening as ListedOpening
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal, live_signals
-from hfanalysis.segment.end_of_burn import find_unchoking
+from hfanalysis.segment.coarse_load import coarse_load
+from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, QUIET, find_unchoking, pulses_after
 from hfanalysis.segment.feed import find_line_full
-from hfanalysis.segment.fuel import find_fuel_end
-from hfanalysis.segment.kind import Kind, recognize
+from hfanalysis.segment.firings import Flow, find_flows, largest
+from hfanalysis.segment.fuel import BLURRED, FuelEnd, find_fuel_end
+from hfanalysis.segment.kind import Kind, Known, recognize
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
+from hfanalysis.segment.purge_by_tank import find_nitrogen_by_tank
 from hfanalysis.segment.sanity import BESIDE_HOLE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation
@@ -42,16 +48,24 @@ LARGEST_OFFSET = 3e5
 BY_HAND = "set by the engineer"
 
 
-def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
-    """All events of a log. Raises AbsentError where nothing opens: a log with no firing in it."""
+def find_phases(log: TestLog, definition: TestDefinition, firing: int | None = None) -> Segments:
+    """All events of a log, of its ``firing`` counted from 1, or of the one that test.toml or its size says.
+
+    Raises AbsentError where no channel can tell, the log begins in mid-firing, or there are fewer firings.
+    """
     signals = live_signals(log)
     _check_stated(definition, signals)
-    opening, unsure = beside_hole(_opening(signals, definition), signals)
+    firings = _Firings(signals, definition, firing or definition.log.firing)
+    if firings.taken is None:
+        return _nothing(signals, definition)
+    signals = firings.cut
+    opening, unsure = beside_hole(firings.taken, signals)
     origin = opening.time
     shifted = {name: s.between(origin - 60.0, origin + LONGEST_RUN).shifted(origin) for name, s in signals.items()}
     dead = [f"{n} never changes or has no good samples: left out" for n in log.channels if n not in signals]
-    unsure += strange_tank(shifted.get("p_tank"))
-    search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std)
+    unsure += strange_tank(shifted.get("p_tank")) + firings.said
+    zeros = {name: channel.zero_std or 0.0 for name, channel in log.channels.items()}
+    search = _Search({n: s for n, s in shifted.items() if s.time.size > 7}, definition, opening.std, zeros)
     kind = search.run()
     return Segments.of(
         Quantity(opening.time, "s", max(opening.std, 1e-9), why=f"from {', '.join(opening.channels)}"),
@@ -60,11 +74,26 @@ def find_phases(log: TestLog, definition: TestDefinition) -> Segments:
         kind_reason=kind.why,
         misfire=kind.misfire,
         supercharged=search.supercharged,
+        firings=firings.listed,
         engineer=tuple(name for name in ("t_open", *EVENTS) if name in definition.segments),
         found_where_engineer_set=search.found,
         notes=tuple(search.notes),
         warnings=(*dead, *unsure, *search.warnings),
     )
+
+
+def _nothing(signals: Mapping[str, Signal], definition: TestDefinition) -> Segments:
+    """A log in which nothing opens. Raises AbsentError where no channel could tell."""
+    looked = ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals)
+    why = f"nothing in {looked} responds to an opening valve" if looked else "no channel has good samples that change"
+    reason = (
+        f"test {definition.test.id}: the log holds no firing and no flow: {why}; "
+        "set [segments] t_open in test.toml if there is one"
+    )
+    if not looked:
+        raise AbsentError(reason)
+    absent = Quantity.absent(reason)
+    return Segments.of(absent, dict.fromkeys(EVENTS, absent), kind=NOTHING, kind_reason=why, warnings=(reason,))
 
 
 def _check_stated(definition: TestDefinition, signals: Mapping[str, Signal]) -> None:
@@ -89,33 +118,97 @@ def _check_stated(definition: TestDefinition, signals: Mapping[str, Signal]) -> 
         raise InputError(f"{where} t_feed: found {stated['t_feed'].value:g} s; expected less than t_v")
 
 
-def _opening(signals: Mapping[str, Signal], definition: TestDefinition) -> Opening:
-    stated = definition.segments.get("t_open")
-    if stated is not None:
-        return Opening(stated.value, stated.std or 1e-3, (BY_HAND,))
-    if (name := under_way(signals)) is not None:
-        raise AbsentError(
-            f"test {definition.test.id}: the log starts in the middle of the firing ({name} is high from its first "
-            "sample): there is no opening to count from; set [segments] t_open in test.toml, if it is known"
+class _Firings:
+    """The openings of a log, and the one that is taken: ``taken`` (None: nothing opens), its signals ``cut``."""
+
+    def __init__(self, signals: Mapping[str, Signal], definition: TestDefinition, number: int | None) -> None:
+        self.definition, self.signals = definition, signals
+        self.opened = self._openings()
+        self.chosen = self._chosen(number)
+        self.said: list[str] = self._several(number) if len(self.opened) > 1 else []
+        self.taken: Opening | None = self.opened[self.chosen][1] if self.opened else None
+        flow = self.opened[self.chosen][0] if self.opened else Flow(0.0, 0.0, -np.inf, np.inf)
+        self.cut = {name: part for name, s in signals.items() if (part := _cut(s, flow)).time.size > 7}
+
+    def _openings(self) -> list[tuple[Flow, Opening]]:
+        """Every flow with its opening; one whose opening does not show belongs to its neighbor."""
+        stated = self.definition.segments.get("t_open")
+        flows = find_flows(self.signals)
+        whole = Flow(-np.inf, np.inf, -np.inf, np.inf)
+        if stated is not None:
+            by_hand = Opening(stated.value, stated.std or 1e-3, (BY_HAND,))
+            own = [flow for flow in flows if flow.since <= stated.value < flow.until] if len(flows) > 1 else [whole]
+            others = [] if len(flows) < 2 else [(f, o) for f in flows if f not in own and (o := self._opening(f))]
+            return sorted([*others, *((flow, by_hand) for flow in own)], key=lambda pair: pair[1].time)
+        found = [(flow, opening) for flow in flows if (opening := self._opening(flow)) is not None]
+        if len(found) > 1:
+            return found
+        if (name := under_way(self.signals)) is not None:
+            raise AbsentError(
+                f"test {self.definition.test.id}: the log starts in the middle of the firing ({name} is high from its "
+                "first sample): there is no opening to count from; set [segments] t_open in test.toml, if it is known"
+            )
+        opening = find_opening(self.signals)
+        return [] if opening is None else [(whole, opening)]
+
+    def _opening(self, flow: Flow) -> Opening | None:
+        opening = find_opening({name: _cut(s, flow) for name, s in self.signals.items()})
+        return opening if opening is not None and opening.time < flow.end else None
+
+    def _chosen(self, number: int | None) -> int:
+        if number is not None and number > max(len(self.opened), 1):
+            raise AbsentError(
+                f"test {self.definition.test.id}: [log] firing = {number}: the log holds "
+                f"{len(self.opened)} firing{'' if len(self.opened) == 1 else 's'}"
+            )
+        by_hand = [i for i, (_, opening) in enumerate(self.opened) if opening.channels == (BY_HAND,)]
+        if number is not None or by_hand or len(self.opened) < 2:
+            return number - 1 if number is not None else by_hand[0] if by_hand else 0
+        fire = self.definition.test.kind == "hot_fire"
+        return largest([flow for flow, _ in self.opened], self.signals, fire)
+
+    def _several(self, number: int | None) -> list[str]:
+        times = ", ".join(f"{i}: {opening.time:.2f} s" for i, (_, opening) in enumerate(self.opened, 1))
+        how = "as asked" if number is not None else "the largest, the first of those alike"
+        return [
+            f"the log holds {len(self.opened)} firings or flows, which open at ({times}, log time); number "
+            f"{self.chosen + 1} is taken, {how}: [log] firing = N in test.toml or --firing N takes another"
+        ]
+
+    @property
+    def listed(self) -> tuple[ListedOpening, ...]:
+        """As segments.json lists them."""
+        return tuple(
+            ListedOpening(
+                number=i + 1,
+                t_open=Quantity(opening.time, "s", max(opening.std, 1e-9), why=f"from {', '.join(opening.channels)}"),
+                start=_finite(flow.since),
+                end=_finite(flow.until),
+                taken=i == self.chosen,
+            )
+            for i, (flow, opening) in enumerate(self.opened)
         )
-    found = find_opening(signals)
-    if found is None:
-        looked = ", ".join(n for n in ("valve", "p_run", "p_chamber", "p_tank", "thrust") if n in signals)
-        why = (
-            f"nothing in {looked} responds to an opening valve" if looked else "no channel has good samples that change"
-        )
-        raise AbsentError(
-            f"test {definition.test.id}: the log holds no firing and no flow: {why}; "
-            "set [segments] t_open in test.toml if there is one"
-        )
-    return found
+
+
+def _cut(signal: Signal, flow: Flow) -> Signal:
+    return signal.between(flow.since, flow.until)
+
+
+def _finite(edge: float) -> float | None:
+    return edge if np.isfinite(edge) else None
 
 
 class _Search:
     """The search for the events of one test; keeps what has been found while the next event is looked for."""
 
-    def __init__(self, signals: Mapping[str, Signal], definition: TestDefinition, opening_std: float) -> None:
-        self.opening_std = opening_std
+    def __init__(
+        self,
+        signals: Mapping[str, Signal],
+        definition: TestDefinition,
+        opening_std: float,
+        zeros: Mapping[str, float],
+    ) -> None:
+        self.opening_std, self.zeros = opening_std, zeros
         self.signals = signals
         self.definition = definition
         self.ambient = definition.ambient_pressure.value
@@ -134,7 +227,7 @@ class _Search:
         kind = self._kind()
         self._note_supercharge()
         self._take("t_end", self._unchoking(kind))
-        self._take("t_fuel_out", self._fuel_end(kind))
+        self._take_fuel(kind)
         self._check_order()
         return kind
 
@@ -177,7 +270,8 @@ class _Search:
             return "the log has no p_tank: the end of the liquid shows in the tank's pressure"
         tank = self.signals["p_tank"]
         end = _discharged(tank, min(self.last, LONGEST_RUN), self.ambient)
-        found = find_liquid_end(self.signals, end, self._dry_pressure(tank))
+        load = coarse_load(self.definition, self.signals)
+        found = find_liquid_end(self.signals, end, self._dry_pressure(tank), load.contradicts if load else _possible)
         if found is None:
             return (
                 "the tank pressure shows no knee: it never falls faster than before, as it does when the liquid is gone"
@@ -204,16 +298,27 @@ class _Search:
 
     def _nitrogen(self) -> tuple[float, float] | str:
         if "p_purge" not in self.signals:
-            return "the log has no p_purge: nitrogen shows in its supply line"
-        return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._time("t_v"))
+            if "p_tank" not in self.signals:
+                return "the log has no p_purge: nitrogen shows in its supply line"
+            return find_nitrogen_by_tank(self.signals["p_tank"], self._time("t_v"))
+        return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._sharp("t_v"))
 
     def _unchoking(self, kind: Kind) -> tuple[float, float] | str:
         if "p_chamber" not in self.signals:
             return "the log has no p_chamber"
         if kind.name != "hot_fire":
             return f"nothing burns: {kind.why}"
-        start = self._time("t_feed") or 0.3
-        return find_unchoking(self.signals["p_chamber"], self.ambient, start, self._chamber_offset())
+        chamber, offset = self.signals["p_chamber"], self._chamber_offset()
+        found = find_unchoking(
+            chamber, self.ambient, self._time("t_feed") or 0.3, offset, self._chamber_bias(), self._noise()
+        )
+        if not isinstance(found, str):
+            for start, end in pulses_after(chamber, CRITICAL_RATIO * self.ambient + offset, found[0]):
+                self.notes.append(
+                    f"the chamber is above 1.8 times ambient again from {start:.2f} to {end:.2f} s: gas that is blown "
+                    "through after the burn, which t_end does not count"
+                )
+        return found
 
     def _chamber_offset(self) -> float:
         """How far the open chamber reads from ambient before the opening [Pa]: a bias to allow for, where it is one."""
@@ -221,20 +326,41 @@ class _Search:
         offset = float(np.median(quiet)) - self.ambient if quiet.size > 7 else 0.0
         return offset if abs(offset) < LARGEST_OFFSET else 0.0
 
-    def _fuel_end(self, kind: Kind) -> tuple[float, float] | str:
+    def _noise(self) -> Noise:
+        """The chamber sensor's, its wander judged with that of the other pressures: the quiet time alone is short."""
+        noises = {n: Noise.of(s, s.between(*QUIET)) for n, s in self.signals.items() if n.startswith("p_")}
+        usual = float(np.median([noise.flicker for noise in noises.values()]))
+        return replace(noises["p_chamber"], flicker=0.5 * (noises["p_chamber"].flicker + usual))
+
+    def _chamber_bias(self) -> float:
+        """Standard deviation [Pa] of how 1.8 times ambient reads: the chamber's zero, and the air's pressure."""
+        of_air = (CRITICAL_RATIO - 1.0) * (self.definition.ambient_pressure.std or 0.0)
+        return float(np.hypot(of_air, self.zeros.get("p_chamber", 0.0)))
+
+    def _take_fuel(self, kind: Kind) -> None:
+        """t_fuel_out and t_fuel_gone: one fall at once, or the beginning and the end of a fade."""
+        found = self._fuel_end(kind)
+        if isinstance(found, str):
+            self._take("t_fuel_out", found)
+            self._take("t_fuel_gone", found)
+            return
+        self._take("t_fuel_out", (found.time, found.std))
+        self._take("t_fuel_gone", found.hidden if found.gone is None else (found.gone, found.gone_std))
+        if found.gone != found.time:
+            self.notes.append(f"the fire fades from {found.time:.2f} s on, as the fuel runs out")
+
+    def _fuel_end(self, kind: Kind) -> FuelEnd | str:
         if kind.name != "hot_fire":
             return f"nothing burns: {kind.why}"
         if "p_chamber" not in self.signals:
             return "the log has no p_chamber"
+        t_v = self.events["t_v"]
+        liquid_out = None if t_v.value is None else (t_v.value, t_v.std or 0.0)
         ambient = self.ambient + self._chamber_offset()
-        found = find_fuel_end(self.signals, ambient, self._time("t_feed") or 0.3, self._time("t_v"), self.last)
+        found = find_fuel_end(self.signals, ambient, self._time("t_feed") or 0.3, liquid_out, self.last)
         if isinstance(found, str):
             return found
-        if reason := self._fuel_left(found.time):
-            return reason
-        if found.duration > 0.2:
-            self.notes.append(f"the fuel fades over about {found.duration:.1f} s; t_fuel_out is the middle of the fall")
-        return found.time, found.std
+        return self._fuel_left(found.time) or found
 
     def _fuel_left(self, time: float) -> str:
         """Why a fall of the chamber's pressure is not the end of the fuel; empty where nothing speaks against it."""
@@ -255,7 +381,9 @@ class _Search:
             np.pi * nozzle.throat_radius.value**2 if nozzle is not None and nozzle.throat_radius is not None else None
         )
         ambient = self.ambient + (self._chamber_offset() if "p_chamber" in self.signals else 0.0)
-        kind = recognize(self.signals, self.definition.test.kind, ambient, span, flow, area)
+        kind = recognize(self.signals, self.definition.test.kind, span, Known(ambient, flow, area))
+        if kind.warning:
+            self.warnings.append(kind.warning)
         if kind.misfire:
             self.warnings.append(f"stated as a hot fire, but nothing burns, a cold flow: {kind.why}")
         return kind
@@ -310,8 +438,16 @@ class _Search:
         if early > 2.0 * np.hypot(self.events["t_v"].std or 0.0, self.events["t_purge"].std or 0.0):
             self.notes.append(f"nitrogen enters {early:.2f} s before the liquid is gone: there is no vapor-only phase")
 
+    def _sharp(self, name: str) -> float | None:
+        """An event's instant [s], where it is dated well enough to leave a corner of its own in another channel."""
+        return self._time(name) if (self.events[name].std or 0.0) < BLURRED else None
+
     def _time(self, name: str) -> float | None:
         return self.events[name].value if name in self.events else None
+
+
+def _possible(_time: float) -> bool:
+    return False
 
 
 def _discharged(tank: Signal, end: float, ambient: float) -> float:

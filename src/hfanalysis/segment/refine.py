@@ -53,15 +53,24 @@ def refine_knee(signal: Signal, rough: float, before: float, after: float, reach
 
 
 def refine_step(
-    signals: Sequence[Signal], rough: float, before: float, after: float, reach: float, order: int = 1
+    signals: Sequence[Signal],
+    rough: float,
+    before: float,
+    after: float,
+    reach: float,
+    order: int = 1,
+    jumps: Sequence[float] = (),
 ) -> Break | None:
     """A sudden change that relaxes, in one or several signals at the same instant; ``order`` of the curve before it.
+
+    ``jumps`` are time constants [s] with which it may relax after a part of it has come at once.
 
     Looked for within ``reach`` [s] of ``rough`` [s] in [rough - ``before``, rough + ``after``] [s]. None where the
     window holds too few samples.
     """
-    designs = [relaxation(c, before=order) for c in RELAXATIONS]
-    return _search(signals, rough, before, after, reach, designs, RELAXATIONS)
+    simple: list[Design] = [relaxation(c, before=order) for c in RELAXATIONS]
+    designs = simple + [relaxation(c, order, jumps=True) for c in jumps]
+    return _search(signals, rough, before, after, reach, designs, (*RELAXATIONS, *jumps), richer=len(jumps))
 
 
 def _search(
@@ -73,15 +82,16 @@ def _search(
     designs: Sequence[Design],
     constants: Sequence[float],
     noise: Noise | None = None,
+    richer: int = 0,
 ) -> Break | None:
     windows = [s.between(rough - before, rough + after) for s in signals]
     windows = [w for w in windows if _enough(w, rough)]
     if not windows:
         return None
-    found = _profile(windows, np.linspace(rough - reach, rough + reach, COARSE), designs, constants, noise)
+    found = _profile(windows, np.linspace(rough - reach, rough + reach, COARSE), designs, constants, noise, richer)
     step = min(w.step for w in windows)
     zoom = min(max(5.0 * found.std, 2.5 * step, 2.0 * reach / COARSE), reach)
-    return _profile(windows, np.linspace(found.time - zoom, found.time + zoom, FINE), designs, constants, noise)
+    return _profile(windows, np.linspace(found.time - zoom, found.time + zoom, FINE), designs, constants, noise, richer)
 
 
 def _profile(
@@ -90,8 +100,9 @@ def _profile(
     designs: Sequence[Design],
     constants: Sequence[float],
     noise: Noise | None,
+    richer: int,
 ) -> Break:
-    breaks = [find_break(w, candidates, designs, constants, noise) for w in windows]
+    breaks = [find_break(w, candidates, designs, constants, noise, richer) for w in windows]
     return combine(breaks, min(w.step for w in windows))
 
 

@@ -74,7 +74,7 @@ def design(file: EngineFile) -> DesignRun:
             **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
             **_flown(file, task, engine),
             "optimum": Optimum(of_ratio=Quantity(best.of_ratio), specific_impulse=Quantity(best.specific_impulse, "s")),
-            "warnings": (),
+            "warnings": file.warnings,
             "provenance": heading.provenance(file),
         }
     )

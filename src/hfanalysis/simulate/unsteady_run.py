@@ -50,7 +50,7 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
             **_tank(tank),
             "flight": _flight(file, engine, burnt),
             **_propellant(needs, engine),
-            "warnings": _warnings(burnt),
+            "warnings": [*file.warnings, *_warnings(burnt)],
             "provenance": heading.provenance(file),
         }
     )

@@ -39,7 +39,7 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
     if all(active.effect.of_sensor for active in effects):
         return found
     context.progress("fitting all constants together, adopted effects in", None)
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     log, definition = context.believed()
     subject = Subject(log, segments, base, definition)
     try:
@@ -51,18 +51,22 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
 
 def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     """The content of calibration.json with these effects acting."""
-    from hfanalysis.calibrate.fuel_law import regress
+    from hfanalysis.calibrate.facts import held_against
+    from hfanalysis.calibrate.fuel_law import contradiction, regress
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.inference.adopted.corrected_log import corrected
     from hfanalysis.products.segments import Segments
 
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     log, definition = context.believed()
     log = corrected(log, segments.t_open.value or 0.0, effects)
     context.progress("repeating the calibration with drawn inputs", None)
     result = calibrate(log, segments, definition, int(context.parameter("samples")), effects)
     context.progress("fitting the regression", None)
-    return result.with_law(regress(log, segments, definition, result, effects))
+    found = result.with_law(regress(log, segments, definition, result, effects))
+    if said := contradiction(definition, found):
+        found = found.but(warnings=(*found.warnings, said))
+    return held_against(log, segments, definition, found)
 
 
 STAGE = Stage(

@@ -52,13 +52,13 @@ def subject_of(context: Context) -> Subject:
 
     # what may be wrong with a sensor is a hypothesis of the diagnosis: no accuracy is widened for it
     log = context.log(widened=False)
-    segments = context.read(Segments)
-    if "calibrate" not in context.absent:
-        return Subject(log, segments, context.read(Calibration, BASE + Calibration.file), context.definition)
+    segments = context.read(Segments).fired
     if "p_tank" in log and "p_run" not in log:
         with suppress(AbsentError):
             found = lumped_calibration(log, segments, context.definition)
             return Subject(log, segments, found, context.definition, (NOTE,))
+    if "calibrate" not in context.absent:
+        return Subject(log, segments, context.read(Calibration, BASE + Calibration.file), context.definition)
     return Subject(log, segments, None, context.definition)
 
 

@@ -24,7 +24,7 @@ def run(context: Context) -> None:
     definition = context.definition
     if definition.rocket is None:
         raise AbsentError(f"test {context.id}: test.toml has no [rocket] to fly")
-    adopted, segments = read_adopted(context.root, definition), context.read(Segments)
+    adopted, segments = read_adopted(context.root, definition), context.read(Segments).fired
     # physics that was adopted is in the measured thrust; what sensors add to it is taken off
     log = corrected(context.log(), segments.t_open.value or 0.0, adopted.acting)
     calibration = None if "calibrate" in context.absent else context.read(Calibration)

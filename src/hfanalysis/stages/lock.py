@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 import os
+import tempfile
 from collections.abc import Callable, Iterator
+from hashlib import sha256
 from pathlib import Path
 
 from hfanalysis.errors import InputError
+from hfanalysis.products.disk import make_folder, share
 
 NAME = ".lock"
+_NO_LOCKS = {errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.ENOLCK, errno.EINVAL}
+"""What file systems say that have no locks: some network shares, FUSE, folders of a host in its virtual machine."""
 
 
 @contextlib.contextmanager
 def locked(folder: Path, waiting: Callable[[], None]) -> Iterator[None]:
     """Hold the folder's lock; ``waiting`` is called once if another run has it. The system frees it if we are killed.
 
-    The folder may be deleted by somebody while we wait: a lock that is no longer the one on disk is taken anew.
+    The folder may be deleted by somebody while we wait: a lock that is no longer the one on disk is taken anew. Where
+    the folder's file system has no locks, a file in this machine's folder for temporary files stands for it.
     """
     descriptor = _open(folder, waiting)
     try:
@@ -29,23 +36,53 @@ def locked(folder: Path, waiting: Callable[[], None]) -> Iterator[None]:
 def _open(folder: Path, waiting: Callable[[], None]) -> int:
     while True:
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
         except FileNotFoundError:  # not for want of a parent: the file system takes no folders
             raise InputError(f"{folder}: cannot be made; choose another place with --out DIR") from None
         with contextlib.suppress(FileNotFoundError):
-            descriptor = os.open(folder / NAME, os.O_RDWR | os.O_CREAT, 0o666)
-            _take(descriptor, waiting)
+            descriptor = _open_file(folder / NAME)
+            if not _take(descriptor, waiting):
+                os.close(descriptor)
+                return _instead(folder, waiting)
             if _is_on_disk(descriptor, folder / NAME):
                 return descriptor
             os.close(descriptor)
 
 
-def _take(descriptor: int, waiting: Callable[[], None]) -> None:
+def _open_file(path: Path) -> int:
+    """The lock's file; that of somebody else may be there to read only, which is enough to lock it."""
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        waiting()
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+    except PermissionError:
+        return os.open(path, os.O_RDONLY)
+    share(path)
+    return descriptor
+
+
+def _take(descriptor: int, waiting: Callable[[], None]) -> bool:
+    """Wait for the lock; False where the file system has none."""
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            waiting()
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+    except OSError as error:
+        if error.errno not in _NO_LOCKS:
+            raise
+        return False
+    return True
+
+
+def _instead(folder: Path, waiting: Callable[[], None]) -> int:
+    """A locked file among this machine's temporary ones, by the folder's name; other machines do not see it."""
+    name = f"hfanalysis-{sha256(str(folder.resolve()).encode()).hexdigest()[:24]}.lock"
+    path = Path(tempfile.gettempdir()) / name
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+    if not _take(descriptor, waiting):
+        os.close(descriptor)
+        raise InputError(f"{folder}: found no locks, nor in {path.parent}; choose another file system with --out DIR")
+    return descriptor
 
 
 def _is_on_disk(descriptor: int, path: Path) -> bool:

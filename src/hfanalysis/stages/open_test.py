@@ -12,6 +12,9 @@ from hfanalysis.stages.base import Context
 
 RAW, PROCESSED = "raw_tests", "processed"
 
+FIRING = "segment.firing"
+"""The parameter that takes another firing of the log for one run, whose products have a folder of their own."""
+
 
 def open_test(
     root: Path,
@@ -28,11 +31,12 @@ def open_test(
         test_id: the test's name.
         out: folder to write ``TEST/`` to, instead of ``root/processed``.
         progress: told what is being done.
-        settings: parameters by ``"stage.name"``.
+        settings: parameters by ``"stage.name"``; with another firing of the log the products go to ``TEST.firing-N/``.
 
     Raises:
         InputError: no such test, or its definition is at fault.
     """
     definition = load_definition(find_definition(root, test_id))
-    folder = (out if out is not None else root / PROCESSED) / test_id
+    firing = (settings or {}).get(FIRING)
+    folder = (out if out is not None else root / PROCESSED) / (f"{test_id}.firing-{firing}" if firing else test_id)
     return Context(root, definition, folder, progress, settings or {})

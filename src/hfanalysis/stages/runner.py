@@ -7,7 +7,6 @@ time stamps that make goes by are kept in agreement.
 
 from __future__ import annotations
 
-import errno
 import json
 import os
 import platform
@@ -18,17 +17,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from hfanalysis import sources
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
 from hfanalysis.products import disk as products
 from hfanalysis.products.disk import HashCache
-from hfanalysis.sources import PACKAGE
+from hfanalysis.record.definition import load_definition
 from hfanalysis.stages import ASIDE, ORDER, base, freshness
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.stages.lock import locked
 from hfanalysis.version import __version__
 
 RUN_LOG = "run.log"
-_REFUSED = {errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOSPC, errno.EDQUOT}
 _ATTEMPTS = 3
 """Starts of a run whose products somebody removes meanwhile."""
 
@@ -51,11 +50,18 @@ def run_to(name: str, context: Context, *, force: bool = False, whole: bool = Fa
     for attempt in range(_ATTEMPTS):
         try:
             with _plain_refusals(context), locked(context.out, lambda: _say_waiting(context)):
-                return _Run(context, force, whole).to(name)
+                return _Run(as_stated_now(context), force, whole).to(name)
         except FileNotFoundError:
             if (context.out / freshness.STATE).exists() or attempt == _ATTEMPTS - 1:
                 raise
     raise AssertionError("unreachable")
+
+
+def as_stated_now(context: Context) -> Context:
+    """The context by the test.toml that is there now: it may have been edited while another run was waited for."""
+    if not freshness.edited(context):
+        return context
+    return replace(context, definition=load_definition(context.definition.path))
 
 
 def _say_waiting(context: Context) -> None:
@@ -68,7 +74,7 @@ def _plain_refusals(context: Context) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if error.errno not in _REFUSED:
+        if error.errno not in products.REFUSED:
             raise
         place = error.filename or context.out
         raise InputError(f"{place}: {error.strerror}; choose another place for the products with --out DIR") from None
@@ -82,9 +88,8 @@ class _Run:
         self.force = force
         self.whole = whole
         self.done: set[str] = set()
-        self.sources = source_files()
         state = context.out / freshness.STATE
-        state.mkdir(exist_ok=True)
+        products.make_folder(state)
         self.hashes = HashCache(state / "hashes.json")
 
     def to(self, name: str) -> Context:
@@ -151,7 +156,7 @@ class _Run:
         started = time.perf_counter()
         self.context.progress(stage.name, None)
         try:
-            stage.run(self.context.at(stage, record=record))
+            self._run(stage, record)
             self._check_untouched(record)
             made = self._commit(stage)
         except AnalysisError as error:
@@ -162,6 +167,14 @@ class _Run:
             raise
         self._note(stage, {"key": key, "products": made, "parameters": record["parameters"]})
         self._log(stage, started, "done")
+
+    def _run(self, stage: Stage, record: dict[str, Any]) -> None:
+        """The stage itself; code of a team's effects that ends the program must not end it as if all were done."""
+        try:
+            stage.run(self.context.at(stage, record=record))
+        except SystemExit as error:
+            own = self.context.root / "effects"
+            raise InputError(f"stage {stage.name}: the code in {own} ended it ({error!r})") from None
 
     def _check_untouched(self, record: dict[str, Any]) -> None:
         """A log that grew while it was read would be recorded under a hash that is not its own."""
@@ -175,6 +188,7 @@ class _Run:
         finals = [self.context.product(name) for name in stage.products]
         for final in finals:
             products.fsync(products.temporary_path(final))
+            products.share(products.temporary_path(final))
         for final in finals:
             os.replace(products.temporary_path(final), final)
         products.fsync(self.context.out)
@@ -204,20 +218,21 @@ class _Run:
             "python": platform.python_version(),
             "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
         }
-        with (self.context.out / RUN_LOG).open("a", encoding="utf-8") as file:
+        path = self.context.out / RUN_LOG
+        with path.open("a", encoding="utf-8") as file:
             file.write(json.dumps(line, ensure_ascii=False) + "\n")
+        products.share(path)
 
     def _agree_with_make(self, stage: Stage) -> None:
-        inputs = [*freshness.input_files(self.context, stage), *self.sources, *self._upstream_products(stage)]
+        """Products no older than what they are made from, but older than a test.toml that was edited meanwhile."""
+        if freshness.edited(self.context):
+            for name in stage.products:
+                products.touch_before(self.context.product(name), self.context.definition.path)
+            return
+        inputs = [*freshness.input_files(self.context, stage), *self._upstream_products(stage)]
         for name in stage.products:
-            products.touch_after(self.context.product(name), inputs)
+            products.touch_after(self.context.product(name), inputs, sources.state().newest)
 
     def _upstream_products(self, stage: Stage) -> list[Path]:
         names = (name for name in stage.upstream if name not in self.context.absent)
         return [self.context.product(product) for name in names for product in stage.reads(base.load_stage(name))]
-
-
-def source_files() -> list[Path]:
-    """The package's source files, which make takes into account by their times."""
-    paths = PACKAGE.rglob("*")
-    return [path for path in paths if path.is_file() and "__pycache__" not in path.parts]

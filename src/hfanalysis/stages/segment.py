@@ -13,7 +13,15 @@ def run(context: Context) -> None:
     from hfanalysis.segment.phases import find_phases
 
     log, definition = context.believed()
-    context.write(find_phases(log, definition))
+    context.write(find_phases(log, definition, int(context.parameter("firing")) or None))
 
 
-STAGE = Stage(name="segment", needs=("ingest", "health"), products=("segments.json",), run=run, adopts=False)
+STAGE = Stage(
+    name="segment",
+    needs=("ingest", "health"),
+    products=("segments.json",),
+    run=run,
+    adopts=False,
+    parameters={"firing": 0},
+    least={"firing": 0},
+)

@@ -19,7 +19,7 @@ def run(context: Context) -> None:
     from hfanalysis.validate.validation import validate
 
     log, definition = context.believed()
-    segments = context.read(Segments)
+    segments = context.read(Segments).fired
     absent = context.absent.get("calibrate")
     calibration = None if absent else context.read(Calibration)
     adopted = read_adopted(context.root, context.definition)

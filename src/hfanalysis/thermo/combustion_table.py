@@ -24,12 +24,13 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled, inlined
+from hfanalysis.errors import AbsentError
 from hfanalysis.thermo import combustion
 from hfanalysis.thermo.cache import cached
 from hfanalysis.thermo.combustion import FUEL_MOLAR_MASS, PROPEP_OXIDIZER_ENTHALPY, equilibrium
@@ -111,13 +112,22 @@ class CombustionTable:
 
 
 def build(nodes: Nodes = Nodes()) -> CombustionTable:
-    """The table, from the cache where it is there, else from CEA (some seconds, once)."""
+    """The table, from the cache where it is there, else from CEA (some seconds, once).
+
+    Raises AbsentError where CEA is not installed.
+    """
     samples = cached(_name(nodes), nodes.shape, lambda: sample(nodes))
     return CombustionTable(_with_slopes(samples, nodes))
 
 
 def _name(nodes: Nodes) -> str:
-    return f"combustion-cea-{version('cea')}-{nodes.pressures}-{nodes.mixtures}-{nodes.shares}"
+    try:
+        made_by = version("cea")
+    except PackageNotFoundError:
+        raise AbsentError(
+            "the chamber's gas is NASA's CEA's: its package (cea) is not installed, for Linux on ARM there is none"
+        ) from None
+    return f"combustion-cea-{made_by}-{nodes.pressures}-{nodes.mixtures}-{nodes.shares}"
 
 
 def sample(nodes: Nodes) -> Array:

@@ -12,7 +12,7 @@ from math import pi
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.assembly.calibrated import Regression, effective_area
+from hfanalysis.assembly.calibrated import Regression, effective_area, loss_factor
 from hfanalysis.engine.grain import opened, oxidizer_flux
 from hfanalysis.engine.injector import mass_flows
 from hfanalysis.engine.nozzle import expand_along
@@ -67,13 +67,18 @@ def oxidizer_flow(
     The injector's flow is that of the report, eq. 3.2.
     """
     origin = segments.t_open.value or 0.0
-    tank, run = (Signal.of(log[name]).shifted(origin).reduced(HISTORY_STEP).at(time) for name in ("p_tank", "p_run"))
+    tank = Signal.of(log["p_tank"]).shifted(origin).reduced(HISTORY_STEP).at(time)
     chamber = np.full(time.size, definition.ambient_pressure.value)
     if "p_chamber" in log:
         chamber = Signal.of(log["p_chamber"]).shifted(origin).reduced(HISTORY_STEP).at(time)
     source = saturation_of(definition.model.properties)
     density = source.liquid_density(source.temperature(np.clip(tank, *source.pressure_range)))
-    flow = mass_flows(effective_area(definition, calibration), density, run - chamber)
+    area = effective_area(definition, calibration)
+    if "p_run" in log:
+        drop = Signal.of(log["p_run"]).shifted(origin).reduced(HISTORY_STEP).at(time) - chamber
+    else:  # line and injector as the model has them: both lose with the square of the flow over the density
+        drop = (tank - chamber) / (1.0 + 2.0 * loss_factor(calibration) * area**2)
+    flow = mass_flows(area, density, drop)
     flow = flow * np.interp(time, alone.measured.time, alone.factor)
     later = np.interp(time, alone.measured.time, alone.flow, right=0.0)
     t_v = segments.time("t_v")

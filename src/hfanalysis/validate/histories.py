@@ -170,9 +170,9 @@ def _integral(time: Array, value: Array, part: NDArray[np.bool_], why: str) -> Q
 
 def write_histories(path: Path, histories: Histories, provenance: Mapping[str, Any]) -> None:
     """Write performance.h5: one time axis, a data set per history; byte-identical each time."""
-    import h5py
+    from hfanalysis.products.hdf5 import created
 
-    with h5py.File(path, "w", libver=FORMAT, track_order=False) as file:
+    with created(path, libver=FORMAT, track_order=False) as file:
         file.attrs["title"] = "histories of a hot fire"
         file.attrs["Conventions"] = "CF-1.11"
         file.attrs["absent"] = json.dumps(histories.absent, sort_keys=True)

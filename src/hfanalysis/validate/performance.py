@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,13 +14,13 @@ from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
 from hfanalysis.inference.full_run import FullRun, moved
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import STATED, UNPHYSICAL, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
-from hfanalysis.validate.thrust import Thrust, thrust_of
+from hfanalysis.validate.thrust import OUT, Thrust, burnt_out, thrust_of
 
 NAMES = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust", "average_thrust",
          "oxidizer_mass", "fuel_mass")  # fmt: skip
@@ -33,6 +33,10 @@ SPAN = 0.25
 """Part of a cell's accuracy that a tare does not take away, and of its drift that a straight line may miss. Evidence:
 test_performance_errors.py: a tare takes away three quarters of what a cell may be off by."""
 
+
+LARGEST_SPECIFIC_IMPULSE = 320.0
+"""[s] that nothing with nitrous oxide reaches. Source: characteristic velocity of 1700 m/s at most times a thrust
+coefficient of 1.85, full expansion from 40 bar to a tenth of an atmosphere."""
 
 EARLY = 0.5
 """[s] before the burn's end at which a channel may end and still say what it was over the burn."""
@@ -47,17 +51,21 @@ class Fire:
     source: str
 
 
-def fire_of(segments: Segments, definition: TestDefinition) -> Fire | str:
-    """The burn as seen on video, else until the fuel is gone, else until the chamber unchokes; or why there is none."""
+def fire_of(segments: Segments, definition: TestDefinition, log: TestLog | None = None) -> Fire | str:
+    """The burn as seen on video, else until the fuel is gone, else until the chamber unchokes, else until the ``log``'s
+    thrust is gone; or why there is none."""
     if segments.kind != "hot_fire" or segments.misfire:
         return "nothing burns in this test"
     seen = definition.observed.burn_time if definition.observed else None
     if seen is not None:
         return Fire(seen.value, seen.std if seen.std is not None else VIDEO, "[observed] burn_time")
-    for name, words in (("t_fuel_out", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
+    for name, words in (("t_fuel_gone", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
         found = segments.time(name)
         if found is not None:
             return Fire(found, max(segments.std(name), 1e-3), f"{name}: {words}")
+    gone = burnt_out(thrust_of(log, segments, definition).signal) if log is not None and "thrust" in log else None
+    if gone is not None:
+        return Fire(*gone, f"until the thrust is below {100.0 * OUT:.0f} % of its largest for good")
     return text("the end of the burn is not known: {reason}", reason=segments.t_end.reason)
 
 
@@ -67,7 +75,7 @@ def measured(
     """The measured column [s, N s, Pa, N, kg], and ``total_impulse_of_file`` [N s]: the raw integral over the whole
     file.
     """
-    fire = fire_of(segments, definition)
+    fire = fire_of(segments, definition, log)
     if isinstance(fire, str):
         none = {name: Quantity.absent(fire) for name in NAMES}
         return none | {"oxidizer_mass": _oxidizer(log, segments, definition, calibration)}
@@ -159,7 +167,11 @@ def specific_impulse(impulse: Quantity, oxidizer: Quantity, fuel: Quantity) -> Q
     mass = oxidizer.value + fuel.value
     value = impulse.value / (STANDARD_GRAVITY * mass)
     by_mass = value * np.hypot(oxidizer.std or 0.0, fuel.std or 0.0) / mass
-    return Quantity(value, "s", float(np.hypot((impulse.std or 0.0) / (STANDARD_GRAVITY * mass), by_mass)))
+    found = Quantity(value, "s", float(np.hypot((impulse.std or 0.0) / (STANDARD_GRAVITY * mass), by_mass)))
+    if found.interval is None or found.interval[0] <= LARGEST_SPECIFIC_IMPULSE:
+        return found
+    why = f"more than any nitrous oxide hybrid has, {LARGEST_SPECIFIC_IMPULSE:.0f} s: thrust, its unit or a mass is off"
+    return replace(found, verdict=UNPHYSICAL, why=why)
 
 
 def _peak(log: TestLog, name: str, signal: Signal | str, fire: Fire) -> Quantity:
@@ -276,14 +288,13 @@ def _changes(full: FullRun, calibration: Calibration) -> list[dict[str, float]]:
     engine, discharge, m = full.engine, calibration.C_i, calibration.m.std or 0.0
     rate, flux = calibration.regression_rate_reference, calibration.regression.reference_flux
     assert discharge.value is not None
-    assert rate.value is not None
-    assert flux is not None
-    assert flux.value is not None
     area = engine.feed.area * (1.0 + (discharge.std or 0.0) / discharge.value)
     changes = [{"area": area}, {"loss_factor": engine.feed.loss_factor + (calibration.K_loss.std or 0.0)}]
     changes.append({"oxidizer_mass": engine.oxidizer_mass + (calibration.load.std or 0.0)})
     if engine.polytropic_exponent is not None and m > 0.0:
         changes.append({"polytropic_exponent": engine.polytropic_exponent + m})
-    changes.append({"a": engine.a * (1.0 + (rate.std or 0.0) / rate.value)})
     n = engine.n + (calibration.n.std or 0.0)
+    if STATED in (calibration.a.verdict, calibration.n.verdict) or not rate.value or flux is None or not flux.value:
+        return [*changes, {"a": engine.a + (calibration.a.std or 0.0)}, {"n": n}]
+    changes.append({"a": engine.a * (1.0 + (rate.std or 0.0) / rate.value)})
     return [*changes, {"n": n, "a": rate.value / flux.value**n}]

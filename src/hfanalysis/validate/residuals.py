@@ -107,9 +107,9 @@ def gaps(residuals: Sequence[Residual]) -> dict[str, dict[str, PhaseGap]]:
 
 def write_residuals(path: Path, modes: Mapping[str, Sequence[Residual]], provenance: Mapping[str, Any]) -> None:
     """Write residuals.h5: a group per mode and channel, for h5py, xarray and MATLAB; byte-identical each time."""
-    import h5py
+    from hfanalysis.products.hdf5 import created
 
-    with h5py.File(path, "w", libver=FORMAT, track_order=False) as file:
+    with created(path, libver=FORMAT, track_order=False) as file:
         file.attrs["Conventions"] = "CF-1.11"
         file.attrs["title"] = "residuals: measured minus model"
         file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)

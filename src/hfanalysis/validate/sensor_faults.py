@@ -6,7 +6,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from hfanalysis.engine.nozzle import area_ratio, expand, mach_at_pressure
+from hfanalysis.engine.thrust_coefficient import TOLERANCE, possible
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
@@ -25,14 +25,6 @@ DISAGREE = "thrust and p_c A_t disagree"
 ZERO_SHARE = 0.02
 """Part of the largest thrust from which on a cell that does not come back to zero is called so. Evidence:
 test_sensor_bounds.py."""
-
-GAMMAS = (1.14, 1.35)
-"""Heat capacity ratio [-] of burnt nitrous oxide and paraffin, with room on both sides. Evidence: equilibrium, frozen
-in the nozzle, at 20 bar has 1.31 at O/F 3 and 1.24 from 7 on."""
-
-TOLERANCE = 0.08
-"""Relative error of the thrust coefficient that nozzle losses, burning and alignment may make on either side. Evidence:
-MRT-HF3.1 has 0.58 where a nozzle gives 1.16 to 1.34; HF4 and HF5 stay within (docs/validation.md)."""
 
 BALANCE = (1350.0, 1680.0)
 """Characteristic velocity [m/s] by which the integral of p_c and the propellant give a throat, on either side.
@@ -56,6 +48,7 @@ def _zero(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fi
         return None
     error, peak = thrust.error, float(np.percentile(burning.value, 99.0))
     std = channel.zero_std if channel.zero_std is not None else channel.accuracy
+    std = float(np.sqrt(max(std**2 - channel.doubt**2, 0.0)))  # a doubt must not hide what it is about
     if abs(error) < max(ZERO_SHARE * peak, 5.0 * std):
         return None
     where = f"with the chamber back at ambient ({thrust.since:.1f} s)" if thrust.since > 0.0 else "after the burn"
@@ -82,7 +75,7 @@ def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, f
     (thrust, pressure), (area, relative, source) = means, throat
     if pressure < 2.0 * ambient:
         return None
-    low, high = _possible(definition, pressure, ambient, area)
+    low, high = possible(pressure, ambient, area, exit_area(definition))
     value, error = thrust / (pressure * area), 2.0 * relative
     if low * (1.0 - TOLERANCE - error) <= value <= high * (1.0 + TOLERANCE + error):
         return None
@@ -99,6 +92,12 @@ def _coefficient(log: TestLog, segments: Segments, definition: TestDefinition, f
     return Finding(
         channels=("thrust", "p_chamber"), verdict=DISAGREE, text=words, size=Quantity(value, "", value * relative)
     )
+
+
+def exit_area(definition: TestDefinition) -> float | None:
+    """Of the stated nozzle's exit [m^2]; None where it is not stated."""
+    nozzle = definition.nozzle
+    return None if nozzle is None or nozzle.exit_radius is None else pi * nozzle.exit_radius.value**2
 
 
 def _steady(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fire) -> tuple[float, float] | None:
@@ -129,20 +128,3 @@ def _throat(
     areas = [(tank.oxidizer_mass.value + grain.mass.value) * c / total for c in BALANCE]
     middle = sqrt(areas[0] * areas[1])
     return middle, 0.25 * (areas[1] - areas[0]) / middle, "not stated; from propellant, c* and p_c"
-
-
-def _possible(definition: TestDefinition, pressure: float, ambient: float, throat: float) -> tuple[float, float]:
-    """Thrust coefficients that a nozzle can have: of the stated exit, else from convergent to fully expanded."""
-    nozzle = definition.nozzle
-    if nozzle is not None and nozzle.exit_radius is not None:
-        exits = [pi * nozzle.exit_radius.value**2]
-        found = [expand(g, 1e6, pressure, ambient, throat, e)[1] / (pressure * throat) for g in GAMMAS for e in exits]
-        return min(found), max(found)
-    low = min(expand(g, 1e6, pressure, ambient, throat, throat)[1] / (pressure * throat) for g in GAMMAS)
-    return low, max(_fully_expanded(g, pressure, ambient) for g in GAMMAS)
-
-
-def _fully_expanded(gamma: float, pressure: float, ambient: float) -> float:
-    """Thrust coefficient with the exit at ambient pressure."""
-    ratio = area_ratio(mach_at_pressure(ambient / pressure, gamma), gamma)
-    return float(expand(gamma, 1e6, pressure, ambient, 1.0, ratio)[1] / pressure)

@@ -35,6 +35,17 @@ NOTICEABLE = 0.02
 test_thrust.py: a cell that reads next to nothing is left alone."""
 
 
+OUT = 0.05
+"""Part of the largest thrust below which a motor is burnt out. Source: NFPA 1125, burn time of its thrust curve."""
+
+FADED = (0.1, 0.025)
+"""Parts of it [-] between which it passes OUT: how well that instant is told."""
+
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+LEAST_OF_B = 2.5
+"""Largest total impulse of class A [N s]; each class has twice that of the one before. Source: NFPA 1125."""
+
+
 @dataclass(frozen=True)
 class Thrust:
     """Good samples of the thrust [N] over time [s after the opening].
@@ -86,3 +97,36 @@ def _at_ambient(log: TestLog, segments: Segments, definition: TestDefinition) ->
     if not fire.size or fire[-1] >= smooth.size - 8:
         return None
     return float(chamber.time[fire[-1] + 1])
+
+
+def burnt_out(signal: Signal) -> tuple[float, float] | None:
+    """When the thrust is gone for good [s after the opening] and its standard deviation [s]; None where it is not.
+
+    ``signal``: the thrust [N], its zero taken off.
+    """
+    after = signal.between(0.0, np.inf)
+    if after.time.size < 16:
+        return None
+    width = 3.0 * after.step
+    smooth = after.smooth(width)
+    peak = float(smooth.max())
+    if peak <= 10.0 * signal.noise:
+        return None
+    first, last, late = (int(np.flatnonzero(smooth > part * peak)[-1]) for part in (FADED[0], OUT, FADED[1]))
+    if last >= smooth.size - 8:
+        return None
+    told = after.time[min(late + 1, smooth.size - 1)] - after.time[first]
+    return float(after.time[last + 1]), float(np.hypot(width, 0.5 * told) / np.sqrt(12.0))
+
+
+def motor_class(impulse: float) -> str:
+    """Letter of a total impulse [N s], with its upper limit.
+
+    >>> motor_class(979.0)
+    'J (640 to 1280 N s)'
+    """
+    number = max(int(np.ceil(np.log2(max(impulse, 1e-9) / LEAST_OF_B))), 0)
+    if number >= len(LETTERS):
+        return f"beyond Z ({LEAST_OF_B * 2.0 ** (len(LETTERS) - 1):.3g} N s)"
+    high = LEAST_OF_B * 2.0**number
+    return f"{LETTERS[number]} ({0.5 * high if number else 0.0:.4g} to {high:.4g} N s)"

@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.water_flow import is_water
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
@@ -29,6 +30,7 @@ from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import Residual, gaps
 from hfanalysis.validate.sensor_faults import ZERO, findings
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
+from hfanalysis.validate.thrust import motor_class
 
 Result = TypeVar("Result")
 MODES = ("tank_free", "chamber_forced", "full")
@@ -80,10 +82,11 @@ class _Work:
         self.log, self.segments, self.definition = log, segments, definition
         self.effects = effects
         self.true = corrected(log, segments.t_open.value or 0.0, effects)
-        self._calibration = calibration
-        self.uncalibrated = uncalibrated
+        water = is_water(segments, definition)
+        self._calibration = None if water else calibration
+        self.uncalibrated = "water flows: there is no tank of nitrous oxide to run" if water else uncalibrated
         self.ambient = definition.ambient_pressure.value
-        self.fire = performance.fire_of(segments, definition)
+        self.fire = performance.fire_of(segments, definition, self.true)
         self.absent: dict[str, str] = {}
 
     def result(self) -> Validated:
@@ -105,8 +108,10 @@ class _Work:
         told = any(ZERO in warning for warning in self.log.warnings)
         histories = self._histories(full, flows)
         notes = [note for found in kept.values() for r in found for note in r.notes]
+        impulse = measured["total_impulse"].value
+        about = {"motor_class": motor_class(impulse)} if impulse is not None and impulse > 0.0 else {}
         product = Validation(
-            performance=Performance(measured=Column.from_json(measured), model=Column.from_json(model)),
+            performance=Performance(measured=Column.from_json(measured), model=Column.from_json(model), **about),
             gap={mode: gaps(found) for mode, found in kept.items()},
             closure=Closure.from_json(histories.closure),
             sensors=tuple(sensors),

@@ -22,7 +22,8 @@ NAMES: dict[str, str] = {
     "t_feed": "feed line full",
     "t_v": "liquid gone",
     "t_purge": "nitrogen enters",
-    "t_fuel_out": "solid fuel gone",
+    "t_fuel_out": "solid fuel runs out",
+    "t_fuel_gone": "solid fuel gone",
     "t_end": "chamber unchokes",
     "a": "regression coefficient",
     "n": "regression exponent",
@@ -59,7 +60,7 @@ NAMES: dict[str, str] = {
 }
 """The quantities of the products, in the order in which they are shown."""
 
-EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_end")
+EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
 MASTHEAD = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "a", "n", "regression_rate_reference")
 """What a calibration is asked for first."""
 
@@ -70,7 +71,9 @@ SOURCES: dict[str, str] = {
 }
 """What is said of a test's source wherever its results show."""
 
-KINDS: dict[str, str] = {"hot_fire": "hot fire", "cold_flow": "cold flow"}
+KINDS: dict[str, str] = {
+    "hot_fire": "hot fire", "cold_flow": "cold flow", "water_flow": "water flow", "nothing": "nothing happened"
+}  # fmt: skip
 
 _FINEST: dict[str, int] = {"s": 4}
 """Unit: decimals beyond which nobody reads; a log's stamps are no finer than 0.1 ms."""

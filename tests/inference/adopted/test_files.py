@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from tests.inference.adopted.firing import make_root
 
 from hfanalysis.effects import library
+from hfanalysis.effects.trust import agree
 from hfanalysis.engine.effect import Effect
 from hfanalysis.errors import InputError
 from hfanalysis.inference.adopted.effects import Adopted, read_adopted, read_effects, write_adopted
@@ -88,6 +89,7 @@ def test_a_teams_own_effect_is_adopted_in_the_unit_that_it_has(root: Path) -> No
     text = Path(library.__code__.co_filename).with_name("tank_heat.py").read_text(encoding="utf-8")
     text = text.replace('name="tank_heat"', 'name="lamp"').replace('"power", "W"', '"power", "lm"')
     (root / "effects" / "lamp.py").write_text(text, encoding="utf-8")
+    agree(root / "effects")
     assert adopted(root, '[lamp]\npower = "12 +/- 2 lm"\n').effects[0].named["power"] == 12.0
     with pytest.raises(InputError, match=r"lamp\.power: found '12 W'; expected a value in lm"):
         adopted(root, '[lamp]\npower = "12 W"\n')

@@ -100,7 +100,7 @@ def _behind(test: SeenTest) -> Finding | None:
         "reads less than the chamber that it feeds for {end} after the opening, by up to {most}, and more from then on",
         end=said(end, "s", ".2f"), most=said(float((chamber - run)[below].max()), "bar", ".2g"),
     )  # fmt: skip
-    return test.channels["p_run"].finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None)
+    return test.channels["p_run"].finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None, delay=end)
 
 
 def _smooth(test: SeenTest, seen: Seen) -> Finding | None:
@@ -118,7 +118,7 @@ def _smooth(test: SeenTest, seen: Seen) -> Finding | None:
         "its noise at rest holds for {held}, that of others for {other}, and its steepest rise takes {rise}",
         held=said(held, "s", ".2g"), other=said(min(known), "s", ".2g"), rise=said(rise, "s", ".2g"),
     )  # fmt: skip
-    return seen.finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None)
+    return seen.finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None, delay=rise)
 
 
 def _correlation_time(test: SeenTest, seen: Seen) -> float | None:
@@ -205,4 +205,4 @@ def _finding(seen: Seen, others: tuple[str, ...], delay: Delay) -> Finding:
         "it unexplained",
         others=" and ".join(others), constant=said(delay.constant, "s", ".2g"), better=delay.better,
     )  # fmt: skip
-    return seen.finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None)
+    return seen.finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None, delay=delay.constant)

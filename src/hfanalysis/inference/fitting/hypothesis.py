@@ -23,6 +23,7 @@ from hfanalysis.engine.injector import mass_flow_with_feed
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.inference.splines import Splines
 from hfanalysis.products.calibration import Calibration
+from hfanalysis.quantity import STATED
 
 M_RANGE = 2.0
 """Standard deviations that the polytropic exponent may be off. Source: 0.95 to 1.35 bounds what nitrous oxide can do
@@ -287,5 +288,26 @@ def base_hypothesis(engine: Engine, calibration: Calibration, follow: bool = Tru
     ]
     if engine.feed.constant_losses is None and engine.feed.loss_factor > 0.0:
         free.insert(1, Free("loss_factor", engine.feed.loss_factor, 1.0, "positive"))
+    free = [_as_stated(f, engine, calibration) for f in free]
+    exponent = next(f.center for f in free if f.name == "polytropic_exponent")
     enthalpy = None if follow else engine.oxidizer_enthalpy
     return Hypothesis(replace(engine, polytropic_exponent=exponent, oxidizer_enthalpy=enthalpy), tuple(free))
+
+
+CONSTANTS = {"area": "C_i", "loss_factor": "K_loss", "polytropic_exponent": "m", "a": "a", "n": "n"}
+"""The constants of a calibration behind what may move."""
+
+TIGHT = 1e-4
+"""Part of a stated constant that it may be off where no deviation is stated: next to nothing."""
+
+
+def _as_stated(free: Free, engine: Engine, calibration: Calibration) -> Free:
+    """What may move, within what test.toml states where its constant is held."""
+    held = getattr(calibration, CONSTANTS.get(free.name, "C_i"))
+    if free.name not in CONSTANTS or held.verdict != STATED or not held.value:
+        return free
+    relative = max((held.std or 0.0) / held.value, TIGHT)
+    if free.shape == "positive":
+        center = {"area": engine.feed.area, "loss_factor": engine.feed.loss_factor}.get(free.name, held.value)
+        return replace(free, center=center, std=relative, unsure=False)
+    return replace(free, center=held.value, std=relative * held.value, unsure=False)

@@ -31,6 +31,8 @@ class Chunk:
     text: dict[int, Text] = field(default_factory=dict)
     written: frozenset[int] = frozenset()
     """Columns of stamps that are dates or times of day, given here in seconds."""
+    epochs: dict[int, float] = field(default_factory=dict)
+    """Column of stamps -> the instant of its zero [s since 1970, as written], where dates say so."""
 
 
 class Source(Protocol):
@@ -41,6 +43,12 @@ class Source(Protocol):
     """Column names in order; empty strings in a log without a header."""
     units: tuple[str, ...]
     """What the log itself says about units, by column; empty where it says nothing."""
+    others: tuple[tuple[str, ...], ...]
+    """Further rows of names, by which a column may be called, too."""
+    doubt: str
+    """Why the names that the log has cannot be told to belong to which columns; "" where they can."""
+    notes: list[str]
+    """What is to be said about the file once it has been read."""
     sha256: str | None
     """Of the file, where ``chunks`` has read it and taken the hash on the way."""
 
@@ -61,7 +69,10 @@ def find_column(source: Source, wanted: str | int, where: str) -> int:
             raise InputError(f"{where}: column {wanted} not in {source.name}, which has {len(source.columns)} columns")
         return wanted - 1
     name = tidy(wanted)
-    found = [i for i, column in enumerate(source.columns) if tidy(column) == name]
+    if source.doubt:
+        raise InputError(f"{where}: column {wanted!r} of {source.name}: {source.doubt}")
+    rows = (source.columns, *source.others)
+    found = next((fits for row in rows if (fits := [i for i, cell in enumerate(row) if tidy(cell) == name])), [])
     if len(found) > 1:
         numbers = ", ".join(str(i + 1) for i in found)
         raise InputError(

@@ -1,8 +1,7 @@
-"""How a delimited text file is written: encoding, delimiter, decimal mark, header, found from its beginning."""
+"""How a delimited text file is written: encoding, delimiter, number marks, header, found from parts of it."""
 
 from __future__ import annotations
 
-import codecs
 import csv
 import re
 from collections import Counter
@@ -12,26 +11,42 @@ from pathlib import Path
 
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
-from hfanalysis.units import ALIASES, TABLE
+from hfanalysis.record.readers import fixed_width, marks
+from hfanalysis.record.readers.encodings import SAMPLE, encoding_of, samples
+from hfanalysis.record.readers.header import Header, by_wide_blanks, joined, read_header
+from hfanalysis.record.readers.marks import is_number, is_spaced
 
-SAMPLE = 1 << 18
-"""Bytes looked at."""
 WHITESPACE = " "
 _DELIMITERS = (",", ";", "\t", "|", WHITESPACE)
-_BOMS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
-_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
-_DECIMAL = re.compile(r"[+-]?\d*([.,])\d+([eE][+-]?\d+)?")
-_DATE = r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}"
-_TIME_OF_DAY = r"\d{1,2}:\d{2}(:\d{2})?([.,:]\d+)?( ?[AP]M)?"
+_DATE = r"(\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}|\d{1,2}[- ][A-Za-z]{3,9}[- ]\d{2,4})"
+_TIME_OF_DAY = r"\d{1,3}:\d{2}(:\d{2})?([.,:]\d+)?( ?[AaPp]\.?[Mm]\.?)?"
 _STAMP = re.compile(rf"({_DATE}[T ]?)?({_TIME_OF_DAY})?(Z|[+-]\d\d:?\d\d)?")
-_UNITS = {name for group in (TABLE, ALIASES) for names in group.values() for name in names if name} | {
-    "V", "mV", "A", "mA", "counts", "raw", "bool", "°C", "°F", "datetime", "date", "hh:mm:ss", "n/a", "Volts", "volts",
-}  # fmt: skip
+_ARROW = re.compile(r"^\[?(\d{1,2}:\d{2}:\d{2}(?:[.,]\d+)?)\]? ?-> ?", re.MULTILINE)
+"""What a serial monitor puts before a line."""
+_LABEL = re.compile(r"(^|[,;\t| ])\s*([A-Za-z_][\w ]*?)\s*[:=]\s*(?=[-+.\d])", re.MULTILINE)
+"""What a plotter's line has before each number."""
+COMMENT = ("#", "%", "//", "!")
+"""How lines begin that are no rows."""
+USUAL = 0.05
+"""Share of the rows that a shorter row must have for it to be one whose last cells are left out. Evidence:
+test_dirt.py: rows broken by a lost byte are rarer, and cutting them would shift what follows."""
+LONGEST_HEADER = 40
+"""Lines over which a row of names may run that are broken inside quotes. Evidence: test_headers.py: each of a row's
+names may be broken, so that there are as many lines as columns."""
+ENOUGH = 300
+"""Rows, spread over the parts of the file that are looked at, whose cells are asked for the marks of numbers.
+Evidence: test_number_marks.py."""
+
+Substitution = tuple[re.Pattern[str], str]
 
 
 @dataclass(frozen=True)
 class Dialect:
-    """How the file is written. ``first``: lines before the data; ``width``: fields in a data line."""
+    """How the file is written. ``first``: lines before the data; ``width``: fields in a row of data; ``shorter``: other
+    widths that rows have whose last cells are left out; ``replaced``: what is not plain, and what it becomes;
+    ``edges``: places between columns of fixed width, none where marks are between them; ``stamped``: columns of dates
+    or times.
+    """
 
     encoding: str
     delimiter: str
@@ -40,91 +55,183 @@ class Dialect:
     width: int
     names: tuple[str, ...]
     units: tuple[str, ...]
+    others: tuple[tuple[str, ...], ...] = ()
+    doubt: str = ""
+    shorter: frozenset[int] = frozenset()
+    replaced: tuple[Substitution, ...] = ()
+    edges: tuple[int, ...] = ()
+    stamped: frozenset[int] = frozenset()
 
 
 def detect(path: Path, spec: FileSpec) -> Dialect:
     """The dialect of a file, where ``spec`` does not force it; raises :class:`InputError` for a file without data."""
     with path.open("rb") as file:
-        sample = file.read(SAMPLE)
-        whole = len(sample) < SAMPLE
-    encoding = spec.encoding or encoding_of(sample)
-    lines = _lines(sample, encoding, whole)
-    if not any(line.strip() for line in lines):
+        encoding = spec.encoding or encoding_of(file.read(SAMPLE))
+    parts = samples(path, encoding)
+    if not any(part.strip("\0\r\n\t ,;") for part in parts):
         raise InputError(f"{path}: found an empty file; expected a log")
-    delimiter = spec.delimiter or _delimiter(lines)
-    rows = [split(line, delimiter) for line in lines]
-    first = _first(rows) if spec.header_rows is None else spec.header_rows
-    data = [row for row in rows[first:] if any(row)]
+    substitutions, labels = _substitutions(parts)
+    parts = [substituted(part, substitutions) for part in parts]
+    lines = [line for part in parts for line in logical_lines(part)]
+    delimiter = spec.delimiter or _delimiter([line.text for line in lines])
+    if delimiter not in (WHITESPACE, "\t") and any(marks.BLANK_BETWEEN[0].search(part) for part in parts):
+        substitutions.append(marks.BLANK_BETWEEN)
+        lines = [line.replaced(*marks.BLANK_BETWEEN) for line in lines]
+    return _described(path, spec, encoding, delimiter, tuple(substitutions), lines, labels)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of text, several of the file's where a quoted name is broken; ``end``: lines of the file up to its end."""
+
+    text: str
+    end: int
+
+    def replaced(self, mark: re.Pattern[str], by: str) -> Line:
+        return Line(mark.sub(by, self.text), self.end)
+
+
+def logical_lines(text: str) -> list[Line]:
+    """The lines of a text, those inside a pair of quotes put together."""
+    plain = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    found, at = [], 0
+    while at < len(plain):
+        count = next((n for n in range(1, LONGEST_HEADER) if _is_closed(plain[at : at + n])), 1)
+        found.append(Line(" ".join(plain[at : at + count]), at + count))
+        at += count
+    return found
+
+
+def _is_closed(lines: Sequence[str]) -> bool:
+    return sum(line.count('"') for line in lines) % 2 == 0
+
+
+def substituted(text: str, substitutions: Sequence[Substitution]) -> str:
+    """The text with what is not plain replaced."""
+    for mark, by in substitutions:
+        text = mark.sub(by, text)
+    return text
+
+
+def _substitutions(parts: Sequence[str]) -> tuple[list[Substitution], list[str]]:
+    """What is to be replaced in the file; and the names that stand in every line before the numbers."""
+    found = marks.replaced("\n".join(parts))
+    head = substituted(parts[0], found)
+    lines = [line for line in head.splitlines() if line.strip()][:ENOUGH]
+    if lines and 2 * sum(_ARROW.match(line) is not None for line in lines) > len(lines):
+        rest = _ARROW.sub("", head)
+        mark = _delimiter(rest.splitlines()[1:])
+        found.append((_ARROW, rf"\1{mark}"))
+        lines = [line for line in _ARROW.sub("", head).splitlines() if line.strip()][:ENOUGH]
+    labels = Counter(tuple(name for _, name in _LABEL.findall(line)) for line in lines)
+    names, times = labels.most_common(1)[0] if labels else ((), 0)
+    if len(names) > 1 and 10 * times > 9 * len(lines):
+        found.append((_LABEL, r"\1"))
+        return found, list(names)
+    return found, []
+
+
+def _described(
+    path: Path, spec: FileSpec, encoding: str, delimiter: str, replaced: tuple[Substitution, ...],
+    lines: Sequence[Line], labels: Sequence[str],
+) -> Dialect:  # fmt: skip
+    rows = [split(line.text, delimiter) for line in lines]
+    begin = first_row(rows) if spec.header_rows is None else spec.header_rows
+    first = spec.header_rows if spec.header_rows is not None else (lines[begin - 1].end if begin else 0)
+    data = [(line.text, row) for line, row in zip(lines[begin:], rows[begin:], strict=True) if any(row)]
     if not data:
         raise InputError(f"{path}: found {first} header lines and no data; expected numbers below the header")
-    width = Counter(len(row) for row in data).most_common(1)[0][0]
-    names, units = _header(rows[:first], width)
-    decimal = spec.decimal or _decimal(data, delimiter)
-    return Dialect(encoding, delimiter, decimal, first, max(width, len(names)), names, units)
+    edges = fixed_width.edges([text for text, _ in data]) if delimiter == WHITESPACE and not spec.delimiter else ()
+    if edges:
+        rows = [fixed_width.cut(line.text, edges) for line in lines]
+        data = [(text, fixed_width.cut(text, edges)) for text, _ in data]
+    width, shorter = _widths([row for _, row in data], max((len(row) for row in rows[:begin]), default=0))
+    whole = [row for _, row in data if len(row) == width]
+    empty = _empty_at_end(whole, width)
+    over = zip(lines[:begin], rows[:begin], strict=True)
+    above = [_header_row(line.text, row, delimiter, width) for line, row in over]
+    header = read_header(above, width, empty) if not labels else _labeled(labels, width)
+    if delimiter == WHITESPACE and shorter:
+        raise InputError(_ragged(path, width, shorter))
+    some = whole[:: max(1, len(whole) // ENOUGH)]
+    columns = [[row[i] for row in some] for i in range(width)]
+    decimal = spec.decimal or marks.decimal_mark(columns, str(path))
+    stamped = frozenset(i for i, cells in enumerate(columns) if _is_stamped(cells))
+    return Dialect(
+        encoding, delimiter, decimal, first, width, header.names, header.units, header.others, header.doubt, shorter,
+        replaced, edges, stamped,
+    )  # fmt: skip
+
+
+def _ragged(path: Path, width: int, shorter: frozenset[int]) -> str:
+    fewer = " or ".join(map(str, sorted(shorter)))
+    return (
+        f"{path}: rows have {width} columns or {fewer} with blanks between them: which cells are empty cannot be told; "
+        "expected a log exported with commas, semicolons or tabs"
+    )
+
+
+def _labeled(labels: Sequence[str], width: int) -> Header:
+    """The header of lines that name their numbers; what stands before them has no name."""
+    names = ("",) * (width - len(labels)) + tuple(labels)
+    return Header(names[-width:], ("",) * width)
+
+
+def _header_row(line: str, row: Sequence[str], delimiter: str, width: int) -> Sequence[str]:
+    """A row above the data, names that hold the mark between columns put together."""
+    if len(row) == width:
+        return row
+    if delimiter == WHITESPACE:
+        wide = by_wide_blanks(line)
+        return wide if len(wide) == width else row
+    parts = joined(line.split(delimiter), width) if '"' not in line else row
+    return [part.strip() for part in parts]
 
 
 def split(line: str, delimiter: str) -> list[str]:
     """The fields of a line, quotes and blanks around them removed."""
     if delimiter == WHITESPACE:
-        return [field.strip('"') for field in line.split()]
-    fields = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
-    return [field.strip() for field in fields]
-
-
-def is_number(field: str) -> bool:
-    """Whether a field is a number, with either decimal mark."""
-    return bool(_NUMBER.fullmatch(field))
+        return [field.strip('"') for field in re.findall(r'"[^"]*"|[^\s"]+', line)]
+    try:
+        fields = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+    except csv.Error:
+        fields = line.split(delimiter)
+    return [field.strip(" \t\0\x0c") for field in fields]
 
 
 def _is_datum(field: str) -> bool:
-    return is_number(field) or (any(c.isdigit() for c in field) and bool(_STAMP.fullmatch(field)))
-
-
-def encoding_of(sample: bytes) -> str:
-    """The encoding of a text that begins like this."""
-    for mark, name in _BOMS:
-        if sample.startswith(mark):
-            return name
-    if b"\0" in sample[:2000]:
-        return "utf-16-le" if sample[1:2000:2].count(0) > sample[0:2000:2].count(0) else "utf-16-be"
-    try:
-        sample[: sample.rfind(b"\n") + 1].decode("utf-8")
-    except UnicodeDecodeError:
-        return "cp1252"
-    return "utf-8"
-
-
-def _lines(sample: bytes, encoding: str, whole: bool) -> list[str]:
-    text = sample.decode(encoding, errors="replace").removeprefix("\ufeff")
-    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    return lines if whole or len(lines) < 2 else lines[:-1]
+    return is_number(field) or is_spaced(field) or (any(c.isdigit() for c in field) and bool(_STAMP.fullmatch(field)))
 
 
 def _delimiter(lines: Sequence[str]) -> str:
     """The mark that cuts the last lines into the most consistent rows of numbers."""
-    tail = [line for line in lines if line.strip()][-60:]
+    tail = [line for line in lines if any(c.isdigit() for c in line)][-60:]
     return max(_DELIMITERS, key=lambda mark: _merit(tail, mark))
 
 
 def _merit(lines: Sequence[str], mark: str) -> tuple[bool, float]:
     rows = [split(line, mark) for line in lines]
-    width, times = Counter(len(row) for row in rows).most_common(1)[0]
+    width, times = Counter(len(row) for row in rows).most_common(1)[0] if rows else (0, 0)
     cells = [cell for row in rows for cell in row if cell]
     numeric = sum(map(_is_datum, cells)) / max(len(cells), 1)
-    return width > 1 and numeric > 0, round(numeric * times / len(rows), 2)
+    return width > 1 and numeric > 0, round(numeric * times / max(len(rows), 1), 2)
 
 
-def _first(rows: Sequence[Sequence[str]]) -> int:
-    """The number of lines before the data: up to the first two rows, blank ones aside, that are mostly numbers."""
-    width = Counter(len(row) for row in rows if any(row)).most_common(1)[0][0]
-    filled = [i for i, row in enumerate(rows) if any(row)]
-    looks = [_is_data(rows[i], width) for i in filled]
-    return next((i for i, two in zip(filled, _twice(looks), strict=True) if two), len(rows))
-
-
-def _twice(looks: Sequence[bool]) -> list[bool]:
-    """Which are true and followed by another, or last."""
-    return [look and (k + 1 == len(looks) or looks[k + 1]) for k, look in enumerate(looks)]
+def first_row(rows: Sequence[Sequence[str]]) -> int:
+    """The lines before the data: up to the first two rows in a row, blank ones aside, that are mostly numbers (or the
+    last row).
+    """
+    widths = Counter(len(row) for row in rows if any(row))
+    width = widths.most_common(1)[0][0] if widths else 0
+    before = None
+    for i, row in enumerate(rows):
+        if not any(row):
+            continue
+        looks = _is_data(row, width)
+        if looks and before is not None:
+            return before
+        before = i if looks else None
+    return len(rows) if before is None else before
 
 
 def _is_data(row: Sequence[str], width: int) -> bool:
@@ -133,43 +240,21 @@ def _is_data(row: Sequence[str], width: int) -> bool:
     return data > 0 and 2 * data >= len(filled) and 2 * len(row) >= width
 
 
-def _decimal(data: Sequence[Sequence[str]], delimiter: str) -> str:
-    if delimiter == ",":
-        quoted = [cell for row in data[:200] for cell in row if "," in cell]
-        return "," if quoted and all(map(is_number, quoted)) else "."
-    marks = Counter(m[1] for row in data[:200] for cell in row if (m := _DECIMAL.fullmatch(cell)))
-    return "," if marks[","] > marks["."] else "."
+def _widths(rows: Sequence[Sequence[str]], named: int) -> tuple[int, frozenset[int]]:
+    """The fields of a whole row, and the widths of rows whose last cells are left out."""
+    widths = Counter(len(row) for row in rows)
+    usual = widths.most_common(1)[0][0]
+    often = {width for width, times in widths.items() if times > USUAL * len(rows)}
+    width = named if named > usual and named in widths else max((w for w in often if w >= usual), default=usual)
+    return width, frozenset(w for w in often if 1 < w < width)
 
 
-def _header(rows: Sequence[Sequence[str]], width: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names and units by column; a units row may stand before or after the names and be a field longer or shorter."""
-    fitting = [list(row) for row in rows if any(row) and abs(len(row) - width) <= max(1, width // 4)]
-    units = next((row for row in fitting if _is_units(row)), [])
-    named = [row for row in fitting if row is not units and not all(is_number(c) for c in row if c)]
-    names = named[-1] if named else next((row for row in fitting if row is not units), [])
-    if names and names[0][:1] in ("#", "%"):
-        names = [names[0].lstrip("#% "), *names[1:]]
-    if names and not names[0] and delimiter_artifact(names, width):
-        names = names[1:]
-    return _padded(names, width), _padded(_aligned(units, len(names)), width)
+def _empty_at_end(rows: Sequence[Sequence[str]], width: int) -> int:
+    """Columns at the end that hold nothing in any row."""
+    filled = max((i + 1 for row in rows for i, cell in enumerate(row) if cell), default=width)
+    return width - filled
 
 
-def delimiter_artifact(names: Sequence[str], width: int) -> bool:
-    """Whether an empty first field is one too many (a comment mark set apart)."""
-    return len(names) == width + 1 and bool(names[-1])
-
-
-def _is_units(row: Sequence[str]) -> bool:
-    filled = [cell.strip("[]() ") for cell in row if cell.strip("[]() #%-")]
-    return bool(filled) and 3 * sum(cell in _UNITS for cell in filled) >= 2 * len(filled)
-
-
-def _aligned(units: Sequence[str], count: int) -> Sequence[str]:
-    """A units row one field longer than the names, by the end where its spare empty field is."""
-    if len(units) == count + 1 and not units[0]:
-        return units[1:]
-    return units
-
-
-def _padded(cells: Sequence[str], width: int) -> tuple[str, ...]:
-    return tuple(cells) + ("",) * (width - len(cells))
+def _is_stamped(cells: Sequence[str]) -> bool:
+    filled = [cell for cell in cells if cell]
+    return bool(filled) and 2 * sum(not is_number(cell) and _is_datum(cell) for cell in filled) > len(filled)

@@ -1,0 +1,63 @@
+"""Keys that a file may have and that nothing uses yet: whoever states one is told so."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+from dataclasses import fields
+from typing import Any
+
+from hfanalysis.record.schema import Section
+from hfanalysis.units import Value
+
+OF_ENGINES = frozenset({
+    "purge.cracking_pressure", "rocket.drag_uncertainty", "rocket.wind_speed", "rocket.geometry.structure.mass",
+    "rocket.geometry.structure.center_of_gravity",
+    "rocket.geometry.tank_position", "rocket.geometry.chamber_position", "rocket.geometry.engine_mass",
+    "rocket.geometry.engine_center_of_gravity",
+})  # fmt: skip
+"""Of engine files. Evidence: test_unused.py: ``hfa simulate`` and ``hfa design`` read every other key of the schema,
+and none of these."""
+
+OF_TESTS = frozenset({"tank.dip_tube.outer_diameter", "tank.dip_tube.inner_diameter"})
+"""Of test.toml. Evidence: test_unused.py: the stages read every other key of the schema, and none of these."""
+
+SPREADS_OF_TESTS = frozenset({
+    "tank.volume", "tank.oxidizer_mass", "tank.ullage", "tank.polytropic_exponent", "injector.hole_area",
+    "injector.hole_diameter", "injector.C_i", "feed.K_loss", "grain.mass", "grain.a", "grain.n", "nozzle.throat_radius",
+    "site.ambient_pressure", "observed.burn_time", "observed.fuel_mass_after", "observed.oxidizer_mass_after",
+    "rocket.dry_mass", "rocket.drag_coefficient", "rocket.launch_angle", "rocket.wind_speed",
+})  # fmt: skip
+"""Values of test.toml whose +/- goes into intervals; that of an engine file goes into none. Evidence:
+test_unused.py."""
+
+
+def unused(stated: Section, keys: Container[str], spreads: Container[str], where: str) -> tuple[str, ...]:
+    """One line that names what a file states and nothing uses, or none; ``where`` names the file.
+
+    ``keys``: those that nothing uses; ``spreads``: those whose +/- is used.
+    """
+    given = list(_given(stated, ""))
+    idle = [_in_words(name) for name, _ in given if name in keys]
+    loose = [
+        _in_words(name)
+        for name, value in given
+        if isinstance(value, Value) and value.std is not None and not (name in spreads or name in keys)
+    ]
+    said = [*([", ".join(idle)] if idle else []), *([f"the +/- of {', '.join(loose)}"] if loose else [])]
+    return (f"{where}: accepted, but not used yet: {'; '.join(said)}",) if said else ()
+
+
+def _given(section: Section, above: str) -> Iterator[tuple[str, Any]]:
+    """Every key that is stated, dotted, and its value; sections within sections are gone through and named."""
+    for field in fields(section):
+        value = vars(section)[field.name]
+        if value is None:
+            continue
+        yield f"{above}{field.name}", value
+        if isinstance(value, Section):
+            yield from _given(value, f"{above}{field.name}.")
+
+
+def _in_words(name: str) -> str:
+    section, _, key = name.rpartition(".")
+    return f"[{section}] {key}"
