@@ -24,8 +24,9 @@ from numba.core import cgutils
 from numba.core.ccallback import CFunc
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic, register_jitable
+from numba.np import linalg
 
-from hfanalysis.sources import closure, digest
+from hfanalysis.sources import source_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -34,6 +35,22 @@ _SEAL = 32
 
 Real = Any
 """A number, or an array of them: what a :func:`law` is given and gives."""
+
+
+def _load_before_scipy() -> None:
+    """numba looks for SciPy at its first function, which takes a tenth of a second.
+
+    Compiled code that multiplies matrices still has it looked for.
+    """
+    looked_for = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None
+    try:
+        from numba.np import arraymath  # noqa: F401
+    finally:
+        linalg.ensure_blas = looked_for
+
+
+_load_before_scipy()
 
 
 @overload
@@ -223,7 +240,7 @@ def _stamp(made: Any, function: Callable[..., Any]) -> None:
     known = ("_source_stamp", "_load_index", "_load_data", "_save_data", "_dump", "_data_path", "_open_for_write")
     if not all(hasattr(index, name) for name in known):
         raise RuntimeError("this version of numba keeps its cache in another way; hfanalysis.compiled does not know it")
-    index._source_stamp = digest(closure(Path(function.__code__.co_filename), inside=False))
+    index._source_stamp = source_digest(Path(function.__code__.co_filename), inside=False)
     index._load_index = _readable(index._load_index)
     index._save_data, index._load_data = partial(_seal, index), partial(_unseal, index)
     cache.save_overload = _if_possible(cache.save_overload)

@@ -7,7 +7,8 @@ the effects, the sections of the page). Statements that only a type checker sees
 merely on the way to a module (``hfanalysis`` of ``hfanalysis.units``), what its functions import does not count: nobody
 calls them.
 
-Files are searched, not parsed: parsing takes seconds, and every command looks here before it does anything.
+Files are searched, not parsed: parsing takes seconds, and every command looks here before it does anything. What was
+found is remembered while no file of the package has changed, by size, times and inode.
 """
 
 from __future__ import annotations
@@ -15,10 +16,14 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterable, Iterator
+import time
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
+from typing import Any, NamedTuple
+
+from hfanalysis.remembered import Remembered
 
 PACKAGE = Path(__file__).resolve().parent
 
@@ -28,10 +33,63 @@ _TYPING = re.compile(r"\nif TYPE_CHECKING:.*\n(?:[ \t].*\n|\n)*")
 _STATEMENT = re.compile(r"\n([ \t]*)(?:from ([\w.]+) import (\([^)]*\)|.*)|import (.*))")
 _NAMED = re.compile(rf'"({PACKAGE.name}(?:\.\w+)+)"')
 _WALKS = ("(__path__)", 'import_module(f"{__name__}.')
-_NOT_CODE = ("__pycache__",)
+_COMPILED = "__pycache__"
+SETTLED_NS = 2_000_000_000
+"""How old a file must be for its times to vouch for its content [ns]: file systems stamp no finer than 1 to 2 s.
+Source: FAT stamps every 2 s."""
 
 Imports = tuple[frozenset[str], frozenset[str]]
 """Dotted names that a file may import: at its top level, and anywhere."""
+
+
+class State(NamedTuple):
+    """Of all files of the package: what tells that none was touched, when one last was [ns], and whether that is long
+    enough ago for it to be told."""
+
+    mark: str
+    newest: int
+    settled: bool
+
+
+@cache
+def state() -> State:
+    """That of the package when it was first asked for."""
+    stats = sorted(_stats(str(PACKAGE)))
+    latest = max(max(mtime, ctime) for _, _, mtime, ctime, _ in stats)
+    return State(
+        sha256(repr(stats).encode()).hexdigest(), max(mtime for _, _, mtime, *_ in stats),
+        time.time_ns() - latest > SETTLED_NS,
+    )  # fmt: skip
+
+
+def _stats(folder: str) -> Iterator[tuple[str, int, int, int, int]]:
+    """Path, size, times of modification and change [ns], and inode of every file."""
+    with os.scandir(folder) as found:
+        for entry in found:
+            if not entry.is_dir():
+                stat = entry.stat()
+                yield entry.path, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns, stat.st_ino
+            elif entry.name != _COMPILED:
+                yield from _stats(entry.path)
+
+
+@cache
+def _memory() -> Remembered:
+    return Remembered(PACKAGE / _COMPILED / "sources.json", state().mark, state().settled)
+
+
+def remembered(question: str, roots: Iterable[Path], find: Callable[[], Any]) -> Any:
+    """What ``find`` gives, from memory if it follows from the package alone: from ``roots`` that lie in it."""
+    names = [short(root) for root in roots]
+    if any(PACKAGE / name != root for name, root in zip(names, roots, strict=True)):
+        return find()
+    return _memory()(f"{question} {' '.join(sorted(names))}", find)
+
+
+def source_digest(root: Path, inside: bool = True) -> str:
+    """:func:`digest` of a source's :func:`closure`."""
+    path = root.resolve()
+    return str(remembered(f"digest {inside:d}", [path], lambda: digest(closure(path, inside=inside))))
 
 
 @cache
@@ -149,7 +207,7 @@ def _tree() -> tuple[dict[str, Path], list[tuple[Path, Path]]]:
     beside: list[tuple[Path, Path]] = []
     owners: dict[str, Path] = {}
     for folder, inner, names in os.walk(PACKAGE):
-        inner[:] = [name for name in inner if name not in _NOT_CODE]
+        inner[:] = [name for name in inner if name not in _COMPILED]
         here = Path(folder)
         dotted = ".".join((PACKAGE.name, *here.relative_to(PACKAGE).parts))
         owner = owners[folder] = here if "__init__.py" in names else owners.get(str(here.parent), here)

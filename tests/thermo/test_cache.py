@@ -75,7 +75,7 @@ def test_a_spoilt_table_is_made_anew(source: Source, tmp_path: Path, spoil: obje
 
 def test_a_table_of_other_code_is_made_anew(source: Source, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     coolprop_nitrous.build()
-    monkeypatch.setattr(cache, "digest", lambda files: "of other code")
+    monkeypatch.setattr(cache, "source_digest", lambda path: "of other code")
     coolprop_nitrous.build()
     assert source.asked == 2
     assert len(list((tmp_path / "cache").iterdir())) == 2

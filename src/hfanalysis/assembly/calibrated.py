@@ -7,11 +7,12 @@ report's constant losses by phase stop the flow before the fuel is gone.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from math import pi
 
 import numpy as np
-from scipy.optimize import brentq
 
 from hfanalysis.assembly.engine import combustion_of
 from hfanalysis.engine.effect import Active
@@ -20,6 +21,7 @@ from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import FuelLaw, TankConstants
 from hfanalysis.record.definition import TestDefinition
+from hfanalysis.roots import root, secant
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.combustion import FORMATION_OFFSET, PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
@@ -29,6 +31,9 @@ ASSUMED_EXPONENT = (1.15, 0.1)
 """Polytropic exponent of the vapor and its standard deviation [-] where a test does not tell. Evidence: the middle of
 what a calibration takes as physical, 1.0 to 1.3 (docs/calibration.md)."""
 
+
+WITHIN = 1e-4
+"""To what a tank's temperature at the start is found [K]: 10 Pa of its pressure. Source: by choice."""
 
 COLDER = 15.0
 """By how much an effect may let a bulk be colder than its tank's pressure says [K]."""
@@ -107,14 +112,14 @@ def _stated(definition: TestDefinition) -> dict[str, float]:
 
 
 def effective_area(definition: TestDefinition, calibration: TankConstants) -> float:
-    """C_i N_i A_i [m^2]. Raises AbsentError where C_i cannot be had or is not positive."""
+    """C_i N_i A_i [m^2]. Raises AbsentError where C_i or the holes cannot be had, or C_i is not positive."""
     discharge = calibration.C_i
     if discharge.value is None:
         raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is missing ({discharge.reason})")
     if discharge.value <= 0.0:
         raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is not positive ({discharge.why})")
-    assert definition.injector is not None
-    assert definition.injector.area is not None
+    if definition.injector is None or definition.injector.area is None:
+        raise AbsentError(f"test {definition.test.id}: no tank model to run: [injector] does not state its holes")
     return discharge.value * definition.injector.area.value
 
 
@@ -155,9 +160,15 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
     coldest = float(engine.saturation.temperature(pressure))
     low, high = _possible(engine, coldest - (COLDER if engine.effects else 0.0))
 
+    @cache
     def miss(temperature: float) -> float:
         return pressure_at(replace(engine, temperature=temperature), instant) - pressure
 
+    near = min(max(engine.temperature, low), high)
+    with suppress(ValueError, AbsentError):  # a step may lead to a tank that cannot be
+        found = secant(miss, near, float(engine.saturation.pressure_slope(near)), WITHIN)
+        if found is not None and low < found < high:
+            return replace(engine, temperature=found)
     if not low < high or not miss(low) <= 0.0 <= miss(high):
         raise AbsentError(
             text(
@@ -168,7 +179,7 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
                 instant=instant,
             )
         )
-    return replace(engine, temperature=float(brentq(miss, low, high, xtol=1e-4)))
+    return replace(engine, temperature=root(miss, low, high, WITHIN))
 
 
 def pressure_at(engine: Engine, instant: float) -> float:
@@ -182,6 +193,8 @@ def pressure_at(engine: Engine, instant: float) -> float:
         burnt = burn(engine, longest=max(instant, 1e-3))
     except ArithmeticError as error:
         raise AbsentError(f"the tank's pressure at {instant:.2f} s: {error}") from error
+    if instant >= burnt.time[-1]:
+        return burnt.last("tank_pressure")
     return float(np.interp(instant, burnt.time, burnt.output("tank_pressure")))
 
 

@@ -7,14 +7,16 @@ carried along as a covariance.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, starting_for
-from hfanalysis.engine.equations import RADIUS
+from hfanalysis.engine.equations import O_CHAMBER_PRESSURE, RADIUS
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.errors import AbsentError
 
@@ -55,6 +57,16 @@ class Evidence:
     least: float
     wander: Array
     remarks: tuple[str, ...] = ()
+    _known: dict[tuple[str, Regression], Any] = field(default_factory=dict, init=False, compare=False, repr=False)
+
+    def _once(self, what: str, law: Regression, find: Callable[[], Array | None]) -> Array | None:
+        """What has been found with these constants before, for searches come back to where they were."""
+        if (what, law) not in self._known:
+            found = self._known[what, law] = find()
+            if found is not None:
+                found.flags.writeable = False
+        known: Array | None = self._known[what, law]
+        return known
 
     @cached_property
     def observed(self) -> Array:
@@ -80,7 +92,7 @@ class Evidence:
 
     def predict(self, law: Regression) -> Array | None:
         """The model of ``observed`` (n,) [Pa, s, kg]; None where the engine cannot be run with these constants."""
-        return _predicted(self, replace(self.engine, a=law.a, n=law.n))
+        return self._once("predicted", law, lambda: _predicted(self, replace(self.engine, a=law.a, n=law.n)))
 
     def burnt(self, law: Regression) -> Burn:
         """The whole burn with these constants."""
@@ -93,6 +105,11 @@ class Evidence:
 
     def sensitivities(self, law: Regression) -> Array:
         """Change of ``observed`` [Pa, s, kg] per standard deviation of each nuisance, (observations, nuisances)."""
+        found = self._once("slopes", law, lambda: self._sensitivities(law))
+        assert found is not None
+        return found
+
+    def _sensitivities(self, law: Regression) -> Array:
         center = self.predict(law)
         columns = np.zeros((self.observed.size, len(NUISANCES)))
         for j, (name, step) in enumerate(zip(NUISANCES, np.sqrt(np.diag(self.covariance)), strict=True)):
@@ -141,9 +158,11 @@ def chamber_at(engine: Engine, burnt: Burn, time: Array, timed: bool = True) -> 
     After the burn it is that of its end where the end itself is ``timed``, so that a burn that is short by a moment is
     not held against the constants twice, and far too heavily; else ambient.
     """
-    pressure = burnt.output("chamber_pressure")
-    later = float(pressure[-1]) if timed else engine.ambient
-    return np.asarray(np.interp(time, burnt.time, pressure, right=later))
+    begin, end = np.searchsorted(burnt.time, (time[0], time[-1]))
+    points = burnt.time[max(begin - 1, 0) : end + 1]
+    pressure = burnt.steps.at(points)[1][:, O_CHAMBER_PRESSURE]
+    later = burnt.last("chamber_pressure") if timed else engine.ambient
+    return np.asarray(np.interp(time, points, pressure, right=later))
 
 
 def _scalars(evidence: Evidence, engine: Engine, burnt: Burn) -> list[float]:
@@ -160,6 +179,6 @@ def burn_time_of(engine: Engine, burnt: Burn) -> float:
     """When the fuel is gone [s]; for a burn that was given up before, carried on at its last rate."""
     if burnt.fuel_out:
         return burnt.burn_time
-    port, last = float(burnt.states[-1, RADIUS]), burnt.output("fuel_flow")[-1]
-    rate = float(last / engine.grain.ring(port))
+    port = float(burnt.steps.end[-1, RADIUS])
+    rate = float(burnt.last("fuel_flow") / engine.grain.ring(port))
     return burnt.burn_time + min((engine.outer_radius - port) / max(rate, 1e-9), 10.0 * burnt.burn_time)

@@ -191,6 +191,10 @@ class Burn:
         """One of OUTPUTS over time [SI], (n,); raises ValueError for a name that is none."""
         return self.outputs[:, OUTPUTS.index(name)]
 
+    def last(self, name: str) -> float:
+        """One of OUTPUTS at the end of the run [SI]; raises ValueError for a name that is none."""
+        return float(self.steps.history.outputs[-1, 1, OUTPUTS.index(name)])
+
     def state(self, name: str) -> Array:
         """One of STATES over time [SI], (n,); raises ValueError for a name that is none."""
         return self.states[:, STATES.index(name)]

@@ -14,9 +14,11 @@ import os
 import shutil
 import stat
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+from hfanalysis.sources import SETTLED_NS
 
 TEMPORARY = ".tmp-"
 """How the temporary name of an unfinished product begins."""
@@ -29,9 +31,6 @@ REFUSED = (errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS, 
 
 _CHUNK = 1 << 20
 """Bytes read at a time [B]."""
-_SETTLED_NS = 2_000_000_000
-"""How old a file must be for its times to vouch for its content [ns]: file systems stamp no finer than 1 to 2 s.
-Source: FAT stamps every 2 s."""
 
 
 def temporary_path(path: Path) -> Path:
@@ -171,7 +170,7 @@ class HashCache:
         return digest
 
     def _remember(self, name: str, path: Path, state: list[int], digest: str) -> None:
-        settled = time.time_ns() - max(state[1], state[2]) > _SETTLED_NS
+        settled = time.time_ns() - max(state[1], state[2]) > SETTLED_NS
         if settled and _state(path) == state:
             self._known[name] = [*state, digest]
         else:
@@ -188,16 +187,17 @@ def _state(path: Path) -> list[int]:
     return [stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns, stat.st_ino]
 
 
-def touch_after(path: Path, inputs: Mapping[Path, int] | list[Path]) -> None:
-    """Make ``path`` no older than any of ``inputs``, so that make, which only knows times, finds it up to date."""
-    newest = max((item.stat().st_mtime_ns for item in inputs), default=0)
+def touch_after(path: Path, inputs: list[Path], since: int) -> None:
+    """Make ``path`` no older than any of ``inputs`` and than ``since`` [ns], so that make, which only knows times,
+    finds it up to date."""
+    newest = max([since, *(item.stat().st_mtime_ns for item in inputs)])
     if path.stat().st_mtime_ns < newest:
         _set_time(path, max(time.time_ns(), newest))
 
 
 def touch_before(path: Path, newer: Path) -> None:
     """Make ``path`` older than the file ``newer``, by more than file systems' stamps can blur."""
-    _set_time(path, newer.stat().st_mtime_ns - _SETTLED_NS)
+    _set_time(path, newer.stat().st_mtime_ns - SETTLED_NS)
 
 
 def _set_time(path: Path, when: int) -> None:

@@ -16,7 +16,9 @@ from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
 
-Design = Callable[[Array, float], Array]
+Design = Callable[[Array, float | Array], Array]
+"""The columns (n, parameters) of a shape at times (n,) [s] that breaks at an instant [s]; at instants (k, 1) [s]
+(k, n, parameters)."""
 
 RELAXATIONS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.008, 0.013, 0.02, 0.03, 0.05, 0.08, 0.13, 0.2, 0.3, 0.6)
 """Time constants tried for what follows a break [s]; 0 is a step."""
@@ -27,6 +29,9 @@ of other shapes were dated too surely (test_breaks.py)."""
 
 WANDER_POINTS = 120
 """Block means over a window that are enough to carry the wander into the instant."""
+
+AT_ONCE = 1 << 18
+"""Samples of all curves that are fitted at a time: they fit a processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +54,11 @@ def kink(order: int = 2, before: int | None = None) -> Design:
     """Curves of the given polynomial order on both sides, equal at the break; ``before``: the left one's order."""
     left = order if before is None else before
 
-    def columns(time: Array, instant: float) -> Array:
+    def columns(time: Array, instant: float | Array) -> Array:
         x = time - instant
         past, future = np.minimum(x, 0.0), np.maximum(x, 0.0)
         powers = [past**k for k in range(1, left + 1)] + [future**k for k in range(1, order + 1)]
-        return np.stack([np.ones_like(x), *powers], axis=1)
+        return np.stack([np.ones_like(x), *powers], axis=-1)
 
     return columns
 
@@ -61,11 +66,11 @@ def kink(order: int = 2, before: int | None = None) -> Design:
 def rounded_kink(width: float) -> Design:
     """One parabola on which the slope changes, not at once but evenly over ``width`` [s] about the break."""
 
-    def columns(time: Array, instant: float) -> Array:
+    def columns(time: Array, instant: float | Array) -> Array:
         x = time - instant
         inside = np.clip(x + 0.5 * width, 0.0, width)
         turned = inside**2 / (2.0 * width) + np.maximum(x - 0.5 * width, 0.0)
-        return np.stack([np.ones_like(x), x, x**2, turned], axis=1)
+        return np.stack([np.ones_like(x), x, x**2, turned], axis=-1)
 
     return columns
 
@@ -74,14 +79,14 @@ def relaxation(time_constant: float, before: int = 1, jumps: bool = False) -> De
     """A curve of order ``before``, then a change that relaxes with a time constant [s] onto another straight line;
     ``jumps``: a part of it comes at once."""
 
-    def columns(time: Array, instant: float) -> Array:
+    def columns(time: Array, instant: float | Array) -> Array:
         x = time - instant
         past, future = np.minimum(x, 0.0), np.maximum(x, 0.0)
         after = (x >= 0.0).astype(np.float64)
         change = after if time_constant == 0.0 else 1.0 - np.exp(-future / time_constant)
         powers = [past**k for k in range(1, before + 1)]
         at_once = [after] if jumps else []
-        return np.stack([np.ones_like(x), *powers, future, change, *at_once], axis=1)
+        return np.stack([np.ones_like(x), *powers, future, change, *at_once], axis=-1)
 
     return columns
 
@@ -100,7 +105,7 @@ def find_break(
     record. ``noise`` is the sensor's, with its slow wander, which the residuals of so short a window do not show. The
     last ``richer`` designs have a parameter more, and must pay for it (Schwarz, Annals of Statistics 6, 1978, 461-464).
     """
-    sums = np.array([[_sum_of_squares(signal, design, c) for c in candidates] for design in designs])
+    sums = np.array([_sums_of_squares(signal, design, candidates) for design in designs])
     if richer:
         shape, at = divmod(int(np.argmin(sums)), candidates.size)
         fitted = _noise_variance(signal, designs[shape], float(candidates[at]))
@@ -149,18 +154,21 @@ def _summarise(candidates: Array, log_likelihood: Array, constant: float, names:
     return Break(mean, float(np.sqrt(spread + unseen**2 / 12.0)), candidates, log_likelihood, constant, names)
 
 
-def _sum_of_squares(signal: Signal, design: Design, instant: float) -> float:
-    residual = _residual(signal, design, instant)
-    return float(residual @ residual)
+def _sums_of_squares(signal: Signal, design: Design, instants: Array) -> Array:
+    """What a shape leaves of the signal with its break at each of the instants (k,) [s], (k,)."""
+    parts = np.array_split(instants, 1 + instants.size * signal.time.size // AT_ONCE)
+    return np.concatenate([np.einsum("ij,ij->i", r, r) for r in (_residuals(signal, design, p) for p in parts)])
 
 
-def _residual(signal: Signal, design: Design, instant: float) -> Array:
-    x = design(signal.time, instant)
-    gram = x.T @ x
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(gram), 1e-30))
-    ridge = 1e-11 * np.eye(len(scale))
-    beta = np.linalg.solve(gram * np.outer(scale, scale) + ridge, (x.T @ signal.value) * scale) * scale
-    return np.asarray(signal.value - x @ beta)
+def _residuals(signal: Signal, design: Design, instants: Array) -> Array:
+    """The signal (n,) less the best curves of a shape that break at the instants (k,) [s], (k, n)."""
+    x = design(signal.time, instants[:, np.newaxis])
+    across = np.swapaxes(x, 1, 2)
+    gram = across @ x
+    scale = 1.0 / np.sqrt(np.maximum(np.diagonal(gram, axis1=1, axis2=2), 1e-30))
+    scaled = gram * scale[:, :, np.newaxis] * scale[:, np.newaxis, :] + 1e-11 * np.eye(x.shape[2])
+    beta = np.linalg.solve(scaled, ((across @ signal.value) * scale)[:, :, np.newaxis])[:, :, 0] * scale
+    return np.asarray(signal.value - (x @ beta[:, :, np.newaxis])[:, :, 0])
 
 
 def _linear_std(signal: Signal, design: Design, instant: float, noise: Noise) -> float:
@@ -176,7 +184,7 @@ def _linear_std(signal: Signal, design: Design, instant: float, noise: Noise) ->
 
 def _noise_variance(signal: Signal, design: Design, instant: float) -> float:
     """Variance per independent sample: that of the residuals times the length of their memory in samples."""
-    residual = _residual(signal, design, instant)
+    residual: Array = _residuals(signal, design, np.array([instant]))[0]
     variance = float(residual @ residual) / max(residual.size - 6, 1)
     return max(variance * memory_length(residual), 1e-12 * float(np.ptp(signal.value)) ** 2, 1e-300)
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import importlib.metadata
 import inspect
-from collections.abc import Mapping
+import os
+import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +17,16 @@ from hfanalysis.inference.adopted import adopted_file
 from hfanalysis.products import disk as products
 from hfanalysis.products.disk import HashCache
 from hfanalysis.record.definition import TestDefinition
-from hfanalysis.sources import closure, data, digest, libraries
+from hfanalysis.sources import closure, data, digest, libraries, remembered
 from hfanalysis.stages import base, stand, way_to
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.version import __version__
 
 STATE = ".state"
+
+_INSTALLED = ".dist-info"
+"""How the name of a folder ends that an installed distribution is described in. Source: Python packaging, "Recording
+installed projects": ``name-version.dist-info``."""
 
 
 def modules(context: Context, stage: Stage) -> frozenset[Path]:
@@ -28,14 +35,33 @@ def modules(context: Context, stage: Stage) -> frozenset[Path]:
     Those of the stages that it runs itself, too, a team's own effects with what they import, and what the stages before
     it say of themselves: what they do is in their products.
     """
+    whole, said = _roots(context, stage)
+    return closure(*whole) | closure(*said, inside=False)
+
+
+def _roots(context: Context, stage: Stage) -> tuple[list[Path], list[Path]]:
+    """Modules that count with all they import, and those that count with what compiled code of theirs can call."""
     own = [path for path in effect_files(context, stage) if path.suffix == ".py"]
     run = dict.fromkeys(name for last in stage.runs for name in way_to(last))
-    whole = map(_module, [stage, *map(base.load_stage, run)])
-    return closure(*whole, *own) | closure(*map(_module, map(base.load_stage, stage.upstream)), inside=False)
+    whole = [_module(stage), *map(_module, map(base.load_stage, run)), *own]
+    return whole, list(map(_module, map(base.load_stage, stage.upstream)))
 
 
 def _module(stage: Stage) -> Path:
-    return Path(inspect.getfile(stage.run))
+    return Path(inspect.getfile(stage.run)).resolve()
+
+
+def made_by(context: Context, stage: Stage) -> tuple[str, list[str]]:
+    """SHA-256 over the sources that make a stage's products and the data that lie beside them in the package, and the
+    libraries that these sources import."""
+    whole, said = _roots(context, stage)
+
+    def found() -> tuple[str, list[str]]:
+        files = modules(context, stage)
+        return code_hash(files), libraries(files)
+
+    code, names = remembered(f"stage {stage.name}", [*whole, *said], found)
+    return code, names
 
 
 def code_hash(files: frozenset[Path]) -> str:
@@ -43,19 +69,33 @@ def code_hash(files: frozenset[Path]) -> str:
     return digest(files | data(files))
 
 
-@functools.cache
-def library_versions(files: frozenset[Path]) -> dict[str, str]:
-    """The versions of the libraries that sources import."""
-    return {name: _version(name) for name in libraries(files)}
+def library_versions(names: Iterable[str]) -> dict[str, str]:
+    """The versions of libraries by the names that they are imported by."""
+    return {name: _version(name) for name in names}
 
 
 @functools.cache
 def _version(name: str) -> str:
     """That of the library imported by this name, be it of a distribution of another name."""
+    known = _named_on_disk().get(name)
+    if known is not None:
+        return known
     try:
         return importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
         return ", ".join(importlib.metadata.version(found) for found in _distributions().get(name, [])) or "none"
+
+
+@functools.cache
+def _named_on_disk() -> dict[str, str]:
+    """Versions by distribution, as the names of their folders have them: their files take milliseconds to read."""
+    found: dict[str, str] = {}
+    for place in sys.path:
+        with contextlib.suppress(OSError):
+            names = [entry.removesuffix(_INSTALLED) for entry in os.listdir(place or ".") if entry.endswith(_INSTALLED)]
+            for name, _, version in (entry.partition("-") for entry in names):
+                found.setdefault(name, version)
+    return found
 
 
 @functools.cache
@@ -102,17 +142,17 @@ def edited(context: Context) -> bool:
 
 def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, Any]:
     """What ``stage``'s products would be made from if it ran now: the ``provenance`` block of a product."""
-    made_by = modules(context, stage)
+    code, names = made_by(context, stage)
     return {
         "hfanalysis": __version__,
-        "code": code_hash(made_by),
+        "code": code,
         "test_toml": context.definition.sha256,
         "raw": {
             path.relative_to(context.raw).as_posix(): _raw_hash(path, hashes) for path in raw_files(context.definition)
         },
         **({"stand": _of_stand(context, hashes)} if stage.reads_stand else {}),
         "effects": {path.name: hashes(path) for path in effect_files(context, stage)},
-        "libraries": library_versions(made_by),
+        "libraries": library_versions(names),
         "parameters": context.at(stage).parameters(),
         "inputs": _upstream(context, stage, hashes),
     }

@@ -17,11 +17,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from hfanalysis import sources
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
 from hfanalysis.products import disk as products
 from hfanalysis.products.disk import HashCache
 from hfanalysis.record.definition import load_definition
-from hfanalysis.sources import PACKAGE
 from hfanalysis.stages import ASIDE, ORDER, base, freshness
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.stages.lock import locked
@@ -88,7 +88,6 @@ class _Run:
         self.force = force
         self.whole = whole
         self.done: set[str] = set()
-        self.sources = source_files()
         state = context.out / freshness.STATE
         products.make_folder(state)
         self.hashes = HashCache(state / "hashes.json")
@@ -230,16 +229,10 @@ class _Run:
             for name in stage.products:
                 products.touch_before(self.context.product(name), self.context.definition.path)
             return
-        inputs = [*freshness.input_files(self.context, stage), *self.sources, *self._upstream_products(stage)]
+        inputs = [*freshness.input_files(self.context, stage), *self._upstream_products(stage)]
         for name in stage.products:
-            products.touch_after(self.context.product(name), inputs)
+            products.touch_after(self.context.product(name), inputs, sources.state().newest)
 
     def _upstream_products(self, stage: Stage) -> list[Path]:
         names = (name for name in stage.upstream if name not in self.context.absent)
         return [self.context.product(product) for name in names for product in stage.reads(base.load_stage(name))]
-
-
-def source_files() -> list[Path]:
-    """The package's source files, which make takes into account by their times."""
-    paths = PACKAGE.rglob("*")
-    return [path for path in paths if path.is_file() and "__pycache__" not in path.parts]

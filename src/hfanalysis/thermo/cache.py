@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.sources import closure, digest
+from hfanalysis.sources import source_digest
 
 _SEAL = 32
 """Length of a SHA-256 [B]. Source: definition."""
@@ -34,7 +34,7 @@ def cached(name: str, shape: tuple[int, ...], make: Callable[[], Array]) -> Arra
 
     ``name`` has to say what determines the array and is not in the sources of ``make``: versions of libraries, nodes.
     """
-    path = cache_directory() / f"{name}-{digest(closure(Path(inspect.getfile(make))))[:12]}.npy"
+    path = cache_directory() / f"{name}-{source_digest(Path(inspect.getfile(make)))[:12]}.npy"
     stored = _load(path, shape)
     if stored is not None:
         return stored

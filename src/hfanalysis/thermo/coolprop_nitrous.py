@@ -12,7 +12,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.thermo.cache import cached
-from hfanalysis.thermo.saturation import NODES, Property, Saturation
+from hfanalysis.thermo.saturation import NODES, Property, Saturation, splines
 
 CRITICAL_TEMPERATURE = 309.5207
 """T_c in theta [K]. Source: Lemmon and Span 2006, as CoolProp has it."""
@@ -28,8 +28,8 @@ def build() -> Saturation:
     """The table, from the cache where it is there, else from CoolProp (about 3 s, once)."""
     theta = np.linspace(_theta(T_MAX), _theta(T_MIN), NODES)
     name = f"nitrous-coolprop-{version('CoolProp')}-{NODES}"
-    samples = cached(name, (len(Property), theta.size), lambda: sample(theta))
-    return Saturation.from_samples("coolprop", theta, dict(zip(Property, samples, strict=True)), CRITICAL_TEMPERATURE)
+    coefficients = cached(name, (len(Property), NODES - 1, 4), lambda: splines(theta, sample(theta)))
+    return Saturation.from_splines("coolprop", theta, coefficients, CRITICAL_TEMPERATURE)
 
 
 def sample(theta: Array) -> Array:

@@ -9,11 +9,11 @@ correlation lies 1.4 % above the equation of state behind the table at 298 K.
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from hfanalysis.arrays import Array
+from hfanalysis.thermo.cache import cached
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
-from hfanalysis.thermo.saturation import NODES, Property, Saturation
+from hfanalysis.thermo.saturation import NODES, Property, Saturation, splines
 
 CRITICAL_TEMPERATURE = 309.57
 """T_c of the liquid volume correlation [K]; the table ends at 309.52 K, where both phases meet. Source: report,
@@ -104,9 +104,16 @@ def liquid_molar_volume_slope(temperature: Array | float) -> Array:
 
 def build() -> Saturation:
     """The report's correlations and table as one smooth set in specific SI units."""
-    t_low, t_high = TABLE[0, 0], TABLE[-1, 0]
-    theta = np.linspace(_theta(t_high), _theta(t_low), NODES)
-    t = np.clip(CRITICAL_TEMPERATURE * (1.0 - theta**3), t_low, t_high)
+    theta = np.linspace(_theta(TABLE[-1, 0]), _theta(TABLE[0, 0]), NODES)
+    shape = (len(Property), NODES - 1, 4)
+    coefficients = cached(f"nitrous-report-{NODES}", shape, lambda: splines(theta, sample(theta)))
+    return Saturation.from_splines("report", theta, coefficients, CRITICAL_TEMPERATURE)
+
+
+def sample(theta: Array) -> Array:
+    """All properties at the given theta (n,): shape (properties, n), specific SI units, as
+    :func:`hfanalysis.thermo.coolprop_nitrous.sample`."""
+    t = np.clip(CRITICAL_TEMPERATURE * (1.0 - theta**3), TABLE[0, 0], TABLE[-1, 0])
     per_kg = 1.0 / OXIDIZER_MOLAR_MASS
     joule_per_kg = 1e6 * per_kg
     samples = {
@@ -121,7 +128,7 @@ def build() -> Saturation:
         Property.LN_VAPOR_CP: _spline_to_last(np.log(TABLE[:-1, 7] * joule_per_kg), theta),
     }
     samples[Property.VAPOR_GRUENEISEN] = _grueneisen(theta, t, samples)
-    return Saturation.from_samples("report", theta, samples, CRITICAL_TEMPERATURE)
+    return np.array([samples[p] for p in Property])
 
 
 def _grueneisen(theta: Array, t: Array, samples: dict[Property, Array]) -> Array:
@@ -129,6 +136,8 @@ def _grueneisen(theta: Array, t: Array, samples: dict[Property, Array]) -> Array
 
     With p v = h - u, which is the table's own.
     """
+    from scipy.interpolate import CubicSpline
+
     cv = np.exp(samples[Property.LN_VAPOR_CV])
     energy, volume = (
         CubicSpline(theta, samples[p])(theta, 1) for p in (Property.VAPOR_ENERGY, Property.LN_VAPOR_VOLUME)
@@ -143,11 +152,15 @@ def _theta(temperature: Array | float) -> Array:
 
 
 def _spline(values: Array, theta: Array) -> Array:
+    from scipy.interpolate import CubicSpline
+
     return np.asarray(CubicSpline(_theta(TABLE[::-1, 0]), values[::-1])(theta))
 
 
 def _spline_to_last(values: Array, theta: Array) -> Array:
     """Heat capacities have no entry at the critical point: beyond the last (305 K) ln c goes on straight in theta."""
+    from scipy.interpolate import CubicSpline
+
     known = _theta(TABLE[-2::-1, 0])
     spline = CubicSpline(known, values[::-1])
     beyond = np.minimum(theta - known[0], 0.0)

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
@@ -47,6 +47,14 @@ LN_VAPOR_CV, LN_VAPOR_CP, VAPOR_GRUENEISEN = 7, 8, 9
 """Rows of the table, as in :class:`Property`."""
 
 
+def splines(theta: Array, values: Array) -> Array:
+    """Cubics (properties, n - 1, 4) through samples (properties, n) [SI] over theta (n,) [-], in ascending power of
+    theta - node."""
+    from scipy.interpolate import CubicSpline
+
+    return np.ascontiguousarray(np.stack([CubicSpline(theta, row).c[::-1].T for row in values]))
+
+
 @dataclass(frozen=True)
 class Saturation:
     """Saturated nitrous oxide from one source, in specific SI units.
@@ -73,14 +81,19 @@ class Saturation:
 
         ``critical_temperature`` [K].
         """
-        rows = [CubicSpline(theta, properties[p]).c[::-1].T for p in Property]
+        coefficients = splines(theta, np.array([properties[p] for p in Property]))
+        return cls.from_splines(source, theta, coefficients, critical_temperature)
+
+    @classmethod
+    def from_splines(cls, source: str, theta: Array, coefficients: Array, critical_temperature: float) -> Saturation:
+        """The same from ``coefficients`` as :func:`splines` gives them."""
         t = critical_temperature * (1.0 - theta**3)
         return cls(
             source,
             critical_temperature,
             float(theta[0]),
             float(theta[1] - theta[0]),
-            np.ascontiguousarray(np.stack(rows)),
+            coefficients,
             float(t.min()),
             float(t.max()),
         )
@@ -101,6 +114,10 @@ class Saturation:
         return (self.coefficients, self.theta_start, self.theta_step, self.critical_temperature)
 
     def _evaluate(self, prop: Property, temperature: ArrayLike) -> tuple[Array, Array]:
+        if isinstance(temperature, float):  # of which there are thousands, each on its own
+            held = self.t_min - 1e-9 <= temperature <= self.t_max + 1e-9
+            one = evaluate(*self.kernel_table, int(prop), temperature) if held else (np.nan, np.nan)
+            return np.asarray(one[0]), np.asarray(one[1])
         t = np.asarray(temperature, dtype=np.float64)
         value, slope = _evaluate_many(*self.kernel_table, int(prop), t.ravel())
         inside = (t >= self.t_min - 1e-9) & (t <= self.t_max + 1e-9)
@@ -176,7 +193,7 @@ class Saturation:
         t = _temperatures(*self.kernel_table, np.clip(p, low, high).ravel(), self.t_min, self.t_max)
         return np.where(inside, t.reshape(p.shape), np.nan)
 
-    @property
+    @cached_property
     def pressure_range(self) -> tuple[float, float]:
         """Lowest and highest saturation pressure of the source [Pa]."""
         return float(self.pressure(self.t_min)), float(self.pressure(self.t_max))

@@ -82,7 +82,7 @@ def _from_hdf5(path: Path, opaque: dict[str, str]) -> Iterator[LogSeries]:
                 yield from _records_of(file, item, names)
             elif item.dtype.kind in "fiub" and item.ndim == 2:
                 if 1 in item.shape and item.size > 1:
-                    yield LogSeries(".".join(names), cast(Array, Stored(path, item.name, item.shape)))
+                    yield LogSeries(".".join(names), cast(Array, Stored(path, item.name)))
                 elif item.shape[0] <= WIDEST:
                     yield from _series(".".join(names), np.asarray(item).T)
 
