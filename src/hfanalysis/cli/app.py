@@ -161,11 +161,31 @@ def _health(request: Request, apply: Cure = False, yes: Yes = False) -> None:
         perform.stage("health", request)
 
 
+Quick = Annotated[
+    bool,
+    typer.Option(
+        "--quick", help="Within seconds: phases, peaks, impulse, C_i and which sensors to believe. Only shown."
+    ),
+]
+
+
+def _run(request: Request, quick: Quick = False) -> None:
+    if quick:
+        from hfanalysis.cli import quick as at_stand
+
+        at_stand.quick(request)
+    else:
+        from hfanalysis.cli import perform
+
+        perform.stage(RUN, request)
+
+
 _WITH_OPTIONS: dict[str, Callable[..., None]] = {
     "health": _health,
     "diagnose": _diagnose,
     "flight": _flight,
     "report": _report,
+    RUN: _run,
 }
 
 for _name, _text in {**STAGES, RUN: "Every stage; the diagnosis takes longest."}.items():
@@ -189,6 +209,23 @@ def _compare(
 
         ask(root, trust_effects)
         exports.compare(Request(test, root, out, as_json, False, quiet), other, pdf)
+
+
+@app.command("watch")
+def _watch(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder into which the logger writes.")],
+    root: Root = Path(),
+    once: Annotated[bool, typer.Option("--once", help="Look at the logs that are there, and end.")] = False,
+    as_json: Json = False,
+) -> None:
+    """A quick look (as hfa run --quick) at each log as it lands in FOLDER; nothing is written.
+
+    Its test.toml is that of the last test with the same columns, else a draft, without masses and C_i.
+    """
+    with plain_exit():
+        from hfanalysis.cli.landing import watch_folder
+
+        watch_folder(folder, root, once, as_json)
 
 
 EngineToml = Annotated[Path, typer.Argument(metavar="ENGINE.toml", help="An engine file, see engines/.")]

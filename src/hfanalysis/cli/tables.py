@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hfanalysis.cli.exit_status import nobody_reads
+from hfanalysis.products.health import TRUSTED
 from hfanalysis.products.model import AdoptedEffect, Part
 from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
@@ -23,6 +24,7 @@ if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
     from hfanalysis.products.campaign import CommonLaw
     from hfanalysis.products.effects import EffectEntry, EffectLibrary
     from hfanalysis.products.engines import Designed, Simulated
+    from hfanalysis.products.quick import QuickLook
     from hfanalysis.products.validation import Validation
 
 _NARROWEST = 140
@@ -199,6 +201,23 @@ def _regression(regression: RegressionBasis, console: Console) -> None:
         )
 
 
+def show_quick(product: QuickLook) -> None:
+    """Print what can be said at the stand: sensors, phases, performance and C_i."""
+    console = paper()
+    head = [product.test, wording.KINDS.get(product.kind or "", product.kind or "no firing"), "quick look"]
+    source = wording.SOURCES.get(product.source, product.source)
+    console.print(Text.assemble(("  ".join(head), "bold"), "  ", (source, "bold yellow")))
+    console.print(Text(f"test.toml: {product.facts}"), soft_wrap=True)
+    verdicts = ", ".join(f"{name} {verdict}" for name, verdict in product.health.items())
+    console.print(Text(f"sensors: {verdicts}"), soft_wrap=True)
+    for finding in product.findings:
+        console.print(Text(f"  {finding}", style="yellow"), soft_wrap=True)
+    if product.phases:
+        _print(console, product.phases, "phases (seconds after the valve opens)")
+    _print(console, {"C_i": product.C_i} | product.performance, "performance, as measured")
+    console.print(Text("not fitted, not compared with the model, not diagnosed: hfa run without --quick does"))
+
+
 def show_regression(product: CommonLaw) -> None:
     """Print a and n of several tests, together and each alone."""
     console = paper()
@@ -222,6 +241,8 @@ def _performance(product: Validation, console: Console) -> None:
             unit = found.unit or model.unit
             table.add_row(in_words(name), found.value, found.std, model.value, model.std, unit, _doubt(measured))
     console.print(table)
+    if performance.motor_class:
+        console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=True)
     for name, reason in product.absent.items():
         console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=True)
 
@@ -329,9 +350,12 @@ def _values(console: Console, found: Mapping[str, Quantity], title: str) -> None
 
 
 def _doubt(quantity: Quantity) -> Text:
-    """In a table without verdicts: that a number is doubted, and for which channel; the warnings say more."""
+    """In a table without verdicts: that a number is doubted, or rests on a channel that is trusted, and for which
+    channel; the warnings say more."""
+    told = (quantity.why or "").partition(": ")[0]
+    trusted = TRUSTED in told and quantity.value is not None
     doubted = quantity.verdict == DOUBTED and quantity.value is not None
-    return Text(f"doubted: {(quantity.why or '').partition(': ')[0]}" if doubted else "", style="yellow")
+    return Text(f"doubted: {told}" if doubted else told if trusted else "", style="yellow")
 
 
 _SHOWN = {
