@@ -13,13 +13,16 @@ from hfanalysis.products.effects import EffectLibrary
 from hfanalysis.products.engines import Designed, Simulated
 from hfanalysis.products.kinds import KINDS
 from hfanalysis.products.model import Is, Part, Product
+from hfanalysis.products.quick import QuickLook
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 PAGE, SCHEMAS = DOCS / "products.md", DOCS / "schemas"
 BLOCK = re.compile(
     r"(<!-- fields of (?P<file>\S+) \(written by `make readme`\) -->\n).*?(<!-- end of fields -->)", re.DOTALL
 )
-ALL: dict[str, type[Part]] = {**KINDS, **{kind.file: kind for kind in (Campaign, Simulated, Designed, EffectLibrary)}}
+OTHERS = (Campaign, Simulated, Designed, EffectLibrary, QuickLook)
+"""What commands write or print that is no product of a stage."""
+ALL: dict[str, type[Part]] = {**KINDS, **{kind.file: kind for kind in OTHERS}}
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 NUMBER_OR_NOTHING = ["number", "null"]

@@ -46,7 +46,7 @@ def _events(product: Segments, health: Health) -> Segments:
     for name, event in product.quantities.items():
         after = 0.0 if name == "t_open" else event.value
         instant = None if origin is None or after is None else origin + after
-        changes[name] = _asked(event, product.file, name, health, instant)
+        changes[name] = asked(event, product.file, name, health, instant)
     return product.but(**changes)
 
 
@@ -58,7 +58,7 @@ def _part(part: P, product: str, health: Health) -> P:
 
 def _value(name: str, value: Any, product: str, health: Health) -> Any:
     if isinstance(value, Quantity):
-        return _asked(value, product, name, health)
+        return asked(value, product, name, health)
     if isinstance(value, Part):
         return _part(value, product, health)
     if isinstance(value, Mapping) and any(isinstance(inner, (Quantity, Part)) for inner in value.values()):
@@ -90,7 +90,7 @@ class Doubt:
         )
 
 
-def _asked(quantity: Quantity, product: str, name: str, health: Health, instant: float | None = None) -> Quantity:
+def asked(quantity: Quantity, product: str, name: str, health: Health, instant: float | None = None) -> Quantity:
     """A quantity of a product with the doubts about it; of an event, ``instant`` is when it is [s, log time]."""
     found = _doubts(product, name, quantity, health, instant)
     wider = _wider(quantity, product, name, [doubt.finding for doubt in found if not doubt.trust])

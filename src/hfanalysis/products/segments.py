@@ -18,7 +18,7 @@ NOTHING = "nothing"
 class Opening(Part):
     """One of the firings or flows that a log holds."""
 
-    number: Annotated[int, Is("counted from 1 in the order of the log")]
+    number: Annotated[int, Is("counted from 1 in the order of the log", "")]
     t_open: Annotated[Quantity, Is("its valve opens, in log time", "s")]
     start: Annotated[
         float | None, Is("from when on its events are looked for, in log time; null: the log's start", "s")

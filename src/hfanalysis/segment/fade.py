@@ -53,6 +53,9 @@ LONGEST = 0.6
 """Largest part of the phase that a fade may take. Evidence: test_fuel_bounds.py: what takes most of the burn is how the
 fire goes throughout."""
 
+LEVEL = 0.3
+"""Part of the fade's rate of fall above which the response has not levelled off after it."""
+
 STEADY = 0.15
 """Part of the phase that has to be seen before a fade."""
 
@@ -104,7 +107,7 @@ def find_fade(time: Array, response: Array) -> Fade | None:
     price = float(np.log(t.size)) * variance
     ended = trials.end < last - REST * (trials.end - trials.begin)
     running, over = trials.of(trials.end == last), trials.of(ended)
-    gone = bool(over.left.size) and over.left.min() + 2.0 * price < running.left.min()
+    gone = bool(over.left.size) and over.left.min() + 2.0 * price < running.left.min() and _levels_off(t, y, over)
     used = over if gone else running
     best = used.best
     whole = y - _whole(t) @ np.linalg.lstsq(_whole(t), y, rcond=None)[0]
@@ -179,6 +182,14 @@ def _curve(t: Array, y: Array, one: _Trials) -> Array:
     faded = np.clip((t - one.begin) / (one.end - one.begin), 0.0, 1.0) ** one.power
     x = np.column_stack([_whole(t), faded, np.maximum(t - one.end, 0.0)])
     return np.asarray(x @ np.linalg.lstsq(x, y, rcond=None)[0])
+
+
+def _levels_off(t: Array, y: Array, trials: _Trials) -> bool:
+    """Whether after the best fade the response hardly falls any more: else it is the fade that goes on, ever slower."""
+    one = trials.of(np.arange(trials.left.size) == trials.best)
+    ends = np.interp([float(one.end[0]), float(t[-1])], t, _curve(t, y, one))
+    fading = max(_seen_fall(t, y, trials), 1e-9) / float(one.end[0] - one.begin[0])
+    return bool(ends[0] - ends[1] < LEVEL * fading * (float(t[-1]) - float(one.end[0])))
 
 
 def _seen_fall(t: Array, y: Array, trials: _Trials) -> float:

@@ -268,7 +268,7 @@ def _step(
     longer = slice(a, b) if before[1] - before[0] > after[1] - after[0] else slice(c, d)
     slope = min(float(np.polyfit(time[longer] - instant, value[longer], 1)[0]), 0.0)
     left, right = (value[side] - slope * (time[side] - instant) for side in (slice(a, b), slice(c, d)))
-    scatter = max(float(np.hypot(left.std(), right.std())), noise)
+    scatter = max(float(np.hypot(left.std(), right.std())) / np.sqrt(2.0), noise)
     sides = (before[1] - before[0], after[1] - after[0])
     apart = 0.5 * (after[0] + after[1] - before[0] - before[1])
     of_slope = 12.0 * GRID * apart**2 / max(sides) ** 3
