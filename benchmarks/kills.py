@@ -89,7 +89,7 @@ def disturbed(folder: Path, rng: random.Random, lasting: float) -> str:
     """One run that does not go its way; returns what was done to it."""
     if rng.random() < HALF_DONE:
         pages = list((folder / "processed").glob("*/report.html"))  # by these make tells whether it has to ask
-        for path in {*rng.sample(sorted((folder / "processed").glob("*/*.*")), 3), *pages}:
+        for path in {*rng.sample(sorted((folder / "processed").glob("*/[!.]*.*")), 3), *pages}:
             path.unlink()
     else:
         shutil.rmtree(folder / "processed", ignore_errors=True)

@@ -39,7 +39,7 @@ class Error:
 
 
 CATALOGUE = (
-    Error("n_std_doubled", "result", "n_std = 0.5 *", "n_std = 1.0 *", "law_at"),
+    Error("n_std_doubled", "_Told", "return 0.5 *", "return 1.0 *", "law_at"),
     Error("span_error_a_fifth", "SPAN_SHARE", "0.25", "0.05", "VAPOR_PRESSURE_SHARE"),
     Error("span_error_a_fifth_in_flight", "SPAN_SHARE", "0.25", "0.05", "UNSEEN_DRIFT"),
     Error("span_error_a_fifth_in_performance", "SPAN", "0.25", "0.05", "_raw_integral"),

@@ -113,7 +113,8 @@ def zero(rng: Rng, log: Log) -> Faulty:
     name = pick(rng, log, "thrust", "thrust", "p_chamber")
     share = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-1.6, -0.6))
     if name == "p_chamber":
-        share = -abs(share)
+        # a shift upwards cannot be told from gas that still flows, below vacuum it is another kind
+        share = -float(rng.uniform(0.3, 0.9)) * AMBIENT / log.rise(name)
     at = within(rng, log, 0.0, 0.5)
     shift = share * log.rise(name) * np.clip((log.time - at) / 0.05, 0.0, 1.0)
     return Faulty(log.but(name, log.values[name] + shift), (name,), f"{share:+.3f} of its rise")
@@ -121,7 +122,7 @@ def zero(rng: Rng, log: Log) -> Faulty:
 
 def drift(rng: Rng, log: Log) -> Faulty:
     """A zero that runs through the whole log."""
-    name, share = pick(rng, log, "thrust", "p_chamber"), float(rng.choice([-1, 1]) * 10.0 ** rng.uniform(-1.2, -0.3))
+    name, share = pick(rng, log, "thrust", "p_chamber"), float(rng.choice([-1, 1]) * 10.0 ** rng.uniform(-1.4, -0.7))
     slope = share * log.rise(name) / (log.fire[1] - log.fire[0])
     value = log.values[name] + slope * (log.time - log.time[0])
     return Faulty(log.but(name, value), (name,), f"{share:+.3f} of its rise through the firing")
@@ -233,7 +234,7 @@ def edge(rng: Rng, log: Log) -> Faulty:
 
 
 NEEDS: dict[str, tuple[str, ...]] = {
-    "gross_mass": ("m_tank", "oxidizer_mass"), "scale": ("[nozzle]", "oxidizer_mass", "[grain]", "hot_fire"),
+    "gross_mass": ("m_tank", "oxidizer_mass"), "scale": ("[nozzle]", "oxidizer_mass", "[grain]", "hot_fire", "thrust"),
     "unit": ("[nozzle]", "oxidizer_mass", "[grain]", "hot_fire", "thrust"), "swapped": ("hot_fire",),
     "lag": ("thrust",), "zero": ("thrust",), "sign": ("thrust",),
 }  # fmt: skip

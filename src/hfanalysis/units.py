@@ -212,7 +212,7 @@ def parse(text: str | float | int, dimension: str, where: str) -> Value:
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
         raise _refused(text, dimension, where)
     if not isinstance(text, str):
-        return _bare(float(text), dimension, where)
+        return _bare(text, dimension, where)
     number, unit, spread, spread_unit = _split(text, dimension, where)
     if is_gauge(unit) and dimension == "pressure":
         raise InputError(f"{where}: found {text!r}, a gauge pressure; expected an absolute one")
@@ -256,10 +256,14 @@ def _convert(number: float, unit: str, dimension: str, where: str) -> float:
     return number * scale + offset
 
 
-def _bare(number: float, dimension: str, where: str) -> Value:
-    if dimension != "dimensionless" or not math.isfinite(number):
+def _bare(number: float | int, dimension: str, where: str) -> Value:
+    try:
+        value = float(number)
+    except OverflowError:  # a whole number of more digits than a float has
+        value = math.inf
+    if dimension != "dimensionless" or not math.isfinite(value):
         raise _refused(number, dimension, where)
-    return Value(number)
+    return Value(value)
 
 
 def _refused(found: Any, dimension: str, where: str) -> InputError:

@@ -11,7 +11,7 @@ import pytest
 from hfanalysis.sources import PACKAGE, libraries
 
 REPOSITORY = Path(__file__).parents[2]
-COMES_WITH = {"pydantic_core": "pydantic"}
+COMES_WITH = {"pydantic_core": "pydantic", "python_calamine": "python-calamine"}
 """Imported modules that come in a distribution of another name."""
 
 

@@ -138,7 +138,7 @@ def test_products_are_real_files_made_once(checkout: Path) -> None:
     log = checkout / "processed/HF5/run.log"
     assert make(checkout, product).returncode == 0
     runs = len(log.read_text().splitlines())
-    assert runs == 2
+    assert runs == 3  # ingest, health, segment
     assert "is up to date" in make(checkout, product).stdout
     (checkout / "raw_tests/HF5/log.csv").touch()
     assert make(checkout, product).returncode == 0

@@ -11,7 +11,17 @@ from tests.calibrate.engine_sample import TRUTH, engine, evidence, rate
 from hfanalysis.assembly.calibrated import Regression, pressure_at, starting_for
 from hfanalysis.calibrate.evidence import Evidence, Scalar, burn_time_of
 from hfanalysis.calibrate.likelihood import effective_samples, surface, weights_from
-from hfanalysis.calibrate.regression import RANGE_N, Fitted, _likeliest, _minimum, fit, fit_together, law_at, result
+from hfanalysis.calibrate.regression import (
+    RANGE_N,
+    RANGE_RATE,
+    Fitted,
+    _likeliest,
+    _minimum,
+    fit,
+    fit_together,
+    law_at,
+    result,
+)
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.errors import AbsentError
 
@@ -194,3 +204,33 @@ def test_evidence_lists_its_observations() -> None:
 def test_a_start_beyond_the_range_of_n_is_moved_to_its_border(clear: Fitted) -> None:
     found = _minimum(clear.evidence, clear.weights, clear.flux, np.array([clear.best[0], RANGE_N[1] + 0.4]))
     assert RANGE_N[0] <= found[1] <= RANGE_N[1]
+
+
+@pytest.mark.parametrize("shift", [(0.0, 0.0), (0.3, 0.0), (-2.0, 0.4), (0.0, -0.5)])
+def test_a_value_lies_within_its_interval_wherever_the_fit_has_come_to(
+    clear: Fitted, shift: tuple[float, float]
+) -> None:
+    """Where that is not the least of the surface, a and n are not identified."""
+    found = result(replace(clear, best=clear.best + np.array(shift)))
+    for name in ("a", "n", "regression_rate_reference"):
+        quantity = found.quantities[name]
+        assert quantity.interval is not None
+        assert quantity.interval[0] <= quantity.value <= quantity.interval[1]
+        assert (quantity.verdict == "identified") == (shift == (0.0, 0.0)) or name == "regression_rate_reference"
+
+
+def test_a_rate_that_no_fuel_has_is_not_looked_for() -> None:
+    """The fit of a chamber pressure that no engine of this kind has stays among the rates of fuels."""
+    sound = evidence()
+    found = result(fit([replace(sound, chamber=0.2 * sound.chamber, burn_time=None)]))
+    low, high = (1e3 * rate for rate in RANGE_RATE)
+    rate_found = found.regression_rate_reference
+    assert rate_found.value is not None
+    assert 0.9e-3 * low < rate_found.value < 1.1e-3 * high
+    assert found.a.verdict == found.n.verdict == "not identifiable"
+
+
+def test_a_valley_that_hardly_shows_n_points_at_a_flux_of_the_burn(clear: Fitted) -> None:
+    """And at no number beyond a float's range."""
+    steep = replace(clear.surface, points=clear.surface.points * np.array([1e6, 1e-9]) + np.array([0.0, 0.5]))
+    assert 0.0 < replace(clear, surface=steep).reference_flux < 1e4

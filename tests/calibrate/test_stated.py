@@ -9,10 +9,12 @@ from tests.segment.stand import HOLE_AREA, HOLES, Stand, Trial, definition, fire
 
 from hfanalysis.calibrate.fuel_law import contradiction, held
 from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import UNIT_OF_FLUX, FuelLaw, RegressionBasis, TankConstants
 from hfanalysis.quantity import CONDITIONAL, DERIVED, IDENTIFIED, STATED, Quantity
 from hfanalysis.record.sections import Feed, GrainSection, Injector, Tank
 from hfanalysis.units import Value
+from hfanalysis.validate.tank_free import run_tank_free
 
 STAND = Stand()
 
@@ -91,3 +93,15 @@ def test_a_stated_law_whose_rate_is_not_the_logs_is_said(a: float, says: bool) -
     found = contradiction(definition(grain=GrainSection(a=Value(a), n=Value(0.5))), law())
     assert (found is not None) == says
     assert not says or ("2.828 mm/s" in str(found) and "1.414" in str(found))
+
+
+@pytest.mark.parametrize("missing", [{"tank": None}, {"injector": Injector(C_i=Value(0.3))}])
+def test_a_stated_C_i_of_an_engine_that_is_not_stated_is_held_and_runs_no_tank(
+    burn: Trial, missing: dict[str, Any]
+) -> None:
+    stated = definition(burn.stand, **{"injector": injector(Value(0.3)), **missing})
+    log, segments = log_of(burn, white=1e3), segments_of(burn)
+    found = calibrate(log, segments, stated, 20).constants
+    assert (found.C_i.value, found.C_i.verdict) == (0.3, STATED)
+    with pytest.raises(AbsentError, match="no tank model to run"):
+        run_tank_free(log, segments, found, stated)

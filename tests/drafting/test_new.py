@@ -130,6 +130,15 @@ def test_every_section_of_test_toml_is_in_the_draft_and_those_that_are_marked_lo
     assert all(getattr(stated, name) for name in sections)
 
 
+@pytest.mark.parametrize(
+    ("test_id", "kind"),
+    [("HF3", "hot_fire"), ("AJ-CF1", "cold_flow"), ("coldflow-2019", "cold_flow"), ("water2", "water_flow")],
+)
+def test_the_name_says_which_kind_of_test_it_is(test_id: str, kind: str, tmp_path: Path) -> None:
+    log = short_log(tmp_path, "time (s),p_tank (psi)")
+    assert load_definition(new_test(tmp_path, test_id, [log]).path).test.kind == kind
+
+
 def test_every_column_is_drawn(tmp_path: Path) -> None:
     made = new_test(tmp_path, "T", [short_log(tmp_path, 'time,a & <b>,"c ""d""",state of things')])
     drawing = ElementTree.parse(made.picture).getroot()

@@ -189,3 +189,11 @@ def test_a_long_log_is_thinned_and_its_extremes_are_kept(tmp_path: Path) -> None
     assert (file.columns[1].samples, file.columns[1].largest) == (size, 99.0)
     assert file.columns[1].values.size <= MOST
     assert survey([file]).columns[0].rate == pytest.approx(1000.0)
+
+
+def test_a_unit_that_is_not_stated_is_that_of_the_others_gauge_or_absolute(tmp_path: Path) -> None:
+    """A chamber that may be in bar or psi by its size, beside a tank in barg."""
+    names = {"CHAMBER": 40.0 * firing() + noise(0.1), "tank (barg)": 48.0 * emptying() + noise(0.1, seed=4)}
+    best = written(tmp_path, **{"time (s)": TIME}, **names).columns[0].best
+    assert best is not None
+    assert (best.channel, best.unit, best.gauge) == ("p_chamber", "bar", True)

@@ -9,7 +9,7 @@ import pytest
 from tests.health.test_judge import finding
 from tests.products.filled import filled
 
-from hfanalysis.health.doubts import doubted, with_doubt
+from hfanalysis.health.doubts import Doubt, doubted, with_doubts
 from hfanalysis.health.rests_on import TABLES
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.health import ChannelHealth, Health
@@ -57,11 +57,25 @@ def test_constants_fitted_together_rest_on_the_thrust_as_well() -> None:
 
 
 def test_worse_verdicts_stay_and_get_the_reason() -> None:
-    why = [(True, "p_tank (zero): it reads low")]
-    bad = with_doubt(Quantity(-3.0, verdict="unphysical", why="outside"), why)
+    why = [Doubt(finding("suspect", "p_tank", evidence="it reads low"), ("p_tank",))]
+    bad = with_doubts(Quantity(-3.0, verdict="unphysical", why="outside"), why)
     assert (bad.verdict, bad.why) == ("unphysical", "outside; p_tank (zero): it reads low")
-    none = with_doubt(Quantity.absent("too short", verdict="not identifiable"), why)
+    none = with_doubts(Quantity.absent("too short", verdict="not identifiable"), why)
     assert (none.verdict, none.reason) == ("not identifiable", "too short; p_tank (zero): it reads low")
+
+
+def test_what_is_not_there_says_which_channel_is_left_out() -> None:
+    none = {"t_end": Quantity.absent("the log has no p_chamber"), "t_feed": Quantity.absent("the log has no p_run")}
+    found = doubted(filled(Segments, none), health_of("p_chamber", "unusable", kind="dead"))
+    assert isinstance(found, Segments)
+    assert found.t_end.reason == "the log has no p_chamber; p_chamber (dead, left out): it reads 76 N"
+    assert found.t_feed.reason == "the log has no p_run"
+
+
+def test_a_coefficient_by_law_rests_on_what_the_whole_does() -> None:
+    found = doubted(filled(Calibration, {"C_d": {"spi": Quantity(0.6)}}), health_of("p_run", "suspect"))
+    assert isinstance(found, Calibration)
+    assert found.C_d["spi"].verdict == "doubted"
 
 
 def test_trust_is_told_beside_the_number_and_leaves_the_verdict() -> None:
@@ -99,6 +113,23 @@ def test_a_stretch_is_a_doubt_about_the_events_near_it() -> None:
         found = doubted(filled(Segments, events), health)
         assert isinstance(found, Segments)
         assert (found.t_open.verdict, found.t_v.verdict) == expected
+
+
+def test_a_late_channel_widens_its_events() -> None:
+    events = {"t_open": Quantity(100.0, "s", 0.01), "t_v": Quantity(5.0, "s", 0.01), "t_end": Quantity(8.0, "s", 0.1)}
+    found = doubted(filled(Segments, events), health_of("p_run", "suspect", kind="lag", delay=0.5))
+    assert isinstance(found, Segments)
+    assert [found.t_open.std, found.t_v.std, found.t_end.std] == pytest.approx([0.5, 0.5, 0.1], rel=0.01)
+    assert found.t_v.interval == pytest.approx((4.02, 5.98), abs=0.01)
+
+
+def test_a_clock_at_another_pace_widens_what_goes_with_time() -> None:
+    calibration = {"C_i": Quantity(0.6, "", 0.001, (0.598, 0.602)), "m": Quantity(0.7, "", 0.01)}
+    found = doubted(filled(Calibration, calibration), health_of("p_run", "suspect", kind="clock", pace=0.6))
+    assert isinstance(found, Calibration)
+    assert found.C_i.interval is not None
+    assert found.C_i.interval[0] < 0.3 < 0.6 < found.C_i.interval[1]
+    assert (found.m.std, found.m.verdict) == (0.01, "doubted")
 
 
 def test_what_the_engineer_states_rests_on_no_channel() -> None:

@@ -80,6 +80,7 @@ def test_accuracy_is_as_wide_as_what_is_found_may_mean(tmp_path: Path) -> None:
     log, definition = fire.ingested(tmp_path, fire.columns())
     found = widened(log, health_of("thrust", "suspect", bias=30.0))
     assert found["thrust"].accuracy == pytest.approx(np.hypot(7.0, 30.0))
+    assert found["thrust"].doubt == 30.0
     zero_std = log["thrust"].zero_std
     assert zero_std is not None
     assert found["thrust"].zero_std == pytest.approx(np.hypot(zero_std, 30.0))

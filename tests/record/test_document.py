@@ -75,7 +75,7 @@ def test_the_sections_of_a_test_make_an_engine_file(tmp_path: Path) -> None:
     assert made.tank.polytropic_exponent == "c_p/c_v"
     assert made.model.properties == "coolprop"
     assert made.design.oxidizer_flow == Value(2.5)
-    assert made.grain.n == 0.555
+    assert made.grain.n == Value(0.555)
 
 
 def test_a_hole_of_known_diameter_has_an_area_and_its_spread(tmp_path: Path) -> None:
@@ -96,9 +96,9 @@ def test_a_hole_of_known_diameter_has_an_area_and_its_spread(tmp_path: Path) -> 
         ('"6.35 mm"', '"4.35 mm"', "tank.dip_tube: the inner diameter is not smaller than the outer diameter"),
         ('"c_p/c_v"', '"c_p"', "tank.polytropic_exponent: found 'c_p'; expected 'c_p/c_v', or a number"),
         ('"c_p/c_v"', "-1", "tank.polytropic_exponent: found -1; expected 'c_p/c_v', or a number"),
-        ("ullage = 0.20", "ullage = -0.2", "tank.ullage: found -0.2; expected a number of at least 0"),
-        ("C_i = 1", "C_i = 3", "injector.C_i: found 3; expected a number of at most 2"),
-        ("C_i = 1", "C_i = true", "injector.C_i: found True; expected a finite number without quotes or unit"),
+        ("ullage = 0.20", "ullage = -0.2", "tank.ullage: found -0.2; expected a number that is zero or more"),
+        ("C_i = 1", "C_i = 3", "injector.C_i: found 3; expected a number that is between 0 and 2"),
+        ("C_i = 1", "C_i = true", "injector.C_i: found True; expected a finite number such as 0.529"),
         ("C_i = 1", f"C_i = 1{'0' * 400}", "injector.C_i: found 1"),
         ("a = 1.32e-4", "a = 0.0", "grain.a: found 0.0; expected a number that is more than zero"),
         ("[model]", "[[model]]", "engine.toml, model: found [{'conventions': 'report'}]; expected a table of keys"),

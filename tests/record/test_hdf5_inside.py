@@ -13,7 +13,7 @@ from tests.record.test_formats import tdms as tdms_bytes
 
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
-from hfanalysis.record.readers import hdf5_inside, matlab, tdms
+from hfanalysis.record.readers import hdf5, hdf5_inside, matlab, tdms
 
 
 def matlab_with(folder: Path, change: Callable[[h5py.File], None]) -> Path:
@@ -70,13 +70,24 @@ def test_links_that_meet_again_are_followed_once(tmp_path: Path) -> None:
     assert [name.rpartition(".")[2] for name in found.columns] == ["PT1", "last"]
 
 
-def test_what_nobody_named_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_nobody_named_is_not_read(tmp_path: Path) -> None:
     def vast(file: h5py.File) -> None:
         file.create_dataset("vast", (1, 10**12), "f8", chunks=(1, 1 << 16), fillvalue=1.0)
 
     found = matlab.open_source(matlab_with(tmp_path, vast), FileSpec("t.mat"))
     (chunk,) = found.chunks([found.columns.index("PT1")], [], lambda share: None)
     np.testing.assert_array_equal(next(iter(chunk.columns.values())), P)
+
+
+def test_numbers_are_finished_when_they_are_read(tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "t.h5", "w") as file:
+        file["PT1"] = np.array([1, 2, -99, 4], dtype=np.int16)
+        file["PT1"].attrs.update(units="bar", _FillValue=np.int16(-99), scale_factor=0.5)
+        file.create_dataset("vast", (10**12,), "f8", chunks=(1 << 16,), fillvalue=1.0)
+    found = hdf5.open_source(tmp_path / "t.h5", FileSpec("t.h5"))
+    assert (found.columns, found.units) == (("PT1", "vast"), ("bar", ""))
+    (chunk,) = found.chunks([0], [], lambda share: None)
+    np.testing.assert_array_equal(chunk.columns[0], [0.5, 1.0, np.nan, 2.0])
 
 
 def test_an_index_beside_a_tdms_file_is_not_believed(tmp_path: Path) -> None:

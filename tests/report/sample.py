@@ -82,6 +82,8 @@ SEGMENTS: dict[str, Any] = {
     "t_v": quantity(5.271, "s", 0.006),
     "t_purge": quantity(5.99, "s", 0.011, why="slope of the purge line"),
     "t_fuel_out": {"value": None, "reason": "no common fall of chamber pressure and thrust"},
+    "t_fuel_gone": {"value": None, "reason": "no common fall of chamber pressure and thrust"},
+    "firings": [],
     "t_end": quantity(17.0, "s", 0.05),
     "engineer": ["t_end"],
     "notes": [],

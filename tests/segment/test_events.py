@@ -187,7 +187,7 @@ def test_without_a_quiet_time_before_the_opening_the_line_says_nothing() -> None
 
 def test_a_sudden_end_of_the_fuel_is_dated() -> None:
     test = fire(Stand(t_fuel_out=3.4), rate=RATE)
-    found = find_fuel_end(signals_of(test), AMBIENT, 0.1, test.t_v, 9.0)
+    found = find_fuel_end(signals_of(test), AMBIENT, 0.1, (test.t_v, 1e-3), 9.0)
     assert not isinstance(found, str)
     assert found.time == pytest.approx(3.4, abs=3.0 * found.std)
     assert found.std < 0.02
@@ -198,13 +198,13 @@ def test_a_fall_that_the_thrust_does_not_share_is_no_end_of_the_fuel() -> None:
     test = fire(Stand(t_fuel_out=3.4), rate=RATE)
     signals = signals_of(test)
     signals["thrust"] = signals_of(fire(rate=RATE))["thrust"]
-    found = find_fuel_end(signals, AMBIENT, 0.1, test.t_v, 9.0)
+    found = find_fuel_end(signals, AMBIENT, 0.1, (test.t_v, 1e-3), 9.0)
     assert isinstance(found, str)
 
 
 def test_the_end_of_the_liquid_is_not_taken_for_that_of_the_fuel() -> None:
     test = fire(rate=RATE)
-    found = find_fuel_end(signals_of(test), AMBIENT, 0.1, test.t_v, 9.0)
+    found = find_fuel_end(signals_of(test), AMBIENT, 0.1, (test.t_v, 1e-3), 9.0)
     assert isinstance(found, str)
     assert "do not fall against the feed" in found
 
@@ -233,7 +233,7 @@ def test_fuel_and_liquid_that_end_close_to_each_other_are_told_apart(apart: floa
     liquid = find_liquid_end(signals, 8.0, test.p_v)
     assert liquid is not None
     assert liquid.time == pytest.approx(test.t_v, abs=0.006)
-    fuel = find_fuel_end(signals, AMBIENT, 0.1, liquid.time, 9.0)
+    fuel = find_fuel_end(signals, AMBIENT, 0.1, (liquid.time, 1e-3), 9.0)
     assert not isinstance(fuel, str)
     assert fuel.time == pytest.approx(test.t_v + apart, abs=0.006)
 
@@ -242,7 +242,7 @@ def test_near_the_end_of_the_liquid_too_the_thrust_has_to_fall_with_the_chamber(
     test = ending_beside_the_liquid(0.09)
     signals = signals_of(test)
     signals["thrust"] = signals_of(fire(rate=RATE))["thrust"]
-    assert isinstance(find_fuel_end(signals, AMBIENT, 0.1, test.t_v, 9.0), str)
+    assert isinstance(find_fuel_end(signals, AMBIENT, 0.1, (test.t_v, 1e-3), 9.0), str)
 
 
 @pytest.mark.parametrize("relaxation", [0.005, 0.02, 0.05, 0.15])
@@ -253,7 +253,7 @@ def test_a_chamber_that_empties_slowly_after_the_liquid_is_no_end_of_the_fuel(re
     thrust = fed * (0.35 + 0.65 * np.exp(-gone / relaxation))
     chamber = AMBIENT + thrust * np.ptp(test.values["p_chamber"]) / np.ptp(test.values["thrust"])
     slow = replace(test, values={**test.values, "p_chamber": chamber, "thrust": thrust})
-    assert isinstance(find_fuel_end(signals_of(slow), AMBIENT, 0.1, test.t_v, 9.0), str)
+    assert isinstance(find_fuel_end(signals_of(slow), AMBIENT, 0.1, (test.t_v, 1e-3), 9.0), str)
 
 
 def test_a_bend_in_the_noise_near_ambient_cannot_be_dated_and_is_no_sudden_fall() -> None:
@@ -276,18 +276,20 @@ def test_abrupt_falls_are_told_apart_and_a_tail_or_a_swing_is_none() -> None:
     assert abrupt_falls(noisy("p_chamber", level(3.0)), 0.0, 20.0, 21.0) == []
 
 
-def test_fuel_that_thins_out_before_the_liquid_is_gone_is_dated_by_the_middle_of_its_fade() -> None:
+def test_fuel_that_thins_out_before_the_liquid_is_gone_is_dated_where_its_fade_begins() -> None:
     run = noisy("p_run", np.full(TIME.size, 35e5))
     level = np.interp(TIME, [-4.0, 0.0, 0.05, 4.0, 5.2, 10.0], [0.0, 0.0, 12e5, 12e5, 4e5, 4e5])
     signals = {"p_run": run, "p_chamber": noisy("p_chamber", AMBIENT + level)}
-    found = find_fuel_end(signals, AMBIENT, 0.1, 5.3, 5.3)
+    found = find_fuel_end(signals, AMBIENT, 0.1, (5.3, 1e-3), 5.3)
     assert not isinstance(found, str)
-    assert 4.3 < found.time < 5.1
-    assert 0.6 < found.duration < 1.5
-    shared = find_fuel_end({**signals, "thrust": noisy("thrust", 2e-3 * level, 5.0)}, AMBIENT, 0.1, 5.3, 5.3)
+    assert found.time == pytest.approx(4.0, abs=0.15)
+    assert 0.02 < found.std < 0.12
+    assert found.gone is None
+    assert "goes on to the end of the liquid" in found.hidden
+    shared = find_fuel_end({**signals, "thrust": noisy("thrust", 2e-3 * level, 5.0)}, AMBIENT, 0.1, (5.3, 1e-3), 5.3)
     assert shared == found
     not_shared = {**signals, "thrust": noisy("thrust", np.full(TIME.size, 2400.0), 5.0)}
-    assert isinstance(find_fuel_end(not_shared, AMBIENT, 0.1, 5.3, 5.3), str)
+    assert isinstance(find_fuel_end(not_shared, AMBIENT, 0.1, (5.3, 1e-3), 5.3), str)
 
 
 def fading_fire(run: Array, goes: float = 5.3) -> dict[str, Signal]:
@@ -304,28 +306,28 @@ EMPTYING = 20e5 * np.exp(-np.maximum(TIME - 4.0, 0.0) / 3.0)
 
 
 def test_a_fire_that_fades_is_dated_where_what_is_left_of_it_goes_out() -> None:
-    found = find_fuel_end(fading_fire(EMPTYING), AMBIENT, 0.1, 4.0, 9.0)
+    found = find_fuel_end(fading_fire(EMPTYING), AMBIENT, 0.1, (4.0, 1e-3), 9.0)
     assert not isinstance(found, str)
     assert found.time == pytest.approx(5.3, abs=0.01)
     assert found.std < 0.01
-    assert found.duration < 0.05
+    assert found.gone == found.time
 
 
 @pytest.mark.parametrize("then", [0.0, 1.15], ids=["ahead of its sensor", "behind it"])
 def test_where_the_feed_ends_a_fire_goes_out_with_fuel_left(then: float) -> None:
     closed = np.where(TIME < 5.3, 1.0, then + (1.0 - then) * np.exp(-since(5.3) / 0.03))
-    assert isinstance(find_fuel_end(fading_fire(EMPTYING * closed), AMBIENT, 0.1, 4.0, 9.0), str)
+    assert isinstance(find_fuel_end(fading_fire(EMPTYING * closed), AMBIENT, 0.1, (4.0, 1e-3), 9.0), str)
 
 
 def test_a_fire_that_fades_to_its_end_goes_out_at_no_instant() -> None:
     signals = fading_fire(EMPTYING, goes=np.inf)
-    assert isinstance(find_fuel_end(signals, AMBIENT, 0.1, 4.0, 9.0), str)
+    assert isinstance(find_fuel_end(signals, AMBIENT, 0.1, (4.0, 1e-3), 9.0), str)
 
 
 def test_without_the_run_line_the_fuel_cannot_be_told_from_the_feed() -> None:
     test = fire(Stand(t_fuel_out=3.4), rate=RATE)
     signals = {n: s for n, s in signals_of(test).items() if n != "p_run"}
-    assert "without p_run" in str(find_fuel_end(signals, AMBIENT, 0.1, test.t_v, 9.0))
+    assert "without p_run" in str(find_fuel_end(signals, AMBIENT, 0.1, (test.t_v, 1e-3), 9.0))
 
 
 def test_a_chamber_at_ambient_says_nothing_of_the_fuel() -> None:
@@ -333,7 +335,7 @@ def test_a_chamber_at_ambient_says_nothing_of_the_fuel() -> None:
         "p_run": noisy("p_run", np.full(TIME.size, 35e5)),
         "p_chamber": noisy("p_chamber", np.full(TIME.size, AMBIENT)),
     }
-    assert "not above ambient for long enough" in str(find_fuel_end(signals, AMBIENT, 0.1, 5.0, 9.0))
+    assert "not above ambient for long enough" in str(find_fuel_end(signals, AMBIENT, 0.1, (5.0, 1e-3), 9.0))
 
 
 # --- the chamber unchokes ---------------------------------------------------------------------------------------------

@@ -122,3 +122,11 @@ def test_what_has_burnt_is_as_well_known_as_both_weighings() -> None:
     assert _less(Value(1.6, 0.03), None).std == 0.03
     assert _less(Value(1.6, 0.03), Value(0.4, 0.04)).std == pytest.approx(0.05)
     assert _less(Value(2.0), Value(0.4)).std == pytest.approx(0.02 * np.sqrt(2.0))
+
+
+@pytest.mark.parametrize(("kilonewton_seconds", "unphysical"), [(25.0, False), (60.0, True)])
+def test_more_impulse_than_the_propellant_can_give_is_unphysical(kilonewton_seconds: float, unphysical: bool) -> None:
+    impulse = Quantity(1e3 * kilonewton_seconds, "N s", 100.0)
+    found = specific_impulse(impulse, Quantity(10.0, "kg", 0.1), Quantity(2.0, "kg", 0.01))
+    assert (found.verdict == "unphysical") == unphysical
+    assert unphysical == ("its unit or a mass is off" in str(found.why))

@@ -112,14 +112,14 @@ def _stated(definition: TestDefinition) -> dict[str, float]:
 
 
 def effective_area(definition: TestDefinition, calibration: TankConstants) -> float:
-    """C_i N_i A_i [m^2]. Raises AbsentError where C_i cannot be had or is not positive."""
+    """C_i N_i A_i [m^2]. Raises AbsentError where C_i or the holes cannot be had, or C_i is not positive."""
     discharge = calibration.C_i
     if discharge.value is None:
         raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is missing ({discharge.reason})")
     if discharge.value <= 0.0:
         raise AbsentError(f"test {definition.test.id}: no tank model to run: C_i is not positive ({discharge.why})")
-    assert definition.injector is not None
-    assert definition.injector.area is not None
+    if definition.injector is None or definition.injector.area is None:
+        raise AbsentError(f"test {definition.test.id}: no tank model to run: [injector] does not state its holes")
     return discharge.value * definition.injector.area.value
 
 

@@ -121,10 +121,10 @@ def _burn_time(segments: Segments, definition: TestDefinition) -> Scalar | None:
     observed = definition.observed
     if observed is not None and observed.burn_time is not None:
         return Scalar(observed.burn_time.value, _std(observed.burn_time, VIDEO), "[observed] burn_time")
-    fuel_out = segments.time("t_fuel_out")
-    if fuel_out is None:
+    gone = segments.time("t_fuel_gone")
+    if gone is None:
         return None
-    return Scalar(fuel_out, max(segments.std("t_fuel_out"), 0.01), "t_fuel_out of the log")
+    return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log")
 
 
 def _std(stated: Value, default: float) -> float:
@@ -141,7 +141,7 @@ def _window_end(
         # with an adopted purge too: what is known of the gas in the chamber rests on its nitrogen from there on
         ends.append((t_purge, "then nitrogen enters" + ("" if nitrogen else ", which the model does not have")))
     if t_fuel_out is not None:
-        ends.append((t_fuel_out - BESIDE_END, "then the fuel is gone"))
+        ends.append((t_fuel_out - BESIDE_END, "then the fuel runs out"))
     if calibration.m.value is None:
         ends.append((t_v, "the vapor's expansion is not calibrated"))
     return min(ends)

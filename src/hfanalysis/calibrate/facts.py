@@ -235,13 +235,13 @@ class _Facts:
 
 def _gauge(factor: float, evidence: str, means: tuple[float, ...]) -> Doubt:
     """That p_c A_t has to be larger by a ``factor`` [-]; ``means``: of p_run and p_chamber [Pa]."""
-    words = (
-        f"p_chamber reads about {_times(1.0 / factor)} of what it should, or [nozzle] throat_radius is "
-        f"stated at {_times(1.0 / sqrt(factor))} of what it is: {evidence}"
-    )
     run, chamber = means
-    true = min(chamber * factor, 0.99 * run)
-    return Doubt(words, {**dict.fromkeys(FLOWS, 1.0), "C_i": sqrt((run - chamber) / (run - true))}, no_regression=True)
+    throat = f"[nozzle] throat_radius is stated at {_times(1.0 / sqrt(factor))} of what it is"
+    if chamber * factor >= run:  # no chamber stands above what feeds it
+        return Doubt(f"{throat}: {evidence}", {}, no_regression=True)
+    words = f"p_chamber reads about {_times(1.0 / factor)} of what it should, or {throat}: {evidence}"
+    reach = sqrt((run - chamber) / (run - chamber * factor))
+    return Doubt(words, {**dict.fromkeys(FLOWS, 1.0), "C_i": reach}, no_regression=True)
 
 
 def _flow(evidence: str, factor: float) -> Doubt:

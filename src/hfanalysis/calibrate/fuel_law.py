@@ -18,7 +18,7 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import UNIT_OF_A, FuelLaw
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import CONDITIONAL, IDENTIFIED, Quantity
+from hfanalysis.quantity import CONDITIONAL, DOUBTED, IDENTIFIED, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 
@@ -71,11 +71,11 @@ def _fitted(
 
 
 def _conditional(law: FuelLaw, discharge: Quantity) -> FuelLaw:
-    """a and n hold on the condition that C_i holds on."""
-    if discharge.verdict != CONDITIONAL:
+    """a and n hold on the condition that C_i holds on, and are doubted where it is."""
+    if discharge.verdict not in (CONDITIONAL, DOUBTED):
         return law
     found = {n: q for n, q in law.quantities.items() if q.verdict == IDENTIFIED}
-    return law.but(**{n: replace(q, verdict=CONDITIONAL, why=discharge.why) for n, q in found.items()})
+    return law.but(**{n: replace(q, verdict=discharge.verdict, why=discharge.why) for n, q in found.items()})
 
 
 def held(definition: TestDefinition, by_log: FuelLaw) -> FuelLaw:

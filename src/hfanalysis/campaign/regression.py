@@ -25,6 +25,8 @@ def regression_of(tests: Sequence[str], root: Path, out: Path | None, progress: 
         context = run_to("segment", open_test(root, name, out, progress=progress))
         segments, effects = context.read(Segments).fired, read_adopted(root, context.definition).acting
         log, definition = context.believed()
+        if segments.taken is not None:
+            log = log.between(segments.taken.start, segments.taken.end)
         log = corrected(log, segments.t_open.value or 0.0, effects)
         try:
             tank = calibrate(log, segments, definition, 400, effects)

@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hfanalysis.cli.exit_status import nobody_reads
+from hfanalysis.products.health import TRUSTED
 from hfanalysis.products.model import AdoptedEffect, Part
 from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
@@ -240,6 +241,8 @@ def _performance(product: Validation, console: Console) -> None:
             unit = found.unit or model.unit
             table.add_row(in_words(name), found.value, found.std, model.value, model.std, unit, _doubt(measured))
     console.print(table)
+    if performance.motor_class:
+        console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=True)
     for name, reason in product.absent.items():
         console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=True)
 
@@ -347,9 +350,12 @@ def _values(console: Console, found: Mapping[str, Quantity], title: str) -> None
 
 
 def _doubt(quantity: Quantity) -> Text:
-    """In a table without verdicts: that a number is doubted, and for which channel; the warnings say more."""
+    """In a table without verdicts: that a number is doubted, or rests on a channel that is trusted, and for which
+    channel; the warnings say more."""
+    told = (quantity.why or "").partition(": ")[0]
+    trusted = TRUSTED in told and quantity.value is not None
     doubted = quantity.verdict == DOUBTED and quantity.value is not None
-    return Text(f"doubted: {(quantity.why or '').partition(': ')[0]}" if doubted else "", style="yellow")
+    return Text(f"doubted: {told}" if doubted else told if trusted else "", style="yellow")
 
 
 _SHOWN = {

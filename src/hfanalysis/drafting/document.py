@@ -30,7 +30,8 @@ _NAME, _RESERVED = re.compile(r"[A-Za-z][A-Za-z0-9_]*"), re.compile(r"time(_\d+)
 """What a channel may be called, and what it may not."""
 SHOWN = 3
 """Guesses of a column that are written down."""
-_CODE = re.compile(r"cold|\bcf\d*\b|_cf\d*", re.IGNORECASE)
+_COLD = re.compile(r"cold|\bcf\d*\b|_cf\d*", re.IGNORECASE)
+_WATER = re.compile(r"water|hydro", re.IGNORECASE)
 _HEAD = """\
 # What is known about test {id}. Drafted from {logs}: check what it says, complete it.
 # Every physical value is a string with its unit, optionally with one standard deviation: "8.35 +/- 0.05 kg".
@@ -38,7 +39,7 @@ schema = 1
 
 [test]
 id = {id_text}
-kind = "{kind}"               # hot_fire | cold_flow: {why}
+kind = "{kind}"               # hot_fire | cold_flow | water_flow: {why}
 source = "measured"             # measured | replica | synthetic
 # description = "what was tested, and how it went"
 # date = 2022-04-03
@@ -46,10 +47,11 @@ source = "measured"             # measured | replica | synthetic
 
 [log]
 {log}
+# firing = 2                    # which of several in the log; without it the largest
 
 # Channels whose column says what it is and in which unit. Optional for every one: accuracy = "2 psi", one standard
 # deviation of its bias (else a class default is used and marked), scale and offset (applied before the unit),
-# gauge = true, missing = [999.0] (readings that stand for none).
+# gauge = true, missing = [999.0] (readings that stand for none), trust = "why it is right, whatever its health seems".
 """
 
 _OFTEN = {
@@ -72,10 +74,11 @@ def document(test_id: str, found: Surveyed) -> str:
 
 
 def _kind(names: Sequence[str]) -> dict[str, str]:
-    said = next((name for name in names if _CODE.search(name)), None)
-    if said is None:
-        return {"kind": "hot_fire", "why": "check"}
-    return {"kind": "cold_flow", "why": f"by the name {plain(said)}, check"}
+    for kind, words in (("water_flow", _WATER), ("cold_flow", _COLD)):
+        said = next((name for name in names if words.search(name)), None)
+        if said is not None:
+            return {"kind": kind, "why": f"by the name {plain(said)}, check"}
+    return {"kind": "hot_fire", "why": "check"}
 
 
 def plain(text: str) -> str:

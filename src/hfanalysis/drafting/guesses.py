@@ -11,6 +11,7 @@ from hfanalysis.drafting.shapes import Shape
 from hfanalysis.drafting.sizes import AT_AIR, Fit, units_for
 from hfanalysis.drafting.words import Said, read
 from hfanalysis.record.channels import CANONICAL
+from hfanalysis.units import unit_factor
 
 PLACED, NAMED, ALIKE = 5.0, 2.5, 1.0
 """Points for a channel: name or unit say what and where; only where; only what. Evidence: two shapes that agree (2
@@ -25,6 +26,9 @@ reads wild values is still the gauge that its name says."""
 LEAST = 2.0
 """Points from which on a guess is worth its line. Evidence: a shape alone has 2, one word alone 1."""
 
+STATED_WEIGHS = 3.0
+"""Votes on the unit of the others that a stated unit has. Evidence: a guess of a unit is right in two of three columns
+of published logs."""
 ONE_UNIT, ODD_UNIT = ("pressure", "temperature"), 1.0
 """Dimensions that a logger writes in one unit, and the points that another unit costs. Evidence: a cell that ends at
 0.08 kg was taken for a tank in MPa beside three pressures in psi."""
@@ -156,7 +160,7 @@ def _by_name(said: Said, unit: str) -> Mapping[str, float]:
     if not what and said.place == "run tank":
         return {"p_tank": NAMED, "p_run": NAMED, "m_tank": ALIKE}
     if not what and said.place:
-        return {where[said.place]: NAMED for where in _PLACES.values() if said.place in where}
+        return {where[said.place]: NAMED for kind, where in _PLACES.items() if said.place in where and kind != "force"}
     if said.place or what == "?":
         return {}
     return dict.fromkeys(places.values(), ALIKE) | ({"thrust": ALIKE, "m_tank": ALIKE} if what == "cell" else {})
@@ -214,22 +218,28 @@ def _verb(shape: Shape) -> str:
 
 def agreed(found: list[Judged]) -> list[Judged]:
     """Units that are not stated, as the other columns of a test have theirs: a logger writes all pressures in one."""
-    votes: dict[str, dict[str, float]] = {}
+    votes: dict[str, dict[tuple[float, float], float]] = {}
     for one in found:
-        if one.best is not None and CANONICAL[one.best.channel] in ONE_UNIT:
+        if one.best is not None and one.best.unit and CANONICAL[one.best.channel] in ONE_UNIT:
             units = votes.setdefault(CANONICAL[one.best.channel], {})
-            units[one.best.unit] = units.get(one.best.unit, 0.0) + one.best.points * (3.0 if one.column.unit else 1.0)
+            weight = one.best.points * (STATED_WEIGHS if one.column.unit else 1.0)
+            units[_size(one.best, one.best.unit)] = units.get(_size(one.best, one.best.unit), 0.0) + weight
     most = {dimension: max(units, key=lambda unit: units[unit]) for dimension, units in votes.items()}
     return [one if one.column.unit else _sorted(one, [_in_unit(guess, most) for guess in one.guesses]) for one in found]
 
 
-def _in_unit(guess: Guess, most: Mapping[str, str]) -> Guess:
+def _size(guess: Guess, unit: str) -> tuple[float, float]:
+    """What tells a unit from others, gauge or absolute alike [SI]."""
+    return unit_factor(unit, CANONICAL[guess.channel], "")
+
+
+def _in_unit(guess: Guess, most: Mapping[str, tuple[float, float]]) -> Guess:
     """A guess in the unit of the others; one that cannot be in it is the less likely."""
     dimension = CANONICAL[guess.channel]
-    unit = most.get(dimension, guess.unit)
-    if unit == guess.unit:
+    if dimension not in most or not guess.unit or _size(guess, guess.unit) == most[dimension]:
         return guess
-    if unit not in guess.units:
+    unit = next((unit for unit in guess.units if _size(guess, unit) == most[dimension]), "")
+    if not unit:
         return replace(guess, points=guess.points - ODD_UNIT)
     others = tuple(one for one in (guess.unit, *guess.units) if one != unit)
     reasons = (*guess.reasons, f"in {unit} as the other {dimension}s")

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
-from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns
+import numpy as np
+
+from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns, power_of_time, rests
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.health import HEALTHY, UNUSABLE, Finding, Health
+from hfanalysis.products.diagnosis import Diagnosis
+from hfanalysis.products.health import HEALTHY, TRUSTED, UNUSABLE, Finding, Health
 from hfanalysis.products.model import Part, Product
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import DOUBTED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+from hfanalysis.quantity import DOUBTED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 from hfanalysis.sentences import joined, text
 
 P = TypeVar("P", bound=Part)
@@ -31,6 +34,8 @@ def doubted(product: Product, health: Health) -> Product:
         return product
     if isinstance(product, Segments):
         return _events(product, health)
+    if isinstance(product, Diagnosis):
+        return product.but(warnings=tuple(dict.fromkeys((*product.warnings, *health.warnings))))
     together = isinstance(product, Calibration) and product.oxidizer_mass_fitted is not None
     return _part(product, product.file + TOGETHER * together, health)
 
@@ -41,7 +46,7 @@ def _events(product: Segments, health: Health) -> Segments:
     for name, event in product.quantities.items():
         after = 0.0 if name == "t_open" else event.value
         instant = None if origin is None or after is None else origin + after
-        changes[name] = with_doubt(event, list(reasons(product.file, name, event, health, instant)))
+        changes[name] = asked(event, product.file, name, health, instant)
     return product.but(**changes)
 
 
@@ -53,34 +58,71 @@ def _part(part: P, product: str, health: Health) -> P:
 
 def _value(name: str, value: Any, product: str, health: Health) -> Any:
     if isinstance(value, Quantity):
-        return with_doubt(value, list(reasons(product, name, value, health)))
+        return asked(value, product, name, health)
     if isinstance(value, Part):
         return _part(value, product, health)
     if isinstance(value, Mapping) and any(isinstance(inner, (Quantity, Part)) for inner in value.values()):
-        return {key: _value(key, inner, product, health) for key, inner in value.items()}
+        # of a number by law, which is no name, the whole's counts
+        names = {key: key if rests(product, key) or not rests(product, name) else name for key in value}
+        return {key: _value(names[key], inner, product, health) for key, inner in value.items()}
     return value
 
 
-def reasons(
-    product: str, name: str, quantity: Quantity, health: Health, instant: float | None = None
-) -> Iterator[tuple[bool, str]]:
-    """Why a quantity of a product is doubted (True), or what the engineer overruled (False): sentences.
+@dataclass(frozen=True)
+class Doubt:
+    """Something found of channels that a quantity rests on; ``trust``: why the engineer overrules it."""
 
-    Channels that the same is said of stand in one. Of an event, ``instant`` is when it is [s, log time].
-    """
-    whose: dict[tuple[bool, str, str], list[str]] = {}
+    finding: Finding
+    channels: tuple[str, ...]
+    trust: str | None = None
+
+    @property
+    def words(self) -> str:
+        """Whose, what, and its evidence."""
+        kind = self.finding.kind.replace("_", " ")
+        return text(
+            "{names}{trusted} ({kind}{left}): {evidence}",
+            names=", ".join(self.channels),
+            trusted=f"{TRUSTED}{self.trust}) against" if self.trust else "",
+            kind=kind,
+            left=", left out" if self.finding.verdict == UNUSABLE and not self.trust else "",
+            evidence=self.finding.evidence,
+        )
+
+
+def asked(quantity: Quantity, product: str, name: str, health: Health, instant: float | None = None) -> Quantity:
+    """A quantity of a product with the doubts about it; of an event, ``instant`` is when it is [s, log time]."""
+    found = _doubts(product, name, quantity, health, instant)
+    wider = _wider(quantity, product, name, [doubt.finding for doubt in found if not doubt.trust])
+    return with_doubts(wider, found)
+
+
+def _doubts(product: str, name: str, quantity: Quantity, health: Health, instant: float | None) -> list[Doubt]:
+    """What was found of the channels that a quantity rests on; channels that the same is said of stand in one."""
+    whose: dict[tuple[str | None, str, str], Doubt] = {}
     for channel in channels_of(product, name, quantity):
         trust = health.of(channel).trust
         for finding in health.of(channel).findings:
-            if finding.verdict == HEALTHY or not concerns(product, name, finding.kind):
+            if not concerns(product, name, finding.kind):
                 continue
-            if instant is not None and not _near(finding, instant):
+            if not (_why_not(finding, trust) if quantity.value is None else _counts(finding, health, trust, instant)):
                 continue
-            if trust or finding.verdict != UNUSABLE or _in_firing(finding, health):
-                whose.setdefault((not trust, trust or "", _words(finding)), []).append(channel)
-    for (doubt, trust, words), names in whose.items():
-        trusted = f" trusted ({trust}) against" if trust else ""
-        yield doubt, text("{names}{trusted} {words}", names=", ".join(names), trusted=trusted, words=words)
+            key = (trust, finding.kind, finding.evidence)
+            before = whose[key].channels if key in whose else ()
+            whose[key] = Doubt(finding, (*before, channel), trust)
+    return list(whose.values())
+
+
+def _counts(finding: Finding, health: Health, trust: str | None, instant: float | None) -> bool:
+    """Whether a finding is one of those that a number of its channel, or an event at an instant [s], has to do with."""
+    if finding.verdict == HEALTHY or (instant is not None and not _near(finding, instant)):
+        return False
+    return bool(trust) or finding.verdict != UNUSABLE or _in_firing(finding, health)
+
+
+def _why_not(finding: Finding, trust: str | None) -> bool:
+    """Whether it may be why a number is not there: its channel is left out, or nobody could say more of the number."""
+    return finding.verdict != HEALTHY and not trust
 
 
 def _near(finding: Finding, instant: float) -> bool:
@@ -97,22 +139,36 @@ def _in_firing(finding: Finding, health: Health) -> bool:
     return start < last and end > first
 
 
-def _words(finding: Finding) -> str:
-    left = ", left out" if finding.verdict == UNUSABLE else ""
-    return text("({kind}{left}): {evidence}", kind=finding.kind.replace("_", " "), left=left, evidence=finding.evidence)
+def _wider(quantity: Quantity, product: str, name: str, findings: Sequence[Finding]) -> Quantity:
+    """A quantity with what late and mistimed channels may mean for it in its deviation and interval.
 
-
-def with_doubt(quantity: Quantity, why: list[tuple[bool, str]]) -> Quantity:
-    """A quantity with these reasons beside it; doubted where one of them is a doubt, unless it is worse already."""
-    if not why:
-        return quantity
-    said = list(dict.fromkeys(words for _, words in why))
+    Offsets and factors are in it already: they are in the accuracy of the log that it was made from.
+    """
     if quantity.value is None:
-        if quantity.verdict not in WORSE:
-            return quantity
+        return quantity
+    late = [finding.delay for finding in findings if finding.delay and product == Segments.file]
+    paced = [finding.pace * power_of_time(name) * quantity.value for finding in findings if finding.pace]
+    extra = float(np.linalg.norm([*late, *paced])) if late or paced else 0.0
+    if extra == 0.0:
+        return quantity
+    interval = quantity.interval or (quantity.value, quantity.value)
+    ends = [quantity.value + sign * np.hypot(end - quantity.value, NORMAL_95 * extra)
+            for sign, end in zip((-1.0, 1.0), interval, strict=True)]  # fmt: skip
+    std = float(np.hypot(quantity.std or 0.0, extra))
+    return replace(quantity, std=std, ci95=(float(ends[0]), float(ends[1])))
+
+
+def with_doubts(quantity: Quantity, found: Sequence[Doubt]) -> Quantity:
+    """A quantity with these beside it; doubted where one of them is not overruled, unless it is worse already."""
+    if quantity.value is None and quantity.verdict not in WORSE:
+        found = [doubt for doubt in found if doubt.finding.verdict == UNUSABLE]
+    if not found:
+        return quantity
+    said = list(dict.fromkeys(doubt.words for doubt in found))
+    if quantity.value is None:
         return replace(quantity, reason=joined("; ", [str(quantity.reason), *said]))
-    doubt = any(is_doubt for is_doubt, _ in why) and quantity.verdict not in WORSE
+    doubted = not all(doubt.trust for doubt in found) and quantity.verdict not in WORSE
     told = [quantity.why] if quantity.why else []
-    # what makes a number doubtful comes before where it is from
-    line = joined("; ", [*said, *told] if doubt else [*told, *said])
-    return replace(quantity, verdict=DOUBTED if doubt else quantity.verdict, why=line)
+    # what makes a number doubtful, or the engineer vouch for it, comes before where it is from
+    line = joined("; ", [*told, *said] if quantity.verdict in WORSE else [*said, *told])
+    return replace(quantity, verdict=DOUBTED if doubted else quantity.verdict, why=line)

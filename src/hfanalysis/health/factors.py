@@ -11,6 +11,8 @@ MET = {"pressure": ("psi", "bar", "kPa", "MPa", "Pa"), "force": ("N", "kN", "lbf
 """Units that loggers write. Source: definition."""
 FAR = 3.0
 """Factor from which on a unit is more likely mistaken than a scale [-]: below, kgf for lbf is the only one."""
+WIDEST = 8.0
+"""Ratio of a factor's bounds up to which it tells units apart [-]: psi and bar are a factor of 14.5 apart."""
 SLACK = 0.04
 """Relative error with which a factor may be met by that of two units [-]."""
 
@@ -47,19 +49,22 @@ class Factor:
         return Factor(low, high) if low <= high else None
 
 
-def unit_for(factor: Factor, unit: str, dimension: str) -> str | None:
+def unit_for(factor: Factor, unit: str, dimension: str, least: float = FAR) -> str | None:
     """The unit that the readings seem to be in, where they are stated in ``unit``; None where it is none of a few.
+
+    ``least``: factor from which on a unit is thought of. A factor that may be nearly anything is no unit's.
 
     >>> unit_for(Factor(800.0, 1200.0), "N", "force")
     'kN'
     >>> unit_for(Factor(1.8, 2.2), "N", "force") is None
     True
     """
-    if not factor.off or dimension not in MET or dimension not in TABLE:
+    known = dimension in MET and dimension in TABLE
+    if not factor.off or not known or factor.high > WIDEST * factor.low:
         return None
     stated = unit_factor(unit, dimension, "")[0]
     ratios = {u: unit_factor(u, dimension, "")[0] / stated for u in MET[dimension]}
-    fits = [u for u, r in ratios.items() if abs(log(r)) > log(FAR) and _within(r, factor)]
+    fits = [u for u, r in ratios.items() if abs(log(r)) > log(least) and _within(r, factor)]
     return min(fits, key=lambda u: abs(log(ratios[u] / factor.middle))) if fits else None
 
 

@@ -21,6 +21,7 @@ SEGMENTS = {
 
 CALIBRATION = {
     "C_i": PRESSURES,
+    "C_d": ("p_run", "m_tank"),
     "m": PRESSURES,
     "Z": ("p_tank",),
     "K_loss": PRESSURES,
@@ -84,7 +85,16 @@ TABLES: Mapping[str, Rests] = {
 TOGETHER = " together"
 """How the name of a product ends here whose constants were fitted together, with the thrust."""
 
-OUTSIDE = ("[observed]", "set by the engineer", "as stated")
+PACED = {
+    **dict.fromkeys(("t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end", "burn_time"), 1.0),
+    **dict.fromkeys(("C_i", "oxidizer_flow_peak", "a", "regression_rate_reference"), -1.0),
+    **dict.fromkeys(("total_impulse", "specific_impulse", "total_impulse_of_file", *FLOWN), 1.0),
+    "K_loss": 2.0,
+}  # fmt: skip
+"""With which power of the clock's pace a quantity goes, about: a clock at half its pace makes flows of twice the size.
+Source: the definitions; of a flight's numbers no more than their size."""
+
+OUTSIDE = ("[observed]", "set by the engineer", "as stated", "held as")
 """How the reason of a quantity begins that comes from test.toml, not from the log."""
 FROM_CELL = ("from the load cell",)
 """How it is said that a mass comes from the tank's cell."""
@@ -102,10 +112,20 @@ def channels_of(product: str, name: str, quantity: Quantity) -> tuple[str, ...]:
         return ()
     if any(words in told for words in FROM_CELL):
         return ("m_tank",)
-    found = TABLES.get(product.removesuffix(TOGETHER), {}).get(name, ())
+    found = rests(product, name)
     return (*found, "thrust") if product.endswith(TOGETHER) and found == PRESSURES else found
+
+
+def rests(product: str, name: str) -> tuple[str, ...]:
+    """The channels that a quantity of this name rests on in a product, wherever it comes from in one test."""
+    return TABLES.get(product.removesuffix(TOGETHER), {}).get(name, ())
 
 
 def concerns(product: str, name: str, kind: str) -> bool:
     """Whether a kind of finding concerns a quantity of a channel: shifts do not move the bends of a curve."""
     return product != "segments.json" or name in BY_LEVEL or kind not in OF_LEVEL
+
+
+def power_of_time(name: str) -> float:
+    """The power of the clock's pace that a quantity goes with, about; 0 where it has nothing to do with time."""
+    return PACED.get(name, 0.0)

@@ -132,7 +132,7 @@ def _wider(channel: Channel, health: ChannelHealth) -> Channel:
     zero = None if channel.zero_std is None else float(np.hypot(channel.zero_std, offset))
     note = f"accuracy: widened by {offset:.4g} for what its findings may mean"
     wide = float(np.hypot(channel.accuracy, offset))
-    return replace(channel, accuracy=wide, zero_std=zero, history=(*channel.history, note))
+    return replace(channel, accuracy=wide, zero_std=zero, history=(*channel.history, note), doubt=offset)
 
 
 def as_accurate(definition: TestDefinition, log: TestLog) -> TestDefinition:

@@ -12,7 +12,7 @@ def level(value: float, dimension: str) -> Text:
     """A level [SI] in the unit that such sentences have it in.
 
     >>> level(4.2e5, "pressure"), level(300.0, "temperature")
-    ('4.2 bar', '26.9 degC')
+    ('4.2 bar', '26.85 degC')
     """
     if dimension == "temperature":
         return Text(f"{value - 273.15:.4g} degC")

@@ -91,7 +91,7 @@ def propellant(
     rest = observed.oxidizer_mass_after if observed is not None else None
     mass = tank.mass if rest is None else _ending_at(tank.mass, rest.value)
     flow = np.maximum(-np.gradient(mass, time), 0.0)
-    fuel_out = segments.time("t_fuel_out") if segments is not None else None
+    fuel_out = segments.time("t_fuel_gone") if segments is not None else None
     burning = flow if fuel_out is None else np.where(time <= fuel_out, flow, 0.0)
     fuel, how_fuel = _fuel(definition, calibration, time, burning)
     fuel_flow = np.maximum(-np.gradient(fuel, time), 0.0)

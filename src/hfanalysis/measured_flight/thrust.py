@@ -114,7 +114,7 @@ def _told_end(segments: Segments, definition: TestDefinition, last: float) -> tu
     observed = definition.observed.burn_time if definition.observed is not None else None
     if observed is not None and observed.value <= last:
         return observed.value, "[observed] burn_time"
-    found = {name: segments.time(name) for name in ("t_fuel_out", "t_end")}
+    found = {name: segments.time(name) for name in ("t_fuel_gone", "t_end")}
     times = {name: time for name, time in found.items() if time is not None and 0.0 < time <= last}
     name = max(times, key=lambda key: times[key], default=None)
     return None if name is None else (times[name], name)

@@ -13,6 +13,9 @@ UNUSABLE: Verdict = "unusable"
 SEVERITY: tuple[Verdict, ...] = (HEALTHY, SUSPECT, UNUSABLE)
 """The verdicts, from good to bad."""
 
+TRUSTED = " trusted ("
+"""How it is said, after a channel's name, that the engineer trusts it."""
+
 KINDS = {
     "dead": "dead",
     "railed": "at its rail",
@@ -49,6 +52,8 @@ class Finding(Part):
     cure: Annotated[str | None, Is("lines of test.toml that cure it; those outside a table belong to the channel's")]
     bias: Annotated[float | None, Is("one standard deviation of the offset that it may mean", "of the channel")] = None
     gain: Annotated[float | None, Is("one standard deviation of the factor that it may mean", "")] = None
+    delay: Annotated[float | None, Is("one standard deviation of how late it may be", "s")] = None
+    pace: Annotated[float | None, Is("one standard deviation of the factor that its times may be off by", "")] = None
     overruled: Annotated[bool, Is("by the engineer's trust in the channel")] = False
 
     @property

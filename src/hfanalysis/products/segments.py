@@ -18,7 +18,7 @@ NOTHING = "nothing"
 class Opening(Part):
     """One of the firings or flows that a log holds."""
 
-    number: Annotated[int, Is("counted from 1 in the order of the log")]
+    number: Annotated[int, Is("counted from 1 in the order of the log", "")]
     t_open: Annotated[Quantity, Is("its valve opens, in log time", "s")]
     start: Annotated[
         float | None, Is("from when on its events are looked for, in log time; null: the log's start", "s")
@@ -58,8 +58,8 @@ class Segments(Product):
 
         What ``about`` does not say is nothing special.
         """
-        order = [name for _, name in sorted((q.value, name) for name, q in events.items() if q.value is not None)]
-        fields: dict[str, Any] = {"t_fuel_gone": Quantity.absent("the fuel's end does not show"), **events}
+        fields = {"t_fuel_gone": events["t_fuel_out"], **events}  # at once, where nobody says otherwise
+        order = [name for _, name in sorted((q.value, name) for name, q in fields.items() if q.value is not None)]
         usual = {"kind_reason": "", "misfire": False, "supercharged": False, "found_where_engineer_set": {}}
         said = {"firings": (), "engineer": (), "notes": (), "warnings": ()}
         return cls.model_validate({"t_open": t_open, **fields, "order": order, **usual, **said, **about})

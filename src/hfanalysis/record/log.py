@@ -48,7 +48,8 @@ class Channel:
     is no number, and corrected for zero and tare. ``accuracy`` is one standard deviation of the bias [SI]. ``zero``:
     what was subtracted at the zero [SI]; ``zero_std``: standard deviation of the bias that is left, None where no zero
     was taken (then it is ``accuracy``). ``drift``: total drift removed between the two zeros. ``raw``: values before
-    zero and tare, None where neither was applied.
+    zero and tare, None where neither was applied. ``doubt``: what of ``accuracy`` and ``zero_std`` [SI] is there for
+    what the channel's health may mean, added in squares.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Channel:
     drift: float = 0.0
     raw: Array | None = None
     history: tuple[str, ...] = ()
+    doubt: float = 0.0
 
     @property
     def good(self) -> NDArray[np.bool_]:

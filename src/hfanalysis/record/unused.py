@@ -18,9 +18,7 @@ OF_ENGINES = frozenset({
 """Of engine files. Evidence: test_unused.py: ``hfa simulate`` and ``hfa design`` read every other key of the schema,
 and none of these."""
 
-OF_TESTS = frozenset({
-    "tank.dip_tube.outer_diameter", "tank.dip_tube.inner_diameter", "observed.throat_radius_after",
-})  # fmt: skip
+OF_TESTS = frozenset({"tank.dip_tube.outer_diameter", "tank.dip_tube.inner_diameter"})
 """Of test.toml. Evidence: test_unused.py: the stages read every other key of the schema, and none of these."""
 
 SPREADS_OF_TESTS = frozenset({

@@ -1,4 +1,5 @@
-"""t_fuel_out: the solid fuel is gone; chamber pressure and thrust fall together while the feed does not change."""
+"""t_fuel_out, t_fuel_gone: the solid fuel runs out; chamber pressure and thrust fall together while the feed does not
+change, at once or over a second or two."""
 
 from __future__ import annotations
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.record.signals import Signal, sample_noise
+from hfanalysis.segment.fade import Fade, find_fade
 from hfanalysis.segment.falls import RELAXATION, abrupt_falls
 from hfanalysis.segment.refine import refine_step
 
@@ -74,9 +76,6 @@ AT_ONCE = 0.05
 CLEAR_FALL = 8.0
 """Least size of a sudden fall in standard deviations of its own scatter."""
 
-FADE_FALL = 0.3
-"""Least fall of ln of the response over a fade in the liquid phase."""
-
 FADE_THRUST = 0.1
 """Least part of the thrust that has to go with it: a third of the pressure's, for the cell drifts with heat. Evidence:
 a chamber that fades while the thrust does not is no end of the fuel (test_events.py)."""
@@ -85,13 +84,35 @@ LOWEST_EXCESS = 0.08e5
 """Chamber pressure above ambient [Pa] below which nothing can be said of the fire."""
 
 
+BLURRED = 0.03
+"""Standard deviation [s] of t_v from which on no step of chamber or thrust dates it: a sudden fall within its interval
+is then its own."""
+
+STARTS = 0.4
+"""Seconds after the line is full in which a chamber may start hard: no part of how a fire settles."""
+
+BEFORE_LIQUID_END = 0.1
+"""Seconds before t_v, and before its deviation, that say nothing of a fade: the last liquid leaves as froth."""
+
+
 @dataclass(frozen=True)
-class FuelEnd:
-    """t_fuel_out [s] with its standard deviation, and how long the fall takes [s]."""
+class Sudden:
+    """A sudden end [s] with its standard deviation, and how long the fall takes [s]."""
 
     time: float
     std: float
     duration: float
+
+
+@dataclass(frozen=True)
+class FuelEnd:
+    """When the fade begins [s] and when it has ended, with their deviations; ``gone`` None: ``hidden`` says why."""
+
+    time: float
+    std: float
+    gone: float | None
+    gone_std: float
+    hidden: str = ""
 
 
 @dataclass(frozen=True)
@@ -104,9 +125,13 @@ class _Response:
 
 
 def find_fuel_end(
-    signals: Mapping[str, Signal], ambient: float, t_feed: float, t_v: float | None, end: float
+    signals: Mapping[str, Signal],
+    ambient: float,
+    t_feed: float,
+    t_v: tuple[float, float] | None,
+    end: float,
 ) -> FuelEnd | str:
-    """When the fuel is gone, from signals with time counted from the opening; else the reason why it does not show.
+    """When the fuel runs out, from signals with time counted from the opening; else the reason why it does not show.
 
     The chamber's response to the feed is (p_c - p_a) / sqrt(p_run - p_c): steady while the fire burns, two to five
     times smaller without it. At the end of the liquid (``t_v``) the feed itself changes, and windows do not reach
@@ -116,7 +141,7 @@ def find_fuel_end(
         signals: p_chamber and p_run [Pa], thrust [N] where it is measured.
         ambient: pressure [Pa] as the chamber's sensor reads it.
         t_feed: the line is full [s].
-        t_v: the liquid is gone [s]; None where that is not known.
+        t_v: the liquid is gone [s], and its standard deviation [s]; None where that is not known.
         end: until when it is looked for [s].
     """
     if "p_run" not in signals:
@@ -124,22 +149,62 @@ def find_fuel_end(
     response = _response(signals, ambient, end, SMOOTH, GRID)
     if response is None:
         return "the chamber pressure is not above ambient for long enough"
-    sudden = _sudden(signals, response, t_feed, t_v)
-    if sudden is None and t_v is not None:
-        sudden = _close(signals, ambient, end, t_feed, t_v)
-    if sudden is None:
-        sudden = _goes_out(signals, ambient, t_feed, t_v, float(response.time[-1]))
+    sudden = _sudden_end(signals, response, ambient, t_feed, t_v, end)
+    fade = _fade(signals, response, t_feed, t_v) if t_v is not None else None
+    if fade is not None and (sudden is None or fade.begin < sudden.time):
+        return _faded(fade, sudden, t_v[0] if t_v is not None else np.inf)
     if sudden is not None:
-        return sudden
-    fade = _fade(response, t_feed, t_v) if t_v is not None else None
-    if fade is not None and t_v is not None:
-        start = t_v - 0.1 - fade.duration
-        if _thrust_falls(signals, (start - WINDOW, start), (t_v - 0.1 - GAP, t_v - GAP), FADE_THRUST):
-            return fade
+        return FuelEnd(sudden.time, sudden.std, sudden.time, sudden.std)
     last = float(response.time[-1])
     return (
         f"chamber pressure and thrust do not fall against the feed up to {last:.1f} s, where the chamber nears ambient"
     )
+
+
+def _faded(fade: Fade, sudden: Sudden | None, t_v: float) -> FuelEnd:
+    """A fade's beginning and end; what is left of the fire may go out later, at once."""
+    if fade.gone is not None:
+        return FuelEnd(fade.begin, fade.begin_std, fade.gone, fade.gone_std)
+    if sudden is not None:
+        return FuelEnd(fade.begin, fade.begin_std, sudden.time, sudden.std)
+    hidden = f"the fade from {fade.begin:.2f} s goes on to the end of the liquid at {t_v:.2f} s, which hides its own"
+    return FuelEnd(fade.begin, fade.begin_std, None, np.inf, hidden)
+
+
+def _sudden_end(
+    signals: Mapping[str, Signal],
+    response: _Response,
+    ambient: float,
+    t_feed: float,
+    liquid_out: tuple[float, float] | None,
+    end: float,
+) -> Sudden | None:
+    """A fall at once that is no fall of the liquid's end."""
+    t_v, std = liquid_out if liquid_out is not None else (None, 0.0)
+    sudden = _sudden(signals, response, t_feed, t_v)
+    if sudden is None and t_v is not None and std < BLURRED:
+        sudden = _close(signals, ambient, end, t_feed, t_v)
+    if sudden is None or _is_liquids(sudden, t_v, std):
+        sudden = _goes_out(signals, ambient, t_feed, t_v, float(response.time[-1]))
+    return None if sudden is None or _is_liquids(sudden, t_v, std) else sudden
+
+
+def _is_liquids(sudden: Sudden, t_v: float | None, std: float) -> bool:
+    return t_v is not None and std >= BLURRED and abs(sudden.time - t_v) < WINDOW + 2.0 * std
+
+
+def _fade(
+    signals: Mapping[str, Signal], response: _Response, t_feed: float, liquid_out: tuple[float, float]
+) -> Fade | None:
+    """A fade before the end of the liquid that the thrust, where it is measured, shares."""
+    until = liquid_out[0] - BEFORE_LIQUID_END - liquid_out[1]
+    part = (response.time > t_feed + STARTS) & (response.time < until)
+    fade = find_fade(response.time[part], response.value[part])
+    if fade is None:
+        return None
+    late = until if fade.gone is None else min(fade.gone + WINDOW, until)
+    shared = _thrust_falls(signals, (fade.begin - WINDOW, fade.begin), (late - WINDOW, late), FADE_THRUST)
+    return fade if shared else None
 
 
 def _response(signals: Mapping[str, Signal], ambient: float, end: float, width: float, step: float) -> _Response | None:
@@ -157,7 +222,7 @@ def _response(signals: Mapping[str, Signal], ambient: float, end: float, width: 
     return _Response(grid[:stop], value, sample_noise(value))
 
 
-def _close(signals: Mapping[str, Signal], ambient: float, end: float, t_feed: float, t_v: float) -> FuelEnd | None:
+def _close(signals: Mapping[str, Signal], ambient: float, end: float, t_feed: float, t_v: float) -> Sudden | None:
     """A sudden fall so close to t_v that only the hardly smoothed pressure tells the two apart."""
     response = _response(signals, ambient, end, 0.25 * SMOOTH, 0.4 * GRID)
     if response is None:
@@ -203,8 +268,11 @@ def _step(
     longer = slice(a, b) if before[1] - before[0] > after[1] - after[0] else slice(c, d)
     slope = min(float(np.polyfit(time[longer] - instant, value[longer], 1)[0]), 0.0)
     left, right = (value[side] - slope * (time[side] - instant) for side in (slice(a, b), slice(c, d)))
-    scatter = max(float(np.hypot(left.std(), right.std())), noise)
-    error = scatter * np.sqrt(GRID / (before[1] - before[0]) + GRID / (after[1] - after[0]))
+    scatter = max(float(np.hypot(left.std(), right.std())) / np.sqrt(2.0), noise)
+    sides = (before[1] - before[0], after[1] - after[0])
+    apart = 0.5 * (after[0] + after[1] - before[0] - before[1])
+    of_slope = 12.0 * GRID * apart**2 / max(sides) ** 3
+    error = scatter * np.sqrt(GRID / sides[0] + GRID / sides[1] + of_slope)
     return float(left.mean()), float(left.mean() - right.mean()), float(error)
 
 
@@ -219,7 +287,7 @@ def _thrust_steps(signals: Mapping[str, Signal], fall: _Fall) -> bool:
     return size > max(CLOSE_FALL * abs(level), 2.0 * error)
 
 
-def _sudden(signals: Mapping[str, Signal], response: _Response, t_feed: float, t_v: float | None) -> FuelEnd | None:
+def _sudden(signals: Mapping[str, Signal], response: _Response, t_feed: float, t_v: float | None) -> Sudden | None:
     best, at = 0.0, None
     for t in response.time[(response.time > t_feed + 0.2) & (response.time < response.time[-1] - 0.1)]:
         size = _fall_at(response, float(t), t_v)
@@ -232,7 +300,7 @@ def _sudden(signals: Mapping[str, Signal], response: _Response, t_feed: float, t
 
 def _goes_out(
     signals: Mapping[str, Signal], ambient: float, t_feed: float, t_v: float | None, last: float
-) -> FuelEnd | None:
+) -> Sudden | None:
     """The last instant at which a fire that fades goes out: what is left of it goes within hundredths of a second.
 
     The fade before it, which is no line, hides that fall from a search with windows of WINDOW. The feed goes on:
@@ -248,7 +316,7 @@ def _goes_out(
             continue
         found = refine_step([chamber], time, OUT_LEVEL, OUT_AFTER, 0.5 * OUT_LEVEL)
         if found is not None and found.std < SHARPLY_DATED and 3.0 * found.relaxation < AT_ONCE:
-            return FuelEnd(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)
+            return Sudden(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)
     return None
 
 
@@ -287,7 +355,7 @@ def _thrust_falls(
     return bool(before.mean() - after.mean() > max(share * abs(before.mean()), error))
 
 
-def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> FuelEnd | None:
+def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> Sudden | None:
     """The instant of a fall near ``rough`` [s], from samples on its side of t_v; None where it is not sudden."""
     chamber = signals["p_chamber"]
     before, after, reach = WINDOW, WINDOW, max(0.1, 4.0 * chamber.step)
@@ -300,30 +368,7 @@ def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> Fu
     least = 3.0 * chamber.step
     found = refine_step([chamber], rough, max(before, least), max(after, least), max(reach, least))
     if found is None:
-        return FuelEnd(rough, GRID, 0.0)
+        return Sudden(rough, GRID, 0.0)
     if 3.0 * found.relaxation > SUDDEN or found.std > max(SHARPLY_DATED, chamber.step):
         return None
-    return FuelEnd(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)
-
-
-def _fade(response: _Response, t_feed: float, t_v: float) -> FuelEnd | None:
-    """The fuel thins out before the liquid is gone: level, then a fall that goes on to t_v."""
-    part = (response.time > t_feed + 0.2) & (response.time < t_v - 0.1)
-    t, y = response.time[part], np.log(np.maximum(response.value[part], LOWEST_EXCESS))
-    if t.size < 30:
-        return None
-    level = float(np.median(y[: t.size // 3]))
-    last = float(np.median(y[-5:]))
-    if level - last < FADE_FALL:
-        return None
-    start = _crossing(t, y, level - 0.15 * (level - last))
-    half = _crossing(t, y, 0.5 * (level + last))
-    duration = float(t[-1] - start)
-    if duration > 0.6 * (t[-1] - t[0]):
-        return None
-    return FuelEnd(half, max(duration / np.sqrt(12.0), GRID), duration)
-
-
-def _crossing(t: Array, y: Array, level: float) -> float:
-    above = np.flatnonzero(y > level)
-    return float(t[above[-1]]) if above.size else float(t[0])
+    return Sudden(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)

@@ -19,7 +19,7 @@ from hfanalysis.segment.coarse_load import coarse_load
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, QUIET, find_unchoking, pulses_after
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.firings import Flow, find_flows, largest
-from hfanalysis.segment.fuel import find_fuel_end
+from hfanalysis.segment.fuel import BLURRED, FuelEnd, find_fuel_end
 from hfanalysis.segment.kind import Kind, Known, recognize
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
@@ -227,7 +227,7 @@ class _Search:
         kind = self._kind()
         self._note_supercharge()
         self._take("t_end", self._unchoking(kind))
-        self._take("t_fuel_out", self._fuel_end(kind))
+        self._take_fuel(kind)
         self._check_order()
         return kind
 
@@ -301,7 +301,7 @@ class _Search:
             if "p_tank" not in self.signals:
                 return "the log has no p_purge: nitrogen shows in its supply line"
             return find_nitrogen_by_tank(self.signals["p_tank"], self._time("t_v"))
-        return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._time("t_v"))
+        return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._sharp("t_v"))
 
     def _unchoking(self, kind: Kind) -> tuple[float, float] | str:
         if "p_chamber" not in self.signals:
@@ -337,20 +337,30 @@ class _Search:
         of_air = (CRITICAL_RATIO - 1.0) * (self.definition.ambient_pressure.std or 0.0)
         return float(np.hypot(of_air, self.zeros.get("p_chamber", 0.0)))
 
-    def _fuel_end(self, kind: Kind) -> tuple[float, float] | str:
+    def _take_fuel(self, kind: Kind) -> None:
+        """t_fuel_out and t_fuel_gone: one fall at once, or the beginning and the end of a fade."""
+        found = self._fuel_end(kind)
+        if isinstance(found, str):
+            self._take("t_fuel_out", found)
+            self._take("t_fuel_gone", found)
+            return
+        self._take("t_fuel_out", (found.time, found.std))
+        self._take("t_fuel_gone", found.hidden if found.gone is None else (found.gone, found.gone_std))
+        if found.gone != found.time:
+            self.notes.append(f"the fire fades from {found.time:.2f} s on, as the fuel runs out")
+
+    def _fuel_end(self, kind: Kind) -> FuelEnd | str:
         if kind.name != "hot_fire":
             return f"nothing burns: {kind.why}"
         if "p_chamber" not in self.signals:
             return "the log has no p_chamber"
+        t_v = self.events["t_v"]
+        liquid_out = None if t_v.value is None else (t_v.value, t_v.std or 0.0)
         ambient = self.ambient + self._chamber_offset()
-        found = find_fuel_end(self.signals, ambient, self._time("t_feed") or 0.3, self._time("t_v"), self.last)
+        found = find_fuel_end(self.signals, ambient, self._time("t_feed") or 0.3, liquid_out, self.last)
         if isinstance(found, str):
             return found
-        if reason := self._fuel_left(found.time):
-            return reason
-        if found.duration > 0.2:
-            self.notes.append(f"the fuel fades over about {found.duration:.1f} s; t_fuel_out is the middle of the fall")
-        return found.time, found.std
+        return self._fuel_left(found.time) or found
 
     def _fuel_left(self, time: float) -> str:
         """Why a fall of the chamber's pressure is not the end of the fuel; empty where nothing speaks against it."""
@@ -427,6 +437,10 @@ class _Search:
         early = t_v - t_purge
         if early > 2.0 * np.hypot(self.events["t_v"].std or 0.0, self.events["t_purge"].std or 0.0):
             self.notes.append(f"nitrogen enters {early:.2f} s before the liquid is gone: there is no vapor-only phase")
+
+    def _sharp(self, name: str) -> float | None:
+        """An event's instant [s], where it is dated well enough to leave a corner of its own in another channel."""
+        return self._time(name) if (self.events[name].std or 0.0) < BLURRED else None
 
     def _time(self, name: str) -> float | None:
         return self.events[name].value if name in self.events else None

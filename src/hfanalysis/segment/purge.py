@@ -7,7 +7,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.breaks import Break
+from hfanalysis.segment.breaks import Break, kink
 from hfanalysis.segment.refine import refine_kink
 from hfanalysis.sentences import said, text
 
@@ -17,6 +17,15 @@ that keeps its pressure lets no nitrogen in."""
 
 SAG_LASTS = 0.4
 """Seconds over which a sag must go on. Evidence: test_events.py: valve hammer is no nitrogen."""
+
+SAG_SHARES = (1.0, 0.7, 0.5, 0.35)
+"""Parts of the window after the kink that are tried until a parabola fits what is in it."""
+
+FITS = 1.6
+"""Scatter about that parabola, over the sensor's noise, up to which it fits."""
+
+WORSE = 3.0
+"""Times by which a date from less of the sag may be less sure: a narrow window is preferred for what it leaves out."""
 
 KNEE_AWAY = 0.05
 """Seconds between two corners of the line from which on they are told apart. Evidence: the corner at the end of the
@@ -45,10 +54,33 @@ def find_nitrogen(
     window = max(0.35, 15.0 * purge.step)
     reach = max(0.2, 6.0 * purge.step)
     noise = Noise.of(purge, purge.between(-np.inf, rough - reach))
-    found = refine_kink(purge, rough, window + reach, window + reach, reach, flat=True, noise=noise)
+    found = _kink(purge, rough, window + reach, reach, noise)
     if found is not None and knee is not None and found.time < knee < rough + window + reach:
         found = _before_knee(purge, found, knee, window, reach, noise)
     return (found.time, found.std) if found else (rough, reach)
+
+
+def _kink(purge: Signal, rough: float, window: float, reach: float, noise: Noise) -> Break | None:
+    """The kink with as much of the sag after it as a parabola fits: a tank's own corners bend the line again later."""
+    best: Break | None = None
+    for share in SAG_SHARES:
+        after = max(share * window, 1.5 * reach)
+        found = refine_kink(purge, rough, window, after, reach, flat=True, noise=noise)
+        if found is None:
+            break
+        left = _scatter(purge, found.time, rough - window, rough + after)
+        best = found if best is None or found.std < WORSE * best.std else best
+        if left < FITS * max(noise.white, purge.noise):
+            break
+    return best
+
+
+def _scatter(purge: Signal, instant: float, start: float, end: float) -> float:
+    """What a flat line and a parabola after an instant [s] leave between ``start`` and ``end`` [s]."""
+    part = purge.between(start, end)
+    x = kink(order=2, before=0)(part.time, instant)
+    left = part.value - x @ np.linalg.lstsq(x, part.value, rcond=None)[0]
+    return float(np.sqrt(left @ left / max(left.size - x.shape[1] - 1, 1)))
 
 
 def _before_knee(purge: Signal, found: Break, knee: float, window: float, reach: float, noise: Noise) -> Break:

@@ -11,7 +11,10 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.segment.opening import Opening
 from hfanalysis.sentences import said, text
 
-SHOWN_BY = {"t_feed": "p_run", "t_v": "p_tank", "t_purge": "p_purge", "t_fuel_out": "p_chamber", "t_end": "p_chamber"}
+SHOWN_BY = {
+    "t_feed": "p_run", "t_v": "p_tank", "t_purge": "p_purge", "t_fuel_out": "p_chamber", "t_fuel_gone": "p_chamber",
+    "t_end": "p_chamber",
+}  # fmt: skip
 """The channel that an event is looked for in first."""
 
 BESIDE_HOLE = 0.1

@@ -45,6 +45,8 @@ if TYPE_CHECKING:
 P = TypeVar("P", bound="Product")
 HEALTH = "health"
 """The stage that says what of the log can be believed."""
+SEGMENT = "segment"
+"""The stage that says which of several firings is looked at."""
 BASE = "base_"
 """How a product's name begins that is made without adopted effects, by a stage that also makes one with them."""
 
@@ -150,7 +152,8 @@ class Context:
         self.write_json(name or product.file, product.to_json())
 
     def log(self, *, widened: bool = True) -> TestLog:
-        """The log that a stage works with: that of ingest, without what is unusable.
+        """The log that a stage works with: that of ingest, without what is unusable, and after the phases are found
+        without other firings.
 
         ``widened``: with the accuracy of suspect channels as wide as what is found may mean.
         """
@@ -158,8 +161,17 @@ class Context:
         from hfanalysis.record.log import read_log
 
         log, health = read_log(self.product("ingest.h5")), self._health()
-        used = usable.usable(log, health, self.definition)
+        used = self._of_firing(usable.usable(log, health, self.definition))
         return usable.widened(used, health) if widened else used
+
+    def _of_firing(self, log: TestLog) -> TestLog:
+        """The part of the log in which the phases were looked for."""
+        from hfanalysis.products.segments import Segments
+
+        if self.stage is None or SEGMENT not in self.stage.upstream:
+            return log
+        taken = self.read(Segments).taken
+        return log if taken is None else log.between(taken.start, taken.end)
 
     def marked(self) -> TestLog:
         """The log of ingest with all that it has, for people to look at; what is unusable is flagged."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
 from hfanalysis.inference.full_run import FullRun, moved
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import STATED, Quantity
+from hfanalysis.quantity import STATED, UNPHYSICAL, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
@@ -33,6 +33,10 @@ SPAN = 0.25
 """Part of a cell's accuracy that a tare does not take away, and of its drift that a straight line may miss. Evidence:
 test_performance_errors.py: a tare takes away three quarters of what a cell may be off by."""
 
+
+LARGEST_SPECIFIC_IMPULSE = 320.0
+"""[s] that nothing with nitrous oxide reaches. Source: characteristic velocity of 1700 m/s at most times a thrust
+coefficient of 1.85, full expansion from 40 bar to a tenth of an atmosphere."""
 
 EARLY = 0.5
 """[s] before the burn's end at which a channel may end and still say what it was over the burn."""
@@ -55,7 +59,7 @@ def fire_of(segments: Segments, definition: TestDefinition, log: TestLog | None 
     seen = definition.observed.burn_time if definition.observed else None
     if seen is not None:
         return Fire(seen.value, seen.std if seen.std is not None else VIDEO, "[observed] burn_time")
-    for name, words in (("t_fuel_out", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
+    for name, words in (("t_fuel_gone", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
         found = segments.time(name)
         if found is not None:
             return Fire(found, max(segments.std(name), 1e-3), f"{name}: {words}")
@@ -163,7 +167,11 @@ def specific_impulse(impulse: Quantity, oxidizer: Quantity, fuel: Quantity) -> Q
     mass = oxidizer.value + fuel.value
     value = impulse.value / (STANDARD_GRAVITY * mass)
     by_mass = value * np.hypot(oxidizer.std or 0.0, fuel.std or 0.0) / mass
-    return Quantity(value, "s", float(np.hypot((impulse.std or 0.0) / (STANDARD_GRAVITY * mass), by_mass)))
+    found = Quantity(value, "s", float(np.hypot((impulse.std or 0.0) / (STANDARD_GRAVITY * mass), by_mass)))
+    if found.interval is None or found.interval[0] <= LARGEST_SPECIFIC_IMPULSE:
+        return found
+    why = f"more than any nitrous oxide hybrid has, {LARGEST_SPECIFIC_IMPULSE:.0f} s: thrust, its unit or a mass is off"
+    return replace(found, verdict=UNPHYSICAL, why=why)
 
 
 def _peak(log: TestLog, name: str, signal: Signal | str, fire: Fire) -> Quantity:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
-from hfanalysis.health.doubts import reasons, with_doubt
+from hfanalysis.health.doubts import WORSE, asked
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.health import HEALTHY, Health
@@ -17,9 +17,10 @@ from hfanalysis.products.model import Product
 from hfanalysis.products.quick import QuickLook
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Validation
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import DOUBTED, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.sentences import joined
 from hfanalysis.validate.performance import measured
 
 SHOWN = ("burn_time", "total_impulse", "average_thrust", "peak_thrust", "peak_chamber_pressure",
@@ -108,5 +109,8 @@ def _discharge(
 
 def _with_doubt(product: type[Product], name: str, quantity: Quantity, health: Health, facts: Facts) -> Quantity:
     """As the product itself has it, with the doubts of the channels that it rests on."""
-    lent = [(True, f"with the load that {facts.lender} had")] if facts.lender and name in BY_LOAD else []
-    return with_doubt(quantity, [*lent, *reasons(product.file, name, quantity, health)])
+    found = asked(quantity, product.file, name, health)
+    if not facts.lender or name not in BY_LOAD or found.value is None:
+        return found
+    told = joined("; ", [f"with the load that {facts.lender} had", *([found.why] if found.why else [])])
+    return replace(found, verdict=found.verdict if found.verdict in WORSE else DOUBTED, why=told)

@@ -48,6 +48,7 @@ def _zero(log: TestLog, segments: Segments, definition: TestDefinition, fire: Fi
         return None
     error, peak = thrust.error, float(np.percentile(burning.value, 99.0))
     std = channel.zero_std if channel.zero_std is not None else channel.accuracy
+    std = float(np.sqrt(max(std**2 - channel.doubt**2, 0.0)))  # a doubt must not hide what it is about
     if abs(error) < max(ZERO_SHARE * peak, 5.0 * std):
         return None
     where = f"with the chamber back at ambient ({thrust.since:.1f} s)" if thrust.since > 0.0 else "after the burn"

@@ -77,8 +77,8 @@ def run_tank_alone(
     part = tank.between(start, LONGEST_COMPARED)
     if part.time.size < 8:
         raise AbsentError("too few good samples of p_tank after t_feed")
-    assert definition.tank is not None
-    assert definition.tank.volume is not None
+    if definition.tank is None or definition.tank.volume is None:
+        raise AbsentError(f"test {definition.test.id}: no tank model to run: [tank] volume is not stated")
     feed = FeedSystem(definition.tank.volume.value, area, *_feed_loss(calibration, constant))
     chamber = _chamber(log, segments, definition, part.time)
     mass, temperature = _start(saturation, tank, feed, calibration, segments, start)
@@ -174,7 +174,8 @@ def _start(
     pressure = line_at(tank, start)
     temperature = float(saturation.temperature(min(pressure, 0.9999 * saturation.pressure_range[1])))
     mass = calibration.mass_at_t_feed.value
-    assert mass is not None
+    if mass is None:
+        raise AbsentError(f"what is in the tank at t_feed is not known: {calibration.mass_at_t_feed.reason}")
     parts = split(saturation, feed.volume, mass, temperature)
     if min(parts.liquid, parts.vapor) < 0.0:
         side = "do not fit" if parts.vapor < 0.0 else "are less than the vapor of"

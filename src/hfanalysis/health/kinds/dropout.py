@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.health.cures import exclude
 from hfanalysis.health.seen import Seen
 from hfanalysis.health.shape import running_median, stretches
@@ -13,12 +14,21 @@ from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
 from hfanalysis.record.holes import holes
 from hfanalysis.record.log import Flag
+from hfanalysis.record.signals import sample_noise
 from hfanalysis.sentences import text
 
 BELOW = 3.0
 """Deviations of the sensor's accuracy below vacuum from which on a pressure is none [-]."""
 FEWEST = 3
 """Samples that a stretch below vacuum lasts at least: fewer are spikes."""
+HELD = 5
+"""Equal readings in a row that noise does not make [samples]."""
+OFTEN_EQUAL = 0.3
+"""Share of readings that equal the one before from which on a channel may well hold a level [-]."""
+JUMP = 20.0
+"""Deviations of a sample from the one before that a jump has at least [-]."""
+MAJORITY = 0.5
+"""Part of the firing for which a cell is so far below that it is no drop-out but its sign [-]. Source: definition."""
 BRIDGED = 0.1
 """[s] between two stretches below which they are told as one."""
 TOLD = 5
@@ -30,10 +40,12 @@ def find(seen: Seen) -> Iterator[Finding]:
     if seen.dimension == "pressure":
         yield from _below_vacuum(seen)
     yield from _coded(seen)
+    yield from _held(seen)
+    yield from _below(seen)
 
 
 def _below_vacuum(seen: Seen) -> Iterator[Finding]:
-    time, values = seen.trace.time, seen.trace.values
+    time, values = _read(seen)
     if len(values) < 4 * FEWEST:
         return
     rest = seen.coarse.rest.value if seen.coarse.rest else seen.ambient
@@ -60,6 +72,54 @@ def _reversed(seen: Seen, rest: float) -> bool:
     low, high = np.percentile(part, (10.0, 90.0))
     last = seen.coarse.last
     return bool(high - rest < 0.3 * (rest - low) and last is not None and last.value - low > 0.5 * (rest - low))
+
+
+def _read(seen: Seen) -> tuple[Array, Array]:
+    """Time and values (n,) of all that is a number: what ingest takes for stuck or cut off is a reading still."""
+    lost = (seen.channel.flags & np.uint8(Flag.DROPOUT | Flag.TIME | Flag.EXCLUDED)) != 0
+    kept = np.isfinite(seen.said) & ~lost
+    return seen.channel.time[kept], seen.said[kept]
+
+
+def _held(seen: Seen) -> Iterator[Finding]:
+    """One level to the last digit between two jumps, in a channel that is never twice the same otherwise."""
+    time, values = _read(seen)
+    if seen.dimension not in ("pressure", "force", "mass") or len(values) < 20 * HELD:
+        return
+    step = max(sample_noise(values), seen.coarse.quantum)
+    if seen.coarse.repetition > OFTEN_EQUAL or not step > 0.0:
+        return
+    jump = np.abs(np.diff(values)) > max(JUMP * step, 3.0 * seen.channel.accuracy)
+    for a, b in stretches(np.diff(values) == 0.0):
+        if b - a >= HELD and a > 0 and b < len(jump) and jump[a - 1] and jump[b]:
+            start, end = float(time[a]), float(time[b])
+            words = "stands at {value} to the last digit from {start:.2f} to {end:.2f} s, and jumps there and back"
+            evidence = text(words, value=level(float(values[a]), seen.dimension), start=start, end=end)
+            yield _none(seen, start, end, evidence, "a code for no reading, or a signal that is lost for a while")
+
+
+def _below(seen: Seen) -> Iterator[Finding]:
+    """Forces and masses farther below all else than all else ranges: a cell that is pulled comes back slower."""
+    time, values = _read(seen)
+    if seen.dimension not in ("force", "mass") or len(values) < 20 * HELD or seen.fire is None:
+        return
+    ordered = np.sort(values)
+    gap = int(np.argmax(np.diff(ordered[: len(ordered) // 3])))
+    rest = ordered[gap + 1 :]
+    if ordered[gap + 1] - ordered[gap] < max(float(np.ptp(rest)), 6.0 * seen.channel.accuracy):
+        return
+    low = values < ordered[gap + 1]
+    if np.mean(low[(time > seen.fire[0]) & (time < seen.fire[1])]) > MAJORITY:
+        return
+    for a, b in list(stretches(low))[:TOLD]:
+        if b - a >= FEWEST and a >= FEWEST:
+            start, end = float(time[a]), float(time[b - 1])
+            words = "reads {value} from {start:.2f} to {end:.2f} s ({n} samples), and {low} to {high} otherwise"
+            evidence = text(
+                words, value=level(float(np.median(values[a:b])), seen.dimension), start=start, end=end, n=b - a,
+                low=level(float(rest[0]), seen.dimension), high=level(float(rest[-1]), seen.dimension),
+            )  # fmt: skip
+            yield _none(seen, start, end, evidence, "a code for no reading, or a signal that is lost for a while")
 
 
 def _coded(seen: Seen) -> Iterator[Finding]:

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from hfanalysis.health.coarse import FEW
 from hfanalysis.health.cures import exclude
 from hfanalysis.health.seen import Seen
-from hfanalysis.health.shape import Mask, running_median, stretches
+from hfanalysis.health.shape import Mask, by_blocks, running_median, stretches
 from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
+from hfanalysis.record.quiet import Trace
 from hfanalysis.record.signals import sample_noise
 from hfanalysis.sentences import text
 
@@ -24,6 +25,8 @@ ANYWHERE = (150.0, 3800.0)
 JUMPY = 8.0
 """[K] of noise between neighboring samples that no bead with a heat capacity shows [-]. Source: interference on a sound
 thermocouple is a degree or two; tolerance class 2 is 2.5 K."""
+BLOCKS = 60
+"""Blocks whose noise is asked for."""
 LASTING = 0.02
 """Share of the readings in an impossible stretch from which on it is one, not single spikes [-]."""
 
@@ -45,9 +48,23 @@ def find(seen: Seen) -> Iterator[Finding]:
     outside = (level_ < low) | (level_ > high)
     if outside.mean() > LASTING:
         yield _outside(seen, time, level_, outside)
-    elif (noise := sample_noise(values)) > JUMPY:
-        words = "its readings jump by {noise:.0f} K from one sample to the next, which no bead can follow"
-        yield _open(seen, "unusable", text(words, noise=noise * np.sqrt(2.0)))
+    elif (found := _jumping(seen, Trace(time, values))) is not None:
+        yield found
+
+
+def _jumping(seen: Seen, trace: Trace) -> Finding | None:
+    """From when to when its readings jump as no bead does; throughout where that is most of the log."""
+    blocks = by_blocks(trace, BLOCKS)
+    noise = np.array([sample_noise(block.values) for block in blocks])
+    parts = [(a, b) for a, b in stretches(noise > JUMPY, bridge=2) if b - a >= min(2, len(blocks))]
+    if not parts:
+        return None
+    words = "its readings jump by {noise:.0f} K from one sample to the next, which no bead can follow"
+    evidence = text(words, noise=float(np.median(noise[noise > JUMPY])) * np.sqrt(2.0))
+    if np.mean(noise > JUMPY) > 0.5 and parts[0][0] == 0:
+        return _open(seen, "unusable", evidence)
+    start, end = float(blocks[parts[0][0]].time[0]), float(blocks[parts[-1][1] - 1].time[-1])
+    return _open(seen, "unusable", evidence, start=start, end=end, cure=exclude([seen.name], start, end))
 
 
 def _lost(seen: Seen, lost: NDArray[np.intp]) -> Finding:

@@ -33,4 +33,5 @@ def find(test: SeenTest) -> Iterator[Finding]:
     )
     yield Finding(
         kind="clock", verdict="suspect", channels=tuple(test.channels), evidence=evidence, means=means, cure=None,
+        pace=stated.value / left - 1.0 if left > 0.0 else None,
     )  # fmt: skip

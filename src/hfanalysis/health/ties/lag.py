@@ -26,6 +26,8 @@ CONSTANTS = tuple(0.05 * 2.0 ** (0.5 * k) for k in range(13))
 SLOWEST = 0.1
 """[s] from which on a time constant is worth a word. Source: a tube of a meter to a gauge takes 10 ms, a filter of
 10 Hz 16 ms."""
+STEPS = 4.0
+"""Steps between samples that a time constant lasts at least: below, how a logger samples looks the same."""
 QUICK = ("p_run", "p_chamber", "thrust")
 """Channels that an opening valve moves within a second; a tank falls slowly anyway."""
 PRESSED = ("p_run", "p_chamber", "p_tank", "thrust")
@@ -37,7 +39,7 @@ SURE = 3.0
 """Deviations of both accuracies by which it has to [-]."""
 BETTER = 3.0
 """Times by which the sum of squares has to fall with the delay [-]. Evidence: benchmarks/health_rates.py."""
-FITS = 0.02
+FITS = 0.08
 """Part of a channel's variance that may be left [-]: what does not fit with a delay either is not slow."""
 MARGIN = 1.0
 """[s] before the firing and after it that are looked at."""
@@ -67,7 +69,8 @@ def find(test: SeenTest) -> Iterator[Finding]:
     slow: list[str] = []
     for name, other in (("p_chamber", "thrust"), ("thrust", "p_chamber")):
         delay = _delay(test, name, (other,)) if other not in slow else None
-        if delay is not None and delay.sure and delay.constant > SLOWEST:
+        step = 1.0 / max(min(test.channels[n].coarse.rate for n in (name, other)), 1e-9) if delay else 0.0
+        if delay is not None and delay.sure and delay.constant > max(SLOWEST, STEPS * step):
             slow.append(name)
             yield _finding(test.channels[name], (other,), delay)
     if "p_run" in test.channels and (found := _behind(test)) is not None:
@@ -97,7 +100,7 @@ def _behind(test: SeenTest) -> Finding | None:
         "reads less than the chamber that it feeds for {end} after the opening, by up to {most}, and more from then on",
         end=said(end, "s", ".2f"), most=said(float((chamber - run)[below].max()), "bar", ".2g"),
     )  # fmt: skip
-    return test.channels["p_run"].finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None)
+    return test.channels["p_run"].finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None, delay=end)
 
 
 def _smooth(test: SeenTest, seen: Seen) -> Finding | None:
@@ -115,7 +118,7 @@ def _smooth(test: SeenTest, seen: Seen) -> Finding | None:
         "its noise at rest holds for {held}, that of others for {other}, and its steepest rise takes {rise}",
         held=said(held, "s", ".2g"), other=said(min(known), "s", ".2g"), rise=said(rise, "s", ".2g"),
     )  # fmt: skip
-    return seen.finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None)
+    return seen.finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None, delay=rise)
 
 
 def _correlation_time(test: SeenTest, seen: Seen) -> float | None:
@@ -202,4 +205,4 @@ def _finding(seen: Seen, others: tuple[str, ...], delay: Delay) -> Finding:
         "it unexplained",
         others=" and ".join(others), constant=said(delay.constant, "s", ".2g"), better=delay.better,
     )  # fmt: skip
-    return seen.finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None)
+    return seen.finding("lag", "suspect", evidence=evidence, means=MEANS, cure=None, delay=delay.constant)

@@ -99,9 +99,10 @@ def _ties(test: SeenTest) -> Ties:
 def _by_pressure(test: SeenTest, burn: Burn, throat: tuple[float, float], words: list[str]) -> Factor | None:
     pressure = burn.mean("p_chamber")
     thrust, (area, error) = burn.mean("thrust"), throat
-    if not engine.choked(pressure, test.ambient) or thrust <= 0.0:
+    if pressure < 1.3 * test.ambient or thrust <= 0.0:
         return None
     low, high = engine.thrust_coefficients(pressure, test.ambient)
+    low = low if engine.choked(pressure, test.ambient) else 1e-3 * high
     value = thrust / (pressure * area)
     words.append(
         text(

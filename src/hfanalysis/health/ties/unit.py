@@ -119,7 +119,7 @@ def _load(test: SeenTest) -> Finding | None:
     if rest <= 0.0 or abs(rest / load - 1.0) < 4.0 * LOAD or last is None or last.value > 0.5 * rest:
         return None
     factor = load / rest
-    unit = unit_for(Factor(factor * (1.0 - LOAD), factor * (1.0 + LOAD)), cell.spec.unit, "mass")
+    unit = unit_for(Factor(factor * (1.0 - LOAD), factor * (1.0 + LOAD)), cell.spec.unit, "mass", least=1.5)
     if unit is None:
         return None
     words = "weighs {rest} before the firing and {last} after it, where {load} were loaded"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import sqrt
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from hfanalysis.health.firing import EMPTY_LINE, OPEN_TO_AIR, burn_of, usable
 from hfanalysis.health.seen import Seen, SeenTest
 from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
-from hfanalysis.record.quiet import FiringSpan, Level, Trace, after
+from hfanalysis.record.quiet import FiringSpan, Level, Trace, after, in_blocks
 from hfanalysis.record.quiet import level as level_of
 from hfanalysis.sentences import text
 
@@ -24,6 +25,8 @@ ACCURACIES = {"force": 3.0, "pressure": 2.0}
 TAKEN_OFF, LEFT_IN = 12.0**-0.5, 3.0**-0.5
 """Deviation of a mean over the firing for a shift of one [-], where a linear drift was taken off and where it was not.
 Source: of a shift at any instant a uniform share is in the mean; its deviation from one half, and from nothing."""
+LOWEST = 0.5
+"""[s] for which a pressure is below its rest at least."""
 MOST = 0.5
 """Part of the rise above which what is left is no zero any more [-]: a channel that does not come back at all."""
 AT_REST = 4.0
@@ -77,7 +80,7 @@ def _told(test: SeenTest, seen: Seen) -> bool:
 def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
     """The level after the firing against the one before, less what still pushes."""
     trace = usable(test, seen)
-    last = _settled(test, trace)
+    last = _settled(test, trace) or _lowest(test, seen, trace)
     if last is None or seen.coarse.rest is None:
         return None
     rise = float(np.percentile(np.abs(trace.values - seen.coarse.rest.value), 99.0))
@@ -109,6 +112,20 @@ def _settled(test: SeenTest, trace: Trace) -> Level | None:
     assert test.fire is not None
     window = after(trace, FiringSpan(*test.fire, "")) if len(trace.time) else None
     return level_of(window) if window is not None else None
+
+
+def _lowest(test: SeenTest, seen: Seen, trace: Trace) -> Level | None:
+    """The lowest level after the firing of a pressure that falls below its rest: nothing sucks it there."""
+    assert test.fire is not None
+    if seen.dimension != "pressure":
+        return None
+    blocks = in_blocks(trace.between(test.fire[1], np.inf), LOWEST)
+    if len(blocks.time) < 3:
+        return None
+    low = int(np.argmin(blocks.values))
+    noise = seen.coarse.rest.noise if seen.coarse.rest else 0.0
+    found = Level(float(blocks.values[low]), noise / sqrt(max(LOWEST * seen.coarse.rate, 1.0)), float(blocks.time[low]))
+    return found if seen.coarse.rest is not None and found.value < seen.coarse.rest.value else None
 
 
 def _still(test: SeenTest, seen: Seen, last: Level) -> tuple[float, float] | None:

@@ -43,8 +43,10 @@ def fade_of(signals: Mapping[str, Signal], segments: Segments) -> tuple[float, f
 
     None where that does not show. ``signals``: with times after the opening [s].
     """
-    gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
-    if gone is None or gone > LONGEST_RECORD or segments.std("t_fuel_out") > SHARP or not set(TOGETHER) <= set(signals):
+    gone, t_v = segments.time("t_fuel_gone"), segments.time("t_v")
+    if gone is None or gone > LONGEST_RECORD or segments.std("t_fuel_gone") > SHARP:
+        return None
+    if not set(TOGETHER) <= set(signals):
         return None
     read = [signals[name].between(*about(gone, t_v)) for name in TOGETHER]
     found = [fall_of(part, gone) for part in read]

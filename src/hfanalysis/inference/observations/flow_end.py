@@ -70,8 +70,8 @@ def flow_end_without_fuel(log: TestLog, segments: Segments, definition: TestDefi
     What was noted at the stand is the end of the fuel. Where it is clearly later, it may be that of the flow. Times [s
     after the opening]; ``origin`` [s of the log].
     """
-    gone, t_v = segments.time("t_fuel_out"), segments.time("t_v")
-    if gone is None or segments.std("t_fuel_out") > AT_ONCE or not {"p_tank", "p_run"} <= set(log.channels):
+    gone, t_v = segments.time("t_fuel_gone"), segments.time("t_v")
+    if gone is None or segments.std("t_fuel_gone") > AT_ONCE or not {"p_tank", "p_run"} <= set(log.channels):
         return None
     if t_v is not None and abs(gone - t_v) < APART:
         return None

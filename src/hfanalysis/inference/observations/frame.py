@@ -99,7 +99,7 @@ def frame_of(log: TestLog, segments: Segments, definition: TestDefinition, origi
     last = log_end(log, origin)
     end = min(_end(segments), last)
     ends = {"chamber": end, "tank": min(_tank_end(segments, definition, end), last)}
-    fuel_out = segments.time("t_fuel_out")
+    fuel_out = segments.time("t_fuel_gone")
     flow_end = flow_end_without_fuel(log, segments, definition, origin)
     if flow_end is None:
         fuel_out = None
@@ -107,7 +107,7 @@ def frame_of(log: TestLog, segments: Segments, definition: TestDefinition, origi
         ends["tank"] = min(flow_end - AROUND_END, LONGEST_RECORD)
     changes = {
         name: (value, segments.std(name))
-        for name in ("t_v", "t_fuel_out")
+        for name in ("t_v", "t_fuel_gone")
         if (value := segments.time(name)) is not None
     }
     over = noted_flow_end(definition, max(segments.time("t_end") or end, end))
@@ -161,14 +161,15 @@ def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | Non
 
 def _tank_end(segments: Segments, definition: TestDefinition, end: float) -> float:
     """The tank goes on emptying after the nozzle has unchoked, until the end of the flow that was seen at the stand."""
-    if segments.time("t_fuel_out") is not None:
+    if segments.time("t_fuel_gone") is not None:
         return end
     return min(max(noted_flow_end(definition, end) - AROUND_END, end), LONGEST_RECORD)
 
 
 def _end(segments: Segments) -> float:
     """Where the comparison ends [s]: with the fuel, for what follows is another story, or where the flow ends."""
-    known = [(segments.time(name), segments.std(name)) for name in ("t_fuel_out", "t_end")]
+    fuel = "t_fuel_out" if segments.time("t_fuel_gone") is None else "t_fuel_gone"
+    known = [(segments.time(name), segments.std(name)) for name in (fuel, "t_end")]
     # where the fuel fades, its fading is to be seen: no wide berth for a wide deviation
     given = [t - AROUND_CHANGE - min(2.0 * deviation, AROUND_CHANGE) for t, deviation in known if t is not None]
     return min([*given, LONGEST_RECORD])
@@ -184,9 +185,9 @@ def events_of(segments: Segments, end: float) -> dict[str, tuple[float, float]]:
     events = {}
     if t_v is not None and t_v < end - AROUND_CHANGE:
         events["t_v"] = (t_v, max(segments.std("t_v"), EVENT_STD))
-    gone = segments.time("t_fuel_out")
+    gone = segments.time("t_fuel_gone")
     if gone is not None and gone < LONGEST_RECORD:
-        events["t_fuel_out"] = (gone, max(segments.std("t_fuel_out"), FUEL_STD))
+        events["t_fuel_out"] = (gone, max(segments.std("t_fuel_gone"), FUEL_STD))
     return events
 
 

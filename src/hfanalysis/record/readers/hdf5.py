@@ -6,11 +6,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.errors import InputError
 from hfanalysis.record.logspec import FileSpec
 from hfanalysis.record.readers.series import series
@@ -48,12 +50,19 @@ def _from_netcdf3(path: Path) -> Iterator[LogSeries]:
 def _from_hdf5(path: Path) -> Iterator[LogSeries]:
     import h5py
 
-    from hfanalysis.record.readers.hdf5_inside import datasets
+    from hfanalysis.record.readers.hdf5_inside import Stored, datasets
 
     with h5py.File(path, "r") as file:
         for names, item in datasets(path, file):
-            if item.shape and item.size > 1 and item.ndim <= 2 and item.dtype.kind in "fiubVSO":
-                yield from _columns(".".join(names), np.asarray(item), dict(item.attrs))
+            name, about = ".".join(names), dict(item.attrs)
+            unit = _word(about.get("units", ""))
+            if not (item.shape and item.size > 1 and item.ndim <= 2 and item.dtype.kind in "fiubVSO"):
+                continue
+            if item.dtype.kind in "fiub" and max(item.shape) == item.size and not _SINCE.match(unit):
+                stored = Stored(path, item.name, partial(_scaled, about=about))
+                yield LogSeries(name, cast(Array, stored), unit)
+            else:
+                yield from _columns(name, np.asarray(item), about)
 
 
 def _columns(name: str, array: Any, about: dict[str, Any]) -> Iterator[LogSeries]:

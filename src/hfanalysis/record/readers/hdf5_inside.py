@@ -7,7 +7,7 @@ log that does is refused: what it names need not be of the test, and is not in t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,11 +28,13 @@ class Stored:
 
     path: Path
     key: str
-    shape: tuple[int, ...]
+    finished: Callable[[NDArray[np.float64]], NDArray[np.float64]] = lambda numbers: numbers
+    """What is made of the numbers as they are in the file."""
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         with h5py.File(self.path, "r") as file:
-            return np.asarray(file[self.key][()], dtype=dtype or np.float64).ravel()
+            numbers = np.asarray(file[self.key][()], dtype=np.float64).ravel()
+        return self.finished(numbers).astype(dtype or np.float64, copy=False)
 
 
 def datasets(path: Path, file: h5py.File) -> Iterator[tuple[tuple[str, ...], h5py.Dataset]]:

@@ -24,6 +24,8 @@ from hfanalysis.record.readers.table import WIDEST, LogSeries, Table
 
 BACK = 0.02
 """Share of steps back that a logger's clock may have."""
+_WITH_SERIES = ("table", "timetable", "datetime", "duration", "timeseries")
+"""MATLAB's own classes that hold series. Source: MATLAB."""
 _NAME_FIELDS = ("name", "label", "channel", "title", "id")
 _TIME_FIELDS = ("t", "time", "x", "timestamp", "timestamps")
 """Fields of a channel's struct, by what they hold."""
@@ -40,8 +42,8 @@ def open_source(path: Path, spec: FileSpec) -> Table:
         raise
     except Exception as error:  # damaged files fail in every way that there is
         raise InputError(f"{path}: cannot be read as a MATLAB file: {error or type(error).__name__}") from None
-    notes = [f"{path.name}: {_refused(name, kind)}" for name, kind in opaque.items()]
-    if not found and notes:
+    notes = [f"{path.name}: {_refused(name, kind)}" for name, kind in opaque.items() if kind in _WITH_SERIES]
+    if not found and opaque:
         raise InputError(f"{path}: {_refused(*next(iter(opaque.items())))}")
     return Table(path, found, notes)
 
@@ -80,7 +82,7 @@ def _from_hdf5(path: Path, opaque: dict[str, str]) -> Iterator[LogSeries]:
                 yield from _records_of(file, item, names)
             elif item.dtype.kind in "fiub" and item.ndim == 2:
                 if 1 in item.shape and item.size > 1:
-                    yield LogSeries(".".join(names), cast(Array, Stored(path, item.name, item.shape)))
+                    yield LogSeries(".".join(names), cast(Array, Stored(path, item.name)))
                 elif item.shape[0] <= WIDEST:
                     yield from _series(".".join(names), np.asarray(item).T)
 

@@ -24,6 +24,8 @@ def render(material: Material) -> Iterator[Block]:
     columns = ("quantity", ">measured", ">95 % interval", ">model", ">model − measured", "remark")
     rows = (_row(name, quantity, model.get(name)) for name, quantity in ordered(measured).items())
     yield html.table("Performance", _CAPTION, columns, rows)
+    if validation.performance.motor_class:
+        yield html.paragraph(Markup("Motor class {}.").format(validation.performance.motor_class))
     for reason in dict.fromkeys(quantity.reason for quantity in ordered(model).values() if quantity.reason):
         yield html.paragraph(Markup("No model: {}.").format(html.switchable(reason)))
     yield _closure(ordered(validation.closure.quantities))

@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.diagnosis import Diagnosis
+from hfanalysis.products.health import TRUSTED
 from hfanalysis.products.ingest import Ingest
 from hfanalysis.products.validation import Finding, Validation
 from hfanalysis.quantity import DOUBTED, Quantity
@@ -76,12 +77,12 @@ def _numbers(found: Mapping[str, Quantity]) -> Markup | None:
 
 
 def _key_number(name: str, quantity: Quantity) -> Markup:
-    """With a badge where it is doubted, which says why."""
-    number = html.value(quantity, name, True)
-    if quantity.verdict != DOUBTED:
+    """With a badge where it is doubted, or rests on a channel that the engineer trusts, which says why."""
+    number, why = html.value(quantity, name, True), quantity.why or ""
+    if quantity.verdict != DOUBTED and TRUSTED not in why:
         return number
-    badge = Markup('{} <span class="doubt" title="{}">{}</span>')
-    return badge.format(number, quantity.why or "", html.verdict(DOUBTED))
+    badge = html.verdict(DOUBTED) if quantity.verdict == DOUBTED else Markup("(trusted)")
+    return Markup('{} <span class="doubt" title="{}">{}</span>').format(number, why, badge)
 
 
 def sentence(material: Material) -> str:

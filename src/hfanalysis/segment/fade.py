@@ -1,0 +1,206 @@
+"""A fade of the fire before the liquid is gone: where it begins, and where it has ended.
+
+The chamber's response to the feed settles to a line while the grain burns whole. From the bend on it falls by a power
+of the time since, until the fuel is gone, and from there on it is a line again. How a grain runs out is not known:
+every power and every length that the samples allow counts by its likelihood, so that a rounded bend is dated as poorly
+as it is seen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hfanalysis.arrays import Array
+from hfanalysis.segment.breaks import memory_length
+
+POWERS = (0.7, 1.0, 1.4, 2.0)
+"""Powers of the time with which a fade may set in: at once, or with a rounded bend."""
+
+SETTLES = (0.2, 0.6)
+"""Time constants [s] with which a fire settles after its start. Evidence: on public records it takes one to two seconds
+after the line is full; taken for a part of the line it hid a fade of a third."""
+
+BEND = 0.04
+"""Part of a fade's length within which its bends are dated, whatever the samples: no grain runs out by a power of the
+time. Evidence: benchmarks of fades of other shapes, dated three times too surely without it."""
+
+COARSE, FINE = 40, 25
+"""Beginnings, and ends, that are tried over the phase, and then where the first trials are likely."""
+
+LIKELY = 9.0
+"""Rise of chi^2 up to which an instant is looked at again: three standard deviations."""
+
+POINTS = 160
+"""Block means of the response that carry its bend."""
+
+LEAST_FALL = 0.2
+"""Least part of the response that a fade takes, also beyond what the line before it falls."""
+
+LEAST_FALL_TO_END = 0.4
+"""The same where the fade has ended: without fuel the response is two to five times smaller. Source: c* of cold nitrous
+oxide, 250 to 600 m/s, against 1000 to 1600 of a fire."""
+
+CLEAR = 5.0
+"""Least size of that fall in its standard deviations."""
+
+SHORTEST = 0.25
+"""Seconds: a shorter fade is a sudden fall, which has a search of its own."""
+
+LONGEST = 0.6
+"""Largest part of the phase that a fade may take. Evidence: test_fuel_bounds.py: what takes most of the burn is how the
+fire goes throughout."""
+
+LEVEL = 0.3
+"""Part of the fade's rate of fall above which the response has not levelled off after it."""
+
+STEADY = 0.15
+"""Part of the phase that has to be seen before a fade."""
+
+REST = 0.15
+"""Part of a fade's length for which the line after it has to be seen, else its end is not."""
+
+
+@dataclass(frozen=True)
+class Fade:
+    """When it begins [s] and how well the bend is dated, when it has ended (None: not before the phase does)."""
+
+    begin: float
+    begin_std: float
+    gone: float | None
+    gone_std: float
+
+
+@dataclass(frozen=True)
+class _Trials:
+    """Beginnings and ends [s] of all fades that are tried, (k,); what each leaves of the response; its fall, and that
+    fall's deviation for residuals of 1."""
+
+    begin: Array
+    end: Array
+    power: Array
+    left: Array
+    fall: Array
+    error: Array
+
+    def of(self, some: NDArray[np.bool_]) -> _Trials:
+        return _Trials(*(getattr(self, f.name)[some] for f in fields(self)))
+
+    @property
+    def best(self) -> int:
+        return int(np.argmin(self.left))
+
+
+def find_fade(time: Array, response: Array) -> Fade | None:
+    """The fade in a phase whose response (n,), in any unit, is given over times (n,) [s]; None where there is none."""
+    t, y = _reduced(time, response / max(float(np.median(response)), 1e-9))
+    if t.size < 24 or t[-1] - t[0] < 4.0 * SHORTEST:
+        return None
+    first, last = float(t[0]), float(t[-1])
+    length = last - first
+    early = first + STEADY * length
+    begins = np.linspace(early, last - SHORTEST, COARSE)
+    trials = _fitted(t, y, *_grid(begins, np.linspace(early + SHORTEST, last, COARSE)))
+    variance = _variance(t, y, trials)
+    price = float(np.log(t.size)) * variance
+    ended = trials.end < last - REST * (trials.end - trials.begin)
+    running, over = trials.of(trials.end == last), trials.of(ended)
+    gone = bool(over.left.size) and over.left.min() + 2.0 * price < running.left.min() and _levels_off(t, y, over)
+    used = over if gone else running
+    best = used.best
+    whole = y - _whole(t) @ np.linalg.lstsq(_whole(t), y, rcond=None)[0]
+    least = max(LEAST_FALL_TO_END if gone else LEAST_FALL, CLEAR * float(used.error[best]) * np.sqrt(variance))
+    level = float(np.interp(used.begin[best], t, y))
+    if whole @ whole - used.left[best] < 4.0 * price or min(used.fall[best], _seen_fall(t, y, used)) < least * level:
+        return None
+    begin, end = (_looked_at(x, used, variance, 1.5 * length / COARSE) for x in (used.begin, used.end))
+    fine = _fitted(t, y, *_grid(begin, end if gone else np.array([last])))
+    weight = np.exp(-0.5 * (fine.left - fine.left.min()) / variance)
+    found, found_std = _mean(weight, fine.begin)
+    ends, ends_std = _mean(weight, fine.end)
+    if not SHORTEST < ends - found < LONGEST * length:
+        return None
+    shape = BEND * (ends - found)
+    return Fade(found, float(np.hypot(found_std, shape)), ends if gone else None, float(np.hypot(ends_std, shape)))
+
+
+def _looked_at(values: Array, used: _Trials, variance: float, least: float) -> Array:
+    """Instants [s] to look at again: where the trials are likely, and ``least`` [s] about it."""
+    likely = values[used.left - used.left.min() < LIKELY * variance]
+    return np.linspace(float(likely.min()) - least, float(likely.max()) + least, FINE)
+
+
+def _whole(t: Array) -> Array:
+    """What the response of a grain that burns whole is made of: a line, and the settling of the start."""
+    since = t - t[0]
+    return np.stack([np.ones_like(t), since, *(np.exp(-since / settles) for settles in SETTLES)], axis=1)
+
+
+def _reduced(time: Array, value: Array) -> tuple[Array, Array]:
+    per = max(time.size // POINTS, 1)
+    whole = time.size // per * per
+    return time[:whole].reshape(-1, per).mean(axis=1), value[:whole].reshape(-1, per).mean(axis=1)
+
+
+def _mean(weight: Array, value: Array) -> tuple[float, float]:
+    """Mean and deviation over the trials, which are no closer than their grid."""
+    mean = float(np.average(value, weights=weight))
+    grid = float(np.ptp(value)) / FINE
+    return mean, float(np.sqrt(np.average((value - mean) ** 2, weights=weight) + grid**2 / 12.0))
+
+
+def _grid(begins: Array, ends: Array) -> tuple[Array, Array, Array]:
+    """Beginnings, ends and powers of the trials: every pair that lies apart, with every power."""
+    begin, end, power = (x.ravel() for x in np.meshgrid(begins, ends, POWERS, indexing="ij"))
+    apart = end - begin >= SHORTEST
+    return begin[apart], end[apart], power[apart]
+
+
+def _fitted(t: Array, y: Array, begin: Array, end: Array, power: Array) -> _Trials:
+    """All trials by least squares: a line, the fade, and where it ends before the phase does another slope after it."""
+    basis = np.linalg.qr(_whole(t))[0]
+    rest = y - basis @ (basis.T @ y)
+    faded = -(np.clip((t - begin[:, None]) / (end - begin)[:, None], 0.0, 1.0) ** power[:, None])
+    after = np.maximum(t - end[:, None], 0.0)
+    faded, after = (x - (x @ basis) @ basis.T for x in (faded, after))
+    across = np.einsum("kn,kn->k", faded, after)
+    of_after = np.einsum("kn,kn->k", after, after)
+    has = of_after > 1e-9
+    along = np.where(has, across / np.where(has, of_after, 1.0), 0.0)
+    own = faded - along[:, None] * after
+    size = np.maximum(np.einsum("kn,kn->k", own, own), 1e-12)
+    fall = own @ rest / size
+    by_after = np.where(has, (after @ rest) ** 2 / np.where(has, of_after, 1.0), 0.0)
+    left = rest @ rest - fall**2 * size - by_after
+    return _Trials(begin, end, power, np.where(fall > 0.0, left, rest @ rest), fall, 1.0 / np.sqrt(size))
+
+
+def _curve(t: Array, y: Array, one: _Trials) -> Array:
+    """The fitted response (n,) of a single trial."""
+    faded = np.clip((t - one.begin) / (one.end - one.begin), 0.0, 1.0) ** one.power
+    x = np.column_stack([_whole(t), faded, np.maximum(t - one.end, 0.0)])
+    return np.asarray(x @ np.linalg.lstsq(x, y, rcond=None)[0])
+
+
+def _levels_off(t: Array, y: Array, trials: _Trials) -> bool:
+    """Whether after the best fade the response hardly falls any more: else it is the fade that goes on, ever slower."""
+    one = trials.of(np.arange(trials.left.size) == trials.best)
+    ends = np.interp([float(one.end[0]), float(t[-1])], t, _curve(t, y, one))
+    fading = max(_seen_fall(t, y, trials), 1e-9) / float(one.end[0] - one.begin[0])
+    return bool(ends[0] - ends[1] < LEVEL * fading * (float(t[-1]) - float(one.end[0])))
+
+
+def _seen_fall(t: Array, y: Array, trials: _Trials) -> float:
+    """How far the response really falls from where the best fade begins to where it ends, whatever the line before."""
+    one = trials.of(np.arange(trials.left.size) == trials.best)
+    ends = np.interp([float(one.begin[0]), float(one.end[0])], t, _curve(t, y, one))
+    return float(ends[0] - ends[1])
+
+
+def _variance(t: Array, y: Array, trials: _Trials) -> float:
+    """Of an independent value of the response: what the best of all trials leaves, and how long its memory is."""
+    one = trials.of(np.arange(trials.left.size) == trials.best)
+    residual = y - _curve(t, y, one)
+    return max(float(residual @ residual) / max(t.size - 6, 1) * memory_length(residual), 1e-12)
