@@ -161,6 +161,6 @@ def definition(stand: Stand | None = None, **change: Any) -> TestDefinition:
 
 def segments_of(test: Trial, t_open: float = 100.0, std: float = 1e-4, **change: Quantity) -> Segments:
     """The true phases of a test; single events may be given otherwise."""
-    absent = {name: Quantity.absent("this test does not have it") for name in EVENTS}
+    absent = {n: Quantity.absent("this test does not have it") for n in EVENTS if n != "t_fuel_gone"}  # as t_fuel_out
     known = {"t_v": Quantity(test.t_v, "s", std), "t_purge": Quantity(test.t_purge, "s", std)}
     return Segments.of(Quantity(t_open, "s", 1e-6), absent | known | change, kind="hot_fire")
