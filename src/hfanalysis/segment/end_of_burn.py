@@ -24,8 +24,9 @@ APART = 1.0
 WINDOWS = (0.15, 0.3, 0.6, 1.2, 2.4)
 """Seconds on either side of the end through which a parabola is laid: the widest that still fits."""
 
-FITS = 1.15
-"""A parabola fits as long as it leaves no more than this times what the narrowest one leaves."""
+FITS = 1.05
+"""A parabola fits as long as it leaves no more than this times what the narrowest one leaves. Evidence: with 1.15 the
+95 % interval held 82 % of 28 simulated ends of burns, with this 96 %."""
 
 CLEAR = 4.0
 """Standard deviations by which neighbors are above and below, so that no noise made them so. Source: one in 30,000."""
