@@ -73,10 +73,37 @@ def tried(facts: Facts, logs: Path, root: Path) -> Outcome:
         shutil.copyfile(logs / facts.name / name, folder / name)
     ended = _hfa("run", facts.name, "--quiet", "--root", str(root))
     outcome.status, outcome.said = ended.returncode, ended.stderr.splitlines()
-    for path in sorted((root / "processed" / facts.name).glob("*.json")):
+    return _with_products(outcome, root)
+
+
+def _with_products(outcome: Outcome, root: Path) -> Outcome:
+    folder = root / "processed" / outcome.facts.name
+    for path in sorted(folder.glob("*.json")):
         outcome.products[path.stem] = json.loads(path.read_text(encoding="utf-8"))
-    outcome.origin = _origin(root / "processed" / facts.name / "ingest.h5", outcome)
+    if outcome.facts.hand and (folder / "ingest.h5").is_file():
+        outcome.origin = _origin(folder / "ingest.h5", outcome)
     return outcome
+
+
+def kept(facts: Facts, root: Path) -> Outcome | None:
+    """The outcome of an earlier trial in this root, None where there is none."""
+    path = _record(facts, root)
+    if not path.is_file():
+        return None
+    record = json.loads(path.read_text(encoding="utf-8"))
+    return _with_products(Outcome(facts, record["drafted"], record["status"], record["said"]), root)
+
+
+def keep(outcome: Outcome, root: Path) -> None:
+    """Put what commands said beside their products, for :func:`kept`."""
+    path = _record(outcome.facts, root)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    record = {"drafted": outcome.drafted, "status": outcome.status, "said": outcome.said}
+    path.write_text(json.dumps(record), encoding="utf-8")
+
+
+def _record(facts: Facts, root: Path) -> Path:
+    return root / "said" / f"{facts.name}.json"
 
 
 def _hfa(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -91,7 +118,7 @@ def _hfa(*arguments: str) -> subprocess.CompletedProcess[str]:
 def _origin(ingested: Path, outcome: Outcome) -> float:
     """When the times of the hand analysis begin, after the opening [s]."""
     opened = outcome.quantity("t_open")
-    if outcome.facts.origin == "t_open" or not outcome.facts.hand or opened is None or opened["value"] is None:
+    if outcome.facts.origin == "t_open" or opened is None or opened["value"] is None:
         return 0.0
     with h5py.File(ingested, "r") as file:
         if "p_run" not in file:

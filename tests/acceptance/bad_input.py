@@ -261,7 +261,7 @@ CASES = [
     toml('burn_time = "17 s"', 'burntime = "17 s"', "observed", "did you mean 'burn_time'"),
     toml('t_v = "5.27 s"', 't_v = "-5.27 s"', "segments.t_v", "more than zero"),
     toml('t_v = "5.27 s"', 't_vapor = "5.27 s"', "segments", "'t_vapor'"),
-    toml("drag_coefficient = 0.529", 'drag_coefficient = "0.529 kg"', "rocket.drag_coefficient", "number"),
+    toml("drag_coefficient = 0.529", 'drag_coefficient = "0.529 kg"', "rocket.drag_coefficient", "dimensionless"),
     toml("drag_coefficient = 0.529", "drag_coefficient = -0.5", "rocket.drag_coefficient", "more than zero"),
     toml("drag_coefficient = 0.529", 'drag_table = "drag.csv"', "rocket.drag_table", "'drag.csv'"),
     toml('launch_angle = "6 deg"', 'launch_angle = "96 deg"', "rocket.launch_angle", "90"),
