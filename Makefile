@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs recovery mutants fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates recovery mutants fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -84,6 +84,9 @@ rocketpy: ## set up .venv-rocketpy/ with the locked RocketPy, to compare flights
 
 random-engines: $(STAMP) ## 10,000 random engines run or are refused with a reason: docs/random-engines.md
 	$(BIN)/python -m benchmarks.random_engines --write
+
+health-rates: $(STAMP) ## faults found and healthy logs blamed: docs/health-rates.md; goes on where stopped, FLAGS='--each 10'
+	$(BIN)/python -m benchmarks.health_rates --write $(FLAGS)
 
 # They are no part of the repository: make real-logs LOGS=FOLDER, a folder per log.
 LOGS ?= ../shared/real_tests

@@ -174,7 +174,7 @@ def table(results: list[dict[str, Any]], quantities: tuple[str, ...] = QUANTITIE
         error = np.array([f["value"] - t for t, f in answered])
         z = error / np.array([f["std"] for _, f in answered])
         inside = np.array([f["ci95"][0] <= t <= f["ci95"][1] for t, f in answered])
-        low, high = _wilson(int(inside.sum()), inside.size)
+        low, high = wilson(int(inside.sum()), inside.size)
         size = f"{1e3 * np.median(error):+.2f} ms" if name.startswith("t_") else _percent(error, answered)
         rows.append(
             f"| {name} | {len(pairs)} | {len(answered)} | {size} | {z.mean():+.2f} | {z.std():.2f} | "
@@ -187,7 +187,7 @@ def _percent(error: np.ndarray, answered: list[Any]) -> str:
     return f"{100 * np.median(error / np.array([t for t, _ in answered])):+.2f} %"
 
 
-def _wilson(k: int, n: int) -> tuple[float, float]:
+def wilson(k: int, n: int) -> tuple[float, float]:
     z, p = 1.96, k / n
     middle = (p + z * z / (2 * n)) / (1 + z * z / n)
     half = z * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)

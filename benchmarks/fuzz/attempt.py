@@ -97,7 +97,7 @@ def found(folder: Path) -> dict[str, Any]:
     for name, file in QUANTITIES.items():
         quantity = _quantity(_product(folder / file), name)
         if quantity is not None and quantity.get("value") is not None:
-            out[name] = {key: quantity.get(key) for key in ("value", "std", "ci95", "verdict", "reason")}
+            out[name] = {key: quantity.get(key) for key in ("value", "std", "ci95", "verdict", "reason", "why")}
     out["health"] = _findings(_product(folder / "health.json"))
     return out
 

@@ -35,9 +35,15 @@ def judge(row: Mapping[str, Any], base: Mapping[str, Any]) -> Judged:
     end = _end(row)
     moved = tuple(name for name in QUANTITIES if _moved(row["found"].get(name), base["found"].get(name)))
     new = _new(row, base)
-    doubts = any((row["found"][name].get("verdict") or "").startswith(DOUBTFUL) for name in moved)
+    doubts = bool(moved) and all(_newly_doubtful(row["found"][name], base["found"][name]) for name in moved)
     points = doubts or any(_names(text, row["hit"]) for text in new)
     return Judged(end, moved, bool(new) or doubts, points)
+
+
+def _newly_doubtful(now: Mapping[str, Any], before: Mapping[str, Any]) -> bool:
+    """Whether the verdict is a caveat that the unspoilt number has not."""
+    verdict = now.get("verdict") or ""
+    return verdict.startswith(DOUBTFUL) and verdict != before.get("verdict")
 
 
 def _end(row: Mapping[str, Any]) -> str:
@@ -71,8 +77,9 @@ def _new(row: Mapping[str, Any], base: Mapping[str, Any]) -> list[str]:
 
 
 def _texts(row: Mapping[str, Any]) -> list[str]:
-    reasons = [one.get("reason") for one in row["found"].values() if isinstance(one, dict) and one.get("reason")]
-    return [*row["said"].splitlines(), *row["found"].get("health", []), *map(str, reasons)]
+    quantities = [one for one in row["found"].values() if isinstance(one, dict)]
+    reasons = [str(one[key]) for one in quantities for key in ("reason", "why") if one.get(key)]
+    return [*row["said"].splitlines(), *row["found"].get("health", []), *reasons]
 
 
 def _without_numbers(text: str) -> str:

@@ -16,7 +16,7 @@ from benchmarks.fuzz.table import CHANNELS, Array, Case
 Rng = np.random.Generator
 Mutator = Callable[[Case, Rng], None]
 
-WHOLE = {"row", "sample", "clock", "time", "log", "rate", "step"}
+WHOLE = {"row", "sample", "clock", "stamp", "rate", "step", "repeated", "held", "firing", "the log"}
 """Words of messages about the log as a whole."""
 
 

@@ -26,6 +26,9 @@ UNITS = {
 }
 """Units of sentences that are none of SI: the SI unit, and how many of it they are. Source: definitions."""
 
+MOST_WHOLE = 1e5
+"""From which on a rounded number has a power of ten. Source: definition."""
+
 
 @dataclass(frozen=True)
 class Quoted:
@@ -55,6 +58,12 @@ class Text(str):
         return str.__str__(self), self.quoted
 
 
+def _plain(number: float, form: str) -> str:
+    """A number by its format, whole numbers of some digits without a power of ten."""
+    words = f"{number:{form}}"
+    return f"{float(words):.0f}" if "e+" in words and abs(number) < MOST_WHOLE else words
+
+
 def said(
     value: float,
     unit: str,
@@ -69,11 +78,13 @@ def said(
 
     >>> said(1.25e6, "bar", ".1f", 5e4, ".1f")
     '12.5 ± 0.5 bar'
+    >>> said(2941.2, "N", ".3g", 130.0)
+    '2940 ± 130 N'
     """
     si, factor = UNITS.get(unit, (unit, 1.0))
     factor = factor if size is None else size
-    spread = "" if std is None else f" ± {std / factor:{std_form}}"
-    words = f"{value / factor:{form}}{spread} {unit}".strip()
+    spread = "" if std is None else f" ± {_plain(std / factor, std_form)}"
+    words = f"{_plain(value / factor, form)}{spread} {unit}".strip()
     quoted = {words: Quoted(float(value), si, None if std is None else float(std))}
     return Text(words, quoted if unit else {})
 

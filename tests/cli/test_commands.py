@@ -246,6 +246,20 @@ def test_help_and_fresh_results_load_nothing_heavy(run: Run, root: Path) -> None
         assert not {"numpy", "scipy", "pandas", "xarray", "matplotlib", "CoolProp", "numba", "h5py", "pint"} & loaded
 
 
+def test_a_calibration_loads_no_more_than_it_needs(run: Run, root: Path, tmp_path: Path) -> None:
+    arguments = ["calibrate", "HF5", "--root", str(root), "--out", str(tmp_path), "-q", "--set", "calibrate.samples=20"]
+    run(*arguments)  # compiled code and tables are there now
+    code = (
+        f"import sys; sys.argv = {['hfa', *arguments, '--force']!r}; from hfanalysis.cli import main\n"
+        "try: main()\nexcept SystemExit as end: assert not end.code, end.code\nprint(*sys.modules)"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = set(ended.stdout.splitlines()[-1].split())
+    assert "numba" in loaded
+    heavy = {"scipy.linalg", "scipy.special", "scipy.optimize", "scipy.interpolate"}
+    assert not (heavy | {"pandas", "xarray", "pint", "matplotlib", "CoolProp"}) & loaded
+
+
 def test_a_parameter_can_be_set_for_a_run(run: Run, root: Path, tmp_path: Path) -> None:
     ended = run("calibrate", "HF5", "--root", root, "--out", tmp_path, "--set", "calibrate.samples=20", "--json")
     assert json.loads(ended.out)["provenance"]["parameters"]["samples"] == 20

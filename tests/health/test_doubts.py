@@ -115,6 +115,13 @@ def test_a_stretch_is_a_doubt_about_the_events_near_it() -> None:
         assert (found.t_open.verdict, found.t_v.verdict) == expected
 
 
+def test_what_is_held_as_stated_is_not_doubted() -> None:
+    stated = {"C_i": Quantity(0.6, "", 0.001, verdict="stated", why="from a water flow")}
+    found = doubted(filled(Calibration, stated), health_of("p_run", "suspect"))
+    assert isinstance(found, Calibration)
+    assert found.C_i == stated["C_i"]
+
+
 def test_a_late_channel_widens_its_events() -> None:
     events = {"t_open": Quantity(100.0, "s", 0.01), "t_v": Quantity(5.0, "s", 0.01), "t_end": Quantity(8.0, "s", 0.1)}
     found = doubted(filled(Segments, events), health_of("p_run", "suspect", kind="lag", delay=0.5))

@@ -34,7 +34,7 @@ def test_a_fall_of_a_fifth_is_no_end_of_the_fuel(share: float) -> None:
 
 @pytest.mark.parametrize(("lasts", "seen"), [(0.25, True), (0.4, True), (0.75, False)])
 def test_a_fade_that_takes_most_of_the_burn_is_no_end_of_the_fuel(lasts: float, seen: bool) -> None:
-    """It is how the fire goes throughout; one that begins late is dated where it begins, as well as its bend is seen."""
+    """It is how the fire goes throughout; one that begins late is dated as well as its bend is seen."""
     whole = (TIME > 0.3) & (TIME < 5.9)
     first, last = TIME[whole][[0, -1]]
     begins = last - lasts * (last - first)

@@ -97,6 +97,16 @@ def test_a_tank_cell_is_compared_where_it_reads_what_is_loaded_to_a_twentieth(
     assert _cell_reads(weighed, segments_of(burn), loaded) is reads
 
 
+def test_a_doubt_about_the_zero_does_not_hide_it(burn: Trial) -> None:
+    log, drift = log_of(burn), 0.05 * float(np.percentile(burn.values["thrust"], 99.0))
+    wide = float(np.hypot(1.0, drift))
+    warm = replace(log["thrust"], zero=0.0, zero_std=wide, drift=drift, doubt=drift)
+    found = findings(
+        replace(log, channels={**log.channels, "thrust": warm}), segments_of(burn), definition(burn.stand), FIRE
+    )
+    assert "does not return to zero" in [f.verdict for f in found]
+
+
 @pytest.mark.parametrize(("share", "told"), [(0.012, False), (0.03, True), (-0.03, True)])
 def test_a_cell_is_named_that_ends_a_fiftieth_of_its_peak_from_zero(burn: Trial, share: float, told: bool) -> None:
     log = log_of(burn)

@@ -27,8 +27,9 @@ WANDER_FREEDOM = 10.0
 """Degrees of freedom of the wander's size. Evidence: read off a few seconds before the opening it is known to a factor
 of two or so."""
 
-NODES = 9
-"""Runs of the model per direction of the likelihood's surface."""
+NODES = 7
+"""Runs of the model per direction of the likelihood's surface. Evidence: HF4's and HF5's intervals are those of 9 to
+every digit; of 60 curved valleys the worst is off by 4 % of its half (with 9: by 8 %), the median by 0.1 %."""
 REACH = 1.6
 """How far the surface is followed, as a multiple of the 95 % limit [-]."""
 

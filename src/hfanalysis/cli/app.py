@@ -217,6 +217,7 @@ def _watch(
     root: Root = Path(),
     once: Annotated[bool, typer.Option("--once", help="Look at the logs that are there, and end.")] = False,
     as_json: Json = False,
+    trust_effects: Trust = False,
 ) -> None:
     """A quick look (as hfa run --quick) at each log as it lands in FOLDER; nothing is written.
 
@@ -225,6 +226,7 @@ def _watch(
     with plain_exit():
         from hfanalysis.cli.landing import watch_folder
 
+        ask(root, trust_effects)
         watch_folder(folder, root, once, as_json)
 
 

@@ -39,7 +39,7 @@ def _as_judged(context: Context) -> str:
     content = context.definition.path.read_bytes()
     if hashlib.sha256(content).hexdigest() != context.definition.sha256:
         raise InputError(f"{context.definition.path}: changed meanwhile; nothing was written: run again")
-    return content.decode("utf-8")
+    return content.decode("utf-8-sig")
 
 
 def cures(health: Health) -> Iterator[tuple[str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import tempfile
 import time
@@ -101,7 +102,9 @@ def _as_test(log: Path, root: Path, place: Path) -> tuple[str, Facts]:
             lender = known.test.id
             return name, Facts(f"that of {lender}, the last test with these columns{_load(known)}", lender)
     new_test(place, name, [log])
-    return name, Facts(f"a draft, for no test here has these columns: no masses, no C_i (hfa new ID --log {log})")
+    return name, Facts(
+        f"a draft, for no test here has these columns: no masses, no C_i (hfa new ID --log {shlex.quote(str(log))})"
+    )
 
 
 def _load(test: TestDefinition) -> str:

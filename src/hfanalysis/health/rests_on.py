@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import STATED, Quantity
 
 PRESSURES = ("p_tank", "p_run", "p_chamber")
 FIRE = ("p_chamber", "thrust")
@@ -108,7 +108,7 @@ BY_LEVEL = ("t_end",)
 def channels_of(product: str, name: str, quantity: Quantity) -> tuple[str, ...]:
     """The channels that a quantity of a product (its file's name) rests on."""
     told = quantity.why or ""
-    if told.startswith(OUTSIDE):
+    if quantity.verdict == STATED or told.startswith(OUTSIDE):
         return ()
     if any(words in told for words in FROM_CELL):
         return ("m_tank",)

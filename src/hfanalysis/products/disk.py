@@ -151,6 +151,7 @@ class HashCache:
     def __init__(self, store: Path) -> None:
         self._store = store
         self._known: dict[str, list[Any]] = self._load()
+        self._kept = dict(self._known)
 
     def _load(self) -> dict[str, list[Any]]:
         try:
@@ -177,8 +178,9 @@ class HashCache:
             self._known.pop(name, None)
 
     def save(self) -> None:
-        """Keep what is known for the next run."""
-        write_json(self._store, self._known)
+        """Keep what is known for the next run, if that is not what is kept already."""
+        if self._known != self._kept:
+            write_json(self._store, self._known)
 
 
 def _state(path: Path) -> list[int]:

@@ -59,7 +59,8 @@ class Segments(Product):
         What ``about`` does not say is nothing special.
         """
         fields = {"t_fuel_gone": events["t_fuel_out"], **events}  # at once, where nobody says otherwise
-        order = [name for _, name in sorted((q.value, name) for name, q in fields.items() if q.value is not None)]
+        there = {name: t for name in EVENTS if name in fields and (t := fields[name].value) is not None}
+        order = sorted(there, key=lambda name: there[name])
         usual = {"kind_reason": "", "misfire": False, "supercharged": False, "found_where_engineer_set": {}}
         said = {"firings": (), "engineer": (), "notes": (), "warnings": ()}
         return cls.model_validate({"t_open": t_open, **fields, "order": order, **usual, **said, **about})

@@ -19,6 +19,11 @@ SENTINELS = (999.0, 9999.0, 999.9, 99999.0, -999.0, -9999.0, -99999.0, 32767.0, 
 DETACHED = 0.2
 """Share of a channel's range by which an exact level must stand apart from its neighbors to be no reading. Evidence:
 test_flags.py: an open thermocouple drops out, zeros of a quantized cell at rest are readings."""
+CUT_OFF = ("pressure", "force", "mass")
+"""Dimensions of sensors whose readings are cut off at the end of their range; an open thermocouple stays at its end."""
+RAIL_SHARE = 0.05
+"""Share of the log from which on its highest level is a rail, not a code for no reading [-]. Evidence: a chamber gauge
+cut off at 12 bar through a burn that one sample begins and one ends (test_detectors.py)."""
 IMPOSSIBLE = {"temperature": (1.0, 6000.0), "pressure": (-5e5, 1e9)}
 """[SI] outside of which no sensor reads, however badly zeroed: 1 to 6000 K, -5 bar to 10,000 bar."""
 
@@ -36,6 +41,8 @@ def flag_readings(readings: Array, dimension: str, missing: Sequence[float] = ()
     if dimension == "dimensionless":
         return flags
     _flag_unread(readings, flags)
+    if dimension in CUT_OFF:
+        _flag_cut_off(readings, flags)
     _flag_live(readings, flags)
     return flags
 
@@ -67,6 +74,17 @@ def _flag_unread(readings: Array, flags: Flags) -> None:
         gap = _gap(readings, flags)
         if not sum(_flag_detached(readings, level, gap, flags) for level in levels):
             return
+
+
+def _flag_cut_off(readings: Array, flags: Flags) -> None:
+    """The highest level, apart from all else as a code is, but read for long: the channel is cut off there."""
+    lost = (flags == Flag.DROPOUT) & np.isfinite(readings)
+    if not lost.any() or not (flags == 0).any():
+        return
+    top = float(readings[lost].max())
+    long = np.count_nonzero(readings == top) > RAIL_SHARE * len(readings)
+    if long and top not in SENTINELS and top > readings[flags == 0].max():
+        flags[lost & (readings == top)] = Flag.SATURATED
 
 
 def _may_be_none(level: float, live: Array) -> bool:

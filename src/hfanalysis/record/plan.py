@@ -77,6 +77,8 @@ def _only_file(spec: ChannelSpec, sources: Mapping[str, Source], where: str) -> 
         return next(iter(sources))
     wanted = tidy(str(spec.column))
     found = [name for name, source in sources.items() if wanted in map(tidy, source.columns)]
+    if not found:  # another row of the header may call it so
+        found = [n for n, source in sources.items() if any(wanted in map(tidy, row) for row in source.others)]
     if len(found) != 1:
         which = f"column {spec.column!r} is in {len(found) or 'none'} of the log's files"
         raise InputError(f"{where}: {which}; expected file = one of {', '.join(found or sources)}")

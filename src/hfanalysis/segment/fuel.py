@@ -150,8 +150,11 @@ def find_fuel_end(
     if response is None:
         return "the chamber pressure is not above ambient for long enough"
     sudden = _sudden_end(signals, response, ambient, t_feed, t_v, end)
-    fade = _fade(signals, response, t_feed, t_v) if t_v is not None else None
-    if fade is not None and (sudden is None or fade.begin < sudden.time):
+    fade = None
+    if t_v is not None:
+        until = t_v[0] - BEFORE_LIQUID_END - t_v[1]
+        fade = _fade(signals, response, t_feed, until if sudden is None else min(until, sudden.time - GAP))
+    if fade is not None:
         return _faded(fade, sudden, t_v[0] if t_v is not None else np.inf)
     if sudden is not None:
         return FuelEnd(sudden.time, sudden.std, sudden.time, sudden.std)
@@ -193,11 +196,8 @@ def _is_liquids(sudden: Sudden, t_v: float | None, std: float) -> bool:
     return t_v is not None and std >= BLURRED and abs(sudden.time - t_v) < WINDOW + 2.0 * std
 
 
-def _fade(
-    signals: Mapping[str, Signal], response: _Response, t_feed: float, liquid_out: tuple[float, float]
-) -> Fade | None:
-    """A fade before the end of the liquid that the thrust, where it is measured, shares."""
-    until = liquid_out[0] - BEFORE_LIQUID_END - liquid_out[1]
+def _fade(signals: Mapping[str, Signal], response: _Response, t_feed: float, until: float) -> Fade | None:
+    """A fade up to an instant [s] that the thrust, where it is measured, shares."""
     part = (response.time > t_feed + STARTS) & (response.time < until)
     fade = find_fade(response.time[part], response.value[part])
     if fade is None:

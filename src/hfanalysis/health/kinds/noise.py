@@ -68,7 +68,9 @@ def _turn(noise: Array) -> int | None:
 
 
 def _finding(seen: Seen, blocks: list[Trace], noise: Array, at: int) -> Finding | None:
-    usual, size = float(np.median(noise[:at])), float(np.median(noise[at:]))
+    usual, size = _usual(seen, noise[:at]), float(np.median(noise[at:]))
+    if size < LOUDER * usual:
+        return None
     levels = np.array([np.median(block.values) for block in blocks])
     start, end = float(blocks[at].time[0]), float(blocks[-1].time[-1])
     drowned = size > max(OF_RANGE * np.ptp(levels), 3.0 * seen.channel.accuracy)
@@ -82,6 +84,12 @@ def _finding(seen: Seen, blocks: list[Trace], noise: Array, at: int) -> Finding 
     means = "the sensor or its cable has died: what follows is noise, and no signal is in it"
     cure = exclude([seen.name], start, end)
     return seen.finding("noise", "unusable", start=start, end=end, evidence=evidence, means=means, cure=cure)
+
+
+def _usual(seen: Seen, noise: Array) -> float:
+    """The noise before: what is held or cut off has none, and says nothing."""
+    rest = seen.coarse.rest
+    return max(float(np.median(noise[noise > 0.0])) if (noise > 0.0).any() else 0.0, rest.noise if rest else 0.0)
 
 
 def _flat(blocks: list[Trace], size: float) -> bool:

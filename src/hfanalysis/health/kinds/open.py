@@ -25,6 +25,8 @@ ANYWHERE = (150.0, 3800.0)
 JUMPY = 8.0
 """[K] of noise between neighboring samples that no bead with a heat capacity shows [-]. Source: interference on a sound
 thermocouple is a degree or two; tolerance class 2 is 2.5 K."""
+NEARLY = 0.9
+"""Part of the log from which on a stretch is all of it [-]. Source: definition."""
 BLOCKS = 60
 """Blocks whose noise is asked for."""
 LASTING = 0.02
@@ -84,7 +86,7 @@ def _outside(seen: Seen, time: np.ndarray, values: np.ndarray, outside: Mask) ->
         "{share:.0f} % of its readings are of temperatures that the place cannot have, up to {worst}",
         share=100.0 * outside.mean(), worst=level(worst, "temperature"),
     )  # fmt: skip
-    if outside.mean() > 0.5:
+    if time[last] - time[first] > NEARLY * np.ptp(time):
         return _open(seen, "unusable", evidence)
     start, end = float(time[first]), float(time[last])
     return _open(seen, "unusable", evidence, start=start, end=end, cure=exclude([seen.name], start, end))

@@ -14,6 +14,7 @@ from hfanalysis.health.seen import Seen
 from hfanalysis.health.shape import stretches
 from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
+from hfanalysis.record.signals import sample_noise
 from hfanalysis.sentences import text
 
 OFTEN = 8
@@ -26,6 +27,9 @@ MOSTLY = 0.9
 definition."""
 SPIKES = 0.1
 """Spikes beyond a rail for each reading at it, at most [-]. Evidence: benchmarks/health_rates.py."""
+NOISY = 2.0
+"""Noise in steps of its resolution from which on a channel does not stand at one level [-]. Source: with a deviation of
+two steps, one reading in five is the most frequent."""
 NEIGHBORS = 12
 """Levels beside a rail that say how often a level is read usually."""
 
@@ -66,8 +70,10 @@ def _clipped(seen: Seen, time: Array, values: Array) -> list[Finding]:
     live = (time >= seen.fire[0]) & (time <= seen.fire[1])
     found = []
     for sign, side in ((1.0, "highest"), (-1.0, "lowest")):
-        rail = _rail(sign * values[live])
+        rail = _rail(sign * values[live]) if live.any() else None
         if rail is None or np.count_nonzero(sign * values > rail) > SPIKES * np.count_nonzero(sign * values == rail):
+            continue
+        if not _shows_noise(seen, values, sign * rail):
             continue
         # at rest a channel may well stand at its lower end: only what is cut off of the firing matters
         if sign > 0.0 or _in_the_middle(seen, time, values == -rail):
@@ -78,7 +84,7 @@ def _clipped(seen: Seen, time: Array, values: Array) -> list[Finding]:
 def _rail(values: Array) -> float | None:
     """The level (of ``values`` (n,), looked at from above) at which they are cut off; None where they are not."""
     levels, counts = np.unique(values, return_counts=True)
-    if len(levels) < 3 or counts.max() < OFTEN:
+    if not len(levels) or counts.max() < OFTEN:
         return None
     top = int(np.argmax(np.where(counts >= max(OFTEN, 0.005 * len(values)), np.arange(len(levels)), -1)))
     above, count = int(counts[top + 1 :].sum()), int(counts[top])
@@ -87,6 +93,15 @@ def _rail(values: Array) -> float | None:
     below = counts[max(0, top - NEIGHBORS) : top]
     usual = float(np.mean(below)) if len(below) else 0.0
     return float(levels[top]) if count > CROWD * usual + 4.0 * np.sqrt(max(usual, 1.0)) else None
+
+
+def _shows_noise(seen: Seen, values: Array, rail: float) -> bool:
+    """Whether the channel has noise where it is not at the rail, or comes from far below: a quiet sensor of few bits
+    stands at one level for long."""
+    rest = seen.coarse.rest
+    if rest is not None and abs(rail - rest.value) > max(3.0 * seen.channel.accuracy, 10.0 * seen.coarse.quantum):
+        return True
+    return sample_noise(values[values != rail]) >= NOISY * seen.coarse.quantum
 
 
 def _in_the_middle(seen: Seen, time: Array, at: Array) -> bool:

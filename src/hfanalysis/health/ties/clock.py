@@ -8,6 +8,8 @@ from hfanalysis.health.seen import SeenTest
 from hfanalysis.products.health import Finding
 from hfanalysis.sentences import said, text
 
+DEVIATIONS = 2.0
+"""Deviations of the stated time by which the log has to end too early [-]."""
 WATCH = 0.1
 """Relative deviation of a burn time by eye or video, where none is stated [-]. Source: what counts as the end of a burn
 (flame, sound, pressure) differs by about that."""
@@ -21,7 +23,7 @@ def find(test: SeenTest) -> Iterator[Finding]:
     stated = observed.burn_time
     left = max(seen.coarse.end for seen in test.channels.values()) - test.fire[0]
     error = stated.std if stated.std is not None else WATCH * stated.value
-    if left > stated.value - 3.0 * error:
+    if left > stated.value - DEVIATIONS * error:
         return
     evidence = text(
         "the log ends {left} after the opening, and the burn is stated to have lasted {stated}",

@@ -113,8 +113,9 @@ def _gone_for_a_while(test: SeenTest) -> Iterator[Finding]:
     dead = (p_c > FIRES["p_chamber"]) & (p_run < np.maximum(AT_REST * p_c, 3.0 * _noise(run)))
     for a, b in stretches(dead, bridge=2):
         start, end = float(trace.time[a]), float(trace.time[b - 1])
-        # a slow gauge that still fills up is another kind
-        if end - start >= SHORTEST and a > 0 and p_run[:a].max() > p_c[a:b].mean():
+        # a slow gauge that still fills up, and a chamber that empties more slowly than its line, are other kinds
+        there = all(len(part) and part.max() > p_c[a:b].mean() for part in (p_run[:a], p_run[b:]))
+        if end - start >= SHORTEST and there:
             yield _for_a_while(run, start, end, p_c[a:b])
 
 

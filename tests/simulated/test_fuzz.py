@@ -1,0 +1,93 @@
+"""The study of spoilt logs: the same cases every time, and a judge that a silent number does not get past."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from benchmarks.fuzz import cases, document, formats
+from benchmarks.fuzz.judge import judge
+from benchmarks.fuzz.mutators import UNITS
+
+from hfanalysis.record.definition import load_definition
+from hfanalysis.record.ingest import ingest
+from hfanalysis.record.log import read_log
+
+BASE: dict[str, Any] = {
+    "status": 0, "said": "hfa: warning: 7 of 1200 samples", "error": "",
+    "found": {"C_i": {"value": 0.29, "std": 0.001, "verdict": "identified"}, "health": []},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_a_case_is_the_same_every_time(number: int) -> None:
+    one, other = cases.build(number, 1), cases.build(number, 1)
+    assert one.mutators == other.mutators
+    assert one.text == other.text
+    if one.format not in ("mat", "mat73", "hdf5"):  # which hold the date
+        assert one.content == other.content
+
+
+def test_most_numbers_are_cases_of_their_own() -> None:
+    kinds = {tuple(cases.build(number, 1).mutators) for number in range(40)}
+    assert len(kinds) > 20
+
+
+@pytest.mark.parametrize("format", formats.NAMES)
+def test_the_unspoilt_log_is_read_in_every_format(format: str, tmp_path: Path) -> None:
+    case = cases.unspoilt("HF5", format)
+    root = cases.put(case, tmp_path)
+    definition = load_definition(root / "raw_tests" / document.ID / "test.toml")
+    ingest(definition, tmp_path / "ingest.h5")
+    found = read_log(tmp_path / "ingest.h5")["p_tank"]
+    good = np.isfinite(found.values) & np.isfinite(case.log.channels["p_tank"])
+    np.testing.assert_allclose(found.values[good], 6894.757293168361 * case.log.channels["p_tank"][good], rtol=1e-6)
+    assert good.mean() > 0.98
+
+
+def test_a_definition_written_anew_says_the_same() -> None:
+    content = document.base("HF5", "csv")
+    assert tomllib.loads(document.text(content)) == content
+    odd = {"a": {"b": 'x"\\\n\x00ü', "c": [1, "d"], "e": True}}
+    assert tomllib.loads(document.text(odd)) == odd
+    assert len(set(UNITS)) == len(UNITS)
+
+
+def spoilt(value: float, said: str = "", verdict: str = "identified", **more: Any) -> dict[str, Any]:
+    found = {"C_i": {"value": value, "std": 0.001, "verdict": verdict}, "health": more.pop("health", [])}
+    return {**BASE, "said": f"{BASE['said']}\n{said}", "found": found, "hit": ["p_tank"], **more}
+
+
+@pytest.mark.parametrize(
+    ("row", "moved", "points"),
+    [
+        (spoilt(0.2901), (), False),
+        (spoilt(0.35), ("C_i",), False),
+        (spoilt(0.35, "hfa: warning: 9 of 1200 samples"), ("C_i",), False),
+        (spoilt(0.35, "hfa: warning: the purge gauge rests high"), ("C_i",), False),
+        (spoilt(0.35, "hfa: warning: channel p_tank: suspect"), ("C_i",), True),
+        (spoilt(0.35, health=["p_tank scale"]), ("C_i",), True),
+        (spoilt(0.35, verdict="doubted"), ("C_i",), True),
+    ],
+)
+def test_a_number_that_moved_has_to_say_why(row: dict[str, Any], moved: tuple[str, ...], points: bool) -> None:
+    judged = judge(row, BASE)
+    assert (judged.moved, judged.points, judged.silent) == (moved, points, bool(moved) and not points)
+
+
+@pytest.mark.parametrize(
+    ("change", "end"),
+    [
+        ({"status": 2}, "refused (2)"),
+        ({"status": 3}, "refused (3)"),
+        ({"status": 1}, "traceback"),
+        ({"said": "Traceback (most recent call last):"}, "traceback"),
+        ({"status": -1, "error": "hang"}, "hang"),
+        ({"status": -1, "error": "killed by SIGSEGV"}, "killed"),
+    ],
+)
+def test_how_a_case_ended(change: dict[str, Any], end: str) -> None:
+    assert judge(spoilt(0.29) | change, BASE).end == end
