@@ -341,6 +341,14 @@ def test_a_chamber_at_ambient_says_nothing_of_the_fuel() -> None:
 # --- the chamber unchokes ---------------------------------------------------------------------------------------------
 
 
+def test_a_chamber_that_empties_between_two_samples_dates_its_own_end() -> None:
+    chamber = noisy("p_chamber", AMBIENT + 2e5 * ((TIME > 0.0) & (TIME < 4.0)))
+    found = find_unchoking(chamber, AMBIENT, 0.1)
+    assert not isinstance(found, str)
+    assert found[0] == pytest.approx(4.0, abs=chamber.step)
+    assert found[1] < chamber.step
+
+
 def test_the_burn_ends_where_the_nozzle_unchokes() -> None:
     """p_c = p_a + 12 bar e^(-t/2) reaches 1.8 p_a at 2 ln(12 bar / 0.8 p_a)."""
     chamber = noisy("p_chamber", AMBIENT + 12e5 * np.exp(-since(0.0) / 2.0) * (TIME > 0.0))

@@ -24,8 +24,12 @@ APART = 1.0
 WINDOWS = (0.15, 0.3, 0.6, 1.2, 2.4)
 """Seconds on either side of the end through which a parabola is laid: the widest that still fits."""
 
-FITS = 1.15
-"""A parabola fits as long as it leaves no more than this times what the narrowest one leaves."""
+FITS = 1.05
+"""A parabola fits as long as it leaves no more than this times what the narrowest one leaves. Evidence: with 1.15 the
+95 % interval held 82 % of 28 simulated ends of burns, with this 96 %."""
+
+CLEAR = 4.0
+"""Standard deviations by which neighbors are above and below, so that no noise made them so. Source: one in 30,000."""
 
 QUIET = (-3.0, -0.05)
 """Seconds before the opening from which the chamber's zero and the sensor's wander are known."""
@@ -53,7 +57,8 @@ def find_unchoking(
     quiet = chamber.between(QUIET[0], QUIET[1])
     noise = noise or Noise.of(chamber, quiet)
     since = float(quiet.time[0]) if quiet.time.size else QUIET[0]
-    return _crossing(part, float(part.time[last]), limit, noise, bias, (since, QUIET[1]))
+    rough = float(part.time[last])
+    return _at_once(part, rough, limit, bias) or _crossing(part, rough, limit, noise, bias, (since, QUIET[1]))
 
 
 def pulses_after(chamber: Signal, limit: float, t_end: float) -> list[tuple[float, float]]:
@@ -84,6 +89,20 @@ def _last_of_burn(time: Array, excess: Array) -> int:
     runs = _runs(time, excess > 0.0)
     sizes = [float(np.trapezoid(excess[a : b + 1], time[a : b + 1])) for a, b in runs]
     return int(runs[int(np.argmax(sizes))][1])
+
+
+def _at_once(part: Signal, rough: float, limit: float, bias: float) -> tuple[float, float] | None:
+    """Between which two samples about ``rough`` [s] the limit [Pa] is passed, where both are clear of it; else None."""
+    near = part.between(rough - 2.0 * SMOOTH, rough + 2.0 * SMOOTH)
+    above = near.value > limit
+    last = int(above.argmin()) - 1
+    if last < 0 or above[last + 1 :].any():
+        return None
+    sides = near.value[last] - limit, limit - near.value[last + 1]
+    if min(sides) < CLEAR * max(part.noise, bias):
+        return None
+    step = float(near.time[last + 1] - near.time[last])
+    return float(near.time[last]) + 0.5 * step, step / float(np.sqrt(12.0))
 
 
 def _crossing(

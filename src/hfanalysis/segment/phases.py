@@ -45,6 +45,9 @@ FROM_THE_START = 0.3
 LARGEST_OFFSET = 3e5
 """Reading of an open chamber this far from ambient [Pa] is no bias: the chamber was not open."""
 
+MUCH_MORE = 4.0
+"""Times the usual wander of the pressures at rest above which one is not at rest."""
+
 BY_HAND = "set by the engineer"
 
 
@@ -329,7 +332,8 @@ class _Search:
     def _noise(self) -> Noise:
         """The chamber sensor's, its wander judged with that of the other pressures: the quiet time alone is short."""
         noises = {n: Noise.of(s, s.between(*QUIET)) for n, s in self.signals.items() if n.startswith("p_")}
-        usual = float(np.median([noise.flicker for noise in noises.values()]))
+        all_of_them = np.array([noise.flicker for noise in noises.values()])
+        usual = float(all_of_them[all_of_them <= MUCH_MORE * np.median(all_of_them)].mean())
         return replace(noises["p_chamber"], flicker=0.5 * (noises["p_chamber"].flicker + usual))
 
     def _chamber_bias(self) -> float:

@@ -174,7 +174,9 @@ def test_the_injectors_coefficient_is_its_own_again(tmp_path: Path, hidden: Acti
     off, back = (abs(done(tmp_path, "calibrate", a)["calibration"]["C_i"]["value"] - C_I) for a in ("", adopted))
     assert off > 0.006
     assert back < 0.002
-    assert done(tmp_path, "calibrate", adopted)["calibration"]["C_i"]["std"] < 0.002
+    found = done(tmp_path, "calibrate", adopted)["calibration"]["C_i"]
+    # a chamber gauge that rests at vacuum after the firing is suspect, and its interval the wider
+    assert found["std"] < (0.006 if found["verdict"] == "doubted" else 0.002)
 
 
 def test_strength_nothing_is_no_file(root: Path, base: dict[str, dict[str, Any]]) -> None:
