@@ -114,3 +114,18 @@ def test_a_purge_after_the_burn_is_not_counted() -> None:
     assert found[0] == pytest.approx(11.0, abs=0.05)
     ((start, end),) = pulses_after(chamber, 1.8 * AMBIENT, found[0])
     assert (start, end) == pytest.approx((14.0, 16.0), abs=0.1)
+
+
+def test_a_knee_that_what_is_stated_contradicts_is_told_with_what_may_be_off(burn: Trial) -> None:
+    log, stated = log_of(burn, 100.0, 5e3, 1e4), definition()
+    assert stated.tank is not None
+    assert stated.tank.oxidizer_mass is not None
+    assert stated.injector is not None
+    for factor_of_load, factor_of_holes, off in ((0.3, 1.0, "oxidizer_mass or volume are off"), (1.0, 0.01, "holes")):
+        load = replace(stated.tank.oxidizer_mass, value=factor_of_load * stated.tank.oxidizer_mass.value)
+        area = replace(stated.injector.hole_area, value=factor_of_holes * stated.injector.hole_area.value)
+        tank, injector = replace(stated.tank, oxidizer_mass=load), replace(stated.injector, hole_area=area)
+        found = find_phases(log, replace(stated, tank=tank, injector=injector))
+        assert found.t_v.value is None
+        assert "has a knee at" in str(found.t_v.reason)
+        assert off in str(found.t_v.reason)

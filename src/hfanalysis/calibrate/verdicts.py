@@ -7,13 +7,17 @@ import numpy as np
 from hfanalysis.calibrate.blowdown import EXPONENTS, Inputs, Reduction
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.closure import implied_heat
-from hfanalysis.quantity import IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+from hfanalysis.quantity import DOUBTED, IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.saturation import Saturation
 
 PHYSICAL_C_I = (0.05, 1.0)
 """A hole passes no more than the ideal flow, and drilled plates pass 0.2 to 0.9 of it. Source: report, 4.2.1: 0.26 and
 0.29 here, 0.50 to 0.79 of high-performance injectors."""
+
+USUAL_C_I = (0.15, 0.95)
+"""Beyond which it is doubted [-]. Source: report, 4.2.1: those of its injectors and of others that it lists are 0.26 to
+0.79; this is wider by a half below and a fifth above."""
 
 PHYSICAL_M = (1.0, 1.3)
 """Polytropic exponents [-] of expanding nitrous oxide vapor near saturation. Source: 1 where heat keeps its
@@ -51,6 +55,9 @@ def judge_discharge(r: Reduction, draws: Draws, reversed_share: float) -> Quanti
     elif low > PHYSICAL_C_I[1] or high < PHYSICAL_C_I[0]:
         verdict = UNPHYSICAL
         why = f"outside {PHYSICAL_C_I[0]} to {PHYSICAL_C_I[1]}: loaded mass, hole area or a pressure is off"
+    elif low > USUAL_C_I[1] or high < USUAL_C_I[0]:
+        verdict = DOUBTED
+        why = "drilled plates pass 0.2 to 0.9 of the ideal flow: loaded mass, hole area or a pressure may be off"
     elif reversed_share > 0.01:
         why = f"p_run is not above p_chamber in {100.0 * reversed_share:.1f} % of the samples; these count as no flow"
     return Quantity(r.C_i, "", quantity.std, quantity.interval, verdict=verdict, why=why)

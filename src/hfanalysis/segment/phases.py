@@ -15,13 +15,13 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal, live_signals
-from hfanalysis.segment.coarse_load import coarse_load
+from hfanalysis.segment.coarse_load import CoarseLoad, coarse_load
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, QUIET, find_unchoking, pulses_after
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.firings import Flow, find_flows, largest
 from hfanalysis.segment.fuel import BLURRED, FuelEnd, find_fuel_end
 from hfanalysis.segment.kind import Kind, Known, recognize
-from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
+from hfanalysis.segment.liquid import LiquidEnd, dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.segment.purge_by_tank import find_nitrogen_by_tank
@@ -274,14 +274,32 @@ class _Search:
         tank = self.signals["p_tank"]
         end = _discharged(tank, min(self.last, LONGEST_RUN), self.ambient)
         load = coarse_load(self.definition, self.signals)
-        found = find_liquid_end(self.signals, end, self._dry_pressure(tank), load.contradicts if load else _possible)
+        dry = self._dry_pressure(tank)
+        found = find_liquid_end(self.signals, end, dry, load.contradicts if load else _possible)
         if found is None:
-            return (
-                "the tank pressure shows no knee: it never falls faster than before, as it does when the liquid is gone"
-            )
+            return self._no_liquid_end(find_liquid_end(self.signals, end, None), dry, load)
         for name, time in found.other_times.items():
             self.notes.append(f"{name} falls {time - found.time:+.2f} s from the tank's knee")
         return found.time, found.std
+
+    def _no_liquid_end(self, knee: LiquidEnd | None, dry: float | None, load: CoarseLoad | None) -> str:
+        """Why there is no t_v; a ``knee`` may be there that what is stated contradicts."""
+        if knee is None:
+            return (
+                "the tank pressure shows no knee: it never falls faster than before, as it does when the liquid is gone"
+            )
+        if load is not None and load.contradicts(knee.time):
+            words = (
+                "the tank pressure has a knee at {time:.2f} s, but no injector of the stated holes passes the stated "
+                "oxidizer by then: [injector] holes and hole_area, or [tank] oxidizer_mass are off"
+            )
+            return text(words, time=knee.time)
+        words = (
+            "the tank pressure has a knee at {time:.2f} s and {there}, but a tank of the stated volume and load runs "
+            "dry at {dry}: [tank] oxidizer_mass or volume are off"
+        )
+        there = said(self.signals["p_tank"].mean(knee.time - 0.1, knee.time + 0.1), "bar", ".1f")
+        return text(words, time=knee.time, there=there, dry=said(dry or 0.0, "bar", ".1f"))
 
     def _dry_pressure(self, tank: Signal) -> float | None:
         section = self.definition.tank
