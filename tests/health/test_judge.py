@@ -6,6 +6,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from tests.health import fire
 
@@ -83,3 +84,14 @@ def test_a_gauge_that_wakes_late_does_not_date_the_firing(tmp_path: Path) -> Non
     found = look(log, definition).fire
     assert found is not None
     assert found[0] == pytest.approx(0.0, abs=0.1)
+
+
+def test_of_two_firings_the_one_that_the_phases_take_is_judged(tmp_path: Path) -> None:
+    read = fire.columns()
+    later = {name: np.concatenate([values, values]) for name, values in read.items()}
+    later["time"] = np.concatenate([read["time"], read["time"] + 20.0])
+    spans = []
+    for text in (fire.toml(), fire.toml().replace("[log]", "[log]\nfiring = 2", 1)):
+        spans.append(look(*fire.ingested(tmp_path / str(len(spans)), later, text)).fire)
+    assert spans[0] == pytest.approx((0.0, 8.0), abs=0.3)
+    assert spans[1] == pytest.approx((20.0, 28.0), abs=0.3)

@@ -169,6 +169,17 @@ def test_c_star_ends_where_nitrogen_enters_and_the_thrust_coefficient_does_not()
     assert np.isfinite(told["thrust_coefficient_efficiency"][after]).all()
 
 
+def test_an_impulse_whose_burn_ends_in_a_hole_has_a_deviation() -> None:
+    time = np.arange(-1.0, 8.0, 1e-2)
+    kept = (time < 4.5) | (time > 5.5)
+    channel = Channel(
+        "thrust", "N", time[kept], 5000.0 * (time[kept] < 5.0), np.zeros(kept.sum(), np.uint8), 5.0, True, ""
+    )
+    found = _impulse(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 0.1, ""))
+    assert found.std is not None
+    assert abs((found.value or 0.0) - 25000.0) < 3.0 * found.std
+
+
 def test_an_impulse_across_a_hole_hangs_on_means_and_is_less_sure() -> None:
     time = np.arange(-1.0, 8.0, 1e-3)
     clean = np.where((time > 0.0) & (time < 5.0), 5000.0 - 600.0 * time, 0.0)

@@ -27,6 +27,8 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.logspec import ChannelSpec
 from hfanalysis.record.quiet import Trace
+from hfanalysis.record.signals import Signal
+from hfanalysis.segment.firings import LEADS, find_flows, largest
 from hfanalysis.sentences import Text, said
 from hfanalysis.wording.numbers import people_unit
 
@@ -128,13 +130,29 @@ class SeenTest:
 def look(log: TestLog, definition: TestDefinition) -> SeenTest:
     """All channels of a log with their coarse estimates, each computed once."""
     live = {name: live_span(channel) for name, channel in log.channels.items()}
-    fire = firing_of(live)
+    fire = _taken(log, definition, firing_of(live))
     estimates = {name: coarse(channel, live[name], fire) for name, channel in log.channels.items()}
     seen = {
         name: Seen(channel, definition.channels[name], estimates[name], definition, fire)
         for name, channel in log.channels.items()
     }
     return SeenTest(seen, definition, fire)
+
+
+def _taken(log: TestLog, definition: TestDefinition, whole: Span | None) -> Span | None:
+    """From when to when [s, log time] the firing lasts that is taken of those in the ``whole``.
+
+    By the rule by which the phases take theirs, with no product of theirs: a mean over two firings is one of neither.
+    """
+    signals = {name: Signal.of(log[name]) for name in LEADS if name in log}
+    flows = find_flows({name: signal for name, signal in signals.items() if not signal.dead})
+    if whole is None or len(flows) < 2:
+        return whole
+    place = definition.log.firing - 1 if definition.log.firing else largest(flows, signals, fire=True)
+    if place >= len(flows):
+        return whole
+    start, end = flows[place].start, flows[place].end
+    return (max(start, whole[0]), whole[1] if place == len(flows) - 1 else end)
 
 
 def firing_of(live: Mapping[str, Span | None]) -> Span | None:

@@ -122,7 +122,8 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     inner = whole.between(*edges)
     time = np.concatenate((edges[:1], inner.time, edges[1:]))
     value = float(np.trapezoid(whole.at(time), time))
-    last = abs(signal.mean(fire.end - 0.2, fire.end + 0.2))
+    near = signal.mean(fire.end - 0.2, fire.end + 0.2)
+    last = abs(near if np.isfinite(near) else float(whole.at(edges[1:])[0]))
     bridged = [_across(whole, max(start, 0.0), min(end, fire.end)) for start, end in unseen]
     errors = (_bias(channel) * fire.end, SPAN * thrust.error * 0.5 * fire.end, last * fire.std, *bridged)
     drift = (
