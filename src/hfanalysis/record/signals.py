@@ -73,7 +73,7 @@ class Signal:
         found = holes(self.time)
         if not found.size:
             return self
-        before = [self.mean(a - BRIDGE, np.nextafter(a, np.inf)) for a in found[:, 0]]
+        before = [self.mean(a - BRIDGE, a + 2.0 * self._edge) for a in found[:, 0]]
         after = [self.mean(b, b + BRIDGE) for b in found[:, 1]]
         inside = np.column_stack([np.nextafter(found[:, 0], np.inf), np.nextafter(found[:, 1], -np.inf)])
         places = np.repeat(np.searchsorted(self.time, found[:, 1]), 2)

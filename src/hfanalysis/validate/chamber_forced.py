@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from hfanalysis.engine.observe import read_as
+from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun
 from hfanalysis.products.segments import Segments
@@ -30,6 +31,8 @@ def run_chamber_forced(
     true = corrected(log, origin, engine.effects)
     thrust, chamber = (Signal.of(true[name]).shifted(origin) for name in ("thrust", "p_chamber"))
     time = thrust.between(0.0, end).time
+    if not time.size:
+        raise AbsentError("the thrust has no good sample over the burn")
     pressure = np.maximum(chamber.at(time), 0.1 * ambient)
     mixed = np.isfinite(flows.of_ratio)
     ratio = np.interp(time, flows.time[mixed], flows.of_ratio[mixed]) if mixed.any() else np.full(time.size, np.nan)

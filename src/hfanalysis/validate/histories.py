@@ -165,7 +165,10 @@ def closure(
 
 
 def _integral(time: Array, value: Array, part: NDArray[np.bool_], why: str) -> Quantity:
-    return Quantity(float(np.trapezoid(value[part], time[part])), "kg", why=why)
+    total = float(np.trapezoid(value[part], time[part]))
+    if not np.isfinite(total):
+        return Quantity.absent(f"the flow ({why}) is not known throughout the burn")
+    return Quantity(total, "kg", why=why)
 
 
 def write_histories(path: Path, histories: Histories, provenance: Mapping[str, Any]) -> None:

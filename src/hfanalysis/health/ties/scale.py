@@ -29,6 +29,8 @@ BURNT = (0.7, 1.0)
 out after three quarters of its load."""
 ABOVE = 0.5
 """Part of the burn in which a pressure is above the one that feeds it [-]. Source: definition."""
+GREATEST = 1e3
+"""A factor beyond which nothing is told from a channel that says nothing [-]: units differ by less."""
 COLD_SHARE = 0.18
 """Chamber over run-line pressure, above ambient, below which nothing burns [-]. Source: segment/kind.py."""
 
@@ -225,7 +227,7 @@ def _off(test: SeenTest, channels: tuple[str, ...], factor: Factor, ties: Ties) 
     return Finding(
         kind="unit" if unit else "scale", verdict="suspect", channels=channels,
         evidence=joined("; ", ties.words), means=means, cure=_cure(first, factor, unit) if alone else None,
-        gain=abs(factor.middle - 1.0) if factor.middle > 1.0 else abs(1.0 / factor.middle - 1.0),
+        gain=min(max(factor.middle, 1.0 / max(factor.middle, 1.0 / GREATEST)), GREATEST) - 1.0,
     )  # fmt: skip
 
 
