@@ -33,3 +33,12 @@ def test_blocks_hold_as_many_samples_wherever_times_are_counted_from(origin: flo
 def test_a_stretch_holds_the_sample_at_its_start_and_not_the_one_at_its_end(origin: float) -> None:
     part = ramp(origin).between(0.3, 0.7)
     assert part.value.tolist() == ramp(0.0).value[300:700].tolist()
+
+
+@pytest.mark.parametrize("origin", ORIGINS)
+def test_a_hole_beside_a_single_sample_is_bridged_from_it(origin: float) -> None:
+    time = np.concatenate([np.arange(0.0, 1.0, 0.01), [1.5], np.arange(2.0, 3.0, 0.01)])
+    values = np.where(time < 1.25, 1.0, np.where(time < 1.75, 2.0, 3.0))
+    bridged = Signal("thrust", origin + time, values, 0.01, 0.01).shifted(origin).bridged()
+    assert np.isfinite(bridged.value).all()
+    assert bridged.at(np.array([1.245, 1.75])) == pytest.approx([1.5, 2.5])

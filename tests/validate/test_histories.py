@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -67,3 +68,12 @@ def test_what_went_through_the_injector_and_off_the_grain_went_through_the_nozzl
     assert found["fuel_burned"] == pytest.approx(np.trapezoid(flows.fuel[burnt], flows.time[burnt]))
     entered = found["oxidizer_through_injector"] + found["fuel_burned"]
     assert found["propellant_through_nozzle"] == pytest.approx(entered, rel=0.02)
+
+
+def test_a_flow_that_is_not_known_throughout_closes_no_balance(engine) -> None:  # type: ignore[no-untyped-def]
+    measured, flows = histories()
+    holed = replace(flows, fuel=np.where(flows.time > 1.0, np.nan, flows.fuel))
+    found = closure(holed, measured, engine, AMBIENT, FIRE, None)
+    assert found["fuel_burned"].value is None
+    assert "not known throughout" in str(found["fuel_burned"].reason)
+    assert found["oxidizer_through_injector"].value is not None
