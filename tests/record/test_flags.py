@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from hfanalysis.record import flag_kernels
-from hfanalysis.record.flags import flag_readings
+from hfanalysis.record.flags import flag_impossible, flag_readings
 from hfanalysis.record.log import Flag
 
 Floats = NDArray[np.float64]
@@ -128,3 +128,11 @@ def test_noise_is_measured_block_by_block(rng: np.random.Generator, count: int) 
     assert len(noise) == -(-count // 256)
     if count == 1000:
         np.testing.assert_allclose(noise, [1.0, 5.0, 5.0, 5.0], rtol=0.4)
+
+
+@pytest.mark.parametrize("dimension", ["force", "mass", "pressure", "temperature"])
+def test_what_no_sensor_can_read_is_no_reading(dimension: str) -> None:
+    values = np.array([300.0, 1e200, 301.0, -1e200, 302.0])
+    flags = np.zeros(5, dtype=np.uint8)
+    flag_impossible(values, dimension, flags)
+    assert (flags != 0).tolist() == [False, True, False, True, False]

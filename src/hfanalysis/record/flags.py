@@ -24,8 +24,9 @@ CUT_OFF = ("pressure", "force", "mass")
 RAIL_SHARE = 0.05
 """Share of the log from which on its highest level is a rail, not a code for no reading [-]. Evidence: a chamber gauge
 cut off at 12 bar through a burn that one sample begins and one ends (test_detectors.py)."""
-IMPOSSIBLE = {"temperature": (1.0, 6000.0), "pressure": (-5e5, 1e9)}
-"""[SI] outside of which no sensor reads, however badly zeroed: 1 to 6000 K, -5 bar to 10,000 bar."""
+IMPOSSIBLE = {"temperature": (1.0, 6000.0), "pressure": (-5e5, 1e9), "force": (-1e8, 1e8), "mass": (-1e6, 1e6)}
+"""[SI] outside of which no sensor reads, however badly zeroed: 1 to 6000 K, -5 bar to 10,000 bar, the thrust of the
+largest rockets, and a thousand tons."""
 
 
 def flag_readings(readings: Array, dimension: str, missing: Sequence[float] = ()) -> Flags:
