@@ -20,6 +20,11 @@ WHOLE = {"row", "sample", "clock", "stamp", "rate", "step", "repeated", "held", 
 """Words of messages about the log as a whole."""
 
 
+def _extent(x: Array) -> float:
+    """From the least to the largest reading; cells without a number do not count."""
+    return float(np.nanmax(x) - np.nanmin(x))
+
+
 def _channel(case: Case, rng: Rng) -> str:
     name = str(rng.choice(list(case.log.channels)))
     case.hit.add(name)
@@ -53,7 +58,7 @@ def _factor(rng: Rng) -> float:
 
 
 def _offset(x: Array, case: Case, rng: Rng) -> Array:
-    return x + rng.choice([-1.0, 1.0]) * np.exp(rng.uniform(-6.0, 0.5)) * np.ptp(x)
+    return x + rng.choice([-1.0, 1.0]) * np.exp(rng.uniform(-6.0, 0.5)) * _extent(x)
 
 
 def _frozen(x: Array, case: Case, rng: Rng) -> Array:
@@ -70,7 +75,7 @@ def _frozen_for_good(x: Array, case: Case, rng: Rng) -> Array:
 
 def _noise_for_good(x: Array, case: Case, rng: Rng) -> Array:
     start = int(rng.integers(0, len(x)))
-    x[start:] = rng.normal(rng.uniform(x.min(), x.max()), np.ptp(x) * rng.uniform(0.01, 1.0), len(x) - start)
+    x[start:] = rng.normal(rng.uniform(np.nanmin(x), np.nanmax(x)), _extent(x) * rng.uniform(0.01, 1.0), len(x) - start)
     return x
 
 
@@ -87,14 +92,14 @@ def _coded_stretch(x: Array, case: Case, rng: Rng) -> Array:
 
 def _spikes(x: Array, case: Case, rng: Rng) -> Array:
     where = rng.integers(0, len(x), int(rng.integers(1, 12)))
-    x[where] += rng.normal(0.0, np.exp(rng.uniform(-2.0, 4.0)) * np.ptp(x), where.size)
+    x[where] += rng.normal(0.0, np.exp(rng.uniform(-2.0, 4.0)) * _extent(x), where.size)
     return x
 
 
 def _railed(x: Array, case: Case, rng: Rng) -> Array:
     share = rng.uniform(0.3, 0.98)
-    rail = x.min() + share * np.ptp(x)
-    return np.minimum(x, rail) if rng.random() < 0.7 else np.maximum(x, x.min() + 0.3 * (1.0 - share) * np.ptp(x))
+    rail = np.nanmin(x) + share * _extent(x)
+    return np.minimum(x, rail) if rng.random() < 0.7 else np.maximum(x, np.nanmin(x) + 0.3 * (1.0 - share) * _extent(x))
 
 
 def _lagged(x: Array, case: Case, rng: Rng) -> Array:
@@ -107,11 +112,11 @@ def _lagged(x: Array, case: Case, rng: Rng) -> Array:
 
 
 def _drift(x: Array, case: Case, rng: Rng) -> Array:
-    return x + np.linspace(0.0, rng.choice([-1.0, 1.0]) * np.exp(rng.uniform(-5.0, 0.5)) * np.ptp(x), len(x))
+    return x + np.linspace(0.0, rng.choice([-1.0, 1.0]) * np.exp(rng.uniform(-5.0, 0.5)) * _extent(x), len(x))
 
 
 def _coarse(x: Array, case: Case, rng: Rng) -> Array:
-    step = np.exp(rng.uniform(-7.0, -0.7)) * np.ptp(x)
+    step = np.exp(rng.uniform(-7.0, -0.7)) * _extent(x)
     return np.round(x / step) * step
 
 
@@ -131,7 +136,7 @@ def _edge(case: Case, rng: Rng) -> None:
     at = slice(0, size) if rng.random() < 0.5 else slice(-size, None)
     name = _channel(case, rng)
     x = case.log.channels[name].copy()
-    x[at] = rng.normal(x.mean(), 10.0 * np.ptp(x), size)
+    x[at] = rng.normal(np.nanmean(x), 10.0 * _extent(x), size)
     _numbers(case, name, x)
 
 
@@ -162,9 +167,11 @@ VALUES: dict[str, Mutator] = {
     "drift": _of_one(_drift),
     "coarse": _of_one(_coarse),
     "blanks": _of_one(_blank),
-    "constant": _of_one(lambda x, case, rng: np.full(len(x), rng.choice([0.0, 1.0, x.mean(), x.min(), x.max()]))),
-    "only noise": _of_one(lambda x, case, rng: rng.normal(0.0, np.ptp(x) * rng.uniform(1e-4, 1.0), len(x))),
-    "white noise": _of_one(lambda x, case, rng: x + rng.normal(0.0, np.exp(rng.uniform(-6, -1)) * np.ptp(x), len(x))),
+    "constant": _of_one(
+        lambda x, case, rng: np.full(len(x), rng.choice([0.0, 1.0, np.nanmean(x), np.nanmin(x), np.nanmax(x)]))
+    ),
+    "only noise": _of_one(lambda x, case, rng: rng.normal(0.0, _extent(x) * rng.uniform(1e-4, 1.0), len(x))),
+    "white noise": _of_one(lambda x, case, rng: x + rng.normal(0.0, np.exp(rng.uniform(-6, -1)) * _extent(x), len(x))),
     "swapped": _swapped,
     "edge": _edge,
     "all frozen": _all_frozen,
