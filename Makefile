@@ -99,7 +99,7 @@ recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 mutants: $(STAMP) ## small errors put into a copy of the source, and whether tests notice: docs/mutants.md; FLAGS='--each 40'
 	$(BIN)/python -m benchmarks.mutants --write docs/mutants.md $(FLAGS)
 
-fuzz: $(STAMP) ## 10,000 spoilt logs and test.toml files, none ends in a traceback: docs/fuzz.md; goes on where stopped
+fuzz: $(STAMP) ## 10,000 spoilt logs and test.toml files, and how each ends: docs/fuzz.md; goes on where stopped
 	$(BIN)/python -m benchmarks.fuzz run --n 10000 --jobs 2 --write docs/fuzz.md $(FLAGS)
 
 kills: $(STAMP) ## 200 times `make all` killed, interrupted or run twice at once: into docs/fuzz.md
