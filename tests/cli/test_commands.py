@@ -8,32 +8,22 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.cli.run import Run
 from tests.inference.adopted.firing import make_root
 
 import hfanalysis
-from hfanalysis.cli import main
 from hfanalysis.cli import perform as performing
 from hfanalysis.errors import AbsentError
 
 REPOSITORY = Path(__file__).parents[2]
 
-Run = Callable[..., "Ended"]
-
 
 def bytes_below(folder: Path) -> dict[Path, bytes]:
     """Every file below a folder."""
     return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-
-
-class Ended:
-    """How a command ended."""
-
-    def __init__(self, status: int, out: str, err: str) -> None:
-        self.status, self.out, self.err = status, out, err
 
 
 @pytest.fixture(scope="module")
@@ -48,20 +38,6 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A root with a made-up test T1 that lacks nothing: soon diagnosed."""
     return make_root(tmp_path_factory.mktemp("quick"))
-
-
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run ``hfa`` in this process."""
-
-    def run(*arguments: object) -> Ended:
-        monkeypatch.setattr(sys, "argv", ["hfa", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        said = capsys.readouterr()
-        return Ended(int(ended.value.code or 0), said.out, said.err)
-
-    return run
 
 
 def test_the_version(run: Run) -> None:

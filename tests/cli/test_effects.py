@@ -5,17 +5,14 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.cli.run import Run
 
-from hfanalysis.cli import main, trust
+from hfanalysis.cli import trust
 from hfanalysis.effects import library
 from hfanalysis.effects import trust as agreed_to
-
-Run = Callable[..., tuple[int, str, str]]
 
 SHIM = """
 import numpy as np
@@ -38,20 +35,6 @@ def stand(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("stand")
     shutil.copytree(ROOT / "raw_tests" / "HF5", root / "raw_tests" / "HF5")
     return root
-
-
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run ``hfa`` in this process: status, standard output, standard error."""
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hfa", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        said = capsys.readouterr()
-        return int(ended.value.code or 0), said.out, said.err
-
-    return run
 
 
 def test_people_see_every_effect_with_its_typical_strength(run: Run, tmp_path: Path) -> None:

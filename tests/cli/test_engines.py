@@ -5,18 +5,14 @@ from __future__ import annotations
 import csv
 import itertools
 import json
-import sys
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-from hfanalysis.cli import main
+from tests.cli.run import Run
 
 MAELSTROM = Path(__file__).parents[2] / "engines" / "maelstrom.toml"
 
-Run = Callable[..., tuple[int, str, str]]
 
 COMMANDS = ("simulate", "design")
 
@@ -35,20 +31,6 @@ FLIGHT = (
     "apogee time_to_apogee rail_departure_velocity peak_velocity peak_mach peak_acceleration pad_thrust_to_weight "
     "wet_mass terminal_velocity_drogue terminal_velocity_main impact_velocity_ballistic"
 )
-
-
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run ``hfa`` in this process: status, standard output, standard error."""
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hfa", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        said = capsys.readouterr()
-        return int(ended.value.code or 0), said.out, said.err
-
-    return run
 
 
 def changed(folder: Path, *changes: tuple[str, str]) -> Path:

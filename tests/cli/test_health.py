@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.cli.run import Run
 from tests.health import fire
 from tests.record import make
-
-from hfanalysis.cli import main
-
-Run = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture
@@ -25,51 +20,37 @@ def root(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.fixture
-def hfa(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run ``hfa`` in this process."""
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hfa", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        said = capsys.readouterr()
-        return int(ended.value.code or 0), said.out, said.err
-
-    return run
-
-
-def test_it_shows_every_channel_and_says_what_was_found(hfa: Run, root: Path) -> None:
-    status, out, err = hfa("health", "T", "--root", root)
+def test_it_shows_every_channel_and_says_what_was_found(run: Run, root: Path) -> None:
+    status, out, err = run("health", "T", "--root", root)
     assert status == 0
     assert all(name in out for name in fire.CHANNELS)
     assert "unusable  stuck" in out
     assert "channel thrust: unusable (stuck, from 3.0" in err
 
 
-def test_without_a_terminal_nothing_is_written_unless_that_is_asked_for(hfa: Run, root: Path) -> None:
+def test_without_a_terminal_nothing_is_written_unless_that_is_asked_for(run: Run, root: Path) -> None:
     path = root / "raw_tests" / "T" / "test.toml"
     before = path.read_bytes()
-    status, _, err = hfa("health", "T", "--root", root, "--apply")
+    status, _, err = run("health", "T", "--root", root, "--apply")
     assert status == 2
     assert "[[exclude]]" in err
     assert "--yes" in err
     assert path.read_bytes() == before
-    status, _, err = hfa("health", "T", "--root", root, "--apply", "--yes")
+    status, _, err = run("health", "T", "--root", root, "--apply", "--yes")
     assert (status, "written" in err) == (0, True)
     assert path.read_bytes().startswith(before.rstrip())
-    status, out, _ = hfa("health", "T", "--root", root, "--json")
+    status, out, _ = run("health", "T", "--root", root, "--json")
     assert json.loads(out)["channels"]["thrust"] == {"verdict": "healthy", "findings": []}
-    status, _, err = hfa("health", "T", "--root", root, "--apply", "--yes")
+    status, _, err = run("health", "T", "--root", root, "--apply", "--yes")
     assert (status, "nothing that was found" in err) == (0, True)
 
 
-def test_asked_at_a_terminal_no_is_no(hfa: Run, root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_asked_at_a_terminal_no_is_no(run: Run, root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = root / "raw_tests" / "T" / "test.toml"
     before = path.read_bytes()
     for answer, written in (("\n", False), ("no\n", False), ("y\n", True)):
         monkeypatch.setattr("sys.stdin", Terminal(answer))
-        assert hfa("health", "T", "--root", root, "--apply")[0] == 0
+        assert run("health", "T", "--root", root, "--apply")[0] == 0
         assert (path.read_bytes() != before) is written
 
 
@@ -86,7 +67,7 @@ class Terminal:
         return self.answer
 
 
-def test_yes_alone_is_refused(hfa: Run, root: Path) -> None:
-    status, _, err = hfa("health", "T", "--root", root, "--yes")
+def test_yes_alone_is_refused(run: Run, root: Path) -> None:
+    status, _, err = run("health", "T", "--root", root, "--yes")
     assert status == 2
     assert "--apply" in err

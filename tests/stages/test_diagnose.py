@@ -9,7 +9,9 @@ from types import SimpleNamespace
 import pytest
 
 from hfanalysis.errors import AbsentError, InputError
-from hfanalysis.stages import ORDER, way_to
+from hfanalysis.products.disk import HashCache
+from hfanalysis.record.definition import load_definition
+from hfanalysis.stages import ORDER, freshness, way_to
 from hfanalysis.stages import diagnose as stage
 from hfanalysis.stages.base import Context, load_stage
 from hfanalysis.stages.open_test import open_test
@@ -32,10 +34,17 @@ def test_the_diagnosis_is_on_the_way_to_the_page() -> None:
 
 def test_a_test_is_no_proof_of_itself(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="HF5, the test itself"):
-        stage._check_proof_test(context(tmp_path, proof_test="HF5"))
+        stage._proofs(context(tmp_path, proof_test="HF5"))
     with pytest.raises(InputError, match="HF6"):
-        stage._check_proof_test(context(tmp_path, proof_test="HF6"))
-    stage._check_proof_test(context(tmp_path, proof_test="HF4"))
+        stage._proofs(context(tmp_path, proof_test="HF6"))
+    assert [proof.test.id for proof in stage._proofs(context(tmp_path, proof_test="HF4"))] == ["HF4"]
+
+
+def test_the_raw_files_of_the_test_that_proves_are_in_the_key(tmp_path: Path) -> None:
+    made = context(tmp_path, proof_test="HF4")
+    assert made.stage is not None
+    hashes = HashCache(tmp_path / "hashes.json")
+    assert set(freshness._of_others(made, made.stage, hashes)["others"]["HF4"]) == {"test.toml", "log.csv"}
 
 
 def test_two_tests_that_prove_each_other_do_not_wait_for_each_other(
@@ -67,7 +76,7 @@ def test_a_sibling_that_holds_nothing_is_passed_over_but_not_one_that_was_asked_
         raise AbsentError("no firing")
 
     monkeypatch.setattr("hfanalysis.stages.runner.run_to", bring)
-    monkeypatch.setattr(stage, "_siblings", lambda _context: ["HF4"])
+    monkeypatch.setattr(stage, "nearest", lambda _: [load_definition(REPOSITORY / "raw_tests" / "HF4" / "test.toml")])
     assert stage._other(context(tmp_path)) is None
     with pytest.raises(InputError, match="HF4 cannot prove anything: no firing"):
         stage._other(context(tmp_path, proof_test="HF4"))

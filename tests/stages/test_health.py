@@ -43,7 +43,7 @@ def test_a_product_says_which_other_tests_it_has_read(tmp_path: Path) -> None:
     put(tmp_path, "C", stand="elsewhere", seed=2)
     context, health = judged(tmp_path, "A")
     assert health.compared == ("B",)
-    assert set(health.provenance["stand"]["B"]) == {"test.toml", "log.csv"}
+    assert set(health.provenance["others"]["B"]) == {"test.toml", "log.csv"}
     content = context.product("health.json").read_bytes()
     (other / "log.csv").write_text(make.csv(**fire.columns(3)))
     context, _ = judged(tmp_path, "A")

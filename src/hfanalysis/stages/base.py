@@ -18,14 +18,14 @@ smallest value of those that have one) and ``adopts``
 (False for a stage that adopted effects do not change: neither their file nor products made with them are its input),
 ``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input), ``runs``
 (stages that this one runs itself, on other tests: what their code and that of the stages before them says is part of
-what it rests on, as everything is that the module imports) and ``reads_stand`` (True for one that reads the raw files
-of the stand's other tests: they are its input, too).
+what it rests on, as everything is that the module imports) and ``others`` (the other tests that this one reads the raw
+files of: they are its input, too).
 """
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -65,7 +65,7 @@ class Stage:
     adopts: bool = True
     tries_effects: bool = False
     runs: tuple[str, ...] = ()
-    reads_stand: bool = False
+    others: Callable[[Context], Sequence[TestDefinition]] = lambda _: ()
 
     def reads(self, other: Stage) -> tuple[str, ...]:
         """The products of an upstream stage that this one's products follow from."""

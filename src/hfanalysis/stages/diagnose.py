@@ -12,7 +12,9 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from hfanalysis.errors import AbsentError, AnalysisError, InputError
+from hfanalysis.record.definition import TestDefinition, find_definition, load_definition
 from hfanalysis.stages.base import BASE, Context, Stage
+from hfanalysis.stages.stand import nearest
 
 if TYPE_CHECKING:
     from hfanalysis.diagnose.answer.proof import OtherTest
@@ -30,7 +32,6 @@ def run(context: Context) -> None:
     effects = library(context.root / FOLDER)
     settings = settings_of(str(context.parameter("variant")))
     subject = subject_of(context)
-    _check_proof_test(context)
     try:
         if not subject.calibration:
             raise AbsentError(context.absent["calibrate"])
@@ -62,19 +63,8 @@ def subject_of(context: Context) -> Subject:
     return Subject(log, segments, None, context.definition)
 
 
-def _check_proof_test(context: Context) -> None:
-    """Before anything long runs: is the test that is asked for there, and another one?"""
-    from hfanalysis.record.definition import find_definition
-
-    asked = str(context.parameter("proof_test"))
-    if asked == context.id:
-        raise InputError(f"diagnose.proof_test: found {asked}, the test itself; expected another one")
-    if asked:
-        find_definition(context.root, asked)
-
-
 def _other(context: Context) -> OtherTest | None:
-    """The other test to prove it on: the one that is asked for, else the first of the same stand.
+    """The other test to prove it on: the first of those it may be proved on that can be run.
 
     Its products are made in a folder of this test's own: two tests that are diagnosed at once, each the other's proof,
     would wait for each other's lock for ever.
@@ -84,23 +74,25 @@ def _other(context: Context) -> OtherTest | None:
     from hfanalysis.stages.open_test import open_test
     from hfanalysis.stages.runner import run_to
 
-    asked = str(context.parameter("proof_test"))
     folder = context.out / STATE / "proof"
-    for name in [asked] if asked else _siblings(context):
+    for name in [proof.test.id for proof in _proofs(context)]:
         try:
             other = run_to("calibrate", open_test(context.root, name, folder, progress=context.progress))
             return OtherTest(name, *subject_of(other).compared())
         except AnalysisError as error:
-            if asked:
-                raise InputError(f"diagnose.proof_test: {asked} cannot prove anything: {error}") from None
+            if context.parameter("proof_test"):
+                raise InputError(f"diagnose.proof_test: {name} cannot prove anything: {error}") from None
     return None
 
 
-def _siblings(context: Context) -> list[str]:
-    """Other tests of the same stand, hot fires, by name."""
-    from hfanalysis.stages.stand import others
-
-    return [other.test.id for other in others(context) if other.test.kind == "hot_fire"]
+def _proofs(context: Context) -> list[TestDefinition]:
+    """The other tests that it may be proved on: the one that is asked for, else the nearest hot fires of the stand."""
+    asked = str(context.parameter("proof_test"))
+    if asked == context.id:
+        raise InputError(f"diagnose.proof_test: found {asked}, the test itself; expected another one")
+    if asked:
+        return [load_definition(find_definition(context.root, asked))]
+    return [other for other in nearest(context) if other.test.kind == "hot_fire"]
 
 
 STAGE = Stage(
@@ -113,4 +105,5 @@ STAGE = Stage(
     tries_effects=True,
     runs=("calibrate",),
     parameters={"proof_test": "", "variant": ""},
+    others=_proofs,
 )

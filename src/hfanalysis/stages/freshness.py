@@ -18,7 +18,7 @@ from hfanalysis.products import disk as products
 from hfanalysis.products.disk import HashCache
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.sources import closure, data, digest, libraries, remembered
-from hfanalysis.stages import base, stand, way_to
+from hfanalysis.stages import base, way_to
 from hfanalysis.stages.base import Context, Stage
 from hfanalysis.version import __version__
 
@@ -103,9 +103,10 @@ def _distributions() -> Mapping[str, list[str]]:
     return importlib.metadata.packages_distributions()
 
 
-def _of_stand(context: Context, hashes: HashCache) -> dict[str, Any]:
-    """The hashes of what is read of the stand's other tests."""
-    return {other.test.id: _of_test(other, hashes) for other in stand.nearest(context)}
+def _of_others(context: Context, stage: Stage, hashes: HashCache) -> dict[str, Any]:
+    """The hashes of what is read of other tests; nothing of a stage that reads none."""
+    found = {other.test.id: _of_test(other, hashes) for other in stage.others(context.at(stage))}
+    return {"others": found} if found else {}
 
 
 def _of_test(other: TestDefinition, hashes: HashCache) -> dict[str, str]:
@@ -150,7 +151,7 @@ def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, A
         "raw": {
             path.relative_to(context.raw).as_posix(): _raw_hash(path, hashes) for path in raw_files(context.definition)
         },
-        **({"stand": _of_stand(context, hashes)} if stage.reads_stand else {}),
+        **_of_others(context, stage, hashes),
         "effects": {path.name: hashes(path) for path in effect_files(context, stage)},
         "libraries": library_versions(names),
         "parameters": context.at(stage).parameters(),

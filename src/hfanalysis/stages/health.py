@@ -7,6 +7,7 @@ its log from :meth:`hfanalysis.stages.base.Context.log`, without the stretches t
 from __future__ import annotations
 
 from hfanalysis.stages.base import Context, Stage
+from hfanalysis.stages.stand import nearest
 
 
 def run(context: Context) -> None:
@@ -18,4 +19,4 @@ def run(context: Context) -> None:
     context.write(judge(read_log(context.product("ingest.h5")), context.definition, sisters(context)))
 
 
-STAGE = Stage(name="health", needs=("ingest",), products=("health.json",), run=run, adopts=False, reads_stand=True)
+STAGE = Stage(name="health", needs=("ingest",), products=("health.json",), run=run, adopts=False, others=nearest)

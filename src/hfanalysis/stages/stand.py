@@ -66,7 +66,7 @@ def _sister(context: Context, other: TestDefinition, kept: Path) -> Sister | Non
     from hfanalysis.health.seen import Sister
 
     kind = TypeAdapter(dict[str, Coarse])
-    key = {"of": context.record["stand"][other.test.id], "code": context.record["code"]}
+    key = {"of": context.record["others"][other.test.id], "code": context.record["code"]}
     found = _kept(kept, key)
     if found is None:
         try:
