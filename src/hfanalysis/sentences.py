@@ -58,8 +58,12 @@ class Text(str):
         return str.__str__(self), self.quoted
 
 
-def _plain(number: float, form: str) -> str:
-    """A number by its format, whole numbers of some digits without a power of ten."""
+def rounded(number: float, form: str) -> str:
+    """A number [any unit] by its format, whole numbers of some digits without a power of ten.
+
+    >>> rounded(2941.2, ".3g"), rounded(0.29412, ".3g")
+    ('2940', '0.294')
+    """
     words = f"{number:{form}}"
     return f"{float(words):.0f}" if "e+" in words and abs(number) < MOST_WHOLE else words
 
@@ -83,8 +87,8 @@ def said(
     """
     si, factor = UNITS.get(unit, (unit, 1.0))
     factor = factor if size is None else size
-    spread = "" if std is None else f" ± {_plain(std / factor, std_form)}"
-    words = f"{_plain(value / factor, form)}{spread} {unit}".strip()
+    spread = "" if std is None else f" ± {rounded(std / factor, std_form)}"
+    words = f"{rounded(value / factor, form)}{spread} {unit}".strip()
     quoted = {words: Quoted(float(value), si, None if std is None else float(std))}
     return Text(words, quoted if unit else {})
 

@@ -52,14 +52,17 @@ class Fire:
 
 
 def fire_of(segments: Segments, definition: TestDefinition, log: TestLog | None = None) -> Fire | str:
-    """The burn as seen on video, else until the fuel is gone, else until the chamber unchokes, else until the ``log``'s
-    thrust is gone; or why there is none."""
+    """The burn as seen on video, else until the fuel is gone, else until the chamber is down to 1.8 times ambient, else
+    until the ``log``'s thrust is gone; or why there is none."""
     if segments.kind != "hot_fire" or segments.misfire:
         return "nothing burns in this test"
     seen = definition.observed.burn_time if definition.observed else None
     if seen is not None:
         return Fire(seen.value, seen.std if seen.std is not None else VIDEO, "[observed] burn_time")
-    for name, words in (("t_fuel_gone", "the solid fuel is gone"), ("t_end", "the chamber unchokes")):
+    for name, words in (
+        ("t_fuel_gone", "the solid fuel is gone"),
+        ("t_end", "the chamber is down to 1.8 times ambient"),
+    ):
         found = segments.time(name)
         if found is not None:
             return Fire(found, max(segments.std(name), 1e-3), f"{name}: {words}")

@@ -16,6 +16,7 @@ from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
+from hfanalysis.sentences import rounded
 
 AT_AMBIENT = 0.04
 """Chamber pressure above ambient, relative, below which the thrust is nothing. Source: a nozzle that is not choked
@@ -124,9 +125,11 @@ def motor_class(impulse: float) -> str:
 
     >>> motor_class(979.0)
     'J (640 to 1280 N s)'
+    >>> motor_class(16135.0)
+    'N (10240 to 20480 N s)'
     """
     number = max(int(np.ceil(np.log2(max(impulse, 1e-9) / LEAST_OF_B))), 0)
     if number >= len(LETTERS):
         return f"beyond Z ({LEAST_OF_B * 2.0 ** (len(LETTERS) - 1):.3g} N s)"
     high = LEAST_OF_B * 2.0**number
-    return f"{LETTERS[number]} ({0.5 * high if number else 0.0:.4g} to {high:.4g} N s)"
+    return f"{LETTERS[number]} ({rounded(0.5 * high if number else 0.0, '.4g')} to {rounded(high, '.4g')} N s)"

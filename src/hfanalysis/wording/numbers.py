@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from hfanalysis.products.model import AdoptedEffect
 from hfanalysis.quantity import Quantity
-from hfanalysis.sentences import Text, said
+from hfanalysis.sentences import Text, rounded, said
 from hfanalysis.wording.scales import reading_unit, scale, superscript
 
 NAMES: dict[str, str] = {
@@ -22,9 +22,9 @@ NAMES: dict[str, str] = {
     "t_feed": "feed line full",
     "t_v": "liquid gone",
     "t_purge": "nitrogen enters",
-    "t_fuel_out": "solid fuel runs out",
+    "t_fuel_out": "solid fuel begins to run out",
     "t_fuel_gone": "solid fuel gone",
-    "t_end": "chamber unchokes",
+    "t_end": "chamber down to 1.8 × ambient",
     "a": "regression coefficient",
     "n": "regression exponent",
     "regression_rate_reference": "regression rate at the reference flux",
@@ -183,7 +183,7 @@ def tidy(value: float, digits: int = 4) -> str:
     >>> tidy(-0.001234567)
     '−0.001235'
     """
-    return f"{value:.{digits}g}".replace("-", MINUS)
+    return rounded(value, f".{digits}g").replace("-", MINUS)
 
 
 def adopted_in_words(effects: Sequence[AdoptedEffect]) -> str:
