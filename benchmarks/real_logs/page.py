@@ -25,7 +25,8 @@ _SECOND = """
 ## Phases, flow and impulse beside the authors' and hand values
 
 Times in seconds from the instant at which the run line has risen by 60 psi, where a hand analysis counts from there,
-else from the opening. An interval of ours is 95 %, one by hand is judged. *agrees*: the two intervals meet; *says little*: ours is wider than the value itself.
+else from the opening. An interval of ours is 95 %, one by hand is judged. *agrees*: the two intervals meet;
+*says little*: ours is wider than the value itself.
 C_i N A is the product of the injector's coefficient and the area of all its holes: the area itself is not stated for
 most firings of the stand MRT. t_feed is here when the line's pressure has reached 98 % of its maximum, by hand when the
 feed has settled.

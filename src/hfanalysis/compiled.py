@@ -24,7 +24,6 @@ from numba.core import cgutils
 from numba.core.ccallback import CFunc
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic, register_jitable
-from numba.np import linalg
 
 from hfanalysis.sources import source_digest
 
@@ -35,22 +34,6 @@ _SEAL = 32
 
 Real = Any
 """A number, or an array of them: what a :func:`law` is given and gives."""
-
-
-def _load_before_scipy() -> None:
-    """numba looks for SciPy at its first function, which takes a tenth of a second.
-
-    Compiled code that multiplies matrices still has it looked for.
-    """
-    looked_for = linalg.ensure_blas
-    linalg.ensure_blas = lambda: None
-    try:
-        from numba.np import arraymath  # noqa: F401
-    finally:
-        linalg.ensure_blas = looked_for
-
-
-_load_before_scipy()
 
 
 @overload

@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
+from scipy.optimize import brentq
 
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
@@ -24,7 +26,6 @@ from hfanalysis.engine.equations import TANK
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.injector import mass_flow
 from hfanalysis.engine.tank import compressibility
-from hfanalysis.roots import root
 from hfanalysis.thermo.saturation import Saturation
 
 EXPONENTS = (0.05, 6.0)
@@ -98,9 +99,7 @@ class Tables:
 
     @cached_property
     def _totals(self) -> list[Array]:
-        step = np.diff(self.time)
-        parts = (step * (x[1:] + x[:-1]) / 2.0 for x in (self.loss, self.chamber))
-        return [np.concatenate([[0.0], np.cumsum(part)]) for part in parts]
+        return [cumulative_trapezoid(x, self.time, initial=0.0) for x in (self.loss, self.chamber)]
 
     def behind(self, at: Array) -> list[Array]:
         """Feed loss and chamber pressure [Pa], each (k,), at increasing times (k,) [s]: means over the cells about
@@ -166,7 +165,7 @@ class VaporPhase:
         if np.isfinite(inputs.m):
             return inputs.m, float(end(inputs.m).states[-1, TANK])
         try:
-            m = root(miss, *EXPONENTS, ROOT)
+            m = float(brentq(miss, *EXPONENTS, xtol=ROOT))
         except ValueError:  # the pressure falls too far, or not far enough, with any
             return np.nan, np.nan
         return m, float(end(m).states[-1, TANK])

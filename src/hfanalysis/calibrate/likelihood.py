@@ -12,9 +12,10 @@ from math import log
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import RectBivariateSpline
+from scipy.special import stdtrit
 
 from hfanalysis.arrays import Array
-from hfanalysis.calibrate.student import t_95
 from hfanalysis.quantity import NORMAL_95
 
 Misfit = Callable[[Array], float]
@@ -133,7 +134,7 @@ def _weights(
         scatter = max(float(np.sqrt(pressures @ pressures / samples * lost)), least)
     precision = np.asarray(np.linalg.inv(common + _diagonal(samples, scatter, effective, scales)), dtype=np.float64)
     freedom = min(max(effective - 2.0, 1.0) + scales.size, known)
-    return Weights(precision, t_95(freedom) ** 2, scatter, effective, samples)
+    return Weights(precision, float(stdtrit(freedom, 0.975)) ** 2, scatter, effective, samples)
 
 
 def _diagonal(samples: int, scatter: float, effective: float, scales: Array) -> Array:
@@ -188,22 +189,7 @@ def surface(misfit: Misfit, best: Array, covariance: Array, threshold: float) ->
     nodes, axis = np.linspace(-1.0, 1.0, NODES), np.linspace(-1.0, 1.0, SURFACE_POINTS)
     values = np.array([[misfit(best + spread @ np.array([x, y])) for y in nodes] for x in nodes])
     values = np.minimum(values - values.min(), CEILING * threshold)
-    between = _not_a_knot(nodes, axis)
-    fine = (between @ values @ between.T).ravel()
+    fine = RectBivariateSpline(nodes, nodes, values)(axis, axis).ravel()
     x, y = (grid.ravel() for grid in np.meshgrid(axis, axis, indexing="ij"))
     edge = (np.abs(x) > 0.999) | (np.abs(y) > 0.999)
     return Surface(best + np.column_stack((x, y)) @ spread.T, np.maximum(fine, 0.0), edge, threshold)
-
-
-def _not_a_knot(nodes: Array, at: Array) -> Array:
-    """What a cubic spline through values at ``nodes`` (n,) makes of them between, ``at`` (k,): the matrix (k, n).
-
-    Its knots are the nodes but the second and the last but one (C. de Boor, A Practical Guide to Splines, 1978,
-    chapter IV).
-    """
-
-    def columns(x: Array) -> Array:
-        powers = [x**k for k in range(4)]
-        return np.column_stack([*powers, *(np.maximum(x - knot, 0.0) ** 3 for knot in nodes[2:-2])])
-
-    return np.asarray(np.linalg.solve(columns(nodes).T, columns(at).T).T)

@@ -14,6 +14,7 @@ from math import exp, log
 from typing import Any
 
 import numpy as np
+from scipy.special import chdtrc
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
@@ -457,7 +458,5 @@ def fit_together(tests: Sequence[Evidence], alone: Sequence[Fitted]) -> Joint:
     start = _scan(evidence, weights, flux)
     best = _minimum(evidence, weights, flux, start)
     together = _surveyed(evidence, weights, flux, best)
-    from scipy.special import chdtrc
-
     rise = together.misfit - sum(f.misfit for f in alone)
     return Joint(together, float(chdtrc(2 * (len(alone) - 1), max(rise, 0.0))))

@@ -12,9 +12,8 @@ any pressure, and dU/dt = sum mdot h + Qdot leaves Qdot = -d(p V)/dt: over a run
 
 from __future__ import annotations
 
-from math import expm1
-
 import numpy as np
+from scipy.special import exprel
 
 from hfanalysis.arrays import Array
 from hfanalysis.engine.chamber import chamber_volume
@@ -69,6 +68,5 @@ def implied_heat(
     held = z * SPECIFIC_GAS_CONSTANT * temperature * mass_start
     too_small = float(saturation.isentropic_exponent(temperature)) - exponent
     less = float(np.log(mass_end / mass_start))
-    steps = exponent * less
-    leaves = -less * (expm1(steps) / steps if steps != 0.0 else 1.0)
+    leaves = -less * float(exprel(exponent * less))
     return float(held * too_small / float(saturation.grueneisen(temperature)) * leaves)

@@ -6,13 +6,8 @@ burns.
 
 from __future__ import annotations
 
-from math import sqrt
+from hfanalysis.engine.thrust_coefficient import possible
 
-GAMMAS = (1.14, 1.35)
-"""Heat capacity ratio [-] of burnt nitrous oxide and fuel, with room on both sides. Evidence: equilibrium, frozen in
-the nozzle, at 20 bar has 1.31 at O/F 3 and 1.24 from 7 on."""
-COLD_GAMMA = 1.3
-"""Heat capacity ratio [-] of nitrous oxide gas. Source: CoolProp at 250 K, 1.31."""
 NOZZLE = (0.85, 1.08)
 """Losses of a nozzle at worst, and what alignment of a cell may add at best [-]. Source: Sutton, Rocket Propulsion
 Elements: correction factors of thrust 0.92 to 1.0; a fifth part beyond it for separated flow."""
@@ -30,27 +25,13 @@ Range = tuple[float, float]
 
 
 def thrust_coefficients(pressure: float, ambient: float) -> Range:
-    """F / (p_c A_t) that a nozzle can have at a chamber ``pressure`` [Pa, absolute]: from convergent to fully expanded.
-
-    Source: one-dimensional isentropic flow (report, section 3.1.4). Below the pressure that chokes, from zero.
+    """F / (p_c A_t) that a nozzle can have at a chamber ``pressure`` [Pa, absolute]: from convergent to fully expanded,
+    losses included.
     """
-    low = min(_convergent(g, pressure, ambient) for g in (*GAMMAS, COLD_GAMMA))
-    high = max(_fully_expanded(g, pressure, ambient) for g in GAMMAS)
+    low, high = possible(pressure, ambient, 1.0, None)
     return max(low, 0.0) * NOZZLE[0], high * NOZZLE[1]
 
 
 def choked(pressure: float, ambient: float) -> bool:
     """Whether a nozzle is choked at a chamber ``pressure`` [Pa, absolute], with room."""
     return pressure > 2.2 * ambient
-
-
-def _convergent(gamma: float, pressure: float, ambient: float) -> float:
-    """Momentum and pressure at a sonic exit: (1 + g) (2 / (g + 1))^(g / (g - 1)) - p_a / p_c."""
-    critical = (2.0 / (gamma + 1.0)) ** (gamma / (gamma - 1.0))
-    return float((1.0 + gamma) * critical - ambient / pressure)
-
-
-def _fully_expanded(gamma: float, pressure: float, ambient: float) -> float:
-    """sqrt(2 g^2 / (g - 1) (2 / (g + 1))^((g + 1) / (g - 1)) (1 - (p_a / p_c)^((g - 1) / g)))."""
-    lead = 2.0 * gamma**2 / (gamma - 1.0) * (2.0 / (gamma + 1.0)) ** ((gamma + 1.0) / (gamma - 1.0))
-    return sqrt(lead * max(1.0 - (ambient / pressure) ** ((gamma - 1.0) / gamma), 0.0))

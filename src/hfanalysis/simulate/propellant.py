@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from scipy.optimize import brentq
+
 from hfanalysis.assembly import engine as build
 from hfanalysis.engine import unsteady
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.flight.ascent import NOT_FROM_PAD
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import Needs
-from hfanalysis.roots import root
 from hfanalysis.simulate.flown import ascend
 
 LOAD_STEP = 1.15
@@ -57,6 +58,6 @@ def _root(miss: Callable[[float], float]) -> float:
         far = near * step
         there = miss(far)
         if here * there <= 0.0:
-            return root(miss, near, far, 1e-6)
+            return float(brentq(miss, near, far, xtol=1e-6))
         near, here = far, there
     raise ValueError("it lies beyond a third and three times the load of the file")

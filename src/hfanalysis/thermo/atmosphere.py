@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from hfanalysis.roots import root
 from hfanalysis.thermo.constants import AIR_MOLAR_MASS, GAS_CONSTANT
 
 HIGHEST = 30_000.0
@@ -54,7 +53,9 @@ def altitude_of(ambient: float) -> float:
     >>> round(altitude_of(pressure(1402.0)))
     1402
     """
-    return root(lambda z: pressure(z) - ambient, -2000.0, 20_000.0, 1e-6)
+    from scipy.optimize import brentq
+
+    return float(brentq(lambda z: pressure(z) - ambient, -2000.0, 20_000.0, xtol=1e-6))
 
 
 def _check(altitude: float) -> None:
