@@ -11,7 +11,7 @@ from tests.inference.adopted.firing import make_root
 
 from hfanalysis.errors import AnalysisError
 from hfanalysis.record.definition import load_definition
-from hfanalysis.stages.diagnose import STAGE, _other, _siblings
+from hfanalysis.stages.diagnose import STAGE, _other, _proofs
 
 
 def context(root: Path, proof_test: str = "") -> Any:
@@ -32,16 +32,16 @@ def another(root: Path, name: str, old: str = "", new: str = "") -> None:
 
 def test_it_is_another_hot_fire_of_the_same_stand(tmp_path: Path) -> None:
     root = make_root(tmp_path)
-    assert _siblings(context(root)) == []
+    assert _proofs(context(root)) == []
     another(root, "T4")
     another(root, "T3")
     another(root, "T2", 'stand = "paper"', 'stand = "another"')
     another(root, "T5", 'kind = "hot_fire"', 'kind = "cold_flow"')
     another(root, "T6", "schema = 1", "schema = none of these")
-    assert _siblings(context(root)) == ["T3", "T4"]
+    assert [proof.test.id for proof in _proofs(context(root))] == ["T3", "T4"]
 
 
-def test_a_sibling_that_cannot_be_calibrated_is_passed_over(tmp_path: Path) -> None:
+def test_a_sister_that_cannot_be_calibrated_is_passed_over(tmp_path: Path) -> None:
     root = make_root(tmp_path)
     another(root, "T3")  # its log is empty
     assert _other(context(root)) is None
