@@ -28,7 +28,7 @@ TAKEN_OFF, LEFT_IN = 12.0**-0.5, 3.0**-0.5
 Source: of a shift at any instant a uniform share is in the mean; its deviation from one half, and from nothing."""
 LATE = 2.0
 """[s] at the end of the time in which a channel is flat again whose mean is its level after the firing."""
-PUSHES = 1.0
+PUSHES = 2.0
 """Deviations of what still pushes that a shift has to be above it [-]."""
 LOWEST = 0.5
 """[s] for which a pressure is below its rest at least."""
@@ -95,10 +95,9 @@ def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
     error = float(np.hypot(before.noise / np.sqrt(20.0), NOISES * last.std))
     shift = last.value - before.value
     stated = ACCURACIES[seen.dimension] * seen.channel.accuracy if seen.channel.accuracy_stated else 0.0
-    least = max(SHIFT_SHARE[seen.dimension] * rise, error, stated)
-    # what still pushes, pushes up: below its rest a cell is by that much more
-    own = shift if shift < 0.0 else shift - left[0] - PUSHES * left[1]
-    if not (least < abs(shift) < MOST * rise and (own < 0.0) == (shift < 0.0) and least < abs(own)):
+    # what still pushes, pushes up: a cell below its rest is off by that and more
+    own, unsure = (-shift, 0.0) if shift < 0.0 else (shift - left[0], PUSHES * left[1])
+    if not max(SHIFT_SHARE[seen.dimension] * rise, error, stated, unsure) < own < MOST * rise:
         return None
     words = "reads {after} after the firing and {before} before it: {shift} of {rise} of its largest rise"
     evidence = text(
