@@ -141,7 +141,7 @@ def _apart(seen: Seen) -> Iterator[Finding]:
     for sign in (1.0,) if seen.dimension == "pressure" else (-1.0, 1.0):
         off = _far(seen, sign * values)
         firing = (time > seen.fire[0]) & (time < seen.fire[1])
-        if off is None or np.mean(off[firing]) > MAJORITY:
+        if off is None or not MAJORITY > np.mean(off[firing]) > 0.0:
             continue
         rest = values[~off]
         if sign > 0.0 and not _fires(seen, values[~off & firing], float(np.ptp(rest))):
@@ -158,10 +158,10 @@ def _apart(seen: Seen) -> Iterator[Finding]:
 
 
 def _far(seen: Seen, values: Array) -> Mask | None:
-    """Which of the readings (n,) are above the widest gap in their upper third; None where it is no wider than what all
+    """Which of the readings (n,) are above the widest gap in their upper half; None where it is no wider than what all
     others range over."""
     ordered = np.sort(values)
-    first = 2 * len(ordered) // 3
+    first = len(ordered) // 2
     gap = first + int(np.argmax(np.diff(ordered[first:])))
     rest = ordered[: gap + 1]
     wide = ordered[gap + 1] - ordered[gap] > max(float(np.ptp(rest)), 6.0 * seen.channel.accuracy)
@@ -170,8 +170,12 @@ def _far(seen: Seen, values: Array) -> Mask | None:
 
 def _fires(seen: Seen, values: Array, span: float) -> bool:
     """Whether a channel's readings in the firing still show it: then what is far above them is not the firing."""
-    rest, way = seen.coarse.rest, -1.0 if seen.dimension == "mass" else 1.0
-    return rest is not None and np.count_nonzero(way * (values - rest.value) > 0.5 * span) >= STILL
+    if seen.coarse.rest is None:
+        return False
+    moved = values - seen.coarse.rest.value
+    # a zero that has moved is no firing: a cell is pushed, and becomes lighter
+    moved = {"force": moved, "mass": -moved}.get(seen.dimension, np.abs(moved))
+    return np.count_nonzero(moved > 0.5 * span) >= STILL
 
 
 def _coded(seen: Seen) -> Iterator[Finding]:

@@ -39,7 +39,10 @@ def find(test: SeenTest) -> Iterator[Finding]:
 def _ways(test: SeenTest, seen: Seen) -> tuple[float, float] | None:
     """How far below its rest and how far above it a channel is held in the firing [SI]."""
     assert test.fire is not None
-    rest, part = seen.coarse.rest, without_unusable(test, seen, seen.heard).between(*test.fire).values
+    rest, part = seen.coarse.rest, usable(test, seen).between(*test.fire).values
+    heard = without_unusable(test, seen, seen.heard).between(*test.fire).values
+    if len(part) < 0.5 * len(heard):  # most of the firing is no reading: of a reversed gauge, which goes below vacuum
+        part = heard
     if rest is None or len(part) < 8 or (seen.dimension == "pressure" and rest.value > 4e5):
         return None
     low, high = np.percentile(part, (10.0, 90.0))

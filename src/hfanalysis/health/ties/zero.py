@@ -26,6 +26,9 @@ ACCURACIES = {"force": 3.0, "pressure": 2.0}
 TAKEN_OFF, LEFT_IN = 12.0**-0.5, 3.0**-0.5
 """Deviation of a mean over the firing for a shift of one [-], where a linear drift was taken off and where it was not.
 Source: of a shift at any instant a uniform share is in the mean; its deviation from one half, and from nothing."""
+AT_AMBIENT = 0.04
+"""Chamber pressure above its rest over ambient below which the thrust is nothing [-]. Source: a nozzle that is not
+choked gives 0.1 p_a A_t or less."""
 LATE = 2.0
 """[s] at the end of the time in which a channel is flat again whose mean is its level after the firing."""
 PUSHES = 2.0
@@ -84,7 +87,7 @@ def _told(test: SeenTest, seen: Seen) -> bool:
 def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
     """The level after the firing against the one before, less what still pushes."""
     trace = usable(test, seen)
-    last = _settled(test, seen, trace) or _lowest(test, seen, trace)
+    last = _settled(test, seen, trace) or _unpushed(test, seen, trace) or _lowest(test, seen, trace)
     if last is None or seen.coarse.rest is None:
         return None
     rise = float(np.percentile(np.abs(trace.values - seen.coarse.rest.value), 99.0))
@@ -120,6 +123,19 @@ def _settled(test: SeenTest, seen: Seen, trace: Trace) -> Level | None:
     end = min(test.fire[1], live[1]) if live is not None and seen.dimension == "force" else test.fire[1]
     window = after(trace, FiringSpan(test.fire[0], end, "")) if len(trace.time) else None
     return level_of(window.between(window.time[-1] - LATE, np.inf)) if window is not None else None
+
+
+def _unpushed(test: SeenTest, seen: Seen, trace: Trace) -> Level | None:
+    """The level of a cell that has not settled, from when on the chamber stays at ambient: nothing pushes it then."""
+    chamber = test.get("p_chamber")
+    if seen.dimension != "force" or chamber is None or chamber.coarse.rest is None or test.fire is None:
+        return None
+    blocks = in_blocks(usable(test, chamber).between(test.fire[0], np.inf), LOWEST)
+    under = np.flatnonzero(blocks.values - chamber.coarse.rest.value > AT_AMBIENT * test.ambient)
+    if not under.size or under[-1] + 1 >= len(blocks.time):
+        return None
+    since = float(blocks.time[under[-1] + 1])
+    return level_of(trace.between(since, since + LATE))
 
 
 def _lowest(test: SeenTest, seen: Seen, trace: Trace) -> Level | None:
