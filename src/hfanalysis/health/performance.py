@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from hfanalysis.engine.thrust_coefficient import TOLERANCE, possible
 
+SEPARATED = 0.15
+"""Part of a convergent nozzle's thrust that one whose exit is not known may lose [-]. Source: Sutton, Rocket Propulsion
+Elements: correction factors of thrust 0.92 to 1.0; a fifth part beyond it for separated flow."""
 SLOWEST_FIRE, FASTEST_FIRE = 800.0, 1720.0
 """c* [m/s] of a fire that hardly burns, and of the best. Source: equilibrium of nitrous oxide and paraffin, 1640 m/s at
 its best at 20 bar, and 5 %."""
@@ -31,7 +34,8 @@ def thrust_coefficients(pressure: float, ambient: float, throat: float = 1.0, ex
     Of this ``throat`` and ``exit_area`` [m^2]; without an exit, from convergent to fully expanded.
     """
     low, high = possible(pressure, ambient, throat, exit_area)
-    return max(low, 0.0) * (1.0 - TOLERANCE), high * (1.0 + TOLERANCE)
+    lost = SEPARATED if exit_area is None else TOLERANCE
+    return max(low, 0.0) * (1.0 - lost), high * (1.0 + TOLERANCE)
 
 
 def choked(pressure: float, ambient: float) -> bool:
