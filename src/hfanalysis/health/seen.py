@@ -159,8 +159,9 @@ def _taken(log: TestLog, definition: TestDefinition, whole: Span | None) -> Span
     place = definition.log.firing - 1 if definition.log.firing else largest(flows, signals, fire=True)
     if place >= len(flows):
         return whole
-    start, end = flows[place].start, flows[place].end
-    return (max(start, whole[0]), whole[1] if place == len(flows) - 1 else end)
+    start, end = max(flows[place].start, whole[0]), whole[1] if place == len(flows) - 1 else flows[place].end
+    # what begins after all channels are at rest again is no firing that a plateau could be taken of
+    return (start, end) if start < end else whole
 
 
 def firing_of(live: Mapping[str, Span | None]) -> Span | None:

@@ -40,10 +40,10 @@ FLAT, CONTINUED, AWAY = 0.01, 0.15, 0.1
 """Parts of its jumps by which such a level scatters at most, by which the channel goes on elsewhere than where it was
 at most, and by which it is not the channel's rest at least [-]."""
 MAJORITY = 0.5
-"""Part of the firing for which a cell is so far off that it is no drop-out but its sign, or the firing itself [-].
-Source: definition."""
-STILL = 5
-"""Samples of a firing that are to be left in a channel without those that are far above all others."""
+"""Part of the firing for which a cell is so far below that it is no drop-out but its sign [-]. Source: definition."""
+STILL, STILL_OF = 5, 0.25
+"""Samples of a firing that are to be left in a channel without those that are far above all others, away from its rest
+by so much of what it ranges over: a tank falls by a third."""
 BRIDGED = 0.1
 """[s] between two stretches below which they are told as one."""
 TOLD = 5
@@ -113,7 +113,7 @@ def _between_jumps(seen: Seen) -> Iterator[Finding]:
             continue
         if np.ptp(part) == 0.0 or _quieter(part, step) or _interrupts(seen, values, a, b):
             start, end = float(time[a + 1]), float(time[b])
-            words = "stands at {value} from {start:.2f} to {end:.2f} s, as still as it never is, and jumps there and back"
+            words = "stands at {value} from {start:.2f} to {end:.2f} s, stiller than ever, and jumps there and back"
             evidence = text(words, value=level(float(np.median(part)), seen.dimension), start=start, end=end)
             yield _none(seen, start, end, evidence, LOST)
 
@@ -141,10 +141,10 @@ def _apart(seen: Seen) -> Iterator[Finding]:
     for sign in (1.0,) if seen.dimension == "pressure" else (-1.0, 1.0):
         off = _far(seen, sign * values)
         firing = (time > seen.fire[0]) & (time < seen.fire[1])
-        if off is None or not MAJORITY > np.mean(off[firing]) > 0.0:
+        if off is None or not off[firing].any():
             continue
         rest = values[~off]
-        if sign > 0.0 and not _fires(seen, values[~off & firing], float(np.ptp(rest))):
+        if np.mean(off[firing]) > MAJORITY if sign < 0.0 else not _stands_out(seen, values, off, firing):
             continue
         for a, b in list(stretches(off))[:TOLD]:
             if b - a >= FEWEST and a >= FEWEST:
@@ -168,14 +168,18 @@ def _far(seen: Seen, values: Array) -> Mask | None:
     return values > ordered[gap] if wide else None
 
 
-def _fires(seen: Seen, values: Array, span: float) -> bool:
-    """Whether a channel's readings in the firing still show it: then what is far above them is not the firing."""
+def _stands_out(seen: Seen, values: Array, off: Mask, firing: Mask) -> bool:
+    """Whether what is far above all others is one level, entered and left at once, and no firing: the others show that
+    still, by a cell that is pushed or becomes lighter, not by a zero that has moved."""
     if seen.coarse.rest is None:
         return False
-    moved = values - seen.coarse.rest.value
-    # a zero that has moved is no firing: a cell is pushed, and becomes lighter
+    moved = values[~off & firing] - seen.coarse.rest.value
     moved = {"force": moved, "mass": -moved}.get(seen.dimension, np.abs(moved))
-    return np.count_nonzero(moved > 0.5 * span) >= STILL
+    fires = np.count_nonzero(moved > STILL_OF * np.ptp(values[~off])) >= STILL
+    gap = float(values[off].min() - values[~off].max())
+    flat = float(np.ptp(np.percentile(values[off], (5.0, 95.0)))) < FLAT * gap
+    edges = np.flatnonzero(np.diff(off.astype(np.int8)))
+    return bool(fires and flat and (np.abs(np.diff(values))[edges] >= gap).all())
 
 
 def _coded(seen: Seen) -> Iterator[Finding]:

@@ -37,7 +37,10 @@ SHORTEST = 0.1
 EMPTIED = 0.3
 """Part of its pressure that a tank loses at least when it is emptied through its line [-]. Source: health/ties/sign.py:
 one that is empty of liquid has lost a third to a half."""
-NEEDS = {"p_chamber": ("thrust", "p_run"), "thrust": ("p_chamber",), "p_run": ("p_chamber",), "p_tank": ("p_run", "p_chamber")}
+NEEDS = {
+    "p_chamber": ("thrust", "p_run"), "thrust": ("p_chamber",), "p_run": ("p_chamber",),
+    "p_tank": ("p_run", "p_chamber"),
+}  # fmt: skip
 """Channel -> those that cannot rise without it."""
 
 

@@ -127,9 +127,7 @@ def _by_pressure(test: SeenTest, burn: Burn, throat: Throat, words: list[str]) -
     return Factor(low / value / (1.0 + slack), high / value * (1.0 + slack))
 
 
-def _velocity(
-    test: SeenTest, burn: Burn, throat: Throat, mass: tuple[float, float], words: list[str]
-) -> Factor | None:
+def _velocity(test: SeenTest, burn: Burn, throat: Throat, mass: tuple[float, float], words: list[str]) -> Factor | None:
     value = burn.integral("p_chamber") * throat.area
     slack = 1.0 + DEVIATIONS * throat.error
     low, high = value / mass[1], value / mass[0]

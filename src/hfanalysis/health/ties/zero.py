@@ -22,7 +22,8 @@ by 30 K, and a cell has hysteresis besides."""
 NOISES = 5.0
 """Deviations of both levels' means that a shift has to exceed [-]."""
 ACCURACIES = {"force": 3.0, "pressure": 2.0}
-"""Deviations of the stated accuracy that a shift has to exceed [-]; where none is stated, the share alone counts."""
+"""Deviations of the stated accuracy that a shift has to exceed [-]; a single one of that of its class, where none is
+stated: that is wide."""
 TAKEN_OFF, LEFT_IN = 12.0**-0.5, 3.0**-0.5
 """Deviation of a mean over the firing for a shift of one [-], where a linear drift was taken off and where it was not.
 Source: of a shift at any instant a uniform share is in the mean; its deviation from one half, and from nothing."""
@@ -97,7 +98,7 @@ def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
     before = seen.coarse.rest
     error = float(np.hypot(before.noise / np.sqrt(20.0), NOISES * last.std))
     shift = last.value - before.value
-    stated = ACCURACIES[seen.dimension] * seen.channel.accuracy if seen.channel.accuracy_stated else 0.0
+    stated = (ACCURACIES[seen.dimension] if seen.channel.accuracy_stated else 1.0) * seen.channel.accuracy
     # what still pushes, pushes up: a cell below its rest is off by that and more
     own, unsure = (-shift, 0.0) if shift < 0.0 else (shift - left[0], PUSHES * left[1])
     if not max(SHIFT_SHARE[seen.dimension] * rise, error, stated, unsure) < own < MOST * rise:
