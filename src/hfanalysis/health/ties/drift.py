@@ -28,9 +28,6 @@ ACCURACIES = 3.0
 """Deviations of the stated accuracy by which it has to; where none is stated, the share alone counts [-]."""
 STRAIGHT = 0.9
 """Part of the blocks' variance that the line has to explain [-]: a step or a knock is no drift."""
-AS_NOISE = 2.0
-"""Deviations of the blocks' means by their own noise that may be left about the line [-]: what noise alone leaves is
-straight, however short the line. Source: twice the white noise's, for noise that is slow."""
 
 
 def find(test: SeenTest) -> Iterator[Finding]:
@@ -77,8 +74,6 @@ def _line(quiet: Trace) -> tuple[float, float] | None:
     time = np.array([b.time.mean() for b in blocks])
     means = np.array([b.values.mean() for b in blocks])
     (slope, level_), covariance = np.polyfit(time - time.mean(), means, 1, cov=True)
-    left = float(np.std(means - level_ - slope * (time - time.mean())))
-    noise = float(np.median([np.std(b.values) / np.sqrt(len(b.values)) for b in blocks]))
-    if left > max(np.sqrt(1.0 - STRAIGHT) * float(np.std(means)), AS_NOISE * noise):
-        return None
-    return float(slope), float(np.sqrt(covariance[0, 0]))
+    rest = means - level_ - slope * (time - time.mean())
+    straight = 1.0 - float(np.var(rest)) / max(float(np.var(means)), 1e-300)
+    return (float(slope), float(np.sqrt(covariance[0, 0]))) if straight > STRAIGHT else None
