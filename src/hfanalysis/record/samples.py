@@ -95,7 +95,7 @@ def _zero(
 ) -> Zero:
     if spec.zero == "ambient":
         return ambient_zero(spec, samples.trace, firing, definition.ambient_pressure, accuracy)
-    return tare(spec, samples.trace, firing, accuracy) if spec.tare != "none" else Zero()
+    return tare(spec, samples.trace, firing) if spec.tare != "none" else Zero()
 
 
 def _no_numbers(plan: Plan, spool: Spool, definition: TestDefinition) -> str:
