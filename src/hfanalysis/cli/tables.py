@@ -18,7 +18,7 @@ from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context, load_stage
 from hfanalysis.wording import numbers as wording
-from hfanalysis.wording.numbers import Shown, in_words, ordered, shown
+from hfanalysis.wording.numbers import in_words, ordered, shown
 
 if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
     from hfanalysis.products.calibration import RegressionBasis
