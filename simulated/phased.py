@@ -11,6 +11,7 @@ from math import inf, nan, pi, sqrt
 from pathlib import Path
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 from scipy.signal import lfilter
 from scipy.special import betainc
 from simulated.stand import AMBIENT, HOLE_AREA, PSI, Array, Truth, draw_truth, empties, noise
@@ -30,6 +31,8 @@ PURGES = ("late", "late", "early", "absent")
 FULL_SCALE = 100e5
 CHARACTERISTIC_VELOCITY = 1400.0
 CLOSE = 1.80 * AMBIENT
+SMOOTH = 0.06
+APART = 1.0
 
 
 @dataclass(frozen=True)
@@ -149,15 +152,19 @@ def _sensed(
 
 
 def _full(time: Array, run: Array, t_v: float) -> float:
-    """When the line first reaches 98 % of its maximum before t_v."""
-    before = run[time < t_v]
-    return float(time[int(np.argmax(before >= 0.98 * before.max()))])
+    """When the line, smoothed, first reaches 98 % of its maximum before t_v: t_feed as it is defined."""
+    smooth = uniform_filter1d(run[time < t_v], round(SMOOTH / STEP), mode="nearest")
+    return float(time[int(np.argmax(smooth >= 0.98 * smooth.max()))])
 
 
 def _unchoked(time: Array, chamber: Array) -> float | None:
-    """When the chamber last falls through 1.8 times ambient, where it does."""
+    """When the chamber is below 1.8 times ambient for good: for a second at least; what comes then is purge gas."""
     above = np.flatnonzero(chamber > CLOSE)
-    return float(time[above[-1]]) if above.size and above[-1] < time.size - 1 else None
+    if not above.size:
+        return None
+    runs = np.split(above, np.flatnonzero(np.diff(above) * STEP > APART) + 1)
+    last = max(runs, key=lambda run: float((chamber[run] - CLOSE).sum()))[-1]
+    return float(time[last]) if last < time.size - round(APART / STEP) else None
 
 
 def _lagged(curve: Array, rest: float, lag: float) -> Array:
@@ -202,9 +209,7 @@ def _between(times: list[Array], values: dict[str, list[Array]], rate: float, re
         parts.insert(1, parts[0][-1] + share * (rest[name] - parts[0][-1]))
 
 
-def _channel(
-    rng: np.random.Generator, drawn: Drawn, stand: Truth, name: str, time: Array, value: Array
-) -> Channel:
+def _channel(rng: np.random.Generator, drawn: Drawn, stand: Truth, name: str, time: Array, value: Array) -> Channel:
     pressure = name.startswith("p_")
     if name == "p_chamber":
         phase = 2.0 * pi * np.cumsum(rng.uniform(20.0, 80.0) + 5.0 * rng.standard_normal(time.size)) / drawn.rate
@@ -218,7 +223,9 @@ def _channel(
         read = np.round(read / step) * step
     accuracy = 2.0 * PSI if pressure else unit
     flags = np.zeros(time.size, dtype=np.uint8)
-    return Channel(name, "Pa" if pressure else "N" if name == "thrust" else "kg", time, read, flags, accuracy, True, name)
+    return Channel(
+        name, "Pa" if pressure else "N" if name == "thrust" else "kg", time, read, flags, accuracy, True, name
+    )
 
 
 def _stated(rng: np.random.Generator, drawn: Drawn, stand: Truth) -> TestDefinition:

@@ -14,6 +14,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.noise import Noise
+from hfanalysis.record.quiet import Trace, level
 from hfanalysis.record.signals import Signal, live_signals
 from hfanalysis.segment.coarse_load import CoarseLoad, coarse_load
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, QUIET, find_unchoking, pulses_after
@@ -343,8 +344,9 @@ class _Search:
 
     def _chamber_offset(self) -> float:
         """How far the open chamber reads from ambient before the opening [Pa]: a bias to allow for, where it is one."""
-        quiet = self.signals["p_chamber"].between(-5.0, -0.05).value
-        offset = float(np.median(quiet)) - self.ambient if quiet.size > 7 else 0.0
+        quiet = self.signals["p_chamber"].between(-3.0, -0.05)
+        rest = level(Trace(quiet.time, quiet.value))
+        offset = rest.value - self.ambient if rest is not None else 0.0
         return offset if abs(offset) < LARGEST_OFFSET else 0.0
 
     def _noise(self) -> Noise:
