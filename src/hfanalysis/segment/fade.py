@@ -8,6 +8,7 @@ as it is seen.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -19,13 +20,17 @@ from hfanalysis.segment.breaks import memory_length
 POWERS = (0.7, 1.0, 1.4, 2.0)
 """Powers of the time with which a fade may set in: at once, or with a rounded bend."""
 
+SHAPES = tuple((p, q) for p in (0.8, 1.2, 1.9) for q in (1.0, 1.5, 2.2))
+"""Shapes 1 - (1 - u^p)^q of a fall over its time u with which it is dated: either bend may be sharp or rounded. Source:
+Kumaraswamy's distribution (Journal of Hydrology 46, 1980, 79-88): p and q bend its two ends one by one."""
+
 SETTLES = (0.2, 0.6)
 """Time constants [s] with which a fire settles after its start. Evidence: on public records it takes one to two seconds
 after the line is full; taken for a part of the line it hid a fade of a third."""
 
-BEND = 0.04
-"""Part of a fade's length within which its bends are dated, whatever the samples: no grain runs out by a power of the
-time. Evidence: benchmarks of fades of other shapes, dated three times too surely without it."""
+BEND = 0.02
+"""Part of a fade's length within which its bends are dated, whatever the samples: its shape lies between those that are
+tried. Evidence: docs/phase-coverage.md."""
 
 COARSE, FINE = 40, 25
 """Beginnings, and ends, that are tried over the phase, and then where the first trials are likely."""
@@ -48,6 +53,12 @@ CLEAR = 5.0
 
 SHORTEST = 0.25
 """Seconds: a shorter fade is a sudden fall, which has a search of its own."""
+
+BRIEFEST = 0.02
+"""Least length [s] that a fade is dated with, once it is found."""
+
+BEYOND = (0.0, 0.5, 1.5)
+"""Parts of what is seen of a fade that goes on for which it may do so beyond the phase."""
 
 LONGEST = 0.6
 """Largest part of the phase that a fade may take. Evidence: test_fuel_bounds.py: what takes most of the burn is how the
@@ -75,12 +86,12 @@ class Fade:
 
 @dataclass(frozen=True)
 class _Trials:
-    """Beginnings and ends [s] of all fades that are tried, (k,); what each leaves of the response; its fall, and that
-    fall's deviation for residuals of 1."""
+    """Beginnings and ends [s] of all fades that are tried, (k,), and their shapes (k, 2); what each leaves of the response;
+    its fall, and that fall's deviation for residuals of 1."""
 
     begin: Array
     end: Array
-    power: Array
+    shape: Array
     left: Array
     fall: Array
     error: Array
@@ -102,28 +113,56 @@ def find_fade(time: Array, response: Array) -> Fade | None:
     length = last - first
     early = first + STEADY * length
     begins = np.linspace(early, last - SHORTEST, COARSE)
-    trials = _fitted(t, y, *_grid(begins, np.linspace(early + SHORTEST, last, COARSE)))
-    variance = _variance(t, y, trials)
+    powers = tuple((power, 1.0) for power in POWERS)
+    basis = _whole(t)
+    ends = np.linspace(early + SHORTEST, last, COARSE)
+    trials = _fitted(t, y, basis, *_grid(begins, ends, powers, SHORTEST))
+    variance = _variance(t, y, basis, trials)
     price = float(np.log(t.size)) * variance
     ended = trials.end < last - REST * (trials.end - trials.begin)
     running, over = trials.of(trials.end == last), trials.of(ended)
-    gone = bool(over.left.size) and over.left.min() + 2.0 * price < running.left.min() and _levels_off(t, y, over)
+    gone = (
+        bool(over.left.size) and over.left.min() + 2.0 * price < running.left.min() and _levels_off(t, y, basis, over)
+    )
     used = over if gone else running
     best = used.best
-    whole = y - _whole(t) @ np.linalg.lstsq(_whole(t), y, rcond=None)[0]
+    whole = y - basis @ np.linalg.lstsq(basis, y, rcond=None)[0]
     least = max(LEAST_FALL_TO_END if gone else LEAST_FALL, CLEAR * float(used.error[best]) * np.sqrt(variance))
     level = float(np.interp(used.begin[best], t, y))
-    if whole @ whole - used.left[best] < 4.0 * price or min(used.fall[best], _seen_fall(t, y, used)) < least * level:
+    if (
+        whole @ whole - used.left[best] < 4.0 * price
+        or min(used.fall[best], _seen_fall(t, y, basis, used)) < least * level
+    ):
         return None
     begin, end = (_looked_at(x, used, variance, 1.5 * length / COARSE) for x in (used.begin, used.end))
-    fine = _fitted(t, y, *_grid(begin, end if gone else np.array([last])))
+    if not gone:
+        end = last + (last - float(used.begin[best])) * np.array(BEYOND)
+    fine = _fitted(t, y, basis, *_grid(begin, end, SHAPES, BRIEFEST))
     weight = np.exp(-0.5 * (fine.left - fine.left.min()) / variance)
     found, found_std = _mean(weight, fine.begin)
     ends, ends_std = _mean(weight, fine.end)
-    if not SHORTEST < ends - found < LONGEST * length:
+    if not BRIEFEST < ends - found < LONGEST * length:
         return None
     shape = BEND * (ends - found)
     return Fade(found, float(np.hypot(found_std, shape)), ends if gone else None, float(np.hypot(ends_std, shape)))
+
+
+def date_fall(time: Array, value: Array, rough: float, lasts: float) -> Fade | None:
+    """A fall of a signal (n,), in any unit, that is over ``lasts`` [s] or so after ``rough`` [s]: its two bends; None
+    where there are too few samples."""
+    t, y = _reduced(time, value / max(float(np.ptp(value)), 1e-9))
+    if t.size < 8:
+        return None
+    step = float(np.median(np.diff(t)))
+    lasts = max(lasts, step)
+    begins = rough + max(lasts, 3.0 * step) * np.linspace(-0.7, 0.7, FINE)
+    ends = rough + lasts * np.linspace(0.1, 2.5, FINE)
+    line = np.stack([np.ones_like(t), t - t[0]], axis=1)
+    trials = _fitted(t, y, line, *_grid(begins, ends, SHAPES, 0.1 * min(step, lasts)))
+    weight = np.exp(-0.5 * (trials.left - trials.left.min()) / _variance(t, y, line, trials))
+    begin, begin_std = _mean(weight, trials.begin)
+    gone, gone_std = _mean(weight, trials.end)
+    return Fade(begin, begin_std, gone, gone_std)
 
 
 def _looked_at(values: Array, used: _Trials, variance: float, least: float) -> Array:
@@ -151,18 +190,27 @@ def _mean(weight: Array, value: Array) -> tuple[float, float]:
     return mean, float(np.sqrt(np.average((value - mean) ** 2, weights=weight) + grid**2 / 12.0))
 
 
-def _grid(begins: Array, ends: Array) -> tuple[Array, Array, Array]:
-    """Beginnings, ends and powers of the trials: every pair that lies apart, with every power."""
-    begin, end, power = (x.ravel() for x in np.meshgrid(begins, ends, POWERS, indexing="ij"))
-    apart = end - begin >= SHORTEST
-    return begin[apart], end[apart], power[apart]
+def _grid(
+    begins: Array, ends: Array, shapes: Sequence[tuple[float, float]], least: float
+) -> tuple[Array, Array, Array]:
+    """Beginnings, ends and shapes of the trials: every pair that lies apart, with every shape."""
+    begin, end, which = (x.ravel() for x in np.meshgrid(begins, ends, np.arange(len(shapes)), indexing="ij"))
+    apart = end - begin >= least
+    return begin[apart], end[apart], np.array(shapes)[which[apart]]
 
 
-def _fitted(t: Array, y: Array, begin: Array, end: Array, power: Array) -> _Trials:
-    """All trials by least squares: a line, the fade, and where it ends before the phase does another slope after it."""
-    basis = np.linalg.qr(_whole(t))[0]
+def _faded(t: Array, begin: Array, end: Array, shape: Array) -> Array:
+    """How far (k, n) each fade is over at the times (n,) [s]."""
+    part = np.clip((t - begin[:, None]) / (end - begin)[:, None], 0.0, 1.0)
+    return np.asarray(1.0 - (1.0 - part ** shape[:, :1]) ** shape[:, 1:])
+
+
+def _fitted(t: Array, y: Array, columns: Array, begin: Array, end: Array, shape: Array) -> _Trials:
+    """All trials by least squares: the ``columns`` (n, m) of a grain that burns whole, the fade, and where it ends
+    before the phase does another slope after it."""
+    basis = np.linalg.qr(columns)[0]
     rest = y - basis @ (basis.T @ y)
-    faded = -(np.clip((t - begin[:, None]) / (end - begin)[:, None], 0.0, 1.0) ** power[:, None])
+    faded = -_faded(t, begin, end, shape)
     after = np.maximum(t - end[:, None], 0.0)
     faded, after = (x - (x @ basis) @ basis.T for x in (faded, after))
     across = np.einsum("kn,kn->k", faded, after)
@@ -174,33 +222,32 @@ def _fitted(t: Array, y: Array, begin: Array, end: Array, power: Array) -> _Tria
     fall = own @ rest / size
     by_after = np.where(has, (after @ rest) ** 2 / np.where(has, of_after, 1.0), 0.0)
     left = rest @ rest - fall**2 * size - by_after
-    return _Trials(begin, end, power, np.where(fall > 0.0, left, rest @ rest), fall, 1.0 / np.sqrt(size))
+    return _Trials(begin, end, shape, np.where(fall > 0.0, left, rest @ rest), fall, 1.0 / np.sqrt(size))
 
 
-def _curve(t: Array, y: Array, one: _Trials) -> Array:
+def _curve(t: Array, y: Array, columns: Array, one: _Trials) -> Array:
     """The fitted response (n,) of a single trial."""
-    faded = np.clip((t - one.begin) / (one.end - one.begin), 0.0, 1.0) ** one.power
-    x = np.column_stack([_whole(t), faded, np.maximum(t - one.end, 0.0)])
+    x = np.column_stack([columns, _faded(t, one.begin, one.end, one.shape)[0], np.maximum(t - one.end, 0.0)])
     return np.asarray(x @ np.linalg.lstsq(x, y, rcond=None)[0])
 
 
-def _levels_off(t: Array, y: Array, trials: _Trials) -> bool:
+def _levels_off(t: Array, y: Array, columns: Array, trials: _Trials) -> bool:
     """Whether after the best fade the response hardly falls any more: else it is the fade that goes on, ever slower."""
     one = trials.of(np.arange(trials.left.size) == trials.best)
-    ends = np.interp([float(one.end[0]), float(t[-1])], t, _curve(t, y, one))
-    fading = max(_seen_fall(t, y, trials), 1e-9) / float(one.end[0] - one.begin[0])
+    ends = np.interp([float(one.end[0]), float(t[-1])], t, _curve(t, y, columns, one))
+    fading = max(_seen_fall(t, y, columns, trials), 1e-9) / float(one.end[0] - one.begin[0])
     return bool(ends[0] - ends[1] < LEVEL * fading * (float(t[-1]) - float(one.end[0])))
 
 
-def _seen_fall(t: Array, y: Array, trials: _Trials) -> float:
+def _seen_fall(t: Array, y: Array, columns: Array, trials: _Trials) -> float:
     """How far the response really falls from where the best fade begins to where it ends, whatever the line before."""
     one = trials.of(np.arange(trials.left.size) == trials.best)
-    ends = np.interp([float(one.begin[0]), float(one.end[0])], t, _curve(t, y, one))
+    ends = np.interp([float(one.begin[0]), float(one.end[0])], t, _curve(t, y, columns, one))
     return float(ends[0] - ends[1])
 
 
-def _variance(t: Array, y: Array, trials: _Trials) -> float:
+def _variance(t: Array, y: Array, columns: Array, trials: _Trials) -> float:
     """Of an independent value of the response: what the best of all trials leaves, and how long its memory is."""
     one = trials.of(np.arange(trials.left.size) == trials.best)
-    residual = y - _curve(t, y, one)
+    residual = y - _curve(t, y, columns, one)
     return max(float(residual @ residual) / max(t.size - 6, 1) * memory_length(residual), 1e-12)

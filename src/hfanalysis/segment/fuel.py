@@ -4,13 +4,14 @@ change, at once or over a second or two."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.record.signals import Signal, sample_noise
-from hfanalysis.segment.fade import Fade, find_fade
+from hfanalysis.segment.breaks import Break
+from hfanalysis.segment.fade import Fade, date_fall, find_fade
 from hfanalysis.segment.falls import RELAXATION, abrupt_falls
 from hfanalysis.segment.refine import refine_step
 
@@ -70,6 +71,9 @@ FEED_FALLS, FEED_RISES = 0.12, 0.02
 """Parts of the feed's pressure by which it may change meanwhile: a tank empties by some percent in OUT_AFTER. Evidence:
 test_events.py: where the feed ends, a fire goes out with fuel left."""
 
+LEAST_DROP_LEFT = 0.8
+"""Part of the drop over the injector that is left at least where the fuel ends: it grows, for the chamber falls."""
+
 AT_ONCE = 0.05
 """Seconds within which the chamber of a fire that goes out has flushed."""
 
@@ -97,11 +101,12 @@ BEFORE_LIQUID_END = 0.1
 
 @dataclass(frozen=True)
 class Sudden:
-    """A sudden end [s] with its standard deviation, and how long the fall takes [s]."""
+    """A sudden end [s] with its standard deviation, and when the fall is over [s] with its."""
 
     time: float
     std: float
-    duration: float
+    gone: float
+    gone_std: float
 
 
 @dataclass(frozen=True)
@@ -117,11 +122,13 @@ class FuelEnd:
 
 @dataclass(frozen=True)
 class _Response:
-    """(p_c - p_a) sqrt(median dp / dp) [Pa] on a grid of times, and the scatter of a grid value."""
+    """(p_c - p_a) sqrt(median dp / dp) [Pa] on a grid of times, the scatter of a grid value, and over how long [s] it is
+    smoothed."""
 
     time: Array
     value: Array
     noise: float
+    width: float
 
 
 def find_fuel_end(
@@ -157,7 +164,7 @@ def find_fuel_end(
     if fade is not None:
         return _faded(fade, sudden, t_v[0] if t_v is not None else np.inf)
     if sudden is not None:
-        return FuelEnd(sudden.time, sudden.std, sudden.time, sudden.std)
+        return FuelEnd(sudden.time, sudden.std, sudden.gone, sudden.gone_std)
     last = float(response.time[-1])
     return (
         f"chamber pressure and thrust do not fall against the feed up to {last:.1f} s, where the chamber nears ambient"
@@ -169,7 +176,7 @@ def _faded(fade: Fade, sudden: Sudden | None, t_v: float) -> FuelEnd:
     if fade.gone is not None:
         return FuelEnd(fade.begin, fade.begin_std, fade.gone, fade.gone_std)
     if sudden is not None:
-        return FuelEnd(fade.begin, fade.begin_std, sudden.time, sudden.std)
+        return FuelEnd(fade.begin, fade.begin_std, sudden.gone, sudden.gone_std)
     hidden = f"the fade from {fade.begin:.2f} s goes on to the end of the liquid at {t_v:.2f} s, which hides its own"
     return FuelEnd(fade.begin, fade.begin_std, None, np.inf, hidden)
 
@@ -189,7 +196,19 @@ def _sudden_end(
         sudden = _close(signals, ambient, end, t_feed, t_v)
     if sudden is None or _is_liquids(sudden, t_v, std):
         sudden = _goes_out(signals, ambient, t_feed, t_v, float(response.time[-1]))
-    return None if sudden is None or _is_liquids(sudden, t_v, std) else sudden
+    return None if sudden is None or _is_liquids(sudden, t_v, std) or not _feed_goes_on(signals, sudden) else sudden
+
+
+def _feed_goes_on(signals: Mapping[str, Signal], sudden: Sudden) -> bool:
+    """Whether the drop over the injector is still there after the fall: where a valve shuts, it is gone."""
+    before, after = (
+        signals["p_run"].mean(*span) - signals["p_chamber"].mean(*span)
+        for span in (
+            (sudden.time - GAP - SMOOTH, sudden.time - 0.5 * GAP),
+            (sudden.gone + GAP, sudden.gone + OUT_AFTER),
+        )
+    )
+    return not after < LEAST_DROP_LEFT * before
 
 
 def _is_liquids(sudden: Sudden, t_v: float | None, std: float) -> bool:
@@ -202,6 +221,10 @@ def _fade(signals: Mapping[str, Signal], response: _Response, t_feed: float, unt
     fade = find_fade(response.time[part], response.value[part])
     if fade is None:
         return None
+    blurred = response.width / np.sqrt(12.0)
+    fade = replace(
+        fade, begin_std=float(np.hypot(fade.begin_std, blurred)), gone_std=float(np.hypot(fade.gone_std, blurred))
+    )
     late = until if fade.gone is None else min(fade.gone + WINDOW, until)
     shared = _thrust_falls(signals, (fade.begin - WINDOW, fade.begin), (late - WINDOW, late), FADE_THRUST)
     return fade if shared else None
@@ -219,7 +242,7 @@ def _response(signals: Mapping[str, Signal], ambient: float, end: float, width: 
     stop = min(int(np.flatnonzero(fire)[-1]) + round(WINDOW / step), grid.size)
     drop = np.maximum(drop[:stop], 0.2e5)
     value = excess[:stop] * np.sqrt(np.median(drop) / drop)
-    return _Response(grid[:stop], value, sample_noise(value))
+    return _Response(grid[:stop], value, sample_noise(value), width)
 
 
 def _close(signals: Mapping[str, Signal], ambient: float, end: float, t_feed: float, t_v: float) -> Sudden | None:
@@ -316,7 +339,7 @@ def _goes_out(
             continue
         found = refine_step([chamber], time, OUT_LEVEL, OUT_AFTER, 0.5 * OUT_LEVEL)
         if found is not None and found.std < SHARPLY_DATED and 3.0 * found.relaxation < AT_ONCE:
-            return Sudden(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)
+            return _bends(chamber.between(time - OUT_LEVEL, time + OUT_AFTER), found)
     return None
 
 
@@ -368,7 +391,21 @@ def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> Su
     least = 3.0 * chamber.step
     found = refine_step([chamber], rough, max(before, least), max(after, least), max(reach, least))
     if found is None:
-        return Sudden(rough, GRID, 0.0)
+        return Sudden(rough, GRID, rough, GRID)
     if 3.0 * found.relaxation > SUDDEN or found.std > max(SHARPLY_DATED, chamber.step):
         return None
-    return Sudden(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)
+    return _bends(chamber.between(rough - max(before, least), rough + max(after, least)), found)
+
+
+def _bends(part: Signal, found: Break) -> Sudden:
+    """Both bends of a sudden fall: what ends it is the fuel, or the chamber that flushes, which takes as long."""
+    lasts = max(3.0 * found.relaxation, 2.0 * part.step)
+    near = part.between(found.time - 2.0 * lasts - GAP, found.time + 3.0 * lasts + GAP)
+    fall = date_fall(near.time, near.value, found.time, lasts)
+    if fall is None or fall.gone is None:
+        return Sudden(
+            found.time, float(np.hypot(found.std, RESIDENCE)), found.time, float(np.hypot(found.std, RESIDENCE))
+        )
+    length = max(fall.gone - fall.begin, 0.0)
+    gone_std = float(np.linalg.norm([fall.gone_std, length / np.sqrt(12.0), RESIDENCE]))
+    return Sudden(fall.begin, float(np.hypot(fall.begin_std, RESIDENCE)), fall.gone - 0.5 * length, gone_std)
