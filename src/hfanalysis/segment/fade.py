@@ -30,7 +30,7 @@ after the line is full; taken for a part of the line it hid a fade of a third.""
 
 BEND = 0.02
 """Part of a fade's length within which its bends are dated, whatever the samples: its shape lies between those that are
-tried. Evidence: docs/phase-coverage.md."""
+tried. Evidence: docs/phases.md."""
 
 COARSE, FINE = 40, 25
 """Beginnings, and ends, that are tried over the phase, and then where the first trials are likely."""
@@ -86,7 +86,7 @@ class Fade:
 
 @dataclass(frozen=True)
 class _Trials:
-    """Beginnings and ends [s] of all fades that are tried, (k,), and their shapes (k, 2); what each leaves of the response;
+    """Beginnings and ends [s] of all fades that are tried, (k,), their shapes (k, 2); what each leaves of the response;
     its fall, and that fall's deviation for residuals of 1."""
 
     begin: Array

@@ -122,8 +122,8 @@ class FuelEnd:
 
 @dataclass(frozen=True)
 class _Response:
-    """(p_c - p_a) sqrt(median dp / dp) [Pa] on a grid of times, the scatter of a grid value, and over how long [s] it is
-    smoothed."""
+    """(p_c - p_a) sqrt(median dp / dp) [Pa] on a grid of times, the scatter of a grid value, and over how long [s] it
+    is smoothed."""
 
     time: Array
     value: Array
