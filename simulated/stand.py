@@ -57,7 +57,6 @@ class Truth:
 def draw_truth(generator: np.random.Generator) -> Truth:
     """A random stand: tanks of 8 to 25 L, 40 to 62 bar, injectors from poor to good, logs of 200 Hz to 1 kHz."""
     u = generator.uniform
-    source = saturation("coolprop")
     volume = u(8e-3, 25e-3)
     temperature = float(source.temperature(u(42e5, 62e5)))
     liquid = u(0.55, 0.85)
@@ -150,7 +149,6 @@ def make_log(folder: Path, seed: int) -> Truth:
     generator = np.random.default_rng([20220403, seed])
     truth = draw_truth(generator)
     step = 1e-4
-    source = saturation("coolprop")
     vapor_time = generator.uniform(0.25, 1.0)
     time = step * np.arange(int(30.0 / step))
     out, t_v, t_purge, p_purge = empties(

@@ -17,7 +17,7 @@ TIME = np.arange(0.0, 6.0, GRID)
 
 def response(value: np.ndarray, noise: float) -> _Response:
     scatter = noise * np.random.default_rng(1).standard_normal(value.size)
-    return _Response(TIME, value + scatter, noise)
+    return _Response(TIME, value + scatter, noise, GRID)
 
 
 @pytest.mark.parametrize(("level", "fall", "seen"), [(0.1e5, 0.06e5, False), (0.3e5, 0.2e5, True), (10e5, 6e5, True)])

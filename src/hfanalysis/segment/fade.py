@@ -20,7 +20,7 @@ from hfanalysis.segment.breaks import memory_length
 POWERS = (0.7, 1.0, 1.4, 2.0)
 """Powers of the time with which a fade may set in: at once, or with a rounded bend."""
 
-SHAPES = tuple((p, q) for p in (0.8, 1.2, 1.9) for q in (1.0, 1.5, 2.2))
+SHAPES = tuple((p, q) for p in (0.8, 1.1, 1.5, 2.0) for q in (1.0, 1.4, 2.0))
 """Shapes 1 - (1 - u^p)^q of a fall over its time u with which it is dated: either bend may be sharp or rounded. Source:
 Kumaraswamy's distribution (Journal of Hydrology 46, 1980, 79-88): p and q bend its two ends one by one."""
 
@@ -141,7 +141,7 @@ def find_fade(time: Array, response: Array) -> Fade | None:
     weight = np.exp(-0.5 * (fine.left - fine.left.min()) / variance)
     found, found_std = _mean(weight, fine.begin)
     ends, ends_std = _mean(weight, fine.end)
-    if not BRIEFEST < ends - found < LONGEST * length:
+    if not BRIEFEST < (ends if gone else last) - found < LONGEST * length:
         return None
     shape = BEND * (ends - found)
     return Fade(found, float(np.hypot(found_std, shape)), ends if gone else None, float(np.hypot(ends_std, shape)))

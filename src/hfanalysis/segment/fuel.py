@@ -111,13 +111,17 @@ class Sudden:
 
 @dataclass(frozen=True)
 class FuelEnd:
-    """When the fade begins [s] and when it has ended, with their deviations; ``gone`` None: ``hidden`` says why."""
+    """When the fade begins [s] and when it has ended, with their deviations; ``gone`` None: ``hidden`` says why.
+
+    ``at_once``: a sudden fall, no fade.
+    """
 
     time: float
     std: float
     gone: float | None
     gone_std: float
     hidden: str = ""
+    at_once: bool = False
 
 
 @dataclass(frozen=True)
@@ -164,7 +168,7 @@ def find_fuel_end(
     if fade is not None:
         return _faded(fade, sudden, t_v[0] if t_v is not None else np.inf)
     if sudden is not None:
-        return FuelEnd(sudden.time, sudden.std, sudden.gone, sudden.gone_std)
+        return FuelEnd(sudden.time, sudden.std, sudden.gone, sudden.gone_std, at_once=True)
     last = float(response.time[-1])
     return (
         f"chamber pressure and thrust do not fall against the feed up to {last:.1f} s, where the chamber nears ambient"

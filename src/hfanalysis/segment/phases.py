@@ -50,8 +50,8 @@ MUCH_MORE = 4.0
 """Times the usual wander of the pressures at rest above which one is not at rest."""
 
 RESPONSE = 5e-4
-"""Standard deviation [s] of how far one sensor answers after another. Source: data sheets of strain-gauge transducers: 1
-ms from 10 to 90 % is a time constant of 0.45 ms; a tube of 0.1 m before it adds 0.3 ms."""
+"""Standard deviation [s] of how far one sensor answers after another. Source: data sheets of strain-gauge transducers:
+1 ms from 10 to 90 % is a time constant of 0.45 ms; a tube of 0.1 m before it adds 0.3 ms."""
 
 BY_HAND = "set by the engineer"
 
@@ -374,7 +374,7 @@ class _Search:
             return
         self._take("t_fuel_out", (found.time, found.std))
         self._take("t_fuel_gone", found.hidden if found.gone is None else (found.gone, found.gone_std))
-        if found.gone != found.time:
+        if not found.at_once:
             self.notes.append(f"the fire fades from {found.time:.2f} s on, as the fuel runs out")
 
     def _fuel_end(self, kind: Kind) -> FuelEnd | str:
