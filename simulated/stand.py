@@ -57,6 +57,7 @@ class Truth:
 def draw_truth(generator: np.random.Generator) -> Truth:
     """A random stand: tanks of 8 to 25 L, 40 to 62 bar, injectors from poor to good, logs of 200 Hz to 1 kHz."""
     u = generator.uniform
+    source = saturation("coolprop")
     volume = u(8e-3, 25e-3)
     temperature = float(source.temperature(u(42e5, 62e5)))
     liquid = u(0.55, 0.85)

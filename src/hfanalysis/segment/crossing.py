@@ -11,8 +11,6 @@ from hfanalysis.arrays import Array
 from hfanalysis.quantity import NORMAL_95
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.breaks import relaxation
-from hfanalysis.segment.refine import refine_step
 
 WINDOWS = (0.02, 0.04, 0.08, 0.15, 0.3, 0.6, 1.2, 2.4, 4.8)
 """Seconds on either side of the crossing through which a parabola is laid: the widest that still fits."""
@@ -39,26 +37,23 @@ distribution cut at its 95 %."""
 REACH = 0.2
 """Seconds on either side in which a sudden fall is looked for."""
 
-FINE = 401
-"""Instants of a fall at which its curve is set against the limit."""
+LEVEL_TIME = 0.05
+"""Seconds from which the level of a fall's tail is known."""
 
 _QUANTILES = np.array([NormalDist().inv_cdf((k + 0.5) / 9.0) for k in range(9)])
 NODES: Array = _QUANTILES / _QUANTILES.std()
 """Equally likely values of a normal error, in its standard deviations."""
 
 
-def crossing(part: Signal, rough: float, limit: float, noise: Noise) -> tuple[float, float] | None:
+def crossing(part: Signal, rough: float, limit: float, noise: Noise) -> tuple[float, float]:
     """Where a falling signal passes a limit, in its unit, about ``rough`` [s], and its standard deviation [s].
 
-    ``noise`` is the sensor's. None where it passes it nowhere near.
+    ``noise`` is the sensor's.
     """
     found = _widest(part, rough, limit, noise)
     for _ in range(AGAIN):
-        found = found and (_widest(part, found.passes, limit, noise) or found)
-    if found is None or not found.fits:
-        fall = _in_a_fall(part, rough, limit, noise)
-        return fall or (found and (found.passes, found.doubt))
-    return found.passes, found.doubt
+        found = (_widest(part, found.passes, limit, noise) or found) if found is not None else None
+    return (found.passes, found.doubt) if found is not None and found.fits else _in_a_fall(part, rough, limit, noise)
 
 
 def usual_noise(value: Array) -> float:
@@ -67,21 +62,20 @@ def usual_noise(value: Array) -> float:
     return float(np.sqrt(seconds @ seconds / max(seconds.size, 1) / 6.0 / LEFT_OF_NORMAL)) if value.size > 7 else 0.0
 
 
-def _in_a_fall(part: Signal, rough: float, limit: float, noise: Noise) -> tuple[float, float] | None:
-    """Where a sudden fall about ``rough`` [s] passes the limit [Pa]: soon after it begins, or on its flat tail."""
+def _in_a_fall(part: Signal, rough: float, limit: float, noise: Noise) -> tuple[float, float]:
+    """Which instant best parts what is above from what is below, in a fall about ``rough`` [s] of any shape.
+
+    Its flat tail may lie as near to the limit as its level is unsure.
+    """
     reach = max(REACH, 4.0 * part.step)
-    found = refine_step([part], rough, 2.0 * reach, 2.0 * reach, reach)
-    if found is None:
-        return None
-    near = part.between(rough - 2.0 * reach, rough + 2.0 * reach)
-    shape = relaxation(found.relaxation)
-    beta = np.linalg.lstsq(shape(near.time, found.time), near.value, rcond=None)[0]
-    tail = near.between(found.time, np.inf).time.size
-    fine = np.linspace(found.time, rough + 2.0 * reach, FINE)
-    curve = shape(fine, found.time) @ beta
-    limits = limit + noise.white / np.sqrt(max(tail, 1)) * NODES
-    times = np.array([fine[np.argmax(curve <= one)] if curve.min() <= one else fine[-1] for one in limits])
-    return float(times.mean()), float(np.hypot(times.std(), found.std))
+    near = part.between(rough - reach, rough + reach)
+    limits = limit + noise.white * np.sqrt(part.step / max(LEVEL_TIME, part.step)) * NODES
+    found = np.array([near.time[_parting(near.value - one)] for one in limits]) + 0.5 * part.step
+    return float(found.mean()), float(np.hypot(found.std(), part.step / np.sqrt(12.0)))
+
+
+def _parting(excess: Array) -> int:
+    return int(np.argmax(np.cumsum(excess)))
 
 
 def _widest(part: Signal, rough: float, limit: float, noise: Noise) -> _Parabola | None:
@@ -153,7 +147,7 @@ def _parabola(near: Signal, about: float, wide: float, limit: float, noise: Nois
         about,
         wide,
         about + passes,
-        spread * np.linalg.inv(powers.T @ powers),
+        np.asarray(spread * np.linalg.inv(powers.T @ powers)),
         float(np.sqrt(noise.flicker)),
         bool(left @ left - more @ more < BENT * (noise.white**2 + BENT_BY_WANDER * x.size * noise.flicker)),
     )

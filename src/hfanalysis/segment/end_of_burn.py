@@ -29,8 +29,11 @@ NEAR = 0.5
 CLEAR = 4.0
 """Standard deviations by which neighbors are above and below, so that no noise made them so. Source: one in 30,000."""
 
+WANDERS = (-10.0, -0.05)
+"""Seconds before the opening from which a sensor's wander is known, where they are quiet."""
+
 QUIET = (-3.0, -0.05)
-"""Seconds before the opening from which the chamber's zero and the sensor's wander are known."""
+"""Seconds before the opening from which the chamber's zero is known."""
 
 
 def find_unchoking(
@@ -70,8 +73,7 @@ def find_unchoking(
 def _passes(part: Signal, rough: float, limit: float, noise: Noise) -> tuple[float, float]:
     """Where the pressure around ``rough`` [s] passes a limit [Pa] that is known, and its deviation [s]."""
     near = part.between(rough - NEAR, rough + NEAR).value
-    found = crossing(part, rough, limit, replace(noise, white=max(noise.white, usual_noise(near))))
-    return found if found is not None else (rough, max(SMOOTH, 4.0 * part.step))
+    return crossing(part, rough, limit, replace(noise, white=max(noise.white, usual_noise(near))))
 
 
 def _mean_of(found: Array, step: float) -> tuple[float, float]:
