@@ -15,7 +15,8 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_unchoking
 from hfanalysis.segment.falls import abrupt_falls
 from hfanalysis.segment.feed import find_line_full
-from hfanalysis.segment.fuel import _dated, find_fuel_end
+from hfanalysis.segment.fuel import find_fuel_end
+from hfanalysis.segment.fuel_at_once import _dated
 from hfanalysis.segment.kind import Known, recognize
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.purge import find_nitrogen

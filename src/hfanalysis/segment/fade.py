@@ -221,7 +221,7 @@ class _Samples:
     columns: Array
 
     def fitted(self, begin: Array, end: Array, shape: Array) -> _Trials:
-        """All trials by least squares: the columns, the fade, and another slope after one that ends before the phase."""
+        """All trials by least squares: the columns, the fade, and a slope after one that ends before the phase."""
         basis = np.linalg.qr(self.columns)[0]
         rest = self.y - basis @ (basis.T @ self.y)
         after = np.maximum(self.t - end[:, None], 0.0)

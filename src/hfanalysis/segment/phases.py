@@ -16,7 +16,8 @@ from hfanalysis.segment import chamber_gauge
 from hfanalysis.segment.dry_tank import liquid_end
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_unchoking, pulses_after
 from hfanalysis.segment.feed import find_line_full
-from hfanalysis.segment.fuel import BLURRED, FuelEnd, find_fuel_end
+from hfanalysis.segment.fuel import FuelEnd, find_fuel_end
+from hfanalysis.segment.fuel_at_once import BLURRED
 from hfanalysis.segment.kind import Kind, Known, recognize
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.segment.purge_by_tank import find_nitrogen_by_tank
@@ -31,9 +32,9 @@ FUEL_LEFT = 0.05
 LONGEST_RUN = 120.0
 """Seconds after the opening in which events are looked for."""
 
-RESPONSE = 5e-4
+RESPONSE = 2.5e-4
 """Standard deviation [s] of how far one sensor answers after another. Source: data sheets of strain-gauge transducers:
-1 ms from 10 to 90 % is a time constant of 0.45 ms; a tube of 0.1 m before it adds 0.3 ms."""
+1 ms from 10 to 90 % is a time constant of 0.45 ms, a tube of 0.1 m before it adds 0.3 ms, and half of that differs."""
 
 
 def find_phases(log: TestLog, definition: TestDefinition, firing: int | None = None) -> Segments:
