@@ -40,6 +40,8 @@ class Response:
 def response_of(
     signals: Mapping[str, Signal], ambient: float, end: float, width: float, step: float
 ) -> Response | None:
+    """From signals with time from the opening up to ``end`` [s], smoothed over ``width`` [s] every ``step`` [s],
+    without its holes; None where the chamber hardly stands above ``ambient`` [Pa]."""
     chamber, run = signals["p_chamber"], signals["p_run"]
     width, step = max(width, 2.0 * chamber.step), max(step, chamber.step)
     grid = np.arange(0.1, min(end, chamber.time[-1], run.time[-1]), step)
@@ -51,7 +53,10 @@ def response_of(
     stop = min(int(np.flatnonzero(fire)[-1]) + round(WINDOW / step), grid.size)
     drop = np.maximum(drop[:stop], 0.2e5)
     value = excess[:stop] * np.sqrt(np.median(drop) / drop)
-    return Response(grid[:stop], value, sample_noise(value), width)
+    time, seen = grid[:stop], np.ones(stop, dtype=bool)
+    for start, until in (*chamber.holes(0.0, end), *run.holes(0.0, end)):
+        seen &= (time <= start) | (time >= until)
+    return Response(time[seen], value[seen], sample_noise(value), width)
 
 
 def thrust_falls(

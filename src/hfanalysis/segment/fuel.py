@@ -13,7 +13,6 @@ from hfanalysis.segment.fade import Fade, find_fade
 from hfanalysis.segment.fire import GAP, GRID, SMOOTH, WINDOW, Response, response_of, thrust_falls
 from hfanalysis.segment.fuel_at_once import Sudden, sudden_end
 
-
 FADE_THRUST = 0.1
 """Least part of the thrust that has to go with it: a third of the pressure's, for the cell drifts with heat. Evidence:
 a chamber that fades while the thrust does not is no end of the fuel (test_events.py)."""

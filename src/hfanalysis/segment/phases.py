@@ -32,7 +32,7 @@ FUEL_LEFT = 0.05
 LONGEST_RUN = 120.0
 """Seconds after the opening in which events are looked for."""
 
-RESPONSE = 2.5e-4
+RESPONSE = 2e-4
 """Standard deviation [s] of how far one sensor answers after another. Source: data sheets of strain-gauge transducers:
 1 ms from 10 to 90 % is a time constant of 0.45 ms, a tube of 0.1 m before it adds 0.3 ms, and half of that differs."""
 
