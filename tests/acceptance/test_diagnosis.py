@@ -36,9 +36,7 @@ KEYS = {
 RATE = 2e-4
 
 
-def hfa(
-    root: Path, *arguments: str, environment: dict[str, str] | None = None
-) -> subprocess.CompletedProcess[str]:
+def hfa(root: Path, *arguments: str, environment: dict[str, str] | None = None) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "hfanalysis", *arguments, "--root", str(root)]
     return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
 

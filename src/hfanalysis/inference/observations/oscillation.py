@@ -83,7 +83,7 @@ def _rough(values: Array, stretches: list[slice]) -> Array:
 
 
 def _smooth(values: Array) -> Array:
-    """The smooth course of ``SMOOTHED`` blocks or more: the middle of the polynomial around each, at the ends its side."""
+    """The smooth course of ``SMOOTHED`` blocks or more: the polynomial around each, at the ends that of the last."""
     half = SMOOTHED // 2
     middle = np.convolve(values, _SMOOTHING[half], mode="valid")
     return np.concatenate([_SMOOTHING[:half] @ values[:SMOOTHED], middle, _SMOOTHING[half + 1 :] @ values[-SMOOTHED:]])
