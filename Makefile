@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -93,6 +93,9 @@ health-rates: $(STAMP) ## faults found and healthy logs blamed: docs/health-rate
 LOGS ?= ../shared/real_tests
 real-logs: $(STAMP) ## logs of other teams by hfa new, their facts and hfa run: docs/real-logs.md; LOGS=FOLDER
 	$(BIN)/python -m benchmarks.real_logs --logs '$(LOGS)' --write docs/real-logs.md $(FLAGS)
+
+phases-coverage: $(STAMP) ## how often the intervals of the phases hold, on simulated logs: into docs/phases.md; goes on where stopped
+	$(BIN)/python -m benchmarks.phase_coverage --write $(FLAGS)
 
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 	$(BIN)/python -m benchmarks.recovery $(FLAGS)
