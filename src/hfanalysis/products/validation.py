@@ -54,6 +54,15 @@ class Closure(Part):
     liquid_phase_heat: Annotated[Quantity | None, Is("heat flow that the calibrated tank takes", "W")] = None
 
 
+class Finding(Part):
+    """A sensor that cannot be right by what the engine can give; what channels show by themselves is in health.json."""
+
+    channels: Annotated[tuple[str, ...], Is("which")]
+    verdict: Annotated[str, Is("what is wrong, in short")]
+    text: Annotated[Words, Is("what is wrong, in a sentence")]
+    size: Annotated[Quantity, Is("of the error")]
+
+
 class Validation(Product):
     """Performance, gaps between measurement and model, closure of the masses, and what looks wrong."""
 
@@ -68,6 +77,7 @@ class Validation(Product):
         ),
     ]
     closure: Annotated[Closure, Is("of the masses")]
+    sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors by what the engine can give")]
     absent: Annotated[dict[str, Words], Is("what could not be done, and why")]
     notes: Notes
     warnings: Warnings

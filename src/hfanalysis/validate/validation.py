@@ -111,6 +111,7 @@ class _Work:
             performance=Performance(measured=Column.from_json(measured), model=Column.from_json(model), **about),
             gap={mode: gaps(found) for mode, found in kept.items()},
             closure=Closure.from_json(histories.closure),
+            sensors=(),
             absent=self.absent,
             notes=tuple(dict.fromkeys(notes)),
             warnings=(),
