@@ -18,9 +18,9 @@ MOST = 60
 """Silent cases that are listed; of more there is the count."""
 
 
-def write(page: Path, pairs: Sequence[Pair], seed: int) -> None:
-    """The tables between the page's marks."""
-    put(page, "table", _table(pairs, seed))
+def write(page: Path, pairs: Sequence[Pair], seed: int, code: str) -> None:
+    """The tables between the page's marks; ``code``: the digest of the present code."""
+    put(page, "table", _table(pairs, seed, code))
     put(page, "wrong", _wrong(pairs))
 
 
@@ -35,12 +35,24 @@ def summary(pairs: Sequence[Pair]) -> str:
     return f"{len(pairs)} cases: {listed}; {said}; peak {peak} MB"
 
 
+def _by_code(pairs: Sequence[Pair], code: str) -> str:
+    """How many cases the present code has run, and what it made of them."""
+    now = [pair for pair in pairs if pair[0].get("code") == code]
+    states = {row.get("code") for row, _ in pairs} - {code}
+    if not states:
+        return f"All by the present code ({code})."
+    earlier = f"{len(pairs) - len(now)} are of {len(states)} earlier state{'s' if len(states) > 1 else ''} of the code"
+    moved = [judged for _, judged in now if judged.moved]
+    own = f"moved {len(moved)}, pointed out {sum(judged.points for judged in moved)} ({percent(_share(moved))})"
+    return f"{earlier}, {len(now)} of the present one ({code}): {own}."
+
+
 def _share(moved: Sequence[Judged]) -> float | None:
     return sum(judged.points for judged in moved) / len(moved) if moved else None
 
 
-def _table(pairs: Sequence[Pair], seed: int) -> Iterator[str]:
-    yield f"{summary(pairs)}. Seed {seed}."
+def _table(pairs: Sequence[Pair], seed: int, code: str) -> Iterator[str]:
+    yield f"{summary(pairs)}. Seed {seed}. {_by_code(pairs, code)}"
     yield ""
     yield "| mutation | cases | answer | refused | traceback | hang or killed | moved | pointed out |"
     yield "|---|---|---|---|---|---|---|---|"

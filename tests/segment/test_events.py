@@ -157,6 +157,16 @@ def test_the_corner_at_the_end_of_the_liquid_is_not_that_of_the_nitrogen(early: 
     assert found[1] < 0.03
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_ten_times_a_sensors_makes_the_date_less_sure_and_not_later(seed: int) -> None:
+    """The sag shows itself above the noise a second or two after it has begun."""
+    line = signal("p_purge", TIME[::5], noisy("p_purge", sagging(4.3), 1.2e5, seed).value[::5])
+    found = find_nitrogen(line, 9.9, None)
+    assert not isinstance(found, str)
+    assert abs(found[0] - 4.3) < 2.6 * found[1]
+    assert 0.02 < found[1] < 0.5
+
+
 def test_valve_hammer_is_no_nitrogen() -> None:
     purge = sagging(6.3)
     purge[(TIME > 2.0) & (TIME < 2.05)] -= 10e5

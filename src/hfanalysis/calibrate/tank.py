@@ -13,7 +13,7 @@ from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, other_masses, rest_of, tank_history
 from hfanalysis.calibrate.feed_loss import estimated_share
 from hfanalysis.calibrate.loaded_mass import UNSTATED, LoadedMass, loaded_mass
-from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at_break
+from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at
 from hfanalysis.calibrate.stated import Held
 from hfanalysis.calibrate.uncertainty import HELD, Draws, InputSpread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
@@ -98,9 +98,10 @@ class _Work:
         self.t_feed = segments.time("t_feed") or 0.0
         self.volume = definition.tank.volume if definition.tank else None
         self.area = definition.injector.area if definition.injector else None
-        self.at_v = self._read(t_v, 0.3, self._after_t_v())
+        self.at_v = self._read(t_v, 0.3, self._after_t_v(), breaks=True)
         self.t_end, self.t_end_std, self.end_reason = self._vapor_end()
-        self.at_end = self._read(self.t_end, self.t_end - t_v, 0.3) if np.isfinite(self.t_end) else None
+        fed = segments.time("t_purge") is not None
+        self.at_end = self._read(self.t_end, self.t_end - t_v, 0.3, fed) if np.isfinite(self.t_end) else None
         low, high = self.saturation.pressure_range
         at_end = float(self.saturation.temperature(np.clip(self.at_v.value, low, 0.999 * high)))
         self.held = Held.of(definition, self.saturation, at_end)
@@ -314,11 +315,11 @@ class _Work:
         starts = t[t <= t[-1] - PEAK_OVER]
         return float((np.interp(starts + PEAK_OVER, t, x) - np.interp(starts, t, x)).max()) / PEAK_OVER
 
-    def _read(self, instant: float, before: float, after: float) -> PressureReading:
+    def _read(self, instant: float, before: float, after: float, breaks: bool) -> PressureReading:
         tank = self.histories.signals["p_tank"]
         least = 8.0 * tank.step
         left, right = (min(max(span, least), 0.4 + least) for span in (before, after))
-        return read_at_break(tank, self.histories.noises["p_tank"], instant, left, right)
+        return read_at(tank, instant, left, right, breaks)
 
     def _after_t_v(self) -> float:
         t_purge = self.segments.time("t_purge")

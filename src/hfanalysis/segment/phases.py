@@ -25,7 +25,17 @@ from hfanalysis.segment.liquid import LiquidEnd, dry_pressure, find_liquid_end
 from hfanalysis.segment.opening import Opening, find_opening, under_way
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.segment.purge_by_tank import find_nitrogen_by_tank
-from hfanalysis.segment.sanity import BESIDE_HOLE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
+from hfanalysis.segment.sanity import (
+    BESIDE_HOLE,
+    BY_HAND,
+    HAND_STD,
+    SHOWN_BY,
+    anywhere_in,
+    beside_hole,
+    contradicted,
+    lies_in_hole,
+    strange_tank,
+)
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.nitrous import saturation
 
@@ -47,8 +57,6 @@ LARGEST_OFFSET = 3e5
 
 MUCH_MORE = 4.0
 """Times the usual wander of the pressures at rest above which one is not at rest."""
-
-BY_HAND = "set by the engineer"
 
 
 def find_phases(log: TestLog, definition: TestDefinition, firing: int | None = None) -> Segments:
@@ -129,6 +137,7 @@ class _Firings:
         self.opened = self._openings()
         self.chosen = self._chosen(number)
         self.said: list[str] = self._several(number) if len(self.opened) > 1 else []
+        self.said += self._against_search()
         self.taken: Opening | None = self.opened[self.chosen][1] if self.opened else None
         flow = self.opened[self.chosen][0] if self.opened else Flow(0.0, 0.0, -np.inf, np.inf)
         self.cut = {name: part for name, s in signals.items() if (part := _cut(s, flow)).time.size > 7}
@@ -139,7 +148,7 @@ class _Firings:
         flows = find_flows(self.signals)
         whole = Flow(-np.inf, np.inf, -np.inf, np.inf)
         if stated is not None:
-            by_hand = Opening(stated.value, stated.std or 1e-3, (BY_HAND,))
+            by_hand = Opening(stated.value, stated.std or HAND_STD, (BY_HAND,))
             own = [flow for flow in flows if flow.since <= stated.value < flow.until] if len(flows) > 1 else [whole]
             others = [] if len(flows) < 2 else [(f, o) for f in flows if f not in own and (o := self._opening(f))]
             return sorted([*others, *((flow, by_hand) for flow in own)], key=lambda pair: pair[1].time)
@@ -153,6 +162,12 @@ class _Firings:
             )
         opening = find_opening(self.signals)
         return [] if opening is None else [(whole, opening)]
+
+    def _against_search(self) -> list[str]:
+        """What the log says against an opening that was set by hand; of several flows nobody knows which was meant."""
+        stated = self.definition.segments.get("t_open")
+        found = find_opening(self.signals) if stated is not None and len(self.opened) == 1 else None
+        return contradicted("t_open", stated, found.time, found.std) if stated is not None and found else []
 
     def _opening(self, flow: Flow) -> Opening | None:
         opening = find_opening({name: _cut(s, flow) for name, s in self.signals.items()})
@@ -241,12 +256,13 @@ class _Search:
                 Quantity.absent(self._why_not(name, found)) if isinstance(found, str) else self._seconds(name, *found)
             )
             return
-        self.events[name] = Quantity(stated.value, "s", stated.std or 1e-3, why=BY_HAND)
+        self.events[name] = Quantity(stated.value, "s", stated.std or HAND_STD, why=BY_HAND)
         if isinstance(found, str):
             self.notes.append(f"{name} is {BY_HAND} at {stated.value:.3f} s; the search found none: {found}")
             return
         self.found[name] = found[0]
         self.notes.append(f"{name} is {BY_HAND} at {stated.value:.3f} s; the search finds {found[0]:.3f} s")
+        self.warnings += contradicted(name, stated, *found)
 
     def _seconds(self, name: str, time: float, std: float) -> Quantity:
         """An event's instant, no surer than the hole of its channel that it was found in or beside."""
