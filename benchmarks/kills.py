@@ -1,11 +1,14 @@
 """`make all` killed at random instants, and run twice at once: the rerun's products are those of a run left in peace.
 
 python -m benchmarks.kills [--n 200] [--seed 1] [--write docs/fuzz.md]
+
+What has been done is kept in ``--out`` (.cache/kills), from where a later run goes on.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import random
 import shutil
@@ -16,6 +19,7 @@ import tempfile
 import time
 from collections import Counter
 from pathlib import Path
+from typing import Any, TextIO
 
 from benchmarks.fuzz import document, formats
 from benchmarks.fuzz.table import STANDS, base_log
@@ -31,37 +35,52 @@ KEPT_APART = ("run.log", "hashes.json", ".lock")
 
 def main() -> int:
     """Returns 1 where anything came out otherwise."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--n", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, default=Path(".cache/kills"))
     parser.add_argument("--write", type=Path, help="the page to write the result into")
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="kills-") as folder:
-        said, wrong = study(Path(folder), options.n, random.Random(options.seed))
+    options.out.mkdir(parents=True, exist_ok=True)
+    kept = options.out / f"{options.seed}.jsonl"
+    if len(rows_of(kept)) < options.n:
+        with tempfile.TemporaryDirectory(prefix="kills-") as folder, kept.open("a") as file:
+            study(Path(folder), options.n, options.seed, kept, file)
+    said, wrong = result(rows_of(kept)[: options.n])
     print("\n".join([said, *wrong]))
     if options.write:
         put(options.write, "kills", [said, *(f"- {line}" for line in wrong)])
     return int(bool(wrong))
 
 
-def study(folder: Path, n: int, rng: random.Random) -> tuple[str, list[str]]:
-    """What was done, and all that came out otherwise."""
+def rows_of(kept: Path) -> list[dict[str, Any]]:
+    """What has been done so far."""
+    return [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
+
+
+def study(folder: Path, n: int, seed: int, kept: Path, file: TextIO) -> None:
+    """Disturb what has not been disturbed, each by a generator of its own number."""
     checkout(folder)
     make(folder).wait()  # compiles what is not
     shutil.rmtree(folder / "processed")
     raw, start = contents(folder / "raw_tests"), time.monotonic()
     if make(folder).wait() != 0:
-        return "make all failed", ["make all failed without being disturbed"]
+        raise SystemExit("make all failed without being disturbed")
     lasting, whole = time.monotonic() - start, contents(folder / "processed")
-    wrong: list[str] = []
-    done: Counter[str] = Counter()
-    for i in range(n):
-        kind = disturbed(folder, rng, lasting)
-        done[kind] += 1
-        wrong += [f"{i}, {kind}: {fault}" for fault in faults(folder, whole, raw)]
+    for i in range(len(rows_of(kept)), n):
+        kind = disturbed(folder, random.Random(f"{seed} {i}"), lasting)
+        row = {"kind": kind, "faults": faults(folder, whole, raw), "files": len(whole), "lasting": round(lasting)}
+        file.write(json.dumps(row) + "\n")
+        file.flush()
+
+
+def result(rows: list[dict[str, Any]]) -> tuple[str, list[str]]:
+    """What was done, and all that came out otherwise."""
+    wrong = [f"{i}, {row['kind']}: {fault}" for i, row in enumerate(rows) for fault in row["faults"]]
+    done = Counter(row["kind"] for row in rows)
     kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(done.items()))
-    each = f"{len(whole)} files of {len(STANDS)} tests, {lasting:.0f} s undisturbed"
-    return f"{n} disturbed runs of `make all` ({kinds}), {each}: {len(wrong)} faults.", wrong
+    each = f"{rows[-1]['files']} files of {len(STANDS)} tests" if rows else "none"
+    return f"{len(rows)} disturbed runs of `make all` ({kinds}), {each}: {len(wrong)} faults.", wrong
 
 
 def checkout(folder: Path) -> None:
