@@ -106,6 +106,18 @@ def test_the_knee_of_the_tank_pressure_dates_the_end_of_the_liquid() -> None:
     assert found.std < 0.05
 
 
+@pytest.mark.parametrize("step", [0.2, 0.4, 0.58, 0.7])
+def test_a_slow_log_dates_it_badly_and_says_so(step: float) -> None:
+    """Its windows reach from the rest before the opening to the nitrogen, whose corners are none of the liquid."""
+    test = fire(rate=RATE)
+    every = slice(None, None, round(step * RATE))
+    slow = {n: signal(n, s.time[every], s.value[every]) for n, s in signals_of(test).items()}
+    found = find_liquid_end(slow, test.t_purge, test.p_v)
+    assert found is not None
+    assert abs(found.time - test.t_v) < 2.0 * found.std
+    assert found.std < 2.0 * step
+
+
 def test_chamber_and_thrust_fall_with_the_liquid_and_date_it_best() -> None:
     test = fire(rate=RATE)
     found = find_liquid_end(signals_of(test), test.t_purge, test.p_v)
