@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks.fuzz.explained import EXPLAINED
+from benchmarks.fuzz.explained import reason
 from benchmarks.fuzz.judge import Judged
 from benchmarks.studies import percent, put
 
@@ -21,7 +21,7 @@ MOST = 60
 def write(page: Path, pairs: Sequence[Pair], seed: int, code: str) -> None:
     """The tables between the page's marks; ``code``: the digest of the present code."""
     put(page, "table", _table(pairs, seed, code))
-    put(page, "wrong", _wrong(pairs))
+    put(page, "wrong", _wrong(pairs, seed))
 
 
 def summary(pairs: Sequence[Pair]) -> str:
@@ -71,16 +71,17 @@ def _table(pairs: Sequence[Pair], seed: int, code: str) -> Iterator[str]:
     yield "By format: " + ", ".join(f"{name} {len(found)}" for name, found in sorted(by_format.items())) + "."
 
 
-def _wrong(pairs: Sequence[Pair]) -> Iterator[str]:
+def _wrong(pairs: Sequence[Pair], seed: int) -> Iterator[str]:
     defects = [(row, judged) for row, judged in pairs if judged.end in ("traceback", "hang", "killed", "exit 1")]
     for (kind, error), rows in _grouped(defects):
         yield f"- {kind}, {len(rows)} times: `{error}` (cases {_numbers(rows)})"
     silent = [(row, judged) for row, judged in pairs if judged.silent]
     if not defects and not silent:
         yield "None."
-    unexplained = [pair for pair in silent if not _reason(pair[0])]
-    for reason, rows in _by_reason(silent):
-        yield f"- {len(rows)} moved without a word that names what was hit: {reason} (cases {_numbers(rows)})"
+    explained = [(reason(row, seed), row, judged) for row, judged in silent]
+    for why, rows in _by_reason(explained):
+        yield f"- {len(rows)} moved and nothing can tell: {why} (cases {_numbers(rows)})"
+    unexplained = [(row, judged) for why, row, judged in explained if not why]
     for row, judged in unexplained[:MOST]:
         values = ", ".join(f"{name} {row['found'][name]['value']:.5g}" for name in judged.moved)
         yield f"- case {row['number']}, {row['stand']} as {row['format']}, {' and '.join(row['mutators'])}: {values}"
@@ -95,17 +96,12 @@ def _grouped(pairs: Sequence[Pair]) -> list[tuple[tuple[str, str], list[Row]]]:
     return sorted(found.items())
 
 
-def _by_reason(pairs: Sequence[Pair]) -> list[tuple[str, list[Row]]]:
+def _by_reason(explained: Sequence[tuple[str, Row, Judged]]) -> list[tuple[str, list[Row]]]:
     found: defaultdict[str, list[Row]] = defaultdict(list)
-    for row, _ in pairs:
-        if reason := _reason(row):
-            found[reason].append(row)
+    for why, row, _ in explained:
+        if why:
+            found[why].append(row)
     return sorted(found.items())
-
-
-def _reason(row: Row) -> str:
-    """Why a kind cannot be told from a log alone, where it cannot."""
-    return next((EXPLAINED[kind] for kind in row["mutators"] if kind in EXPLAINED), "")
 
 
 def _numbers(rows: Sequence[Row]) -> str:
