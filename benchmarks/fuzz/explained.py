@@ -27,7 +27,7 @@ REASONS = {
     "the burn was timed no better",
     "gain": "a gauge that reads up to 6 % too much or too little, more than its stated accuracy: as much is open in "
     "the nozzle's and the combustion's efficiencies",
-    "drift": "a gauge of tank or line that drifts by up to a tenth of its range over the log: in the end it stands at a "
+    "drift": "a gauge of tank or line that drifts by up to a tenth of its range over the log: it ends at a "
     "pressure that nothing else tells",
     "table": "another table of nitrous oxide was stated: the number is what the statement asks for, and the product "
     "says by which table",
