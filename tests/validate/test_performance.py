@@ -183,3 +183,20 @@ def test_an_impulse_across_a_hole_hangs_on_means_and_is_less_sure() -> None:
     # the means lie 1.1 s apart; each of a hundred samples
     expected = np.hypot(sure, 660.0 / np.sqrt(12.0))
     assert np.mean([std for _, std in off]) == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.parametrize("rate", [100.0, 10.0, 4.0, 2.0])
+def test_an_impulse_is_no_surer_than_its_samples_are_close(rate: float) -> None:
+    """The fire comes and goes at once, and burns roughly: the instants between the samples are any."""
+    rng = np.random.default_rng(1)
+    found = []
+    for _ in range(60):
+        time, out = np.arange(-2.0 - rng.random() / rate, 9.0, 1.0 / rate), 5.0 + rng.random() / rate
+        read = np.where((time > 0.0) & (time < out), 4000.0 + 200.0 * rng.standard_normal(time.size), 0.0)
+        channel = Channel("thrust", "N", time, read, np.zeros(time.size, np.uint8), 1.0, True, "")
+        thrust = Thrust(Signal.of(channel), 0.0, np.nan)
+        one = _impulse(TestLog({"thrust": channel}), thrust, Fire(6.0, 1e-3, ""))
+        assert one.value is not None
+        found.append((one.value - 4000.0 * out, one.std))
+    off, std = np.array(found, dtype=float).T
+    assert np.std(off) == pytest.approx(std.mean(), rel=0.35)

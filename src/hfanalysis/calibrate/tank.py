@@ -13,7 +13,7 @@ from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, other_masses, rest_of, tank_history
 from hfanalysis.calibrate.feed_loss import estimated_share
 from hfanalysis.calibrate.loaded_mass import UNSTATED, LoadedMass, loaded_mass
-from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at_break
+from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at
 from hfanalysis.calibrate.stated import Held
 from hfanalysis.calibrate.uncertainty import HELD, Draws, InputSpread, draw
 from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
@@ -39,6 +39,10 @@ test_deviations.py, test_refusals.py: the m of a tank that lost two fifths is fo
 SPAN_SHARE = 0.25
 """Part of a sensor's accuracy that a zero at ambient does not take away: its error of span. Evidence:
 test_deviations.py."""
+
+FEWEST = 8
+"""Samples on either side of an instant that a pressure there is read from. Evidence: a vapor phase of fewer was read
+across its other end, and m came out by three deviations too high (test_refusals.py)."""
 
 LONGEST_GAP = 0.1
 """Part of the liquid phase that one channel may miss in one piece; good samples around it are joined linearly."""
@@ -98,9 +102,10 @@ class _Work:
         self.t_feed = segments.time("t_feed") or 0.0
         self.volume = definition.tank.volume if definition.tank else None
         self.area = definition.injector.area if definition.injector else None
-        self.at_v = self._read(t_v, 0.3, self._after_t_v())
+        self.at_v = self._read(t_v, 0.3, 0.3, True, self._until_purge())
         self.t_end, self.t_end_std, self.end_reason = self._vapor_end()
-        self.at_end = self._read(self.t_end, self.t_end - t_v, 0.3) if np.isfinite(self.t_end) else None
+        fed = segments.time("t_purge") is not None
+        self.at_end = self._read(self.t_end, self.t_end - t_v, 0.3, fed) if np.isfinite(self.t_end) else None
         low, high = self.saturation.pressure_range
         at_end = float(self.saturation.temperature(np.clip(self.at_v.value, low, 0.999 * high)))
         self.held = Held.of(definition, self.saturation, at_end)
@@ -314,15 +319,19 @@ class _Work:
         starts = t[t <= t[-1] - PEAK_OVER]
         return float((np.interp(starts + PEAK_OVER, t, x) - np.interp(starts, t, x)).max()) / PEAK_OVER
 
-    def _read(self, instant: float, before: float, after: float) -> PressureReading:
+    def _read(
+        self, instant: float, before: float, after: float, breaks: bool, until: float = np.inf
+    ) -> PressureReading:
+        """The tank's pressure at an instant [s], from what lies up to ``before`` and ``after`` [s] of it, or as far as
+        FEWEST samples, but not ``until`` [s] after it another event bends it."""
         tank = self.histories.signals["p_tank"]
-        least = 8.0 * tank.step
+        least = FEWEST * tank.step
         left, right = (min(max(span, least), 0.4 + least) for span in (before, after))
-        return read_at_break(tank, self.histories.noises["p_tank"], instant, left, right)
+        return read_at(tank, instant, left, min(right, until), breaks)
 
-    def _after_t_v(self) -> float:
+    def _until_purge(self) -> float:
         t_purge = self.segments.time("t_purge")
-        return 0.3 if t_purge is None or t_purge <= self.t_v else t_purge - self.t_v
+        return np.inf if t_purge is None or t_purge <= self.t_v else t_purge - self.t_v
 
     def _last(self, t_v: float) -> float:
         t_purge = self.segments.time("t_purge")
@@ -341,7 +350,10 @@ class _Work:
         if gap > max(0.1, 4.0 * self.histories.signals["p_tank"].step):
             return np.nan, 0.0, f"{name} has no good samples for {gap:.2f} s of the vapor phase"
         if t_purge is not None:
-            return t_purge, self.segments.std("t_purge"), None
+            held = self.histories.signals["p_tank"].between(self.t_v, t_purge).time.size
+            phase = f"the vapor phase lasts {t_purge - self.t_v:.3f} s and holds {held} samples of p_tank"
+            few = f"{phase}: too little to tell m, the pressures at its two ends take {FEWEST}"
+            return (t_purge, self.segments.std("t_purge"), None) if held >= FEWEST else (np.nan, 0.0, few)
         h = self.histories
         low = (h.time > self.t_v) & (h.tank < VAPOR_PRESSURE_SHARE * self.at_v.value)
         if not low.any():

@@ -17,7 +17,7 @@ from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import STATED, UNPHYSICAL, Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
-from hfanalysis.record.signals import Signal
+from hfanalysis.record.signals import Signal, sample_noise
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
 from hfanalysis.validate.thrust import OUT, Thrust, burnt_out, thrust_of
@@ -127,8 +127,9 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     value = float(np.trapezoid(whole.at(time), time))
     near = signal.mean(fire.end - 0.2, fire.end + 0.2)
     last = abs(near if np.isfinite(near) else float(whole.at(edges[1:])[0]))
-    bridged = [_across(whole, max(start, 0.0), min(end, fire.end)) for start, end in unseen]
-    errors = (_bias(channel) * fire.end, SPAN * thrust.error * 0.5 * fire.end, last * fire.std, *bridged)
+    scatter = sample_noise(inner.value) * np.sqrt(signal.step * fire.end)
+    sampled = np.hypot(scatter, _between_samples(time, whole.at(time)))
+    errors = (_bias(channel) * fire.end, SPAN * thrust.error * 0.5 * fire.end, last * fire.std, sampled)
     drift = (
         text("; {error} of the cell's drift taken off", error=said(thrust.error, "N", ".0f")) if thrust.error else ""
     )
@@ -143,10 +144,12 @@ def _ends_early(name: str, signal: Signal, fire: Fire) -> str:
     return f"the good samples of {name} end at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)"
 
 
-def _across(signal: Signal, start: float, end: float) -> float:
-    """What an integral across a hole may be off by: the change may come at any instant of it."""
-    first, last = signal.at(np.array([np.nextafter(start, end), np.nextafter(end, start)]))
-    return float(abs(last - first) * (end - start) / np.sqrt(12.0))
+def _between_samples(time: Array, value: Array) -> float:
+    """What an integral may be off by: between two samples the change may come at any instant."""
+    return float(np.linalg.norm(np.diff(value) * np.diff(time)) / np.sqrt(12.0))
+
+
+
 
 
 def _raw_integral(log: TestLog) -> Quantity:
