@@ -175,7 +175,9 @@ def test_an_impulse_whose_burn_ends_in_a_hole_has_a_deviation() -> None:
     channel = Channel(
         "thrust", "N", time[kept], 5000.0 * (time[kept] < 5.0), np.zeros(kept.sum(), np.uint8), 5.0, True, ""
     )
-    found = _impulse(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 0.1, ""))
+    found = _impulse(
+        TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 0.1, ""), definition()
+    )
     assert found.std is not None
     assert abs((found.value or 0.0) - 25000.0) < 3.0 * found.std
 
@@ -189,7 +191,9 @@ def test_an_impulse_across_a_hole_hangs_on_means_and_is_less_sure() -> None:
         kept = np.ones(time.size, dtype=bool) if hole is None else (time <= hole[0]) | (time >= hole[1])
         read = clean + 300.0 * rng.standard_normal(time.size)
         channel = Channel("thrust", "N", time[kept], read[kept], np.zeros(kept.sum(), np.uint8), 5.0, True, "")
-        found = _impulse(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 1e-3, ""))
+        found = _impulse(
+            TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 1e-3, ""), definition()
+        )
         assert found.value is not None
         assert found.std is not None
         assert ("bridged" in (found.why or "")) == (hole is not None)

@@ -25,6 +25,7 @@ from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankConstants, TankHistory
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import CONDITIONAL, DERIVED, IDENTIFIED, NOT_IDENTIFIABLE, STATED, Quantity
+from hfanalysis.record.accuracy import left_by_zero
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import live_signals
@@ -35,10 +36,6 @@ from hfanalysis.units import Value
 VAPOR_PRESSURE_SHARE = 0.6
 """Without nitrogen the vapor phase is followed until the tank has this share of its pressure at t_v. Evidence:
 test_deviations.py, test_refusals.py: the m of a tank that lost two fifths is found."""
-
-SPAN_SHARE = 0.25
-"""Part of a sensor's accuracy that a zero at ambient does not take away: its error of span. Evidence:
-test_deviations.py."""
 
 LONGEST_GAP = 0.1
 """Part of the liquid phase that one channel may miss in one piece; good samples around it are joined linearly."""
@@ -294,7 +291,7 @@ class _Work:
         still = self.histories.signals[name].between(-30.0, -0.02).time
         rest = (float(still[0]), -0.02) if still.size > 1 else (-1.0, -0.02)
         since = self.histories.noises[name].difference_std(rest, (0.0, self.t_v))
-        return float(np.sqrt(channel.zero_std**2 + since**2 + (SPAN_SHARE * channel.accuracy) ** 2))
+        return float(np.hypot(left_by_zero(channel.accuracy, channel.zero_std), since))
 
     def _mass_left(self, r: Reduction, inputs: Inputs) -> Array:
         """Mass that has left through the injector at the histories' times [kg]."""

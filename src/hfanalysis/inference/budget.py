@@ -44,12 +44,25 @@ def by_inputs(inputs: Iterable[Input], std: float | None = None) -> Budget | Non
     """
     given = list(inputs)
     random = {i.name for i in given if i.random}
-    effects: dict[str, float] = {}
-    for i in given:
-        effects[i.name] = effects.get(i.name, 0.0) + i.effect
-    variance = {name: effect**2 for name, effect in effects.items() if effect != 0.0}
+    variance = {name: effect**2 for name, effect in _effects(given).items() if effect != 0.0}
     stated = sum(variance.values()) if std is None else std**2
     return _budget(variance, stated, random)
+
+
+def total(inputs: Iterable[Input]) -> float:
+    """Standard deviation that the inputs make together, in the quantity's unit.
+
+    >>> total([Input("gain", 3.0), Input("zero", 4.0)])
+    5.0
+    """
+    return float(np.linalg.norm(list(_effects(inputs).values())))
+
+
+def _effects(inputs: Iterable[Input]) -> dict[str, float]:
+    effects: dict[str, float] = {}
+    for i in inputs:
+        effects[i.name] = effects.get(i.name, 0.0) + i.effect
+    return effects
 
 
 def by_draws(values: Array, drawn: Mapping[str, Array], random: Iterable[str] = ()) -> Budget | None:

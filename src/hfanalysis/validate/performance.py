@@ -11,15 +11,18 @@ from hfanalysis.calibrate.evidence_from_log import VIDEO
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
+from hfanalysis.inference.budget import Input, total
 from hfanalysis.inference.full_run import FullRun, moved
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import STATED, UNPHYSICAL, Quantity
+from hfanalysis.record.accuracy import left_by_zero
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
+from hfanalysis.validate.load_cell import CellError, cell_error
 from hfanalysis.validate.thrust import OUT, Thrust, burnt_out, thrust_of
 
 NAMES = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust", "average_thrust",
@@ -29,10 +32,8 @@ SMOOTHING = 0.1
 """[s] of the running mean of which a peak is the largest value: longer than a period of the chamber's oscillation.
 Evidence: test_performance_errors.py: one cycle of a rough chamber is no peak, an overshoot of 0.25 s is."""
 
-SPAN = 0.25
-"""Part of a cell's accuracy that a tare does not take away, and of its drift that a straight line may miss. Evidence:
-test_performance_errors.py: a tare takes away three quarters of what a cell may be off by."""
-
+BURN_TIME, HOLES = "burn time", "holes in the log"
+"""Rows of a budget."""
 
 LARGEST_SPECIFIC_IMPULSE = 320.0
 """[s] that nothing with nitrous oxide reaches. Source: characteristic velocity of 1700 m/s at most times a thrust
@@ -84,11 +85,14 @@ def measured(
         return none | {"oxidizer_mass": _oxidizer(log, segments, definition, calibration)}
     out = {"burn_time": Quantity(fire.end, "s", fire.std, why=fire.source)}
     thrust = thrust_of(log, segments, definition) if "thrust" in log else None
-    out["total_impulse"] = impulse = _impulse(log, thrust, fire)
+    out["total_impulse"] = impulse = _impulse(log, thrust, fire, definition)
     oxidizer, fuel = _oxidizer(log, segments, definition, calibration), _fuel(definition)
     out["specific_impulse"] = specific_impulse(impulse, oxidizer, fuel)
     out["peak_chamber_pressure"] = _peak(log, "p_chamber", _signal(log, segments, "p_chamber"), fire)
-    out["peak_thrust"] = _peak(log, "thrust", thrust.signal if thrust else log.lacks("thrust"), fire)
+    out["peak_thrust"] = _peak(
+        log, "thrust", thrust.signal if thrust else log.lacks("thrust"), fire,
+        cell_error_of(log, thrust, definition, fire.end) if thrust else None,
+    )  # fmt: skip
     out["average_thrust"] = _average(impulse, out["burn_time"])
     out |= {"oxidizer_mass": oxidizer, "fuel_mass": fuel}
     out["mean_chamber_pressure"] = _mean(log, segments, "p_chamber", fire)
@@ -106,16 +110,21 @@ def _signal(log: TestLog, segments: Segments, name: str) -> Signal | str:
 
 def _bias(channel: Channel) -> float:
     """Standard deviation of what a zero leaves [SI]."""
-    if channel.zero_std is None:
-        return channel.accuracy
-    return float(np.hypot(channel.zero_std, SPAN * channel.accuracy))
+    return left_by_zero(channel.accuracy, channel.zero_std)
 
 
-def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
+def cell_error_of(log: TestLog, thrust: Thrust, definition: TestDefinition, end: float) -> CellError:
+    """What the cell may be off by over a burn that ends at ``end`` [s]."""
+    spec = definition.channels.get("thrust")
+    calibrated = spec.calibrated if spec is not None else None
+    return cell_error(log["thrust"], thrust, thrust.signal.between(0.0, end).value, calibrated, definition.test.date)
+
+
+def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire, definition: TestDefinition) -> Quantity:
     """Integral of the thrust over the burn, the cell's drift taken off."""
     if thrust is None:
         return Quantity.absent(log.lacks("thrust"))
-    signal, channel = thrust.signal, log["thrust"]
+    signal = thrust.signal
     if signal.time.size < 9:
         return Quantity.absent("thrust has too few good samples")
     if signal.time[-1] < fire.end - EARLY:
@@ -125,17 +134,26 @@ def _impulse(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     inner = whole.between(*edges)
     time = np.concatenate((edges[:1], inner.time, edges[1:]))
     value = float(np.trapezoid(whole.at(time), time))
-    near = signal.mean(fire.end - 0.2, fire.end + 0.2)
-    last = abs(near if np.isfinite(near) else float(whole.at(edges[1:])[0]))
-    bridged = [_across(whole, max(start, 0.0), min(end, fire.end)) for start, end in unseen]
-    errors = (_bias(channel) * fire.end, SPAN * thrust.error * 0.5 * fire.end, last * fire.std, *bridged)
+    inputs = impulse_inputs(log, thrust, fire, definition, value)
     drift = (
         text("; {error} of the cell's drift taken off", error=said(thrust.error, "N", ".0f")) if thrust.error else ""
     )
     lacking = sum(min(end, fire.end) - max(start, 0.0) for start, end in unseen)
     holes = f"; {lacking:.2f} s without samples bridged by straight lines" if lacking else ""
     why = text("over the burn{drift}{holes}", drift=drift, holes=holes)
-    return Quantity(value, "N s", float(np.linalg.norm(errors)), why=why)
+    return Quantity(value, "N s", total(inputs), why=why)
+
+
+def impulse_inputs(log: TestLog, thrust: Thrust, fire: Fire, definition: TestDefinition, impulse: float) -> list[Input]:
+    """What an ``impulse`` [N s] over the burn may be off by: the cell, the burn's end, and holes in the log."""
+    whole = thrust.signal.bridged()
+    near = thrust.signal.mean(fire.end - 0.2, fire.end + 0.2)
+    last = abs(near if np.isfinite(near) else float(whole.at(np.array([fire.end]))[0]))
+    unseen = thrust.signal.holes(0.0, fire.end)
+    bridged = [_across(whole, max(start, 0.0), min(end, fire.end)) for start, end in unseen]
+    cell = cell_error_of(log, thrust, definition, fire.end).of_impulse(impulse, fire.end)
+    ends = Input(BURN_TIME, last * fire.std, random=True)
+    return [*cell, ends, Input(HOLES, float(np.linalg.norm(bridged)), random=True)]
 
 
 def _ends_early(name: str, signal: Signal, fire: Fire) -> str:
@@ -178,8 +196,9 @@ def specific_impulse(impulse: Quantity, oxidizer: Quantity, fuel: Quantity) -> Q
     return replace(found, verdict=UNPHYSICAL, why=why)
 
 
-def _peak(log: TestLog, name: str, signal: Signal | str, fire: Fire) -> Quantity:
-    """Largest value of the mean curve: flagged samples left out, the chamber's oscillation averaged."""
+def _peak(log: TestLog, name: str, signal: Signal | str, fire: Fire, cell: CellError | None = None) -> Quantity:
+    """Largest value of the mean curve: flagged samples left out, the chamber's oscillation averaged; of a ``cell``'s
+    reading, where it is one."""
     if isinstance(signal, str):
         return Quantity.absent(signal)
     part = signal.between(0.0, fire.end)
@@ -189,10 +208,10 @@ def _peak(log: TestLog, name: str, signal: Signal | str, fire: Fire) -> Quantity
     inside = (part.time > 0.5 * SMOOTHING) & (part.time < fire.end - 0.5 * SMOOTHING)
     place = int(np.argmax(np.where(inside, smooth, -np.inf)))
     count = max(SMOOTHING / part.step, 1.0)
-    error = np.hypot(_bias(log[name]), part.noise / np.sqrt(count))
-    return Quantity(
-        float(smooth[place]), log[name].unit, float(error), why=f"of the mean curve, at {part.time[place]:.2f} s"
-    )
+    value, when = float(smooth[place]), float(part.time[place])
+    bias = _bias(log[name]) if cell is None else total(cell.at(value, when / fire.end))
+    error = float(np.hypot(bias, part.noise / np.sqrt(count)))
+    return Quantity(value, log[name].unit, error, why=f"of the mean curve, at {when:.2f} s")
 
 
 def _mean(log: TestLog, segments: Segments, name: str, fire: Fire) -> Quantity:
