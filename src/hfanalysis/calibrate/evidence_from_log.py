@@ -21,7 +21,6 @@ from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, line_at
-from hfanalysis.units import Value
 
 BLOCKS = 120
 """Block means of the chamber pressure that are compared; they are no shorter than FINEST_CHAMBER_BLOCK."""
@@ -32,15 +31,8 @@ FINEST_CHAMBER_BLOCK = 0.02
 BESIDE_END = 0.15
 """Seconds left out on either side of the end of the liquid, which model and log do not have at the same instant."""
 
-VIDEO = 0.25
-"""Standard deviation [s] of a burn time that is stated without one. Source: a flame's end is seen to half a second
-(report, 4.3.1, states burn times from video to the second)."""
-
 SLIVER = 0.02
 """Part of the grain below which what is left of it counts as nothing: the fire went out for want of fuel."""
-
-WEIGHED = 0.01
-"""Standard deviation of a fuel mass stated without one, as part of the grain."""
 
 
 def evidence_of(
@@ -114,21 +106,18 @@ def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[S
     grain = definition.grain.mass.value
     if left is None or left.value < SLIVER * grain:
         return stated, None, end
-    return None, Scalar(left.value, _std(left, WEIGHED * grain), "[observed] fuel_mass_after"), end
+    std = definition.known_std("observed.fuel_mass_after")
+    return None, Scalar(left.value, std, "[observed] fuel_mass_after"), end
 
 
 def _burn_time(segments: Segments, definition: TestDefinition) -> Scalar | None:
-    observed = definition.observed
-    if observed is not None and observed.burn_time is not None:
-        return Scalar(observed.burn_time.value, _std(observed.burn_time, VIDEO), "[observed] burn_time")
+    seen = definition.known("observed.burn_time")
+    if seen is not None:
+        return Scalar(seen.value, seen.std or 0.0, "[observed] burn_time")
     gone = segments.time("t_fuel_gone")
     if gone is None:
         return None
     return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log")
-
-
-def _std(stated: Value, default: float) -> float:
-    return stated.std if stated.std is not None else default
 
 
 def _window_end(

@@ -8,7 +8,6 @@ from math import pi, sqrt
 
 import numpy as np
 
-from hfanalysis.calibrate.evidence_from_log import VIDEO
 from hfanalysis.engine.nozzle import mach_at_area, pressure_ratio
 from hfanalysis.engine.thrust_coefficient import GAMMAS, TOLERANCE, possible
 from hfanalysis.products.calibration import Calibration, TankConstants
@@ -113,12 +112,12 @@ class _Facts:
 
     def _clock(self) -> Doubt | None:
         """A stated burn that the log is too short for."""
-        seen = self.definition.observed.burn_time if self.definition.observed else None
+        seen = self.definition.known("observed.burn_time")
         if seen is None or not self._burning:
             return None
         origin = self.segments.t_open.value or 0.0
         last = max((float(s.time[-1]) for s in self._live.values()), default=np.inf) - origin
-        if seen.value - 3.0 * (seen.std or VIDEO) <= last:
+        if seen.value - 3.0 * (seen.std or 0.0) <= last:
             return None
         end = min(last, self.segments.time("t_fuel_out") or last, self.segments.time("t_end") or last)
         words = text(
@@ -132,11 +131,11 @@ class _Facts:
 
     def _fuel_end(self) -> Doubt | None:
         """A stated burn whose end the log shows at another time."""
-        seen = self.definition.observed.burn_time if self.definition.observed else None
+        seen = self.definition.known("observed.burn_time")
         if seen is None or not self._burning:
             return None
         choked = self.segments.time("t_end")
-        if choked is None or seen.value + 3.0 * (seen.std or VIDEO) >= choked - 3.0 * self.segments.std("t_end"):
+        if choked is None or seen.value + 3.0 * (seen.std or 0.0) >= choked - 3.0 * self.segments.std("t_end"):
             return None
         words = text(
             "[observed] burn_time is {seen:.1f} s, but the chamber burns on: its pressure is above 1.8 times ambient "

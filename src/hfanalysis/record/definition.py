@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BeforeValidator
 
 from hfanalysis.errors import InputError
 from hfanalysis.record.channels import CANONICAL
+from hfanalysis.record.default_deviations import Deviations, Stated
 from hfanalysis.record.document import place, read_toml, validate
 from hfanalysis.record.logspec import Channels, ChannelSpec, Exclusion, FileSpec, LogSpec, TimeSpec
 from hfanalysis.record.rocket import Rocket
@@ -99,6 +100,7 @@ class Statements(Section):
     nozzle: NozzleSection | None = None
     site: Site | None = None
     observed: ObservedSection | None = None
+    deviations: Deviations = Deviations()
     rocket: Rocket | None = None
     segments: Segments = field(default_factory=dict)
     exclude: ListOf[Exclusion] = ()
@@ -131,7 +133,7 @@ class Statements(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TestDefinition(Statements):
+class TestDefinition(Statements, Stated):
     """A validated test.toml and where it is; every number in SI."""
 
     path: Path

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.calibrate.evidence_from_log import VIDEO
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
@@ -57,9 +56,9 @@ def fire_of(segments: Segments, definition: TestDefinition, log: TestLog | None 
     until the ``log``'s thrust is gone; or why there is none."""
     if segments.kind != "hot_fire" or segments.misfire:
         return "nothing burns in this test"
-    seen = definition.observed.burn_time if definition.observed else None
+    seen = definition.known("observed.burn_time")
     if seen is not None:
-        return Fire(seen.value, seen.std if seen.std is not None else VIDEO, "[observed] burn_time")
+        return Fire(seen.value, seen.std or 0.0, "[observed] burn_time")
     for name, words in (
         ("t_fuel_gone", "the solid fuel is gone"),
         ("t_end", "the chamber is down to 1.8 times ambient"),
