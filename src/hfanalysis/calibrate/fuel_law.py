@@ -75,7 +75,14 @@ def _conditional(law: FuelLaw, discharge: Quantity) -> FuelLaw:
     if discharge.verdict not in (CONDITIONAL, DOUBTED):
         return law
     found = {n: q for n, q in law.quantities.items() if q.verdict == IDENTIFIED}
-    return law.but(**{n: replace(q, verdict=discharge.verdict, why=discharge.why) for n, q in found.items()})
+    told = {n: replace(q, verdict=discharge.verdict, why=discharge.why) for n, q in found.items()}
+    own = {n: q for n, q in law.quantities.items() if q.verdict == CONDITIONAL}
+    return law.but(**told, **{n: _both(q, discharge) for n, q in own.items()})
+
+
+def _both(own: Quantity, discharge: Quantity) -> Quantity:
+    """On its own condition and on that of C_i, whose verdict is the worse one."""
+    return replace(own, verdict=discharge.verdict, why=f"{discharge.why}; {own.why}")
 
 
 def held(definition: TestDefinition, by_log: FuelLaw) -> FuelLaw:

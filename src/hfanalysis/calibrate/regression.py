@@ -8,7 +8,7 @@ part of the answer.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import exp, log
 from typing import Any
@@ -18,6 +18,7 @@ from scipy.special import chdtrc
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.conditions import conditioned, conditions, set_by_trickle
 from hfanalysis.calibrate.evidence import Evidence, burn_time_of
 from hfanalysis.calibrate.likelihood import Surface, Weights, first_guess, surface, weights_from
 from hfanalysis.engine.grain import USUAL_N, oxidizer_flux
@@ -348,7 +349,8 @@ def result(found: Fitted) -> FuelLaw:
                                                              (0.0, 1.0)))  # fmt: skip
     rivals = [float(r[1]) for r in found.rivals]
     not_told = _not_told(found, ln_rate, ln_a, n)
-    verdict, why = judge_regression(not_told, (n.low, n.high), n.std, flux, ln_rate.std, rivals)
+    judged = judge_regression(not_told, (n.low, n.high), n.std, flux, ln_rate.std, rivals)
+    verdict, why = conditioned(judged, (n.low, n.high), _conditions(found, flux))
     known = ln_rate.std <= WIDEST_RATE and not _at_limit(found)
     return FuelLaw(
         a=Quantity(
@@ -362,6 +364,16 @@ def result(found: Fitted) -> FuelLaw:
         ),
         regression=_about(found, flux),
     )  # fmt: skip
+
+
+def _conditions(found: Fitted, flux: float) -> Iterator[str]:
+    """What a and n hold on, in words."""
+    windows, trickles = [], []
+    for e, w in zip(found.evidence, found.weights, strict=True):
+        burnt = e.burnt(found.law)
+        windows.append(flux_range(e, burnt))
+        trickles.append(set_by_trickle(e, w, burnt, _slopes(e, found.flux, found.best), windows[-1]))
+    return conditions(found.law, flux, windows, trickles)
 
 
 def rate_at(flux: float) -> str:

@@ -81,13 +81,17 @@ def cell_error(
     """
     peak = float(np.max(np.abs(burn), initial=0.0))
     floor = GAIN_IN_PLACE if in_place(calibrated, test) else GAIN
-    own = SPAN_SHARE * channel.accuracy / peak if peak > 0.0 else 0.0
-    zero = channel.accuracy if channel.zero_std is None else channel.zero_std
+    own = SPAN_SHARE * _undoubted(channel.accuracy, channel) / peak if peak > 0.0 else 0.0
+    zero = _undoubted(channel.accuracy if channel.zero_std is None else channel.zero_std, channel)
     left = left_in(thrust)
     unseen = thrust.error == 0.0 and left == 0.0
-    return CellError(
-        max(floor, own), zero, ANY_COURSE * abs(thrust.error), UNSEEN_DRIFT * peak if unseen else abs(left)
-    )
+    course = max(ANY_COURSE * abs(thrust.error), channel.doubt)
+    return CellError(max(floor, own), zero, course, UNSEEN_DRIFT * peak if unseen else abs(left))
+
+
+def _undoubted(std: float, channel: Channel) -> float:
+    """Without what the channel's health doubts: that its zero has moved is what the drift's course is about."""
+    return float(np.sqrt(max(std**2 - channel.doubt**2, 0.0)))
 
 
 def left_in(thrust: Thrust) -> float:
