@@ -13,7 +13,7 @@ from tests.segment.stand import Trial, definition, segments_of
 
 from hfanalysis.flight.ascent import RESULTS
 from hfanalysis.flight.summary import ASCENT
-from hfanalysis.measured_flight.propellant import _exponent, propellant
+from hfanalysis.measured_flight.propellant import exponent_of, propellant
 from hfanalysis.measured_flight.thrust import MeasuredThrust, _drift_taken, measured_thrust
 from hfanalysis.measured_flight.uncertainty import DrawnFlights
 from hfanalysis.products.calibration import Calibration
@@ -84,7 +84,7 @@ def test_masses_without_a_deviation_are_known_to_a_hundredth(burn: Trial) -> Non
 @pytest.mark.parametrize(("n", "used"), [(0.45, 0.45), (1.5, 1.5), (-0.1, 0.5), (2.4, 0.5), (None, 0.5)])
 def test_a_calibrated_exponent_is_taken_where_fuels_may_have_it(n: float | None, used: float) -> None:
     calibration = filled(Calibration, {"n": Quantity.absent("not known") if n is None else Quantity(n)})
-    assert _exponent(definition(), calibration)[0] == used
+    assert exponent_of(definition(), calibration)[0] == used
 
 
 def results(reached: int) -> DrawnFlights:

@@ -104,11 +104,19 @@ class Flight(FlightNumbers, Product):
 
     wet_mass: Annotated[Quantity, Is("of the rocket on its pad", "kg")]
     pad_thrust_to_weight: Annotated[Quantity, Is("peak thrust over wet weight", "")]
-    total_impulse: Annotated[Quantity, Is("that is flown", "N s")]
-    burn_time: Annotated[Quantity, Is("of the thrust", "s")]
-    average_thrust: Annotated[Quantity, Is("total impulse over burn time", "N")]
+    liftoff_thrust_to_weight: Annotated[
+        Quantity, Is("mean thrust from lift-off to the rail's end (half a second without one) over wet weight", "")
+    ]
+    apogee_as_measured: Annotated[Quantity, Is("above ground, on the thrust with the stand's purge gas in it", "m")]
+    impulse_flown: Annotated[Quantity, Is("of the thrust that flies, at its altitudes", "N s")]
+    impulse_stand: Annotated[Quantity, Is("of the thrust that the stand measured", "N s")]
+    total_impulse: Annotated[Quantity, Is("of the thrust that the stand measured", "N s")]
+    burn_time: Annotated[Quantity, Is("of the thrust that flies", "s")]
+    average_thrust: Annotated[Quantity, Is("of the stand: its impulse over its burn time", "N")]
     checks: Annotated[dict[str, Check], Is("limits that are kept or not, by name")]
     thrust: Annotated[str, Is("what was done to the measured thrust")]
+    thrust_basis: Annotated[str, Is("what flies: without purge gas, or as measured")]
+    band_covers: Annotated[str, Is("what the intervals hold, in words")]
     drag: Annotated[str, Is("where the drag is from")]
     masses: Annotated[dict[str, str], Is("how the masses over time were found, by propellant")]
     dispersion: Annotated[Dispersion, Is("what the bands come from")]
