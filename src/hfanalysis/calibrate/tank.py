@@ -9,6 +9,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
+from hfanalysis.calibrate.budgets import budgets
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.diagnostics import coefficient_history, other_masses, rest_of, tank_history
 from hfanalysis.calibrate.feed_loss import estimated_share
@@ -160,7 +161,8 @@ class _Work:
         quantities["oxidizer_mass"] = Quantity(mass.value, "kg", mass.std, verdict=verdict, why=mass.source)
         for words in mass.doubts:
             quantities |= {name: quantities[name].doubted(words) for name in BY_MASS}
-        return TankCalibration(self._constants(quantities, rest, history, content), draws)
+        constants = self._constants(quantities, rest, history, content)
+        return TankCalibration(constants.but(budget=budgets(draws, constants)), draws)
 
     def _by_log(
         self, tables: Tables, inputs: Inputs, mass: LoadedMass, samples: int, vapor: VaporPhase | None

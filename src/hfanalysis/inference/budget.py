@@ -65,13 +65,16 @@ def _effects(inputs: Iterable[Input]) -> dict[str, float]:
     return effects
 
 
-def by_draws(values: Array, drawn: Mapping[str, Array], random: Iterable[str] = ()) -> Budget | None:
+def by_draws(
+    values: Array, drawn: Mapping[str, Array], random: Iterable[str] = (), std: float | None = None
+) -> Budget | None:
     """The budget of a quantity that was found anew with every input drawn; None where the draws are too few.
 
     Args:
         values: the quantity's draws (k,); those that are not finite are left out.
         drawn: the inputs' draws by name, (k,) each, or (k, m) of m that are correlated and make one row.
         random: names of those that differ from test to test.
+        std: standard deviation that the quantity is stated with; that of the draws where None.
 
     The shares are those of a linear fit to the draws; what it does not explain is non-linear.
     """
@@ -93,7 +96,8 @@ def by_draws(values: Array, drawn: Mapping[str, Array], random: Iterable[str] = 
         variance[name], start = float(np.var(stacked[:, part] @ slopes[part])), part.stop
     # what chance correlations of the draws add is spread over all
     scale = max(explained, 0.0) / y.size / (sum(variance.values()) or 1.0)
-    return _budget({n: v * scale for n, v in variance.items()}, total / y.size, set(random))
+    stated = total / y.size if std is None else std**2
+    return _budget({n: v * scale for n, v in variance.items()}, stated, set(random))
 
 
 def _columns(drawn: Array) -> Array:

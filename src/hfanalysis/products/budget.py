@@ -19,4 +19,7 @@ class Budget(Part):
     non_linear: Annotated[float, Is("of the variance, what no input explains by its slope", "")]
 
 
-Budgets = Annotated[Mapping[str, Budget], Is("what the standard deviations are made of, by quantity")]
+Budgets = Mapping[str, Budget]
+"""By quantity."""
+
+MADE_OF = Is("what the standard deviations are made of, by quantity")

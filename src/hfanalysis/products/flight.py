@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from hfanalysis.products.budget import MADE_OF, Budgets
 from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings
 from hfanalysis.quantity import Quantity
 
@@ -121,6 +122,7 @@ class Flight(FlightNumbers, Product):
     masses: Annotated[dict[str, str], Is("how the masses over time were found, by propellant")]
     dispersion: Annotated[Dispersion, Is("what the bands come from")]
     stability: Annotated[Stability, Is("static margin")]
+    budget: Annotated[Budgets, MADE_OF] = {}
     notes: Notes
     effects: Adopted = ()
     warnings: Warnings = ()
