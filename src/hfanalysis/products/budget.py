@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated
 
 from hfanalysis.products.model import Is, Part
@@ -18,8 +17,5 @@ class Budget(Part):
     shares: Annotated[dict[str, float], Is("of the variance, by input; correlated inputs are one", "")]
     non_linear: Annotated[float, Is("of the variance, what no input explains by its slope", "")]
 
-
-Budgets = Mapping[str, Budget]
-"""By quantity."""
 
 MADE_OF = Is("what the standard deviations are made of, by quantity")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
-from hfanalysis.products.budget import MADE_OF, Budgets
+from hfanalysis.products.budget import MADE_OF, Budget
 from hfanalysis.products.model import Adopted, Is, Notes, Numbers, Part, Product, Warnings, Words
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 
@@ -102,7 +102,7 @@ class TankConstants(Part):
     C_i_history: Annotated[CoefficientHistory | None, Is("C_i over the liquid phase")]
     tank_history: Annotated[TankHistory | None, Is("content of the tank over the liquid phase")]
     C_d: Annotated[Mapping[str, Quantity], Is("discharge coefficient by law; spi: incompressible liquid")] = {}
-    budget: Annotated[Budgets, MADE_OF] = {}
+    budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     notes: Notes
     warnings: Warnings
 

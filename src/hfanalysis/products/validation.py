@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
-from hfanalysis.products.budget import MADE_OF, Budgets
+from hfanalysis.products.budget import MADE_OF, Budget
 from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings, Words
 from hfanalysis.quantity import Quantity
 
@@ -79,7 +80,7 @@ class Validation(Product):
     ]
     closure: Annotated[Closure, Is("of the masses")]
     sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors")]
-    budget: Annotated[Budgets, MADE_OF] = {}
+    budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     absent: Annotated[dict[str, Words], Is("what could not be done, and why")]
     notes: Notes
     warnings: Warnings

@@ -14,6 +14,7 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun, run_full
+from hfanalysis.products.budget import Budget
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Closure, Column, Performance, Validation
@@ -22,6 +23,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.validate import histories as histories_of
 from hfanalysis.validate import performance
+from hfanalysis.validate.budgets import budgets
 from hfanalysis.validate.chamber_forced import run_chamber_forced
 from hfanalysis.validate.flows import Flows, burn_fuel, oxidizer_flow
 from hfanalysis.validate.full import compare_full
@@ -30,7 +32,7 @@ from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import Residual, gaps
 from hfanalysis.validate.sensor_faults import ZERO, findings
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
-from hfanalysis.validate.thrust import motor_class
+from hfanalysis.validate.thrust import motor_class, thrust_of
 
 Result = TypeVar("Result")
 MODES = ("tank_free", "chamber_forced", "full")
@@ -114,12 +116,20 @@ class _Work:
             performance=Performance(measured=Column.from_json(measured), model=Column.from_json(model), **about),
             gap={mode: gaps(found) for mode, found in kept.items()},
             closure=Closure.from_json(histories.closure),
+            budget=self._budgets(measured),
             sensors=tuple(sensors),
             absent=self.absent,
             notes=tuple(dict.fromkeys(notes)),
             warnings=tuple(finding.text for finding in sensors if not (told and finding.verdict == ZERO)),
         )
         return Validated(product, kept, histories)
+
+    def _budgets(self, measured: dict[str, Quantity]) -> dict[str, Budget]:
+        impulse = measured["total_impulse"].value
+        if impulse is None or isinstance(self.fire, str):
+            return {}
+        thrust = thrust_of(self.true, self.segments, self.definition)
+        return budgets(measured, performance.impulse_inputs(self.true, thrust, self.fire, self.definition, impulse))
 
     @property
     def calibration(self) -> Calibration:
