@@ -91,7 +91,8 @@ def with_course(
         return discharge
     if course.seen:
         more = abs(course.in_mean(time, flow))
-        said = f"mean by flow; C_i(t) drifts by {course.drift:+.3f} /s, which is worth {more:.4f} in its mean (C_i_history)"
+        drift = f"C_i(t) drifts by {course.drift:+.3f} /s"
+        said = f"mean by flow; {drift}, which is worth {more:.4f} in its mean (C_i_history)"
     else:
         more = record * float(np.sqrt(course.scatter**2 - 1.0))
         said = f"its errors by the log are taken {course.scatter:.1f} times: C_i(t) scatters, without a course"

@@ -1,7 +1,9 @@
 """What reaches the injector, and its discharge coefficient by laws that know that it has flashed.
 
 The liquid leaves the tank saturated; what the feed line loses of pressure lets it boil at constant enthalpy, so that
-vapor comes along. Each law has C_d = (m_o - M_v) / integral of A G dt, as C_i has:
+vapor comes along. Each law has C_d = C_i times the integral of C_i's own flux over that of the law, from t_feed to t_v:
+the same mass through the same holes. While the line fills, the state before the injector is none that a throttle makes;
+what C_d would be with that time in is a bound of its error.
 
 - ``spi``: incompressible, G = sqrt(2 rho (p_run - p_c)), with the density of the mixture at p_run;
 - ``hem``: homogeneous equilibrium, isentropic from p_run and the inlet's quality, at its largest flux;
@@ -73,21 +75,27 @@ class Feed:
         warm = saturation.temperature(np.clip(self.tank, low, high))
         return throttled(saturation, warm, np.clip(self.run, low, high))
 
-    def flux(self, saturation: Saturation, law: str) -> float:
-        """Integral of G dt [kg/m^2] by a law, or by "tank": that of C_i."""
+    def flux(self, saturation: Saturation, law: str) -> Array:
+        """G dt [kg/m^2], (n,), by a law, or by "tank": that of C_i."""
         inlet = self.inlet(saturation)
-        tank = saturation.liquid_density(inlet.liquid)
         if law == "tank":
-            return float(incompressible_flux(tank, self.run, self.chamber) @ self.step)
-        driven = self.run > self.chamber
-        plain = incompressible_flux(inlet.density, self.run, self.chamber)
+            tank = saturation.liquid_density(inlet.liquid)
+            return incompressible_flux(tank, self.run, self.chamber) * self.step
+        behind = np.minimum(self.chamber, self.run)
+        plain = incompressible_flux(inlet.density, self.run, behind)
         if law == "spi":
-            return float(plain @ self.step)
-        flashing = np.where(driven, equilibrium_flux(saturation, inlet, np.minimum(self.chamber, self.run)), 0.0)
+            return plain * self.step
+        flashing = np.where(behind < self.run, equilibrium_flux(saturation, inlet, behind), 0.0)
         if law == "hem":
-            return float(flashing @ self.step)
-        kappa = non_equilibrium(inlet, saturation.pressure(inlet.liquid), np.minimum(self.chamber, self.run))
-        return float(np.where(driven, blended_flux(kappa, plain, flashing), 0.0) @ self.step)
+            return flashing * self.step
+        kappa = non_equilibrium(inlet, saturation.pressure(inlet.liquid), behind)
+        return blended_flux(kappa, plain, flashing) * self.step
+
+    def share(self, saturation: Saturation, law: str, filling: bool = False) -> float:
+        """C_d over C_i [-], once the line is full, or with the time of its ``filling``."""
+        seen = np.ones(self.step.size, dtype=bool) if filling else self.full
+        by_tank, by_law = (float(self.flux(saturation, name)[seen].sum()) for name in ("tank", law))
+        return by_tank / by_law if by_law > 0.0 else float("nan")
 
 
 def _means(time: Array, value: Array, edges: Array) -> Array:
@@ -152,10 +160,10 @@ def _slopes(
 def _discharge(
     feed: Feed, saturation: Saturation, bias: Mapping[str, float], C_i: float, draws: Draws, law: str
 ) -> Quantity:
-    """C_d = C_i times the integral of C_i's own flux over that of the law."""
+    """C_d by a law, with what C_i and the pressures leave open."""
 
     def ratio(other: Feed, table: Saturation) -> float:
-        return other.flux(table, "tank") / other.flux(table, law)
+        return other.share(table, law)
 
     share = ratio(feed, saturation)
     if not np.isfinite(share):
@@ -165,6 +173,8 @@ def _discharge(
     for name, moved in _slopes(feed, saturation, bias, ratio):
         z = _multiples(draws, name, bias.get(name, 1.0), own)
         drawn = drawn * (1.0 + z * moved / share)
+    filling = feed.share(saturation, law, filling=True) / share - 1.0
+    drawn = drawn * (1.0 + own.uniform(-1.0, 1.0, drawn.size) * (filling if np.isfinite(filling) else 0.0))
     value, good = C_i * share, drawn[np.isfinite(drawn)]
     if good.size < 10:
         return Quantity.absent("the repetitions of the calibration have no C_i", verdict=NOT_IDENTIFIABLE)
