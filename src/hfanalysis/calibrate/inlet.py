@@ -10,6 +10,9 @@ what C_d would be with that time in is a bound of its error.
 - ``dyer``: (kappa G_spi + G_hem) / (1 + kappa), their mean where the inlet is saturated (kappa = 1).
 
 C_i is on the density of the tank's liquid, which does not reach the injector: an effective coefficient.
+
+All by one equation of state (CoolProp), whatever table the test's engine has: energies, densities and pressures have to
+fit each other here, and those of the report's correlations do so to 2 to 5 % only (docs/properties.md).
 """
 
 from __future__ import annotations
@@ -26,6 +29,7 @@ from hfanalysis.calibrate.systematic import UNIFORM, other_table
 from hfanalysis.calibrate.uncertainty import SEED, Draws
 from hfanalysis.products.calibration import Inlet
 from hfanalysis.quantity import DERIVED, NORMAL_95, NOT_IDENTIFIABLE, Quantity
+from hfanalysis.thermo.nitrous import saturation as saturation_of
 from hfanalysis.thermo.saturation import Saturation
 from hfanalysis.thermo.two_phase import (
     Throttled,
@@ -91,10 +95,11 @@ class Feed:
         kappa = non_equilibrium(inlet, saturation.pressure(inlet.liquid), behind)
         return blended_flux(kappa, plain, flashing) * self.step
 
-    def share(self, saturation: Saturation, law: str, filling: bool = False) -> float:
-        """C_d over C_i [-], once the line is full, or with the time of its ``filling``."""
+    def share(self, of_C_i: Saturation, saturation: Saturation, law: str, filling: bool = False) -> float:
+        """C_d over C_i [-], which is by a table of its own, once the line is full, or with the time of its
+        ``filling``."""
         seen = np.ones(self.step.size, dtype=bool) if filling else self.full
-        by_tank, by_law = (float(self.flux(saturation, name)[seen].sum()) for name in ("tank", law))
+        by_tank, by_law = (float(x[seen].sum()) for x in (self.flux(of_C_i, "tank"), self.flux(saturation, law)))
         return by_tank / by_law if by_law > 0.0 else float("nan")
 
 
@@ -109,13 +114,16 @@ def inlet_of(
 ) -> tuple[Inlet, dict[str, Quantity]]:
     """The state before the injector, means over the liquid phase from t_feed on, and C_d by law.
 
+    ``saturation``: the table that C_i is by.
     ``bias`` [Pa]: standard deviation of ``tank``, ``run`` and ``chamber``. ``discharge``: C_i as it is told; ``C_i``
     [-] as it is without effects; ``draws`` have its errors.
     """
+    fluid = saturation_of("coolprop")
+    states = _states(feed, fluid, bias)
     if not np.isfinite(C_i) or discharge.value is None:
         none = Quantity.absent(discharge.reason or "no C_i to take it from", verdict=NOT_IDENTIFIABLE)
-        return _states(feed, saturation, bias), dict.fromkeys(LAWS, none)
-    return _states(feed, saturation, bias), {law: _discharge(feed, saturation, bias, C_i, draws, law) for law in LAWS}
+        return states, dict.fromkeys(LAWS, none)
+    return states, {law: _discharge(feed, saturation, fluid, bias, C_i, draws, law) for law in LAWS}
 
 
 def _states(feed: Feed, saturation: Saturation, bias: Mapping[str, float]) -> Inlet:
@@ -158,12 +166,18 @@ def _slopes(
 
 
 def _discharge(
-    feed: Feed, saturation: Saturation, bias: Mapping[str, float], C_i: float, draws: Draws, law: str
+    feed: Feed,
+    of_C_i: Saturation,
+    saturation: Saturation,
+    bias: Mapping[str, float],
+    C_i: float,
+    draws: Draws,
+    law: str,
 ) -> Quantity:
     """C_d by a law, with what C_i and the pressures leave open."""
 
     def ratio(other: Feed, table: Saturation) -> float:
-        return other.share(table, law)
+        return other.share(of_C_i, table, law)
 
     share = ratio(feed, saturation)
     if not np.isfinite(share):
@@ -173,7 +187,7 @@ def _discharge(
     for name, moved in _slopes(feed, saturation, bias, ratio):
         z = _multiples(draws, name, bias.get(name, 1.0), own)
         drawn = drawn * (1.0 + z * moved / share)
-    filling = feed.share(saturation, law, filling=True) / share - 1.0
+    filling = feed.share(of_C_i, saturation, law, filling=True) / share - 1.0
     drawn = drawn * (1.0 + own.uniform(-1.0, 1.0, drawn.size) * (filling if np.isfinite(filling) else 0.0))
     value, good = C_i * share, drawn[np.isfinite(drawn)]
     if good.size < 10:
@@ -203,6 +217,6 @@ def _multiples(draws: Draws, name: str, std: float, own: np.random.Generator) ->
     """What was drawn of this error, in standard deviations; its own numbers where nothing was."""
     size = draws.values["C_i"].size
     if name == "properties":
-        return draws.inputs.get("systematic properties", own.standard_normal(size))
+        return own.uniform(-UNIFORM, UNIFORM, size)
     drawn = draws.inputs.get(f"p_{name}")
     return drawn / std if drawn is not None and std > 0.0 else own.standard_normal(size)
