@@ -13,6 +13,8 @@ from hfanalysis.products.calibration import TankConstants
 NAMES = {"C_i": "C_i", "m": "m", "K_loss": "K_loss", "vapor_mass_at_t_v": "vapor_mass"}
 """The constants that have a budget, and their names among the draws."""
 
+COURSE = "C_i's course over the burn"
+
 ROWS = {
     "mass": "loaded oxidizer",
     "volume": "tank volume",
@@ -22,6 +24,7 @@ ROWS = {
     "p_chamber": "p_chamber: zero and span",
     "properties": "nitrous oxide's properties",
     "line": "line's content at t_v",
+    "gamma": "vapor's isentropic exponent",
     "t_feed": "phase times",
     "t_v": "phase times",
     "t_end": "phase times",
@@ -31,13 +34,15 @@ ROWS = {
 """How a drawn error is called; those of one row are correlated or of one kind."""
 
 
-def budgets(draws: Draws, found: TankConstants) -> dict[str, Budget]:
-    """The budget of every constant that has a standard deviation, by name."""
+def budgets(draws: Draws, found: TankConstants, course: float = 0.0) -> dict[str, Budget]:
+    """The budget of every constant that has a standard deviation, by name; ``course`` [-]: what of that of C_i is for
+    its course over the burn."""
     drawn, random = _by_row(draws)
     out = {}
     for name, inner in NAMES.items():
         quantity = getattr(found, name)
-        made = by_draws(draws.values[inner], drawn, random, quantity.std) if quantity.std else None
+        beside = {COURSE: course} if name == "C_i" else {}
+        made = by_draws(draws.values[inner], drawn, random, quantity.std, beside) if quantity.std else None
         if made is not None:
             out[name] = made
     return out

@@ -56,8 +56,8 @@ class InputSpread:
 class Draws:
     """The repeated reductions: one array per quantity, NaN where a draw has no answer.
 
-    ``inputs`` holds what was drawn for them: loaded mass [kg], volume [m^3], area [m^2], biases of p_tank and p_c [Pa];
-    and, in standard deviations, every error by its name, "systematic ..." or "random ...".
+    ``inputs`` holds what was drawn for them: loaded mass [kg], volume [m^3], area [m^2], biases of p_tank, p_run and
+    p_c [Pa]; and, in standard deviations, every error by its name, "systematic ..." or "random ...".
     """
 
     values: dict[str, Array]
@@ -69,6 +69,13 @@ class Draws:
         """
         good = self.good(name)
         return float(good.std(ddof=1)) if good.size >= 10 else float("nan")
+
+    @property
+    def of_flow(self) -> float:
+        """Relative standard deviation [-] of C_i N_i A_i, which an error of the area leaves as it is."""
+        area = self.values["C_i"] * self.inputs["area"]
+        good = area[np.isfinite(area)]
+        return float(good.std(ddof=1) / abs(good.mean())) if good.size >= 10 else float("nan")
 
     def interval(self, name: str, value: float) -> tuple[float, float]:
         """The 95 % interval [SI]: the draws' quantiles about their median, moved to the ``value`` itself."""
@@ -109,7 +116,7 @@ def _held(inputs: Inputs, spread: InputSpread, z: Array) -> Inputs:
 
 def _what_was_drawn(drawn: list[tuple[Inputs, Shift]]) -> dict[str, Array]:
     found = {n: np.array([getattr(i, n) for i, _ in drawn]) for n in ("mass", "volume", "area")}
-    return found | {f"p_{n}": np.array([getattr(s, n) for _, s in drawn]) for n in ("tank", "chamber")}
+    return found | {f"p_{n}": np.array([getattr(s, n) for _, s in drawn]) for n in ("tank", "run", "chamber")}
 
 
 def _deviates(spread: InputSpread, z: Array, own: Array) -> dict[str, Array]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from hfanalysis.calibrate.blowdown import EXPONENTS, Inputs, Reduction
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.closure import implied_heat
-from hfanalysis.quantity import DOUBTED, IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+from hfanalysis.quantity import DERIVED, DOUBTED, IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.saturation import Saturation
 
@@ -41,6 +43,12 @@ def judged(name: str, value: float, unit: str, draws: Draws, unphysical_below: f
         why = "negative: the two pressure sensors disagree in sign"
         return Quantity(value, unit, draws.std(name), interval, verdict=UNPHYSICAL, why=why)
     return Quantity(value, unit, draws.std(name), interval, verdict=IDENTIFIED)
+
+
+def looked_up(found: Quantity) -> Quantity:
+    """What no log tells but a table, at the pressure of t_v: derived, as well as the table is known."""
+    why = "the table of nitrous oxide at the tank's pressure of t_v; its deviation holds what the other table has"
+    return replace(found, verdict=DERIVED, why=why) if found.verdict == IDENTIFIED else found
 
 
 def judge_discharge(r: Reduction, draws: Draws, reversed_share: float) -> Quantity:

@@ -66,7 +66,11 @@ def _effects(inputs: Iterable[Input]) -> dict[str, float]:
 
 
 def by_draws(
-    values: Array, drawn: Mapping[str, Array], random: Iterable[str] = (), std: float | None = None
+    values: Array,
+    drawn: Mapping[str, Array],
+    random: Iterable[str] = (),
+    std: float | None = None,
+    beside: Mapping[str, float] | None = None,
 ) -> Budget | None:
     """The budget of a quantity that was found anew with every input drawn; None where the draws are too few.
 
@@ -75,6 +79,7 @@ def by_draws(
         drawn: the inputs' draws by name, (k,) each, or (k, m) of m that are correlated and make one row.
         random: names of those that differ from test to test.
         std: standard deviation that the quantity is stated with; that of the draws where None.
+        beside: standard deviations by independent inputs that are not among the draws, in the quantity's unit.
 
     The shares are those of a linear fit to the draws; what it does not explain is non-linear.
     """
@@ -97,7 +102,8 @@ def by_draws(
     # what chance correlations of the draws add is spread over all
     scale = max(explained, 0.0) / y.size / (sum(variance.values()) or 1.0)
     stated = total / y.size if std is None else std**2
-    return _budget({n: v * scale for n, v in variance.items()}, stated, set(random))
+    others = {name: more**2 for name, more in (beside or {}).items() if more > 0.0}
+    return _budget({n: v * scale for n, v in variance.items()} | others, stated, set(random))
 
 
 def _columns(drawn: Array) -> Array:

@@ -11,6 +11,7 @@ from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 
 UNIT_OF_A = "m/s (kg/m^2/s)^-n"
 UNIT_OF_FLUX = "kg/(m^2 s)"
+NOT_SOUGHT = Quantity.absent("this calibration did not look for it", verdict=NOT_IDENTIFIABLE)
 
 
 class Rest(Part):
@@ -32,6 +33,23 @@ class CoefficientHistory(Part):
     time: Annotated[Numbers, Is("after the opening", "s")]
     value: Annotated[Numbers, Is("C_i", "")]
     std: Annotated[Numbers, Is("its standard deviation", "")]
+    drift: Annotated[Quantity | None, Is("slope of a straight line through it", "1/s")] = None
+
+
+class Inlet(Part):
+    """What reaches the injector: means over the liquid phase once the line is full."""
+
+    subcooling: Annotated[Quantity, Is("of saturation at p_run less that of the tank; negative: it flashes", "K")]
+    quality: Annotated[Quantity, Is("vapor by mass, isenthalpic from the tank's liquid", "")]
+    density: Annotated[Quantity, Is("of the mixture", "kg/m^3")]
+
+
+class Joint(Part):
+    """Correlated errors of the constants that a model takes together."""
+
+    names: Annotated[tuple[str, ...], Is("of the constants")]
+    std: Annotated[Numbers, Is("their standard deviations, SI")]
+    correlation: Annotated[tuple[Numbers, ...], Is("of these with each other", "")]
 
 
 class TankHistory(Part):
@@ -87,8 +105,14 @@ class FuelLaw(Part):
 class TankConstants(Part):
     """The constants of tank, feed line and injector, and the tank at rest."""
 
-    C_i: Annotated[Quantity, Is("injector coefficient", "")]
-    m: Annotated[Quantity, Is("polytropic exponent of the vapor", "")]
+    C_i: Annotated[Quantity, Is("injector coefficient, effective: on the density of the tank's liquid", "")]
+    m: Annotated[Quantity, Is("polytropic exponent of the vapor by the report's law, an incompressible flow", "")]
+    m_choked: Annotated[Quantity, Is("the same where the vapor chokes in the injector, with C_d = C_i", "")] = (
+        NOT_SOUGHT
+    )
+    vapor_C_d: Annotated[Quantity, Is("discharge coefficient of choked vapor that an m of 1.0 to 1.3 needs", "")] = (
+        NOT_SOUGHT
+    )
     Z: Annotated[Quantity, Is("compressibility of the vapor at t_v", "")]
     K_loss: Annotated[Quantity, Is("feed loss = K_loss mdot^2 / rho", "1/m^4")]
     p_loss_liquid: Annotated[Quantity, Is("mean feed loss over [t_feed, t_v)", "Pa")]
@@ -101,7 +125,9 @@ class TankConstants(Part):
     rest: Annotated[Rest | None, Is("the tank before the valve opens")]
     C_i_history: Annotated[CoefficientHistory | None, Is("C_i over the liquid phase")]
     tank_history: Annotated[TankHistory | None, Is("content of the tank over the liquid phase")]
-    C_d: Annotated[Mapping[str, Quantity], Is("discharge coefficient by law; spi: incompressible liquid")] = {}
+    inlet: Annotated[Inlet | None, Is("what reaches the injector")] = None
+    C_d: Annotated[Mapping[str, Quantity], Is("discharge coefficient by law: spi, hem, dyer")] = {}
+    joint: Annotated[Joint | None, Is("errors of the constants together")] = None
     budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     notes: Notes
     warnings: Warnings
