@@ -7,7 +7,7 @@ is what would not (noise, times read from it). With both their squares add up to
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -56,6 +56,11 @@ def total(inputs: Iterable[Input]) -> float:
     5.0
     """
     return float(np.linalg.norm(list(_effects(inputs).values())))
+
+
+def relative(inputs: Iterable[Input], level: float) -> tuple[Input, ...]:
+    """The inputs' effects over a ``level`` of the quantity, in its unit."""
+    return tuple(replace(i, effect=i.effect / level) for i in inputs)
 
 
 def _effects(inputs: Iterable[Input]) -> dict[str, float]:

@@ -34,4 +34,5 @@ def made_of(products: Iterable[Calibration | Validation | Flight]) -> list[Made]
 def _quantities(product: Calibration | Validation | Flight) -> dict[str, Quantity]:
     if not isinstance(product, Validation):
         return product.quantities
-    return product.performance.measured.quantities
+    ratios = product.efficiencies.quantities if product.efficiencies is not None else {}
+    return product.performance.measured.quantities | ratios

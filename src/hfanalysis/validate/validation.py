@@ -123,7 +123,7 @@ class _Work:
             closure=self._closure(found),
             efficiency_basis=BASIS,
             **found.content,
-            budget=self._budgets(measured),
+            budget=self._budgets(measured) | found.budget,
             sensors=tuple(sensors),
             absent=self.absent,
             notes=tuple(dict.fromkeys(notes)),
