@@ -93,6 +93,15 @@ class Quantity:
         low, high = self.interval or (self.value, self.value)
         return replace(self, ci95=(min(low, *values), max(high, *values)))
 
+    def scaled_to(self, *factors: float) -> Quantity:
+        """The same with an interval that holds its own at each of these ``factors`` [-], too.
+
+        >>> [round(end, 2) for end in Quantity(1.0, "", 0.01).scaled_to(0.8).interval or ()]
+        [0.78, 1.02]
+        """
+        ends = self.interval or ((self.value, self.value) if self.value is not None else ())
+        return self.reaching(*(end * factor for end in ends for factor in factors))
+
     def doubted(self, why: str, reach: tuple[float, float] | None = None) -> Quantity:
         """The same in doubt: its interval has ``reach`` [``unit``] too, what it may be if the doubt is right.
 

@@ -89,7 +89,7 @@ def balance(
     used = part & found.burning
     low, high = found.before.mean(used) if used.any() else (1.0, 1.0)
     slower = float(np.nanmean((found.c_star_frozen / found.c_star)[used])) if used.any() else 1.0
-    out = out.reaching(out.value * low * slower, out.value * high)
+    out = out.scaled_to(low * slower, high)
     std = float(np.linalg.norm([q.std or 0.0 for q in (out, *entered)]))
     value = out.value - gone if out.value is not None else 0.0
     reach = [end_ - gone for end_ in (out.interval or (gone, gone))]

@@ -43,7 +43,7 @@ class Ideal:
     """The engine's own nozzle on the measured pressure, (n,) each: c* [m/s] and thrust [N], shifting and frozen.
 
     ``before``: the pressure before the nozzle over the gauge's; ``pressure`` [Pa] with it; ``vacuum``: C_F into vacuum
-    [-], shifting; NaN where the nozzle does not flow full.
+    [-], shifting; NaN where the nozzle does not flow full. ``on_exit`` [N]: the air's force on its exit.
     """
 
     before: Before
@@ -55,6 +55,13 @@ class Ideal:
     thrust: Array
     thrust_frozen: Array
     vacuum: Array
+    on_exit: float
+
+    def force(self, factor: float, part: NDArray[np.bool_]) -> float:
+        """Ideal thrust at ``factor`` [-] times the pressure over that at the pressure, mean of the samples ``part``
+        (n,): the air's force on the exit stays."""
+        shares = (self.thrust_frozen + self.on_exit)[part] / self.thrust_frozen[part]
+        return 1.0 + (factor - 1.0) * float(np.nanmean(shares))
 
 
 def ideal(
@@ -79,7 +86,8 @@ def ideal(
     c_star = characteristic_velocity(frozen.heat, frozen.gamma)
     thrust = vacuum * pressure * engine.throat_area - ambient * engine.exit_area
     counted = burning if purge is None else burning & (flows.time < purge)
-    return Ideal(before, pressure, burning, counted, gain * c_star, c_star, thrust, frozen.thrust, vacuum)
+    return Ideal(before, pressure, burning, counted, gain * c_star, c_star, thrust, frozen.thrust, vacuum,
+                 ambient * engine.exit_area)  # fmt: skip
 
 
 def _full(engine: Engine, pressure: Array, gamma: Array, ambient: float) -> NDArray[np.bool_]:
@@ -183,6 +191,7 @@ def _relative(quantity: Quantity) -> float:
 
 
 _UNITS = {"c_star": "m/s"}
+_OF_IDEAL = ("thrust_coefficient_efficiency", "thrust_coefficient_efficiency_frozen")
 _THRUST = ("thrust_coefficient", "thrust_coefficient_efficiency", "thrust_coefficient_efficiency_frozen")
 
 
@@ -202,9 +211,10 @@ def means(histories: Mapping[str, Array], found: Ideal, part: NDArray[np.bool_],
         value = float(np.nanmean(values))
         of_thrust = name in _THRUST
         std = value * (by_thrust if of_thrust else by_c_star)
-        reach = (value / low, value / high) if of_thrust else (value * low, value * high)
+        ends = [1.0 / found.force(end, part) if name in _OF_IDEAL else 1.0 / end for end in (low, high)]
+        ends = ends if of_thrust else [low, high]
         why = "mean over the liquid phase" + ("; one side by where the gauge sits" if low < 1.0 == high else "")
-        out[name] = Quantity(value, _UNITS.get(name, ""), std, why=why).reaching(*reach)
+        out[name] = Quantity(value, _UNITS.get(name, ""), std, why=why).scaled_to(*ends)
     return Efficiencies.from_json(out)
 
 

@@ -98,7 +98,7 @@ def _vacuum(
         coefficient = force_of / force
         made[f"{name}_thrust_coefficient"] = Quantity(
             coefficient, "", abs(coefficient) * float(by_force), why=why
-        ).reaching(coefficient / low, coefficient / high)
+        ).scaled_to(1.0 / low, 1.0 / high)
     return {"vacuum_thrust": Quantity(vacuum, "N", thrust * spread.thrust, why=why), **made}
 
 

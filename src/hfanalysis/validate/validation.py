@@ -10,6 +10,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.narrow_port import with_stated_tap
 from hfanalysis.calibrate.water_flow import is_water
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
@@ -161,7 +162,8 @@ class _Work:
     def _full(self) -> FullRun:
         if isinstance(self.fire, str):
             raise AbsentError(self.fire)
-        return run_full(self.true, self.segments, self.calibration, self.definition, self.effects)
+        acting = with_stated_tap(self.definition, self.effects)
+        return run_full(self.true, self.segments, self.calibration, self.definition, acting)
 
     def _flows(self, full: FullRun | None) -> tuple[Flows, Array]:
         """The flows, and the nitrogen [kg/s] that passes the injector beside the oxidizer, where a purge is adopted."""
