@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, expansion
 from hfanalysis.calibrate.inlet import Feed, inlet_of
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
@@ -51,10 +52,14 @@ def joint(draws: Draws, with_m: bool) -> Joint | None:
     table = table[np.isfinite(table).all(axis=1)]
     if len(table) < LEAST_DRAWS:
         return None
-    covariance = np.cov(table, rowvar=False)
-    std = np.sqrt(np.diag(covariance))
+    return joint_of(names, np.cov(table, rowvar=False))
+
+
+def joint_of(names: tuple[str, ...], covariance: Array) -> Joint:
+    """Errors of ``names`` by their ``covariance`` (n, n) [SI]."""
+    std = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     scale = np.where(std > 0.0, std, 1.0)
-    correlation = covariance / np.outer(scale, scale)
+    correlation = np.clip(covariance / np.outer(scale, scale), -1.0, 1.0)
     np.fill_diagonal(correlation, 1.0)
     rows = tuple(tuple(round(float(x), 6) for x in row) for row in correlation)
     return Joint(names=names, std=tuple(float(x) for x in std), correlation=rows)

@@ -22,4 +22,4 @@ class TankCalibration:
 
     def with_law(self, law: FuelLaw) -> Calibration:
         """Together with the fuel's regression."""
-        return Calibration(**law.content, **self.constants.content)
+        return Calibration(**{**self.constants.content, **law.content})

@@ -68,7 +68,7 @@ def evidence_of(
         f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})",
         *_remarks(definition, calibration, engine.effects),
     )
-    covariance = _covariance(draws, definition, calibration)
+    covariance = covariance_of(draws, calibration, _stated_variances(definition))
     return Evidence(
         definition.test.id, first, part.time, part.value, burn_time, fuel_left, end, (start, pressure), covariance,
         chamber.noise / np.sqrt(max(width / chamber.step, 1.0)), _wander(log, segments, part.time), remarks,
@@ -157,8 +157,11 @@ def _remarks(definition: TestDefinition, calibration: TankConstants, effects: Se
     ]
 
 
-def _covariance(draws: Draws, definition: TestDefinition, calibration: TankConstants) -> Array:
-    """Of NUISANCES, from the repeated calibrations."""
+def covariance_of(draws: Draws, calibration: TankConstants, apart: tuple[float, float]) -> Array:
+    """Of NUISANCES [SI], from the repeated calibrations; ``apart``: variances of grain mass [kg^2] and throat [m^4].
+
+    Raises AbsentError where too few of the repetitions have an answer.
+    """
     v, i = draws.values, draws.inputs
     m, m_std = exponent(calibration)
     drawn_m = v["m"] if calibration.m.value is not None else m + m_std * _standard(v["m"].size)
@@ -169,11 +172,19 @@ def _covariance(draws: Draws, definition: TestDefinition, calibration: TankConst
         raise AbsentError("the repetitions of the calibration do not give the errors of what a and n rest on")
     out = np.zeros((len(NUISANCES), len(NUISANCES)))
     out[: len(columns), : len(columns)] = np.cov(table[good], rowvar=False)
-    return out + np.diag([*[0.0] * len(columns), *_stated_variances(definition)])
+    return out + np.diag([*[0.0] * len(columns), *apart])
+
+
+def whole_covariance(draws: Draws, definition: TestDefinition, calibration: TankConstants) -> Array:
+    """The same with all errors in, ``draws`` and what is stated without a deviation."""
+    radius = definition.known("nozzle.throat_radius")
+    assert radius is not None
+    throat = 2.0 * pi * radius.value * (radius.std or 0.0)
+    return covariance_of(draws, calibration, (definition.known_std("grain.mass") ** 2, throat**2))
 
 
 def _stated_variances(definition: TestDefinition) -> tuple[float, float]:
-    """Of grain mass [kg^2] and throat area [m^4], as far as test.toml states deviations."""
+    """Of grain mass [kg^2] and throat area [m^4], as far as test.toml states deviations: these weigh the fit."""
     grain, nozzle = definition.grain, definition.nozzle
     assert grain is not None
     assert grain.mass is not None

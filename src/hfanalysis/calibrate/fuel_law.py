@@ -10,10 +10,11 @@ import numpy as np
 
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.evidence import Evidence
-from hfanalysis.calibrate.evidence_from_log import evidence_of
+from hfanalysis.calibrate.evidence_from_log import evidence_of, whole_covariance
 from hfanalysis.calibrate.facts import nothing_to_regress
+from hfanalysis.calibrate.law_errors import LawErrors
 from hfanalysis.calibrate.narrow_port import reaching_the_head, with_stated_tap
-from hfanalysis.calibrate.regression import Joint, fit, fit_together, result
+from hfanalysis.calibrate.regression import Fitted, Joint, fit, fit_together, result
 from hfanalysis.calibrate.stated import apart, held_law, law_of
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
@@ -64,12 +65,24 @@ def _fitted(
     """As the log has it."""
     try:
         found = fit([evidence_for(log, segments, definition, calibration, with_stated_tap(definition, effects))])
-        law = reaching_the_head(result(found), found, definition)
+        whole = _with_all_errors(result(found), found, definition, calibration)
+        law = reaching_the_head(whole, found, definition)
     except AbsentError as error:
         return FuelLaw.absent(str(error))
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return FuelLaw.absent(f"the engine's model cannot be fitted with what test.toml states: {error}")
     return _conditional(law, calibration.constants.C_i)
+
+
+def _with_all_errors(law: FuelLaw, found: Fitted, definition: TestDefinition, calibration: TankCalibration) -> FuelLaw:
+    """The law with what systematic errors do to it; as it is where they cannot be carried through the engine."""
+    if calibration.whole is None:
+        return law
+    try:
+        whole = whole_covariance(calibration.whole, definition, calibration.constants)
+        return LawErrors(found, whole).told(law)
+    except (AbsentError, ArithmeticError):
+        return law
 
 
 def _conditional(law: FuelLaw, discharge: Quantity) -> FuelLaw:

@@ -120,7 +120,7 @@ def inlet_of(
     """
     fluid = saturation_of("coolprop")
     states = _states(feed, fluid, bias)
-    if not np.isfinite(C_i) or discharge.value is None:
+    if not C_i > 0.0 or discharge.value is None:
         none = Quantity.absent(discharge.reason or "no C_i to take it from", verdict=NOT_IDENTIFIABLE)
         return states, dict.fromkeys(LAWS, none)
     return states, {law: _discharge(feed, saturation, fluid, bias, C_i, draws, law) for law in LAWS}

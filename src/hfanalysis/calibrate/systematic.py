@@ -67,14 +67,12 @@ def systematic_errors(
     tables = Tables.of(histories, saturation)
     plain = reduce(tables, saturation, inputs)
     found = dict(_shifted(definition, histories, saturation, tables, inputs, plain))
-    uniform, own = ("properties", "line"), {"volume": "volume", "area": "area"}
-    out = [
-        Systematic(
-            name, _difference(plain, other, 1.0 / UNIFORM if name in uniform else 1.0), name in uniform,
-            {name: _unstated(definition, name)} if name in own else None,
-        )
-        for name, other in found.items()
-    ]  # fmt: skip
+    bounds, own = {"properties": definition.deviations.properties.share, "line": 1.0}, ("volume", "area")
+    out = []
+    for name, other in found.items():
+        moved = _difference(plain, other, bounds[name] / UNIFORM if name in bounds else 1.0)
+        by = {name: _unstated(definition, name)} if name in own else None
+        out.append(Systematic(name, moved, name in bounds, by))
     return tuple(out)
 
 
@@ -103,7 +101,7 @@ def _shifted(
     other = other_table(saturation)
     yield "properties", reduce(Tables.of(histories, other), other, inputs)
     dry = _vapor_with_line(definition, histories, saturation, inputs, plain)
-    if np.isfinite(dry):
+    if np.isfinite(dry) and plain.vapor_mass > 0.0:
         yield "line", _with_vapor(tables, saturation, inputs, plain, dry)
     choked = expansion(tables, saturation, inputs)
     if choked is not None:

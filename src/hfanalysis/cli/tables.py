@@ -183,6 +183,8 @@ def _calibrate(context: Context, console: Console) -> None:
     product, events = context.read(Calibration), context.read(Segments).events
     times = {name: events[name] for name in ("t_feed", "t_v", "t_purge")}
     _print(console, ordered(product.quantities) | times, "calibration")
+    if product.inlet is not None:
+        _print(console, product.inlet.quantities | dict(product.C_d), "what reaches the injector, and its C_d by law")
     _regression(product.regression, console)
 
 

@@ -15,7 +15,7 @@ from hfanalysis.inference.budget import Input, total
 from hfanalysis.inference.full_run import FullRun, moved
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import STATED, UNPHYSICAL, Quantity
+from hfanalysis.quantity import UNPHYSICAL, Quantity
 from hfanalysis.record.accuracy import left_by_zero
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
@@ -23,6 +23,7 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
 from hfanalysis.validate.load_cell import CellError, cell_error
+from hfanalysis.validate.model_errors import changes
 from hfanalysis.validate.thrust import AT_AMBIENT, OUT, Thrust, burnt_out, thrust_of
 
 NAMES = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust", "average_thrust",
@@ -354,15 +355,15 @@ _UNITS = ("s", "N s", "s", "Pa", "N", "N", "kg", "kg", "s", "s")
 
 
 def modeled(full: FullRun, calibration: Calibration, purge: float | None = None) -> dict[str, Quantity]:
-    """The model's column [s, N s, Pa, N, kg], with what the calibrated constants' uncertainties make of it; ``purge``
-    [s]: when nitrogen enters in the log."""
+    """The model's column [s, N s, Pa, N, kg], with what the errors of its constants make of it, drawn jointly;
+    ``purge`` [s]: when nitrogen enters in the log."""
     engine = full.engine
     nominal = _Column.of(full, full.burnt, engine.oxidizer_mass, engine.fuel_mass, purge).values
     errors = np.zeros(len(NAMES))
-    for change in _changes(full, calibration):
-        oxidizer = change.get("oxidizer_mass", engine.oxidizer_mass)
+    for change in changes(engine, calibration):
+        oxidizer, fuel = (change.get(n, getattr(engine, n)) for n in ("oxidizer_mass", "fuel_mass"))
         try:
-            other = _Column.of(full, moved(full, change), oxidizer, engine.fuel_mass, purge).values
+            other = _Column.of(full, moved(full, change), oxidizer, fuel, purge).values
         except (ValueError, ArithmeticError):
             continue
         errors += (other - nominal) ** 2
@@ -373,20 +374,3 @@ def modeled(full: FullRun, calibration: Calibration, purge: float | None = None)
         reason = f"the model's fuel is not gone after {full.burnt.burn_time:.0f} s"
         out |= {name: Quantity.absent(reason) for name in ("burn_time", "average_thrust")}
     return out
-
-
-def _changes(full: FullRun, calibration: Calibration) -> list[dict[str, float]]:
-    """One standard deviation of each calibrated constant; a and n along and across their combination."""
-    engine, discharge, m = full.engine, calibration.C_i, calibration.m.std or 0.0
-    rate, flux = calibration.regression_rate_reference, calibration.regression.reference_flux
-    assert discharge.value is not None
-    area = engine.feed.area * (1.0 + (discharge.std or 0.0) / discharge.value)
-    changes = [{"area": area}, {"loss_factor": engine.feed.loss_factor + (calibration.K_loss.std or 0.0)}]
-    changes.append({"oxidizer_mass": engine.oxidizer_mass + (calibration.load.std or 0.0)})
-    if engine.polytropic_exponent is not None and m > 0.0:
-        changes.append({"polytropic_exponent": engine.polytropic_exponent + m})
-    n = engine.n + (calibration.n.std or 0.0)
-    if STATED in (calibration.a.verdict, calibration.n.verdict) or not rate.value or flux is None or not flux.value:
-        return [*changes, {"a": engine.a + (calibration.a.std or 0.0)}, {"n": n}]
-    changes.append({"a": engine.a * (1.0 + (rate.std or 0.0) / rate.value)})
-    return [*changes, {"n": n, "a": rate.value / flux.value**n}]

@@ -12,8 +12,16 @@ from hfanalysis.sentences import Text, rounded, said
 from hfanalysis.wording.scales import reading_unit, scale, superscript
 
 NAMES: dict[str, str] = {
-    "C_i": "injector coefficient",
+    "C_i": "effective injector coefficient",
     "m": "polytropic exponent",
+    "m_choked": "polytropic exponent if the vapor chokes",
+    "vapor_C_d": "discharge coefficient of the vapor",
+    "subcooling": "subcooling at the injector",
+    "quality": "vapor by mass at the injector",
+    "density": "density at the injector",
+    "spi": "C_d, incompressible mixture",
+    "hem": "C_d, homogeneous equilibrium",
+    "dyer": "C_d, mean of both (Dyer)",
     "Z": "vapor compressibility",
     "K_loss": "feed loss coefficient",
     "p_loss_liquid": "liquid-phase feed loss",

@@ -1,0 +1,92 @@
+"""What systematic errors do to a and n, and how these err together with the constants that they were fitted with.
+
+The fit stays as it is, its weights too. To first order its answer follows what it was told of tank, grain and nozzle:
+x = x_0 - H S dv, with H = C J' P of the fit and S the change of the observations by one deviation of each. So the
+errors that the weights do not know add H S C_v S' H', and the correlation of a and n with the rest is -H S C_v.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import exp, log
+
+import numpy as np
+
+from hfanalysis.arrays import Array
+from hfanalysis.calibrate.beside_report import joint_of
+from hfanalysis.calibrate.evidence import NUISANCES
+from hfanalysis.calibrate.regression import Fitted, law_at
+from hfanalysis.products.calibration import FuelLaw, Joint
+from hfanalysis.quantity import Quantity
+
+STEP = 0.01
+"""Of ln r and n [-], to either side, over which slopes are taken."""
+
+NAMES = {"oxidizer_mass": "oxidizer_mass", "volume": "volume", "area": "flow_area", "loss_factor": "K_loss",
+         "exponent": "m", "fuel_mass": "fuel_mass", "throat_area": "throat_area"}  # fmt: skip
+"""What a model takes of NUISANCES, as a calibration names it; sensors are not among them."""
+
+
+@dataclass(frozen=True)
+class LawErrors:
+    """A fit of one test, and the covariance of NUISANCES [SI] with all errors in, systematic ones too."""
+
+    found: Fitted
+    whole: Array
+
+    @property
+    def _response(self) -> Array:
+        """Change of (ln r, n) [-] by one deviation of each nuisance, (2, nuisances)."""
+        evidence, weights = self.found.evidence[0], self.found.weights[0]
+        slopes = np.column_stack([self._slope(axis) for axis in STEP * np.eye(2)])
+        gain = self.found.surface.covariance @ slopes.T @ weights.precision
+        return -gain @ replace(evidence, covariance=self.whole).sensitivities(self.found.law)
+
+    def _slope(self, axis: Array) -> Array:
+        evidence, best, flux = self.found.evidence[0], self.found.best, self.found.flux
+        after, before = (evidence.predict(law_at(best + s * axis, flux)) for s in (1.0, -1.0))
+        if after is None or before is None:
+            raise ArithmeticError("the engine's model cannot be run about the best a and n")
+        return np.asarray((after - before) / (2.0 * STEP))
+
+    def told(self, law: FuelLaw) -> FuelLaw:
+        """The law with wider intervals, and with ``joint``, the errors of all constants together."""
+        std = np.sqrt(np.diag(self.whole))
+        scale = np.where(std > 0.0, std, 1.0)
+        by_all, by_fit = (c / np.outer(scale, scale) for c in (self.whole, self.found.evidence[0].covariance))
+        response = self._response
+        more = response @ (by_all - by_fit) @ response.T
+        return self._wider(law, more).but(joint=self._joint(by_all, response, more, std))
+
+    def _wider(self, law: FuelLaw, more: Array) -> FuelLaw:
+        flux, reference = self.found.flux, law.regression.reference_flux
+        assert reference is not None
+        assert reference.value is not None
+        along = {"a": (1.0, -log(flux)), "n": (0.0, 1.0),
+                 "regression_rate_reference": (1.0, log(reference.value / flux))}  # fmt: skip
+        variances = {name: max(float(np.array(w) @ more @ np.array(w)), 0.0) for name, w in along.items()}
+        return law.but(**{name: _widened(getattr(law, name), v, name != "n") for name, v in variances.items()})
+
+    def _joint(self, by_all: Array, response: Array, more: Array, std: Array) -> Joint:
+        """Of what a model takes: NAMES, then n and ln a."""
+        to_a = np.array([[0.0, 1.0], [1.0, -log(self.found.flux)]])  # from (ln r, n) to (n, ln a)
+        taken = [NUISANCES.index(name) for name in NAMES]
+        law = to_a @ (self.found.surface.covariance + more) @ to_a.T
+        across = (to_a @ response @ by_all)[:, taken]
+        rest = by_all[np.ix_(taken, taken)]
+        covariance = np.block([[rest, across.T], [across, law]])
+        units = np.concatenate([std[taken], np.ones(2)])
+        return joint_of((*NAMES.values(), "n", "ln_a"), covariance * np.outer(units, units))
+
+
+def _widened(found: Quantity, variance: float, relative: bool) -> Quantity:
+    """With a ``variance`` [-] more: of its logarithm, where it is a ``relative`` one."""
+    if found.value is None or found.interval is None or not found.std or variance == 0.0:
+        return found
+    own = found.std / (found.value if relative else 1.0)
+    wider = float(np.hypot(own, np.sqrt(variance))) / own
+    if relative:
+        ends = [found.value * exp(wider * log(end / found.value)) for end in found.interval]
+    else:
+        ends = [found.value + wider * (end - found.value) for end in found.interval]
+    return replace(found, std=found.std * wider, ci95=(ends[0], ends[1]))
