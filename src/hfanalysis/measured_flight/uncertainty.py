@@ -177,10 +177,14 @@ class DrawnFlights:
 
 
 def disperse(
-    firing: Firing, curves: Sequence[Curve], drawn: Array, last: float, progress: Progress | None = None
+    firing: Firing,
+    drawn: Array,
+    last: float,
+    progress: Progress | None = None,
+    curves: Sequence[Curve] | None = None,
 ) -> DrawnFlights:
-    """Fly every row of ``drawn`` (flights, 9) [SI] on all cores, dealt to the ``curves`` in turn; the bands end at
-    ``last`` [s] or when the first flights have turned."""
+    """Fly every row of ``drawn`` (flights, 9) [SI] on all cores, dealt in turn to the ``curves`` that may hold
+    (default: the firing's); the bands end at ``last`` [s] or when the first flights have turned."""
     results = np.empty((len(drawn), RESULTS))
     paths = np.empty((min(len(drawn), PATHS), POINTS, 3))
     every = last / (POINTS - 1)
@@ -192,7 +196,7 @@ def disperse(
         fly_all(*fixed, drawn[mine], found, every, path)
         results[mine], paths[mine[:kept]] = found, path[:kept]
 
-    parts = list(_dealt(firing, curves, len(drawn)))
+    parts = list(_dealt(firing, curves or firing.curves, len(drawn)))
     with ThreadPoolExecutor(processors()) as cores:
         for done, _ in enumerate(cores.map(fly_some, parts), 1):
             if progress is not None:
