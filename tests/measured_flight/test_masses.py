@@ -52,7 +52,7 @@ def test_the_fuel_goes_as_the_grain_regresses(n: float) -> None:
 
 def test_the_chamber_holds_what_its_volumes_and_the_port_do() -> None:
     """p V = m R T, before the burn and when all fuel is gone."""
-    gas = ChamberGas(np.array([10e5, 10e5]), np.full(2, 1.25), np.full(2, 8e5))
+    gas = ChamberGas(np.array([0.0, 1.0]), np.array([10e5, 10e5]), np.full(2, 1.25), np.full(2, 8e5))
     load = SimpleNamespace(time=TIME, fuel=MASS * (1.0 - TIME / 10.0))
     found = _gas_mass(np.array([0.0, 10.0]), gas, stated(), cast(Propellant, load))
     empty = 0.2e-3 + 0.9e-3 + pi * OUTER**2 * LENGTH

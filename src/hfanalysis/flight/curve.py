@@ -8,7 +8,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
-from hfanalysis.engine.nozzle import SUBSONIC
+from hfanalysis.engine.nozzle import SUBSONIC, mach_at_area
 from hfanalysis.engine.separation import LAWS, Law, expand_by
 
 STEPS = 1000
@@ -112,7 +112,11 @@ def _gain(
         _, here, _, _, regime = expand_by(law, gamma[i], 1e6, pressure[i], stand, throat, exit_area)
         if regime == SUBSONIC:
             continue
-        for k in range(ambients.size):
-            there = expand_by(law, gamma[i], 1e6, pressure[i], ambients[k], throat, exit_area)[1]
+        full = mach_at_area(exit_area / throat, gamma[i], True)
+        for k in range(ambients.size - 1, -1, -1):
+            _, there, mach, _, _ = expand_by(law, gamma[i], 1e6, pressure[i], ambients[k], throat, exit_area)
             gained[i, k] = there - here
+            if mach == full:  # and it flows full in thinner air, too
+                gained[i, :k] = gained[i, k] + (ambients[k] - ambients[:k]) * exit_area
+                break
     return gained

@@ -123,6 +123,7 @@ def firing(
     if not isinstance(vehicle, Vehicle):
         raise AbsentError(f"test {definition.test.id}: there is nothing to fly: {vehicle}")
     assert definition.rocket is not None
+    vehicle = _on_the_day(vehicle, definition)
     thrust = measured_thrust(log, segments, definition)
     load = propellant(log, segments, calibration, definition, thrust)
     clock = np.linspace(0.0, thrust.burn_time, STEPS + 1)
@@ -149,6 +150,17 @@ def firing(
         measured,
         AS_MEASURED if purge is None else WITHOUT_PURGE,
         (f"the purge gas's part of the thrust is flown: {missing}",) if missing else (),
+    )
+
+
+def _on_the_day(vehicle: Vehicle, definition: TestDefinition) -> Vehicle:
+    """In the air of the launch's day, where it is stated."""
+    site, ground = definition.site, vehicle.launch_altitude
+    warm, pressure = (site.launch_temperature, site.launch_pressure) if site is not None else (None, None)
+    return replace(
+        vehicle,
+        warmer=warm.value - atmosphere.temperature(ground) if warm is not None else 0.0,
+        pressure_share=pressure.value / atmosphere.pressure(ground) if pressure is not None else 1.0,
     )
 
 

@@ -70,7 +70,7 @@ def fly_measured(
     except ValueError as error:
         raise AbsentError(str(error)) from None
     drawn = rows(firing, rocket, samples, seed, shots)
-    spread = disperse(firing, firing.curves, drawn, 1.25 * flown.end[0], progress)
+    spread = disperse(firing, drawn, 1.25 * flown.end[0], progress)
     given, covers = inputs(firing, rocket, shots), band_covers(firing, rocket, shots)
     impulse, measured = _impulse(firing, flown, drawn), _as_measured(firing, drawn)
     made = apogee_budget(drawn, spread.results, len(firing.curves), shots)
@@ -87,7 +87,8 @@ def _as_measured(firing: Firing, drawn: Array) -> Quantity:
         flown = ascend(firing.as_measured[0], firing.vehicle, firing.rail_length)
     except ValueError as error:
         return Quantity.absent(str(error))
-    some = disperse(firing, firing.as_measured, drawn[:AS_MEASURED_FLIGHTS], 1.25 * flown.end[0]).spreads()
+    few = drawn[:AS_MEASURED_FLIGHTS]
+    some = disperse(firing, few, 1.25 * flown.end[0], curves=firing.as_measured).spreads()
     return some["apogee"].about(flown.height, "m") if "apogee" in some else Quantity(flown.height, "m")
 
 

@@ -76,8 +76,9 @@ class Input:
 
 
 def inputs(firing: Firing, rocket: Rocket, shots: bool = False) -> dict[str, Input]:
-    """Every uncertain input of a flight by name; ``shots``: with how thrust differs from one firing to the next."""
-    return {**_inputs(firing, rocket), **({"shot_to_shot": _scatter(rocket)} if shots else {})}
+    """Every uncertain input of a flight by name; ``shots``: with how thrust differs from one firing to the next, as it
+    is where that is stated."""
+    return {**_inputs(firing, rocket), **({"shot_to_shot": _scatter(rocket)} if shots or rocket.shot_to_shot else {})}
 
 
 def _scatter(rocket: Rocket) -> Input:
@@ -88,7 +89,7 @@ def _scatter(rocket: Rocket) -> Input:
 def band_covers(firing: Firing, rocket: Rocket, shots: bool) -> str:
     """What a band holds, in words."""
     laws = "" if len(firing.curves) < 2 else ", and what cannot be told of the purge gas's part and the nozzle's law"
-    if not shots:
+    if not (shots or rocket.shot_to_shot):
         return f"errors of this record only: if this thrust repeats exactly{laws}"
     scatter = _scatter(rocket)
     return (
@@ -152,7 +153,7 @@ def rows(firing: Firing, rocket: Rocket, samples: int, seed: int, shots: bool = 
     mean = _wind(rocket.wind_speed)[0]
     drawn[:, WIND] = mean * np.cos(direction) + std["wind"] * normal[:, 7]
     drawn[:, CROSSWIND] = mean * np.sin(direction) + std["wind"] * normal[:, 8]
-    if shots:
+    if "shot_to_shot" in std:
         drawn[:, THRUST_SCALE] *= np.maximum(1.0 + std["shot_to_shot"] * rng.standard_normal(samples), 0.05)
     return drawn
 
@@ -177,10 +178,14 @@ class DrawnFlights:
 
 
 def disperse(
-    firing: Firing, curves: Sequence[Curve], drawn: Array, last: float, progress: Progress | None = None
+    firing: Firing,
+    drawn: Array,
+    last: float,
+    progress: Progress | None = None,
+    curves: Sequence[Curve] | None = None,
 ) -> DrawnFlights:
-    """Fly every row of ``drawn`` (flights, 9) [SI] on all cores, dealt to the ``curves`` in turn; the bands end at
-    ``last`` [s] or when the first flights have turned."""
+    """Fly every row of ``drawn`` (flights, 9) [SI] on all cores, dealt in turn to the ``curves`` that may hold
+    (default: the firing's); the bands end at ``last`` [s] or when the first flights have turned."""
     results = np.empty((len(drawn), RESULTS))
     paths = np.empty((min(len(drawn), PATHS), POINTS, 3))
     every = last / (POINTS - 1)
@@ -192,7 +197,7 @@ def disperse(
         fly_all(*fixed, drawn[mine], found, every, path)
         results[mine], paths[mine[:kept]] = found, path[:kept]
 
-    parts = list(_dealt(firing, curves, len(drawn)))
+    parts = list(_dealt(firing, curves or firing.curves, len(drawn)))
     with ThreadPoolExecutor(processors()) as cores:
         for done, _ in enumerate(cores.map(fly_some, parts), 1):
             if progress is not None:

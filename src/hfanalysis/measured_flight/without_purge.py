@@ -53,7 +53,33 @@ in it, a few times what a gauge is off."""
 FREE_EXPONENT = 0.1
 """Relative standard deviation of the vapor's exponent [-] where the calibration states none."""
 
+NO_REGRESSION = 1e-12
+"""a [SI] of a fuel that does not burn. Source: by definition, next to nothing."""
+
 UNKNOWN = "without it what the tank would have given without purge gas cannot be told"
+
+
+@dataclass(frozen=True)
+class FuelLaw:
+    """r = rate (G/flux)^n: ``n`` [-]; the ``rate`` [m/s] at the ``flux`` [kg/(m^2 s)] where it is known best, None
+    where only how much fuel has burnt is known."""
+
+    n: Value
+    rate: Value | None = None
+    flux: float = 1.0
+
+    @classmethod
+    def of(cls, definition: TestDefinition, calibration: Calibration) -> FuelLaw:
+        """As calibrated; where that found none, what fuels have."""
+        n, _ = exponent_of(definition, calibration)
+        grain, found, rate = definition.grain, calibration.alone("n"), calibration.regression_rate_reference
+        if grain is not None and grain.n is not None:
+            return cls(Value(n, grain.n.std or 0.0))
+        flux = calibration.regression.reference_flux
+        if found.value != n or rate.value is None or flux is None or flux.value is None:
+            return cls(Value(n, USUAL_N[1]))
+        std = found.std or 0.0 if found.verdict == IDENTIFIED else USUAL_N[1]
+        return cls(Value(n, std), Value(rate.value, rate.std), flux.value)
 
 
 @dataclass(frozen=True)
@@ -69,7 +95,7 @@ class Known:
     area: float
     exponent: Value | None
     held: bool
-    fuel_exponent: Value
+    fuel: FuelLaw
     grain: Grain
     throat: float
     leave: float
@@ -81,13 +107,14 @@ class Known:
 @dataclass(frozen=True)
 class Draw:
     """In what one of the possible tails differs: law of the vapor and of the nozzle; standard deviations from the value
-    of t_purge, of the vapor's exponent and of the fuel's; the exponent that gases have [-]."""
+    of t_purge, of the vapor's exponent, of the fuel's and of its rate; the exponent that gases have [-]."""
 
     vapor: int = CHOKED_GAS
     nozzle: Law = "one-dimensional"
     purge: float = 0.0
     exponent: float = 0.0
     fuel: float = 0.0
+    rate: float = 0.0
     gas: float = ASSUMED_EXPONENT[0]
 
 
@@ -146,25 +173,15 @@ def known(
     volume, holes, throat, leave, _, length, density, outer = (
         value.value for value in stated.values() if isinstance(value, Value)
     )
-    n, _ = exponent_of(definition, calibration)
     m, effective = calibration.alone("m"), (calibration.alone("C_i").value or 0.0) * holes
     line = 2.0 * (calibration.alone("K_loss").value or 0.0) * effective**2  # its loss over the injector's own
     pressures = MeasuredPressures.of(log, segments, definition, burn_end, line / (1.0 + line))
     return Known(
         t_v, t_purge, segments.t_purge.std or 0.0, pressures, thrust, volume, effective,
         None if m.value is None else Value(m.value, m.std), m.verdict == "stated",
-        Value(n, _spread_of_n(definition, calibration)), Grain(length, outer, density, 1.0, n),
+        FuelLaw.of(definition, calibration), Grain(length, outer, density, 1.0, 0.5),
         np.pi * throat**2, np.pi * leave**2, definition.ambient_pressure.value, load, definition.model.properties,
     )  # fmt: skip
-
-
-def _spread_of_n(definition: TestDefinition, calibration: Calibration) -> float:
-    """As stated, or as identified; what fuels have where it is neither."""
-    grain = definition.grain
-    if grain is not None and grain.n is not None:
-        return grain.n.std or 0.0
-    found = calibration.alone("n")
-    return found.std or 0.0 if found.verdict == IDENTIFIED else USUAL_N[1]
 
 
 def tail(found: Known, draw: Draw) -> Tail:
@@ -178,7 +195,7 @@ def tail(found: Known, draw: Draw) -> Tail:
     pressure = min(at_purge[0], 0.999 * _read(found, found.t_v, width)[0])
     share, gone = _flown(found, t_purge, draw.vapor != INCOMPRESSIBLE)
     mass, exponent, factor = _vapor(found, draw, full, np.log(pressure / _read(found, found.t_v, width)[0]), gone)
-    radius, a, n = _fuel(found, t_purge, draw.fuel)
+    radius, a, n = _fuel(found, t_purge, draw)
     begun = VaporBurn(
         mass, pressure, temperature * (mass / full) ** (exponent - 1.0), exponent, factor * found.area, share,
         float(draw.vapor != INCOMPRESSIBLE), a, n, radius, found.grain.outer_radius, found.grain.length,
@@ -254,28 +271,30 @@ def _vapor(found: Known, draw: Draw, full: float, fallen: float, gone: float) ->
     return float(max(root, 0.05 * np.sqrt(full)) ** 2), float(exponent), 1.0
 
 
-def _fuel(found: Known, t_purge: float, off: float) -> tuple[float, float, float]:
-    """Port radius [m] at t_purge, and a and n of the fuel, which burns what is known to have burnt.
-
-    ``off``: standard deviations by which n is off.
-    """
-    load, n = found.burnt, float(np.clip(found.fuel_exponent.value + off * (found.fuel_exponent.std or 0.0), 0.0, 1.0))
+def _fuel(found: Known, t_purge: float, draw: Draw) -> tuple[float, float, float]:
+    """Port radius [m] at t_purge, and a and n of the fuel: as calibrated, else so that what has burnt has burnt."""
+    load, law = found.burnt, found.fuel
+    n = float(np.clip(law.n.value + draw.fuel * (law.n.std or 0.0), 0.0, 1.0))
     flow = np.maximum(-np.gradient(load.oxidizer, load.time), 0.0)
     first, last = (found.grain.port_radius(float(load.fuel[i])) for i in (0, -1))
     over = accumulated(load.time, np.where(load.fuel > load.fuel[-1], flow / np.pi, 0.0) ** n)
-    if over[-1] <= 0.0 or last <= first:
-        return first, 1e-12, n
-    a = pace_between(first, last, 1.0, n) / float(over[-1])
-    return float(opened(first, a, n, float(np.interp(t_purge, load.time, over)))), float(a), n
+    if law.rate is not None:
+        a = (law.rate.value + draw.rate * (law.rate.std or 0.0)) / law.flux**n
+    elif over[-1] > 0.0 and last > first:
+        a = pace_between(first, last, 1.0, n) / float(over[-1])
+    else:
+        return first, NO_REGRESSION, n
+    radius = float(opened(first, a, n, float(np.interp(t_purge, load.time, over))))
+    return min(radius, found.grain.outer_radius), max(float(a), NO_REGRESSION), n
 
 
 def draws(found: Known, nozzle: tuple[Law, ...], count: int, seed: int) -> Iterator[tuple[int, Tail]]:
-    """``count`` possible tails with their numbers, each law of vapor and ``nozzle`` (that of the stand's thrust) as often
-    as the others; those that cannot be are left out."""
+    """``count`` possible tails with their numbers, each law of vapor and ``nozzle`` (that of the stand's thrust) as
+    often as the others; those that cannot be are left out."""
     rng = np.random.default_rng([seed, 20])
     for i in range(count):
-        purge, exponent, fuel = rng.standard_normal(3)
+        purge, exponent, fuel, rate = rng.standard_normal(4)
         gas = float(rng.uniform(1.0, 1.3))
         law = nozzle[(i // 3) % len(nozzle)]
         with suppress(AbsentError):
-            yield i, tail(found, Draw(i % 3, law, purge, exponent, fuel, gas))
+            yield i, tail(found, Draw(i % 3, law, purge, exponent, fuel, rate, gas))
