@@ -1,4 +1,4 @@
-"""Do 95 % intervals hold what a test engineer signs for? Simulated tests with systematic errors, each through all stages.
+"""Do 95 % intervals hold what a test engineer signs for? Simulated tests with systematic errors, through all stages.
 
 Every log is of a whole engine (simulated/signed.py) whose volume, holes, masses, throat, gauges, load cell, rocket and
 table of nitrous oxide are off as test.toml states or as the documented defaults have it. Resumable: results are kept in
@@ -31,13 +31,13 @@ SAMPLES, FLIGHTS = 200, 400
 """Repetitions of the calibration, and drawn flights, of each test. Source: choice; half and a tenth of the defaults."""
 TITLE = """# Coverage
 
-Made by `make coverage`, which goes on where it was stopped. {count} simulated tests (simulated/signed.py), each taken from
-its log to its flight. Drawn anew for each, as test.toml states it (in half of the tests) or as the documented defaults
-have it (in the others): tank volume, loaded mass, the injector's holes, grain, throat, burn time by video, zero and span
-of every gauge, the load cell's gain (calibrated in place or not) and a drift of any course, dry mass, drag, rail and wind.
-C_i drifts by {drift:.0f} % (one standard deviation) while the liquid lasts, and every second log is reduced with another
-table of nitrous oxide than its own. n counts where it is called identified. z is (found - truth) / stated standard
-deviation. {verdict}
+Made by `make coverage`, which goes on where it was stopped. {count} simulated tests (simulated/signed.py), each taken
+from its log to its flight. Drawn anew for each, as test.toml states it (in half of the tests) or as the documented
+defaults have it (in the others): tank volume, loaded mass, the injector's holes, grain, throat, burn time by video,
+zero and span of every gauge, the load cell's gain (calibrated in place or not) and a drift of any course, dry mass,
+drag, rail and wind. C_i drifts by {drift:.0f} % (one standard deviation) while the liquid lasts, and every second log is
+reduced with another table of nitrous oxide than its own. n counts where it is called identified. z is (found - truth) /
+stated standard deviation. {verdict}
 
 """
 
@@ -96,8 +96,8 @@ def without_errors(log: Any, segments: Any, truth: Signed) -> Any:
     origin = segments.t_open.value
     exact = {
         name: replace(
-            channel, values=truth.at(name, channel.time - truth.stand.t_open), raw=None, zero=0.0, zero_std=0.0, drift=0.0,
-            flags=np.zeros_like(channel.flags), accuracy=1e-3,
+            channel, values=truth.at(name, channel.time - truth.stand.t_open), raw=None, zero=0.0, zero_std=0.0,
+            drift=0.0, flags=np.zeros_like(channel.flags), accuracy=1e-3,
         )
         for name, channel in log.channels.items()
     }  # fmt: skip

@@ -52,9 +52,7 @@ def any_law(generator: np.random.Generator, flux: float) -> tuple[float, float]:
     return generator.uniform(0.8e-3, 2.0e-3), generator.uniform(0.2, 0.75)
 
 
-def draw_engine(
-    generator: np.random.Generator, law: Law = any_law, early: float = 0.4
-) -> tuple[Truth, Engine, Burn]:
+def draw_engine(generator: np.random.Generator, law: Law = any_law, early: float = 0.4) -> tuple[Truth, Engine, Burn]:
     """An engine at 12 to 28 bar that burns for 0.6 to 1.6 times as long as its liquid lasts.
 
     Within a tenth of that the two ends would fall together, which is a matter of finding the phases. ``law``: draws the

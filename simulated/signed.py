@@ -1,9 +1,9 @@
 """Logs of whole engines with all the errors that a test engineer signs for, each drawn from what is stated of it.
 
 As simulated/engine.py, of fuels that paraffin is known for, but: volume, holes, masses, throat and burn time are off as
-test.toml states or as the documented defaults have it; C_i drifts; the log may be reduced with another table of nitrous
-oxide; gauges have errors of zero and span; the load cell one of gain, and a drift of any course; the rocket differs from
-what is stated of it. No nitrogen enters.
+test.toml states or as the documented defaults have it; C_i drifts; the log may be reduced with another table of
+nitrous oxide; gauges have errors of zero and span; the load cell one of gain, and a drift of any course; the rocket
+differs from what is stated of it. No nitrogen enters.
 """
 
 from __future__ import annotations

@@ -64,11 +64,12 @@ def _wider(quantity: Quantity, values: Sequence[float], side: str, hangs: bool) 
     """With the reach; where it is so wide that a and n ``hang`` on where the gauge sits, on that condition."""
     if quantity.value is None or not values:
         return quantity
+    own = quantity.value
     if hangs and quantity.verdict == IDENTIFIED:
         quantity = replace(quantity, verdict=CONDITIONAL)
-    far = max(values, key=lambda value: abs(value - (quantity.value or 0.0)))
+    far = max(values, key=lambda value: abs(value - own))
     wider = quantity.reaching(*values)
-    if abs(far - quantity.value) < SEEN * abs(quantity.value):
+    if abs(far - own) < SEEN * abs(own):
         return wider
     said = f"the interval has {far:.3g} by {side}"
     return replace(wider, why=f"{quantity.why}; {said}" if quantity.why else said)

@@ -377,7 +377,7 @@ def _conditions(found: Fitted, flux: float) -> Iterator[str]:
     for e, w in zip(found.evidence, found.weights, strict=True):
         burnt = e.burnt(found.law)
         windows.append(flux_range(e, burnt))
-        trickles.append(set_by_trickle(e, w, burnt, _slopes(e, found.flux, found.best), windows[-1]))
+        trickles.append(set_by_trickle(e, w, burnt, slopes(e, found.flux, found.best), windows[-1]))
     return conditions(found.law, flux, windows, trickles)
 
 
