@@ -35,9 +35,9 @@ Made by `make coverage`, which goes on where it was stopped. {count} simulated t
 from its log to its flight. Drawn anew for each, as test.toml states it (in half of the tests) or as the documented
 defaults have it (in the others): tank volume, loaded mass, the injector's holes, grain, throat, burn time by video,
 zero and span of every gauge, the load cell's gain (calibrated in place or not) and a drift of any course, dry mass,
-drag, rail and wind. C_i drifts by {drift:.0f} % (one standard deviation) while the liquid lasts, and every second log is
-reduced with another table of nitrous oxide than its own. n counts where it is called identified. z is (found - truth) /
-stated standard deviation. {verdict}
+drag, rail and wind. C_i drifts by {drift:.0f} % (one standard deviation) while the liquid lasts, and every second log
+is reduced with another table of nitrous oxide than its own. n counts where it is called identified. z is (found -
+truth) / stated standard deviation. {verdict}
 
 """
 
@@ -60,7 +60,7 @@ def taken_through(folder: Path, truth: Signed) -> tuple[dict[str, Any], dict[str
     from hfanalysis.calibrate.fuel_law import regress
     from hfanalysis.calibrate.tank import calibrate
     from hfanalysis.measured_flight.firing import firing
-    from hfanalysis.measured_flight.uncertainty import disperse, rows
+    from hfanalysis.measured_flight.product import fly_measured
     from hfanalysis.segment.phases import find_phases
     from hfanalysis.validate.validation import validate
 
@@ -73,8 +73,8 @@ def taken_through(folder: Path, truth: Signed) -> tuple[dict[str, Any], dict[str
     rocket = definition.rocket
     assert rocket is not None
     flown = firing(log, segments, calibration, definition)
-    spread = disperse(flown, flown.curves, rows(flown, rocket, FLIGHTS, 1), 60.0).spreads()["apogee"]
-    apogee = spread.about(apogee_of(flown), "m")
+    flights = fly_measured(flown, rocket, FLIGHTS, 1)
+    apogee = flights.dispersion.spreads()["apogee"].about(flights.ascent.height, "m")
     told = {
         "C_i": calibration.C_i, "n": calibration.n, "apogee": apogee, **measured.quantities,
         **({} if ratios is None else ratios.quantities),
