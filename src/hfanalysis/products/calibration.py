@@ -82,7 +82,7 @@ class Joint(Part):
     """Correlated errors of the constants that a model takes together."""
 
     names: Annotated[tuple[str, ...], Is("of the constants")]
-    std: Annotated[Numbers, Is("their standard deviations, SI")]
+    std: Annotated[Numbers, Is("their standard deviations", "SI")]
     correlation: Annotated[tuple[Numbers, ...], Is("of these with each other", "")]
 
 
@@ -93,7 +93,7 @@ class FuelLaw(Part):
     n: Annotated[Quantity, Is("regression exponent", "")]
     regression_rate_reference: Annotated[Quantity, Is("rate at the reference flux, where it is known best", "m/s")]
     regression: Annotated[RegressionBasis, Is("what these rest on")]
-    joint: Annotated[Joint | None, Is("errors of all constants together: flow_area is C_i N_i A_i")] = None
+    joint: Annotated[Joint | None, Is("errors of all constants together: flow_area is C_i N_i A_i", "")] = None
 
     @classmethod
     def absent(cls, reason: str) -> FuelLaw:
@@ -127,7 +127,7 @@ class TankConstants(Part):
     tank_history: Annotated[TankHistory | None, Is("content of the tank over the liquid phase")]
     inlet: Annotated[Inlet | None, Is("what reaches the injector")] = None
     C_d: Annotated[Mapping[str, Quantity], Is("discharge coefficient by law: spi, hem, dyer")] = {}
-    joint: Annotated[Joint | None, Is("errors of the constants together: flow_area is C_i N_i A_i")] = None
+    joint: Annotated[Joint | None, Is("errors of the constants together: flow_area is C_i N_i A_i", "")] = None
     notes: Notes
     warnings: Warnings
 
