@@ -119,7 +119,7 @@ class TankConstants(Part):
     p_loss_vapor: Annotated[Quantity, Is("mean feed loss over [t_v, t_purge)", "Pa")]
     vapor_mass_at_t_v: Annotated[Quantity, Is("vapor left when the liquid is gone", "kg")]
     oxidizer_flow_peak: Annotated[Quantity, Is("peak of the injector's flow", "kg/s")]
-    mass_at_t_feed: Annotated[Quantity, Is("in the tank when the line is full", "kg")]
+    mass_at_t_feed: Annotated[Quantity, Is("in tank and line when the line is full", "kg")]
     oxidizer_mass_liquid_phase: Annotated[Quantity, Is("used as liquid", "kg")]
     oxidizer_mass: Annotated[Quantity, Is("loaded", "kg")]
     rest: Annotated[Rest | None, Is("the tank before the valve opens")]
