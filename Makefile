@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates recovery mutants constants-trial fuzz kills last-digits replicas feed-laws blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -107,6 +107,9 @@ kills: $(STAMP) ## 200 times `make all` killed, interrupted or run twice at once
 
 constants-trial: $(STAMP) ## which constants without source or evidence change nothing on 24 tests: docs/constants-trial.md
 	PYTHONPATH=. $(BIN)/python -m benchmarks.constants_trial --write docs/constants-trial.md $(FLAGS)
+
+feed-laws: $(STAMP) ## injectors that flash and choke, and the replicas, by the report's laws and by others: docs/feed-laws.md
+	$(BIN)/python -m benchmarks.feed_laws --write docs/feed-laws.md
 
 last-digits: $(STAMP) ## how far numbers move by the last digits of logs, FLAGS='--cases FOLDER' with others too: docs/last-digits.md
 	$(BIN)/python -m benchmarks.last_digits --write docs/last-digits.md $(FLAGS)

@@ -92,7 +92,7 @@ class Evidence:
 
     def predict(self, law: Regression) -> Array | None:
         """The model of ``observed`` (n,) [Pa, s, kg]; None where the engine cannot be run with these constants."""
-        return self._once("predicted", law, lambda: _predicted(self, replace(self.engine, a=law.a, n=law.n)))
+        return self._once("predicted", law, lambda: predicted(self, replace(self.engine, a=law.a, n=law.n)))
 
     def burnt(self, law: Regression) -> Burn:
         """The whole burn with these constants."""
@@ -127,7 +127,7 @@ class Evidence:
         if name == "tank_pressure":
             anchor = (anchor[0], anchor[1] + step)
         try:
-            return _predicted(self, starting_for(_shifted(engine, name, step), *anchor))
+            return predicted(self, starting_for(_shifted(engine, name, step), *anchor))
         except AbsentError:
             return None
 
@@ -143,7 +143,8 @@ def _shifted(engine: Engine, name: str, step: float) -> Engine:
     return engine
 
 
-def _predicted(evidence: Evidence, engine: Engine) -> Array | None:
+def predicted(evidence: Evidence, engine: Engine) -> Array | None:
+    """What an ``engine`` would have shown, as ``evidence.observed`` (n,) [Pa, s, kg]; None where it cannot be run."""
     try:
         burnt = burn(engine, longest=evidence.longest)
     except (ValueError, ArithmeticError):

@@ -9,6 +9,8 @@ from math import log
 import numpy as np
 
 from hfanalysis.calibrate.calibration import TankCalibration
+from hfanalysis.calibrate.course import Course
+from hfanalysis.calibrate.drifting import drift_std
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.evidence_from_log import evidence_of, whole_covariance
 from hfanalysis.calibrate.facts import nothing_to_regress
@@ -79,10 +81,17 @@ def _with_all_errors(law: FuelLaw, found: Fitted, definition: TestDefinition, ca
     if calibration.whole is None:
         return law
     try:
-        whole = whole_covariance(calibration.whole, definition, calibration.constants)
-        return LawErrors(found, whole).told(law)
+        errors = LawErrors(found, whole_covariance(calibration.whole, definition, calibration.constants))
+        return errors.drifting(errors.told(law), *_drift(found, calibration))
     except (AbsentError, ArithmeticError):
         return law
+
+
+def _drift(found: Fitted, calibration: TankCalibration) -> tuple[float, float]:
+    """What C_i may drift by [-] while the liquid lasts, and how long it does [s]."""
+    constants, burnt = calibration.constants, found.evidence[0].burnt(found.law)
+    lasts = float(burnt.liquid_out or burnt.time[-1])
+    return drift_std(Course.of(constants.C_i_history), constants.C_i.value or 0.0, lasts), lasts
 
 
 def _conditional(law: FuelLaw, discharge: Quantity) -> FuelLaw:

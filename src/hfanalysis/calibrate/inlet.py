@@ -193,7 +193,7 @@ def _discharge(
     if good.size < 10:
         return Quantity.absent("the repetitions of the calibration have no C_i", verdict=NOT_IDENTIFIABLE)
     low, middle, high = np.quantile(good, (0.025, 0.5, 0.975))
-    interval = (value * (1.0 + low - middle), value * (1.0 + high - middle))
+    interval = (float(value * (1.0 + low - middle)), float(value * (1.0 + high - middle)))
     return Quantity(
         value, "", value * float(good.std(ddof=1)), interval, verdict=DERIVED, why=_why(feed, saturation, law)
     )

@@ -1,7 +1,7 @@
 """What is off in the same way in every repetition of a test, and by how much it moves each constant.
 
-Each such error is one more reduction with it in: what that differs by is one standard deviation. To first order the
-repeated reductions are moved by it, all constants together, so that their correlations are kept.
+Each such error is one more reduction with it in: what that differs by is one standard deviation. The repeated
+reductions are moved by it, each constant by its factor and all together, so that their correlations are kept.
 
 - ``volume`` and ``area``, where test.toml states no deviation: the default of their kind.
 - ``properties``: the other table of nitrous oxide. The truth may lie anywhere up to it, to either side: uniform.
@@ -13,7 +13,7 @@ repeated reductions are moved by it, all constants together, so that their corre
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from math import sqrt
 
 import numpy as np
@@ -33,21 +33,24 @@ GAMMA_KNOWN = 0.1
 """Standard deviation of the vapor's isentropic exponent [-] in what chokes. Source: as of the effect
 injector_choked_vapor; equilibrium flow from saturated vapor has 1.05, the frozen gas 1.2 to 1.3 (CoolProp)."""
 
+FALL_OVER = 0.5
+"""Seconds before t_v over which the fall of the tank's pressure is taken."""
+
 UNIFORM = sqrt(3.0)
 """A bound over the standard deviation of what lies anywhere within it [-]. Source: GUM, 4.3.7."""
 
 
 @dataclass(frozen=True)
 class Systematic:
-    """An error of all repetitions alike: by ``moved`` it changes the constants [SI] for one standard deviation.
+    """An error of all repetitions alike: ``factors`` [-] on the constants for one standard deviation.
 
-    ``uniform``: anywhere within a bound, else normal; ``inputs``: what of the inputs it is, by one deviation [SI].
+    ``uniform``: anywhere within a bound, else normal; ``inputs``: the factors on inputs of the reduction.
     """
 
     name: str
-    moved: dict[str, float]
+    factors: dict[str, float]
     uniform: bool = False
-    inputs: dict[str, float] | None = None
+    inputs: dict[str, float] = field(default_factory=dict)
 
     def drawn(self, generator: np.random.Generator, samples: int) -> Array:
         """Multiples of the deviation, (samples,)."""
@@ -70,9 +73,9 @@ def systematic_errors(
     bounds, own = {"properties": definition.deviations.properties.share, "line": 1.0}, ("volume", "area")
     out = []
     for name, other in found.items():
-        moved = _difference(plain, other, bounds[name] / UNIFORM if name in bounds else 1.0)
-        by = {name: _unstated(definition, name)} if name in own else None
-        out.append(Systematic(name, moved, name in bounds, by))
+        factors = _factors(plain, other, bounds[name] / UNIFORM if name in bounds else 1.0)
+        own_input = {name: 1.0 + _unstated(definition, name) / getattr(inputs, name)} if name in own else {}
+        out.append(Systematic(name, factors, name in bounds, own_input))
     return tuple(out)
 
 
@@ -83,8 +86,8 @@ def with_systematic(draws: Draws, errors: tuple[Systematic, ...]) -> Draws:
     size = next(iter(values.values())).size
     for error in errors:
         z = error.drawn(generator, size)
-        values |= {name: values[name] + z * moved for name, moved in error.moved.items()}
-        inputs |= {name: inputs[name] + z * std for name, std in (error.inputs or {}).items()}
+        values |= {name: values[name] * factor**z for name, factor in error.factors.items()}
+        inputs |= {name: inputs[name] * factor**z for name, factor in error.inputs.items()}
         inputs[f"systematic {error.name}"] = z
     return Draws(values, inputs)
 
@@ -126,16 +129,16 @@ def _vapor_with_line(
 ) -> float:
     """Vapor [kg] at t_v where the line's content, flashed to p_run, kept the injector wet after the tank was dry."""
     line = definition.deviations.line_volume.of(inputs.volume)
-    h, before = histories, inputs.t_v - 0.05
-    p_tank, p_run, p_c = (float(np.interp(before, h.time, x)) for x in (h.tank, h.run, h.chamber))
-    warm = saturation.temperature(np.array([p_tank]))
-    density = float(saturation.liquid_density(warm)[0])
-    flow = mass_flow(r.C_i * inputs.area, density, p_run - p_c)
-    if not (flow > 0.0 and r.C_i > 0.0):
+    h, span = histories, min(FALL_OVER, 0.25 * inputs.t_v)
+    early, late = (h.mean(h.tank, inputs.t_v - back, inputs.t_v - back + 0.2 * span) for back in (span, 0.2 * span))
+    p_run, p_c = (h.mean(x, inputs.t_v - 0.2 * span, inputs.t_v) for x in (h.run, h.chamber))
+    warm = saturation.temperature(np.array([late]))
+    flow = mass_flow(r.C_i * inputs.area, float(saturation.liquid_density(warm)[0]), p_run - p_c)
+    if not (line > 0.0 and flow > 0.0 and r.C_i > 0.0):
         return float("nan")
     lasts = line * float(throttled(saturation, warm, np.array([p_run])).density[0]) / flow
-    dry = float(np.interp(max(inputs.t_v - lasts, 0.0), h.time, h.tank)) - p_tank + inputs.p_v
-    return (inputs.volume - line) * float(saturation.vapor_density(saturation.temperature(dry)))
+    dry = saturation.temperature(inputs.p_v + (early - late) / (0.8 * span) * lasts)
+    return (inputs.volume - line) * float(saturation.vapor_density(dry))
 
 
 def _with_vapor(tables: Tables, saturation: Saturation, inputs: Inputs, r: Reduction, vapor: float) -> Reduction:
@@ -154,7 +157,7 @@ def _with_vapor(tables: Tables, saturation: Saturation, inputs: Inputs, r: Reduc
     )  # fmt: skip
 
 
-def _difference(plain: Reduction, other: Reduction, scale: float) -> dict[str, float]:
-    """What of the constants moves, and by how much; what one of both does not have is left as it is."""
+def _factors(plain: Reduction, other: Reduction, power: float) -> dict[str, float]:
+    """What of the constants moves, and by which factor; what one of both does not have is left as it is."""
     pairs = {f.name: (getattr(plain, f.name), getattr(other, f.name)) for f in fields(Reduction)}
-    return {n: scale * (b - a) for n, (a, b) in pairs.items() if np.isfinite(a) and np.isfinite(b) and a != b}
+    return {n: (b / a) ** power for n, (a, b) in pairs.items() if a * b > 0.0 and a != b}

@@ -83,7 +83,7 @@ class Joint(Part):
     """Correlated errors of the constants that a model takes together."""
 
     names: Annotated[tuple[str, ...], Is("of the constants")]
-    std: Annotated[Numbers, Is("their standard deviations, SI")]
+    std: Annotated[Numbers, Is("their standard deviations", "SI")]
     correlation: Annotated[tuple[Numbers, ...], Is("of these with each other", "")]
 
 
@@ -94,7 +94,7 @@ class FuelLaw(Part):
     n: Annotated[Quantity, Is("regression exponent", "")]
     regression_rate_reference: Annotated[Quantity, Is("rate at the reference flux, where it is known best", "m/s")]
     regression: Annotated[RegressionBasis, Is("what these rest on")]
-    joint: Annotated[Joint | None, Is("errors of all constants together: flow_area is C_i N_i A_i")] = None
+    joint: Annotated[Joint | None, Is("errors of all constants together: flow_area is C_i N_i A_i", "")] = None
 
     @classmethod
     def absent(cls, reason: str) -> FuelLaw:
@@ -120,7 +120,7 @@ class TankConstants(Part):
     p_loss_vapor: Annotated[Quantity, Is("mean feed loss over [t_v, t_purge)", "Pa")]
     vapor_mass_at_t_v: Annotated[Quantity, Is("vapor left when the liquid is gone", "kg")]
     oxidizer_flow_peak: Annotated[Quantity, Is("peak of the injector's flow", "kg/s")]
-    mass_at_t_feed: Annotated[Quantity, Is("in the tank when the line is full", "kg")]
+    mass_at_t_feed: Annotated[Quantity, Is("in tank and line when the line is full", "kg")]
     oxidizer_mass_liquid_phase: Annotated[Quantity, Is("used as liquid", "kg")]
     oxidizer_mass: Annotated[Quantity, Is("loaded", "kg")]
     rest: Annotated[Rest | None, Is("the tank before the valve opens")]
@@ -128,7 +128,7 @@ class TankConstants(Part):
     tank_history: Annotated[TankHistory | None, Is("content of the tank over the liquid phase")]
     inlet: Annotated[Inlet | None, Is("what reaches the injector")] = None
     C_d: Annotated[Mapping[str, Quantity], Is("discharge coefficient by law: spi, hem, dyer")] = {}
-    joint: Annotated[Joint | None, Is("errors of the constants together: flow_area is C_i N_i A_i")] = None
+    joint: Annotated[Joint | None, Is("errors of the constants together: flow_area is C_i N_i A_i", "")] = None
     budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     notes: Notes
     warnings: Warnings

@@ -49,8 +49,8 @@ LINE_VOLUME = Deviation(share=0.04)
 to 0.8 L beside a tank of 16.5 L."""
 
 PROPERTIES = Deviation(share=1.0)
-"""Of what CoolProp and the report's table differ by, the part up to which the table in use may be off. Source: the other
-table is a bound: the report's correlations are off by 1 to 5 % in pressure (docs/properties.md)."""
+"""Of what CoolProp and the report's table differ by, the part up to which the table in use may be off. Source: the
+other table is a bound: the report's correlations are off by 1 to 5 % in pressure (docs/properties.md)."""
 
 HOLE_DIAMETER = Deviation(absolute=0.05e-3)
 """Of an injector's holes [m], the same for all: one drill. Source: ISO 2768-1, class m, allows 0.1 mm to either side
