@@ -66,9 +66,10 @@ def _wider(quantity: Quantity, values: Sequence[float], side: str, hangs: bool) 
         return quantity
     if hangs and quantity.verdict == IDENTIFIED:
         quantity = replace(quantity, verdict=CONDITIONAL)
-    far = max(values, key=lambda value: abs(value - (quantity.value or 0.0)))
+    value = quantity.value
+    far = max(values, key=lambda other: abs(other - value))
     wider = quantity.reaching(*values)
-    if abs(far - quantity.value) < SEEN * abs(quantity.value):
+    if abs(far - value) < SEEN * abs(value):
         return wider
     said = f"the interval has {far:.3g} by {side}"
     return replace(wider, why=f"{quantity.why}; {said}" if quantity.why else said)
