@@ -19,7 +19,17 @@ from simulated.engines import engine_on_stand
 from hfanalysis.arrays import Array
 from hfanalysis.engine.nozzle import mach_at_area, pressure_ratio
 from hfanalysis.engine.unsteady import Burn, Engine, burn
+from hfanalysis.products.validation import Efficiencies
+from hfanalysis.validate.efficiency import Ideal, Spread, efficiencies, ideal, means
 from hfanalysis.validate.flows import HISTORY_STEP, Flows
+from hfanalysis.validate.performance import Fire
+
+FIRE = Fire(4.4, 0.01, "simulated")
+STEADY = 0.4
+"""[s] from which on means are taken: the chamber is filled."""
+
+SURE = Spread(0.002, 0.003, 0.002, 0.003)
+"""Relative deviations of gauge, throat, flow and cell [-] that the analysis is told."""
 
 FRICTION = 0.003
 """Fanning's factor of the port's wall [-]. Source: turbulent pipes at a Reynolds number of 1e6."""
@@ -40,6 +50,17 @@ class Fired:
     nozzle: Array
     head: Array
     thrust: Array
+
+
+def judged(test: Fired, tap: str | None, read: str) -> tuple[Efficiencies, Ideal]:
+    """Efficiencies as validate takes them, of a gauge at ``tap`` that reads the ``head`` or the ``nozzle``."""
+    measured = {"p_chamber": getattr(test, read), "thrust_corrected": test.thrust}
+    ambient = test.engine.ambient_pressure
+    assert ambient is not None
+    found = ideal(measured, test.flows, test.engine, ambient, FIRE, None, tap)
+    assert found is not None
+    part = found.counted & (test.flows.time > STEADY)
+    return means(efficiencies(measured, test.flows, test.engine, found), found, part, SURE), found
 
 
 @cache

@@ -8,26 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from simulated.narrow_port import Fired, fired
+from benchmarks.narrow_port import PAGE, rows
+from simulated.narrow_port import fired, judged
 
 from hfanalysis.products.validation import Efficiencies
 from hfanalysis.quantity import Quantity
-from hfanalysis.validate.efficiency import Ideal, Spread, above_one, efficiencies, ideal, means
-from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.efficiency import above_one
 from hfanalysis.validate.tap import before_nozzle, narrow
 
-AMBIENT = 100_900.0
-FIRE = Fire(4.4, 0.01, "video")
-SURE = Spread(0.002, 0.003, 0.002, 0.003)
 NAMES = ("c_star", "c_star_efficiency_frozen", "thrust_coefficient", "thrust_coefficient_efficiency_frozen")
-
-
-def judged(test: Fired, tap: str | None, read: str = "head") -> tuple[Efficiencies, Ideal]:
-    measured = {"p_chamber": getattr(test, read), "thrust_corrected": test.thrust}
-    found = ideal(measured, test.flows, test.engine, AMBIENT, FIRE, None, tap)
-    assert found is not None
-    part = found.counted & (test.flows.time > 0.4)
-    return means(efficiencies(measured, test.flows, test.engine, found), found, part, SURE), found
 
 
 def holds(quantity: Quantity, truth: float) -> bool:
@@ -40,8 +29,8 @@ def holds(quantity: Quantity, truth: float) -> bool:
 def test_at_the_head_the_corrected_efficiencies_hold_the_truth_and_the_others_do_not(recovery: float) -> None:
     test = fired(recovery)
     truth, _ = judged(test, None, "nozzle")
-    told, _ = judged(test, "head")
-    open_, _ = judged(test, None)
+    told, _ = judged(test, "head", "head")
+    open_, _ = judged(test, None, "head")
     for name in NAMES:
         true, of_head, as_read = getattr(truth, name).value, getattr(told, name), getattr(open_, name)
         assert holds(of_head, true), name
@@ -61,7 +50,7 @@ def test_in_a_wide_port_the_head_reads_what_the_nozzle_has() -> None:
 
 def test_unstated_the_reading_stays_and_the_interval_reaches_to_one_side() -> None:
     test = fired(0.5)
-    plain, found = judged(test, None)
+    plain, found = judged(test, None, "head")
     assert np.array_equal(found.before.factor, np.ones(test.flows.time.size))
     for name, side in (("c_star_efficiency", -1), ("thrust_coefficient_efficiency", 1)):
         quantity: Quantity = getattr(plain, name)
@@ -100,3 +89,8 @@ def test_an_efficiency_above_one_by_more_than_its_interval_is_a_finding() -> Non
     assert "1.050" in found.text
     assert not above_one(efficiency(1.015, 0.01))
     assert not above_one(efficiency(0.97, 0.01))
+
+
+def test_the_page_has_what_the_study_finds() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    assert all(line in page for line in rows(0.85))

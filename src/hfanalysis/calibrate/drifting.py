@@ -16,8 +16,9 @@ from hfanalysis.engine.effect import Active, Believable, Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, term
 
 USUAL = 0.05
-"""Standard deviation of the part by which C_i changes while the liquid lasts [-]. Source: what flows in is 10 to 20 % vapor
-by mass at the end and less at the beginning (docs/calibration.md), which is worth 5 to 10 % of an effective C_i."""
+"""Standard deviation of the part by which C_i changes while the liquid lasts [-]. Source: what flows in is 10 to 20 %
+vapor by mass at the end and less at the beginning (docs/calibration.md), which is worth 5 to 10 % of an effective C_i.
+"""
 
 BELIEVED = 3.0
 """Standard deviations of a drift beyond which it is the tank's balance that is off: a stratified tank shows drifts of a

@@ -66,6 +66,7 @@ def evidence_of(
         burn_time = replace(burn_time, std=float(np.hypot(burn_time.std, late)))
     remarks = (
         f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})",
+        *burning_of(segments, definition)[1],
         *_remarks(definition, calibration, engine.effects),
     )
     covariance = covariance_of(draws, calibration, _stated_variances(definition))
@@ -98,7 +99,7 @@ def _compared(chamber: Signal, start: float, stop: float, gone: tuple[float, flo
 
 def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[Scalar | None, Scalar | None, float]:
     """Burn time and fuel left, as far as they are known, and the end of the fire [s]."""
-    stated, observed = _burn_time(segments, definition), definition.observed
+    stated, observed = burning_of(segments, definition)[0], definition.observed
     end = stated.value if stated is not None else segments.time("t_end") or 2.0 * t_v
     left = observed.fuel_mass_after if observed is not None else None
     assert definition.grain is not None
@@ -110,14 +111,18 @@ def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[S
     return None, Scalar(left.value, std, "[observed] fuel_mass_after"), end
 
 
-def _burn_time(segments: Segments, definition: TestDefinition) -> Scalar | None:
+def burning_of(segments: Segments, definition: TestDefinition) -> tuple[Scalar | None, tuple[str, ...]]:
+    """When the fuel is gone [s]; None with a remark where nobody saw it: t_end is no end of the fire."""
     seen = definition.known("observed.burn_time")
     if seen is not None:
-        return Scalar(seen.value, seen.std or 0.0, "[observed] burn_time")
+        return Scalar(seen.value, seen.std or 0.0, "[observed] burn_time"), ()
     gone = segments.time("t_fuel_gone")
-    if gone is None:
-        return None
-    return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log")
+    if gone is not None:
+        return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log"), ()
+    low = segments.time("t_end")
+    if low is None:
+        return None, ()
+    return None, (f"compared until t_end, {low:.2f} s, which is no end of the fire: it may burn on, and fuel be left",)
 
 
 def _window_end(

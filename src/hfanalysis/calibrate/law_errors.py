@@ -49,8 +49,8 @@ class LawErrors:
         return -self._gain @ replace(evidence, covariance=self.whole).sensitivities(self.found.law)
 
     def drifting(self, law: FuelLaw, std: float, lasts: float) -> FuelLaw:
-        """The ``law`` with what a C_i that drifts by ``std`` [-] over ``lasts`` [s] does to it; on the condition that it
-        does not, where n is not known to WIDEST_N otherwise."""
+        """The ``law`` with what a C_i that drifts by ``std`` [-] over ``lasts`` [s] does to it; on the condition that
+        it does not, where n is not known to WIDEST_N otherwise."""
         best = self.found.law
         moved = -self._gain @ by_drift(self.found.evidence[0], best.a, best.n, std, lasts)
         wider = self._wider(law, np.outer(moved, moved))

@@ -67,7 +67,7 @@ def _wider(quantity: Quantity, values: Sequence[float], side: str, hangs: bool) 
     own = quantity.value
     if hangs and quantity.verdict == IDENTIFIED:
         quantity = replace(quantity, verdict=CONDITIONAL)
-    far = max(values, key=lambda value: abs(value - own))
+    far = max(values, key=lambda other: abs(other - own))
     wider = quantity.reaching(*values)
     if abs(far - own) < SEEN * abs(own):
         return wider
