@@ -90,6 +90,14 @@ class Evidence:
         lit = replace(self.engine, a=law.a, n=law.n)
         return replace(self, engine=starting_for(lit, *self.anchor))
 
+    def moved(self, off: Array) -> Evidence:
+        """The same with observations that differ by ``off`` (n,) [Pa, s, kg]."""
+        size = self.time.size
+        scalars = iter(off[size:])
+        times, left = (None if s is None else replace(s, value=s.value + float(next(scalars)))
+                       for s in (self.burn_time, self.fuel_left))  # fmt: skip
+        return replace(self, chamber=self.chamber + off[:size], burn_time=times, fuel_left=left)
+
     def predict(self, law: Regression) -> Array | None:
         """The model of ``observed`` (n,) [Pa, s, kg]; None where the engine cannot be run with these constants."""
         return self._once("predicted", law, lambda: predicted(self, replace(self.engine, a=law.a, n=law.n)))

@@ -17,7 +17,8 @@ from hfanalysis.arrays import Array
 from hfanalysis.calibrate.beside_report import joint_of
 from hfanalysis.calibrate.drifting import by_drift
 from hfanalysis.calibrate.evidence import NUISANCES
-from hfanalysis.calibrate.regression import WIDEST_N, Fitted, law_at
+from hfanalysis.calibrate.likelihood import Weights
+from hfanalysis.calibrate.regression import WIDEST_N, Fitted, law_at, weighed
 from hfanalysis.products.calibration import FuelLaw, Joint
 from hfanalysis.quantity import CONDITIONAL, IDENTIFIED, Quantity
 
@@ -37,10 +38,18 @@ class LawErrors:
     whole: Array
 
     @cached_property
+    def _slopes(self) -> Array:
+        return np.column_stack([self._slope(axis) for axis in STEP * np.eye(2)])
+
+    @cached_property
     def _gain(self) -> Array:
         """Change of (ln r, n) [-] by what was observed [1/Pa, 1/s, 1/kg], (2, observations)."""
-        slopes = np.column_stack([self._slope(axis) for axis in STEP * np.eye(2)])
-        return np.asarray(self.found.surface.covariance @ slopes.T @ self.found.weights[0].precision)
+        return np.asarray(self.found.surface.covariance @ self._slopes.T @ self.found.weights[0].precision)
+
+    def _gain_of(self, weights: Weights) -> Array:
+        """The same with the weights that a fit takes which leaves more."""
+        by_slopes = self._slopes.T @ weights.precision
+        return np.asarray(np.linalg.solve(by_slopes @ self._slopes, by_slopes))
 
     @property
     def _response(self) -> Array:
@@ -51,8 +60,9 @@ class LawErrors:
     def drifting(self, law: FuelLaw, std: float, lasts: float) -> FuelLaw:
         """The ``law`` with what a C_i that drifts by ``std`` [-] over ``lasts`` [s] does to it; on the condition that
         it does not, where n is not known to WIDEST_N otherwise."""
-        best = self.found.law
-        moved = -self._gain @ by_drift(self.found.evidence[0], best.a, best.n, std, lasts)
+        best, evidence = self.found.law, self.found.evidence[0]
+        off = by_drift(evidence, best.a, best.n, std, lasts)
+        moved = self._gain_of(weighed(evidence.moved(off), best)) @ off
         wider = self._wider(law, np.outer(moved, moved))
         if not (wider.n.verdict == IDENTIFIED and (wider.n.std or 0.0) > WIDEST_N):
             return wider

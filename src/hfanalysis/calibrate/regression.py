@@ -146,7 +146,7 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
     for _ in range(ROUNDS):
         law = law_at(best, flux)
         evidence = [e.with_regression(law) for e in evidence]
-        weights = [_weighed(e, law) for e in evidence]
+        weights = [weighed(e, law) for e in evidence]
         best, *rivals = _likeliest(evidence, _minima(evidence, weights, flux, best), flux)
     found = _surveyed(evidence, weights, flux, best)
     return replace(found, rivals=tuple(r for r in rivals if abs(r[1] - found.best[1]) > SAME))
@@ -225,7 +225,7 @@ def _likeliest(evidence: Sequence[Evidence], minima: Sequence[Array], flux: floa
     if len(minima) == 1:
         return list(minima)
     laws = [law_at(point, flux) for point in minima]
-    weights = [[_weighed(e, law) for e in evidence] for law in laws]
+    weights = [[weighed(e, law) for e in evidence] for law in laws]
     counts = [min(w.effective for w in of_test) for of_test in zip(*weights, strict=True)]
     deviances = [
         sum(w.deviance(_residual(e, law), count) for e, w, count in zip(evidence, own, counts, strict=True))
@@ -269,7 +269,8 @@ def _residual(evidence: Evidence, law: Regression) -> Array:
     return evidence.observed - predicted
 
 
-def _weighed(evidence: Evidence, law: Regression) -> Weights:
+def weighed(evidence: Evidence, law: Regression) -> Weights:
+    """The weights that follow from what a ``law`` leaves of the evidence."""
     size, residual = evidence.time.size, _residual(evidence, law)
     wander = np.zeros((residual.size, residual.size))
     wander[:size, :size] = evidence.wander
