@@ -1,4 +1,4 @@
-"""Injectors that flash and choke: does the calibration's law that knows of it hold the truth, and what says the report's?
+"""Injectors that flash and choke: does a law that knows of it hold the truth, and what does the report's say?
 
 Logs of simulated/feed.py, whose liquid reaches the injector as a boiling mixture and whose vapor chokes there; and the
 replicas of the report's hot fires. Writes docs/feed-laws.md.

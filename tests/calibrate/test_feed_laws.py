@@ -23,7 +23,7 @@ def run(feed: Feed) -> Emptied:
 @cache
 def found(feed: Feed, properties: str = "coolprop", area: float | None = 0.0) -> TankConstants:
     true = run(feed)
-    return calibrate(log_of(feed, true), segments_of(true), definition_of(feed, properties, area), 100).constants
+    return calibrate(log_of(feed, true), segments_of(true), definition_of(feed, properties, area), 60).constants
 
 
 def holds(told: Quantity, truth: float) -> bool:

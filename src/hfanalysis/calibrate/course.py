@@ -82,7 +82,7 @@ def with_drift(history: CoefficientHistory) -> CoefficientHistory:
 def with_course(
     discharge: Quantity, record: float, history: CoefficientHistory | None, time: Array, flow: Array
 ) -> Quantity:
-    """C_i with what its course is worth; ``record``: its standard deviation [-] by what the log itself leaves open.
+    """C_i with what its course is worth; ``record``: its standard deviation [-] by pressures and times.
 
     ``flow`` (n,) through the injector at ``time`` (n,) [s] of the liquid phase.
     """
@@ -95,8 +95,8 @@ def with_course(
         said = f"mean by flow; {drift}, which is worth {more:.4f} in its mean (C_i_history)"
     else:
         more = record * float(np.sqrt(course.scatter**2 - 1.0))
-        said = f"its errors by the log are taken {course.scatter:.1f} times: C_i(t) scatters, without a course"
-    if more == 0.0:
+        said = f"its errors by the pressures are taken {course.scatter:.1f} times: C_i(t) scatters, without a course"
+    if not more > 0.0:
         return discharge
     wider = float(np.hypot(discharge.std, more)) / discharge.std
     value = discharge.value

@@ -217,6 +217,6 @@ def _multiples(draws: Draws, name: str, std: float, own: np.random.Generator) ->
     """What was drawn of this error, in standard deviations; its own numbers where nothing was."""
     size = draws.values["C_i"].size
     if name == "properties":
-        return own.uniform(-UNIFORM, UNIFORM, size)
+        return own.standard_normal(size)
     drawn = draws.inputs.get(f"p_{name}")
     return drawn / std if drawn is not None and std > 0.0 else own.standard_normal(size)

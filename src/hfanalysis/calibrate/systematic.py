@@ -4,7 +4,8 @@ Each such error is one more reduction with it in: what that differs by is one st
 reductions are moved by it, each constant by its factor and all together, so that their correlations are kept.
 
 - ``volume`` and ``area``, where test.toml states no deviation: the default of their kind.
-- ``properties``: the other table of nitrous oxide. The truth may lie anywhere up to it, to either side: uniform.
+- ``properties``: the other table of nitrous oxide. The truth may lie anywhere up to it, to either side, and it may well
+  be the other one: the deviation of a uniform one, but normal, so that 95 % hold the other table.
 - ``line``: t_v is when the liquid is gone at the injector. The tank is dry earlier, by the time that the line's content
   lasts; its vapor expands meanwhile, and is less than the saturated vapor of the whole volume. Uniform, too.
 - ``gamma``: isentropic exponent of the vapor, for what chokes.
@@ -75,7 +76,7 @@ def systematic_errors(
     for name, other in found.items():
         factors = _factors(plain, other, bounds[name] / UNIFORM if name in bounds else 1.0)
         own_input = {name: 1.0 + _unstated(definition, name) / getattr(inputs, name)} if name in own else {}
-        out.append(Systematic(name, factors, name in bounds, own_input))
+        out.append(Systematic(name, factors, name == "line", own_input))
     return tuple(out)
 
 

@@ -185,7 +185,9 @@ class _Work:
             return discharge
         wet = self.histories.time < self.t_v
         time = self.histories.time[wet]
-        return with_course(discharge, draws.std("C_i"), history, time, np.gradient(left[wet], time))
+        return with_course(
+            discharge, abs(discharge.value or 0.0) * draws.by_pressures, history, time, np.gradient(left[wet], time)
+        )
 
     def _by_log(
         self, tables: Tables, inputs: Inputs, mass: LoadedMass, samples: int, vapor: VaporPhase | None

@@ -77,6 +77,14 @@ class Draws:
         good = area[np.isfinite(area)]
         return float(good.std(ddof=1) / abs(good.mean())) if good.size >= 10 else float("nan")
 
+    @property
+    def by_pressures(self) -> float:
+        """Relative standard deviation [-] of C_i by pressures and times alone: of the flow's integral."""
+        gone = self.inputs["mass"] - self.values["vapor_mass"]
+        integral = gone / (self.values["C_i"] * self.inputs["area"])
+        good = integral[np.isfinite(integral)]
+        return float(good.std(ddof=1) / abs(good.mean())) if good.size >= 10 else float("nan")
+
     def interval(self, name: str, value: float) -> tuple[float, float]:
         """The 95 % interval [SI]: the draws' quantiles about their median, moved to the ``value`` itself."""
         good = self.good(name)
