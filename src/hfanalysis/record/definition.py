@@ -27,6 +27,7 @@ from hfanalysis.record.sections import (
     ObservedSection,
     Purge,
     Site,
+    StandSection,
     Tank,
 )
 from hfanalysis.record.unused import OF_TESTS, SPREADS_OF_TESTS, unused
@@ -109,6 +110,7 @@ class Statements(Section):
     chamber: Chamber | None = None
     nozzle: NozzleSection | None = None
     site: Site | None = None
+    stand: StandSection | None = None
     observed: ObservedSection | None = None
     rocket: Rocket | None = None
     segments: Segments = field(default_factory=dict)

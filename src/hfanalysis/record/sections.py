@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import PlainValidator
 
 from hfanalysis.record.schema import (
+    ANY,
     NOT_NEGATIVE,
     POSITIVE,
     Altitude,
@@ -191,6 +192,14 @@ class Site(Section):
 
     altitude: Altitude | None = None
     ambient_pressure: Annotated[Value, quantity("pressure", _AMBIENT)] | None = None
+
+
+@section
+class StandSection(Section):
+    """[stand]: how the engine stands, and the force [N] with which a full feed line pushes on the thrust cell."""
+
+    orientation: Literal["horizontal", "vertical", "nozzle up", "nozzle down"] = "horizontal"
+    feed_line_tare: Annotated[Value, quantity("force", ANY)] | None = None
 
 
 @section
