@@ -2,8 +2,8 @@
 
 Upright, the cell has the fuel's weight in its zero, and loses it as it burns, in proportion to the impulse. Where a
 zero after the firing was taken, too, a straight line between the two zeros has been taken off already: what is left of
-the weight is how it differs from that line. With the nozzle up the thrust pushes the way the weight does, with the nozzle
-down the other way.
+the weight is how it differs from that line. With the nozzle up the thrust pushes the way the weight does, with the
+nozzle down the other way.
 """
 
 from __future__ import annotations
