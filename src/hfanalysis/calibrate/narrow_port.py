@@ -62,17 +62,21 @@ def reaching_the_head(law: FuelLaw, found: Fitted, definition: TestDefinition) -
 
 def _wider(quantity: Quantity, values: Sequence[float], side: str, hangs: bool) -> Quantity:
     """With the reach; where it is so wide that a and n ``hang`` on where the gauge sits, on that condition."""
-    if quantity.value is None or not values:
+    value = quantity.value
+    if value is None or not values:
         return quantity
-    own = quantity.value
     if hangs and quantity.verdict == IDENTIFIED:
         quantity = replace(quantity, verdict=CONDITIONAL)
-    far = max(values, key=lambda other: abs(other - own))
     wider = quantity.reaching(*values)
-    if abs(far - own) < SEEN * abs(own):
+    far = _farthest(values, value)
+    if abs(far - value) < SEEN * abs(value):
         return wider
     said = f"the interval has {far:.3g} by {side}"
     return replace(wider, why=f"{quantity.why}; {said}" if quantity.why else said)
+
+
+def _farthest(values: Sequence[float], value: float) -> float:
+    return max(values, key=lambda other: abs(other - value))
 
 
 def _step(found: Fitted, recovery: float) -> Array | None:

@@ -27,6 +27,7 @@ from hfanalysis.record.sections import (
     ObservedSection,
     Purge,
     Site,
+    StandSection,
     Tank,
 )
 from hfanalysis.record.unused import OF_TESTS, SPREADS_OF_TESTS, unused
@@ -99,6 +100,7 @@ class Statements(Section):
     chamber: Chamber | None = None
     nozzle: NozzleSection | None = None
     site: Site | None = None
+    stand: StandSection | None = None
     observed: ObservedSection | None = None
     deviations: Deviations = Deviations()
     rocket: Rocket | None = None

@@ -24,6 +24,7 @@ from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
 from hfanalysis.validate.load_cell import CellError, cell_error
 from hfanalysis.validate.model_errors import changes
+from hfanalysis.validate.stand import unknown_weight
 from hfanalysis.validate.thrust import AT_AMBIENT, OUT, Thrust, burnt_out, thrust_of
 
 NAMES = ("burn_time", "total_impulse", "specific_impulse", "peak_chamber_pressure", "peak_thrust", "average_thrust",
@@ -106,7 +107,11 @@ def measured(
     impulse, later = impulse_to(log, thrust, fire, definition), None
     if fire.latest is not None and fire.latest > fire.end:
         later = impulse_to(log, thrust, replace(fire, end=fire.latest), definition).value
-    out["total_impulse"] = impulse = impulse if later is None else impulse.reaching(later)
+    impulse = impulse if later is None else impulse.reaching(later)
+    if impulse.value is not None and (weight := unknown_weight(definition)):
+        # the fuel's weight goes over the burn, whichever way the nozzle points: half of it on average
+        impulse = impulse.reaching(impulse.value - 0.5 * weight * fire.end, impulse.value + 0.5 * weight * fire.end)
+    out["total_impulse"] = impulse
     oxidizer, fuel = _oxidizer(log, segments, definition, calibration), _fuel(definition)
     out["specific_impulse"] = _expended(segments, fire, impulse, oxidizer, fuel)
     out["specific_impulse_to_purge"] = Quantity.absent("what was expended is not known without a calibrated tank")
