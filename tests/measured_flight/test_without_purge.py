@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.measured_flight.purged import ROCKET, Truth, fired
+from simulated.purged import ROCKET, Truth, fired
 
 from hfanalysis.flight.ascent import ascend
 from hfanalysis.flight.curve import Curve, altitude_gain
