@@ -230,11 +230,11 @@ def _flown(stand: Course, after: Tail) -> Course:
         np.minimum.accumulate(np.concatenate((old[until], tail)))
         for old, tail in ((load.oxidizer, new.mass), (load.fuel, after.fuel))
     )
-    tank = new.mass / new.mass[0]
-    warm = load.temperature[-1] * tank ** (after.exponent - 1.0)
-    time = np.concatenate((load.time[until], after.time))
+    time, none = np.concatenate((load.time[until], after.time)), np.zeros(after.time.size)
+    # the vapor's temperature counts only for the liquid's volume, of which there is none
     liquid, temperature = (
-        np.concatenate((old[until], x)) for old, x in ((load.liquid, np.zeros(tank.size)), (load.temperature, warm))
+        np.concatenate((old[until], x))
+        for old, x in ((load.liquid, none), (load.temperature, none + load.temperature[-1]))
     )
     ratio = np.concatenate((load.of_ratio[until], np.clip(new.flow / np.maximum(new.fuel_flow, 1e-9), 0.4, 200.0)))
     how = {**load.how, "oxidizer": f"{load.how['oxidizer']}; from the purge on as the vapor alone empties the tank"}
