@@ -300,7 +300,7 @@ def draws(found: Known, nozzle: tuple[Law, ...], count: int, seed: int) -> Itera
     rng = np.random.default_rng([seed, 20])
     for i in range(count):
         purge, exponent, fuel, rate = rng.standard_normal(4)
-        gas = float(rng.uniform(1.0, 1.3))
+        gas = float(rng.normal(*ASSUMED_EXPONENT))
         law = nozzle[(i // 3) % len(nozzle)]
         with suppress(AbsentError):
             yield i, tail(found, Draw(i % 3, law, purge, exponent, fuel, rate, gas))
