@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates recovery coverage narrow-port mutants constants-trial fuzz kills last-digits replicas feed-laws blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates flown-thrust recovery coverage narrow-port mutants constants-trial fuzz kills last-digits replicas feed-laws blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -92,6 +92,9 @@ health-rates: $(STAMP) ## faults found and healthy logs blamed: docs/health-rate
 LOGS ?= ../shared/real_tests
 real-logs: $(STAMP) ## logs of other teams by hfa new, their facts and hfa run: docs/real-logs.md; LOGS=FOLDER
 	$(BIN)/python -m benchmarks.real_logs --logs '$(LOGS)' --write docs/real-logs.md $(FLAGS)
+
+flown-thrust: $(STAMP) ## flights without the stand's nitrogen and of a separated flow, beside the truth: docs/flight.md
+	$(BIN)/python -m benchmarks.flown_thrust --write docs/flight.md $(FLAGS)
 
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 	$(BIN)/python -m benchmarks.recovery $(FLAGS)

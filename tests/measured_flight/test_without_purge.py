@@ -7,12 +7,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.measured_flight.purged import ROCKET, Truth, fired
+from simulated.purged import ROCKET, Truth, fired
 
 from hfanalysis.flight.ascent import ascend
 from hfanalysis.flight.curve import Curve, altitude_gain
 from hfanalysis.measured_flight.firing import AS_MEASURED, WITHOUT_PURGE, Firing, firing
 from hfanalysis.measured_flight.product import fly_measured, product
+from hfanalysis.measured_flight.uncertainty import disperse, rows
 from hfanalysis.products.flight import Flight
 from hfanalysis.quantity import Quantity
 
@@ -139,6 +140,20 @@ def test_the_band_says_what_it_covers_and_shots_widen_it() -> None:
     assert "default" in again.band_covers
     assert again.apogee.std > 3.0 * once.apogee.std
     assert again.apogee.value == once.apogee.value
+
+
+def test_more_flights_than_courses_are_kept_all_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether one curve flies or several, and the courses are those of the first rows."""
+    found = firing_of(SEPARATED)
+    drawn = rows(found, ROCKET, 700, 1)
+    every = {n: disperse(found, drawn, 30.0, curves=found.curves[:n]) for n in (1, 2)}
+    monkeypatch.setattr("hfanalysis.measured_flight.uncertainty.PATHS", 100)
+    for count, all_kept in every.items():
+        few = disperse(found, drawn, 30.0, curves=found.curves[:count])
+        assert few.results == pytest.approx(all_kept.results, nan_ok=True)
+        first = disperse(found, drawn[:100], 30.0, curves=found.curves[:count])
+        shared = min(few.time.size, first.time.size)
+        assert few.bands["height"][:, :shared] == pytest.approx(first.bands["height"][:, :shared])
 
 
 def test_thrust_to_weight_at_lift_off_is_the_mean_on_the_rail() -> None:

@@ -268,7 +268,8 @@ def _flight(context: Context, console: Console) -> None:
     from hfanalysis.products.flight import Flight
 
     product = context.read(Flight)
-    _values(console, ordered(product.quantities), f"flight, thrust {product.thrust}")
+    _values(console, ordered(product.flown), f"flight, thrust {product.thrust_basis}, {product.thrust}")
+    console.print(Text(f"  the intervals hold {product.band_covers}"), soft_wrap=True)
     _values(console, ordered(product.stability.quantities), "stability")
     for name, check in product.checks.items():
         style = {"passed": "green", "failed": "red"}.get(check.result, "yellow")

@@ -86,7 +86,8 @@ VALIDATION = {
 FLOWN = (
     "apogee", "time_to_apogee", "rail_departure_velocity", "peak_velocity", "peak_mach", "peak_acceleration",
     "time_to_main", "main_deployment_acceleration", "landing_time", "impact_velocity_ballistic",
-    "pad_thrust_to_weight", "total_impulse", "burn_time", "average_thrust", "margin_at_rail_departure",
+    "pad_thrust_to_weight", "liftoff_thrust_to_weight", "apogee_as_measured", "impulse_flown", "impulse_stand",
+    "total_impulse", "burn_time", "average_thrust", "margin_at_rail_departure",
 )  # fmt: skip
 FLIGHT = dict.fromkeys(FLOWN, ("thrust",))
 

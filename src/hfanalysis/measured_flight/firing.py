@@ -49,7 +49,8 @@ class Firing:
     ``curve``: as flown; ``curves``: what it may be just as well, where the purge gas's part or the nozzle's law is not
     certain (else the curve alone); ``as_measured``: with the purge gas, by every law of the nozzle that may hold, the
     likelier first. ``gas_mass``: in the chamber [kg] on the curve's
-    clock, None where its pressure or size is not known. ``thrust_basis``: AS_MEASURED or WITHOUT_PURGE.
+    clock, None where its pressure or size is not known. ``burn_time`` [s]: of the stand, else until the chamber is at
+    ambient pressure, after which the curve has some newtons. ``thrust_basis``: AS_MEASURED or WITHOUT_PURGE.
     """
 
     vehicle: Vehicle
@@ -63,6 +64,7 @@ class Firing:
     notes: tuple[str, ...]
     curves: tuple[Curve, ...]
     as_measured: tuple[Curve, ...]
+    burn_time: float
     thrust_basis: str = AS_MEASURED
     warnings: tuple[str, ...] = ()
 
@@ -132,7 +134,8 @@ def firing(
     nozzle = None if said else _nozzle_law(stand, definition, thrust.bias_std)
     build = _Builder(vehicle.dry_mass, thrust.burn_time, definition, nozzle)
     purge, missing = _purge(log, segments, calibration, definition, stand) if not raw_thrust else (None, "")
-    flown = stand if purge is None else _flown(stand, tail(purge, Draw(nozzle=build.law)))
+    after = None if purge is None else tail(purge, Draw(nozzle=build.law))
+    flown = stand if after is None else _flown(stand, after)
     measured = tuple(build.curve(stand, law) for law in build.possible)
     curve = measured[0] if purge is None else build.curve(flown)
     time = curve.time
@@ -148,6 +151,7 @@ def firing(
         tuple(_notes(thrust, said, purge, nozzle, build.carried(flown.load), flown.load)),
         measured if purge is None else tuple(_drawn(build, stand, purge, seed)) or (curve,),
         measured,
+        curve.burn_time if after is None else after.burnt_out(definition.ambient_pressure.value),
         AS_MEASURED if purge is None else WITHOUT_PURGE,
         (f"the purge gas's part of the thrust is flown: {missing}",) if missing else (),
     )
@@ -226,11 +230,11 @@ def _flown(stand: Course, after: Tail) -> Course:
         np.minimum.accumulate(np.concatenate((old[until], tail)))
         for old, tail in ((load.oxidizer, new.mass), (load.fuel, after.fuel))
     )
-    tank = new.mass / new.mass[0]
-    warm = load.temperature[-1] * tank ** (after.exponent - 1.0)
-    time = np.concatenate((load.time[until], after.time))
+    time, none = np.concatenate((load.time[until], after.time)), np.zeros(after.time.size)
+    # the vapor's temperature counts only for the liquid's volume, of which there is none
     liquid, temperature = (
-        np.concatenate((old[until], x)) for old, x in ((load.liquid, np.zeros(tank.size)), (load.temperature, warm))
+        np.concatenate((old[until], x))
+        for old, x in ((load.liquid, none), (load.temperature, none + load.temperature[-1]))
     )
     ratio = np.concatenate((load.of_ratio[until], np.clip(new.flow / np.maximum(new.fuel_flow, 1e-9), 0.4, 200.0)))
     how = {**load.how, "oxidizer": f"{load.how['oxidizer']}; from the purge on as the vapor alone empties the tank"}

@@ -161,7 +161,7 @@ def _on_pad(launched: MeasuredFlight) -> dict[str, Quantity]:
         "impulse_flown": launched.impulse,
         "impulse_stand": Quantity(stand.impulse, "N s", spread),
         "total_impulse": Quantity(stand.impulse, "N s"),
-        "burn_time": Quantity(firing.curve.burn_time, "s"),
+        "burn_time": Quantity(firing.burn_time, "s"),
         "average_thrust": Quantity(stand.impulse / stand.burn_time, "N"),
     }
 

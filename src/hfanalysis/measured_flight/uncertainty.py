@@ -195,7 +195,9 @@ def disperse(
         kept = int(np.searchsorted(mine, len(paths)))
         found, path = np.empty((mine.size, RESULTS)), np.empty((mine.size, POINTS if kept else 0, 3))
         fly_all(*fixed, drawn[mine], found, every, path)
-        results[mine], paths[mine[:kept]] = found, path[:kept]
+        results[mine] = found
+        if kept:
+            paths[mine[:kept]] = path[:kept]
 
     parts = list(_dealt(firing, curves or firing.curves, len(drawn)))
     with ThreadPoolExecutor(processors()) as cores:

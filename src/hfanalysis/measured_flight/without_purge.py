@@ -38,6 +38,7 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
+from hfanalysis.validate.thrust import AT_AMBIENT
 
 INCOMPRESSIBLE, CHOKED, CHOKED_GAS = range(3)
 """How the vapor passes the injector: as the report has it; choked, with the liquid's coefficient; choked, with the
@@ -132,6 +133,11 @@ class Tail:
     def time(self) -> Array:
         """[s after opening], (n,)."""
         return np.asarray(self.start + self.course.time)
+
+    def burnt_out(self, ambient: float) -> float:
+        """When the chamber is at ambient pressure [s after opening] as logs have it, ``ambient`` [Pa]."""
+        spent = np.flatnonzero(self.course.chamber < (1.0 + AT_AMBIENT) * ambient)
+        return float(self.time[spent[0]] if spent.size else self.time[-1])
 
 
 def known(
@@ -294,7 +300,7 @@ def draws(found: Known, nozzle: tuple[Law, ...], count: int, seed: int) -> Itera
     rng = np.random.default_rng([seed, 20])
     for i in range(count):
         purge, exponent, fuel, rate = rng.standard_normal(4)
-        gas = float(rng.uniform(1.0, 1.3))
+        gas = float(rng.normal(*ASSUMED_EXPONENT))
         law = nozzle[(i // 3) % len(nozzle)]
         with suppress(AbsentError):
             yield i, tail(found, Draw(i % 3, law, purge, exponent, fuel, rate, gas))

@@ -99,6 +99,10 @@ class Stability(Part):
     notes: Notes = ()
 
 
+OF_STAND = ("total_impulse", "average_thrust")
+"""What is of the stand's thrust and stands in no table of the flight's; its impulse does under its own name."""
+
+
 class Flight(FlightNumbers, Product):
     """The flight with its bands, checks and stability."""
 
@@ -113,7 +117,9 @@ class Flight(FlightNumbers, Product):
     impulse_flown: Annotated[Quantity, Is("of the thrust that flies, at its altitudes", "N s")]
     impulse_stand: Annotated[Quantity, Is("of the thrust that the stand measured", "N s")]
     total_impulse: Annotated[Quantity, Is("of the thrust that the stand measured", "N s")]
-    burn_time: Annotated[Quantity, Is("of the thrust that flies", "s")]
+    burn_time: Annotated[
+        Quantity, Is("of the thrust that flies; without purge gas, until the chamber is at ambient pressure", "s")
+    ]
     average_thrust: Annotated[Quantity, Is("of the stand: its impulse over its burn time", "N")]
     checks: Annotated[dict[str, Check], Is("limits that are kept or not, by name")]
     thrust: Annotated[str, Is("what was done to the measured thrust")]
@@ -127,3 +133,8 @@ class Flight(FlightNumbers, Product):
     notes: Notes
     effects: Adopted = ()
     warnings: Warnings = ()
+
+    @property
+    def flown(self) -> dict[str, Quantity]:
+        """Its quantities by name, but OF_STAND: all of one thrust, beside the stand's impulse."""
+        return {name: value for name, value in self.quantities.items() if name not in OF_STAND}

@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 from math import pi
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tests.products.filled import filled
-from tests.segment.stand import AMBIENT, channel, definition
+from simulated.stand import AMBIENT
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.engine import combustion_of
@@ -25,13 +25,23 @@ from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.flight.ascent import Ascent, ascend
 from hfanalysis.flight.curve import Curve, accumulated, altitude_gain, even_curve
 from hfanalysis.measured_flight.firing import Firing, firing
-from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.calibration import Calibration, RegressionBasis
 from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import IDENTIFIED, Quantity
-from hfanalysis.record.definition import TestDefinition
-from hfanalysis.record.log import TestLog
+from hfanalysis.record.definition import FileSpec, LogSpec, Test, TestDefinition
+from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.rocket import Rocket
-from hfanalysis.record.sections import Chamber, GrainSection, Injector, Model, NozzleSection, ObservedSection
+from hfanalysis.record.sections import (
+    Chamber,
+    GrainSection,
+    Injector,
+    Model,
+    NozzleSection,
+    ObservedSection,
+    Purge,
+    Site,
+    Tank,
+)
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
@@ -42,6 +52,7 @@ HOLES, HOLE_AREA, C_I, K_LOSS = 22, 3.142e-6, 0.293, 6.4e8
 THROAT, EXIT, LENGTH, DENSITY, OUTER = 23.3e-3, 38.1e-3, 0.61, 788.9, 39.497e-3
 GROUND, ZERO, RATE = 1402.0, 1.0, 500.0
 CRACKING, SUPPLY = 4.27e5, 39e5
+RATE_OF_FUEL, FLUX = 1.1e-3, 250.0
 SECONDS, SPENT = 25.0, 0.05
 ROCKET = Rocket(
     dry_mass=Value(52.5, 0.01),
@@ -125,14 +136,14 @@ def _engine(truth: Truth, *effects: Active) -> Engine:
         saturation=saturation("coolprop"), combustion=combustion_of(),
         feed=FeedSystem(VOLUME, C_I * HOLES * HOLE_AREA, K_LOSS), oxidizer_mass=MASS, temperature=298.0,
         polytropic_exponent=truth.m, fuel_mass=FUEL, grain_length=LENGTH, outer_radius=OUTER, fuel_density=DENSITY,
-        a=1.1e-3 / 250.0**truth.n, n=truth.n, dead_volume=1.1e-3, throat_area=AREAS[0], exit_area=AREAS[1],
+        a=RATE_OF_FUEL / FLUX**truth.n, n=truth.n, dead_volume=1.1e-3, throat_area=AREAS[0], exit_area=AREAS[1],
         ambient_pressure=AMBIENT, oxidizer_enthalpy=PROPEP_OXIDIZER_ENTHALPY, effects=(*choked, *effects),
     )  # fmt: skip
 
 
 @cache
 def fired(truth: Truth, seed: int = 0) -> Fired:
-    """The firing, its sensors with a little noise."""
+    """The firing, its sensors with a little noise; with a ``seed`` its constants are found as wrongly as they say."""
     purge = effect("n2_purge").at(area=1.2e-5, supply_pressure=SUPPLY, cracking_pressure=CRACKING)
     alone = burn(_engine(truth), SECONDS)
     with_purge = burn(_engine(truth, purge), SECONDS) if truth.purge else alone
@@ -143,7 +154,7 @@ def fired(truth: Truth, seed: int = 0) -> Fired:
     t_purge = float(np.interp(CRACKING - SUPPLY, -falls, alone.time)) if truth.purge else None
     return Fired(
         truth, _log(with_purge, end, truth, seed), _segments(alone.liquid_out, t_purge, end),
-        _calibration(truth), _definition(_fuel_left(with_purge, end)), alone,
+        _calibration(truth, seed), _definition(_fuel_left(with_purge, end)), alone,
     )  # fmt: skip
 
 
@@ -160,8 +171,9 @@ def _log(run: Burn, end: float, truth: Truth, seed: int) -> TestLog:
     found = {}
     for name, (value, before, after, noise) in series.items():
         clean = np.where(time > end, after, np.interp(time, run.time, value, left=before))
-        made = channel(name, time, clean + noise * rng.standard_normal(time.size), 5e3 if name != "thrust" else 2.0)
-        found[name] = replace(made, zero_std=1.0 if name == "thrust" else 500.0)
+        values, flags = clean + noise * rng.standard_normal(time.size), np.zeros(time.size, dtype=np.uint8)
+        unit, accuracy, zero = ("N", 2.0, 1.0) if name == "thrust" else ("Pa", 5e3, 500.0)
+        found[name] = Channel(name, unit, time, values, flags, accuracy, True, name, zero_std=zero)
     return TestLog(found)
 
 
@@ -173,14 +185,25 @@ def _segments(t_v: float, t_purge: float | None, end: float) -> Segments:
     return Segments.of(Quantity(0.0, "s", 1e-4), absent | known, kind="hot_fire")
 
 
-def _calibration(truth: Truth) -> Calibration:
+def _calibration(truth: Truth, seed: int) -> Calibration:
     """What is found where the pressures are good: by the report's law, which a choked vapor does not follow."""
-    m = Quantity.absent("as the vapor's law has it") if truth.choked else Quantity(truth.m, "", 0.03)
-    found = {"C_i": Quantity(C_I, "", 1e-3), "K_loss": Quantity(K_LOSS, "1/m^4", 1e6), "m": m}
-    n = Quantity(truth.n, "", 0.03, verdict=IDENTIFIED)
-    law = {"n": n, "regression_rate_reference": Quantity(1.1e-3, "m/s", 2e-5)}
-    basis = {"regression": {"reference_flux": Quantity(250.0, "kg/(m^2 s)")}}
-    return filled(Calibration, {**found, **law, **basis, "oxidizer_mass": Quantity(MASS, "kg", 0.01)})
+    rng = np.random.default_rng([seed, 7])
+
+    def near(true: float, unit: str, std: float) -> Quantity:
+        return Quantity(true + (std * rng.standard_normal() if seed else 0.0), unit, std, verdict=IDENTIFIED)
+
+    found = {
+        "C_i": near(C_I, "", 1e-3),
+        "K_loss": near(K_LOSS, "1/m^4", 1e6),
+        "m": Quantity.absent("as the vapor's law has it") if truth.choked else near(truth.m, "", 0.03),
+        "n": near(truth.n, "", 0.03),
+        "regression_rate_reference": near(RATE_OF_FUEL, "m/s", 0.02 * RATE_OF_FUEL),
+    }
+    basis = RegressionBasis(reference_flux=Quantity(FLUX, "kg/(m^2 s)"))
+    fields = Calibration.model_fields.items()
+    none = {key: Quantity.absent("not asked for") for key, of in fields if of.annotation is Quantity}
+    empty: dict[str, Any] = {"rest": None, "C_i_history": None, "tank_history": None, "notes": (), "warnings": ()}
+    return Calibration.model_validate({**none, **empty, **found, "regression": basis})
 
 
 def _fuel_left(run: Burn, end: float) -> float:
@@ -189,9 +212,11 @@ def _fuel_left(run: Burn, end: float) -> float:
 
 def _definition(fuel_left: float) -> TestDefinition:
     grain = GrainSection(Value(FUEL, 0.005), Value(LENGTH), Value(DENSITY), Value(OUTER))
-    return definition(
-        mass=Value(MASS, 0.01), volume=Value(VOLUME), grain=grain, rocket=ROCKET,
-        injector=Injector(HOLES, Value(HOLE_AREA)), nozzle=NozzleSection(Value(THROAT), Value(EXIT)),
-        observed=ObservedSection(fuel_mass_after=Value(max(fuel_left, 0.0), 0.005)),
-        chamber=Chamber(Value(0.218e-3), Value(0.885e-3)),
+    return TestDefinition(
+        Test("PURGED", "hot_fire"), LogSpec((FileSpec("log.csv"),)), {},  # not read from disk
+        tank=Tank(Value(VOLUME), Value(MASS, 0.01)), injector=Injector(HOLES, Value(HOLE_AREA)), grain=grain,
+        purge=Purge(Value(CRACKING)), chamber=Chamber(Value(0.218e-3), Value(0.885e-3)),
+        nozzle=NozzleSection(Value(THROAT), Value(EXIT)), site=Site(ambient_pressure=Value(AMBIENT, 0.0)),
+        observed=ObservedSection(fuel_mass_after=Value(max(fuel_left, 0.0), 0.005)), rocket=ROCKET,
+        path=Path("PURGED/test.toml"), sha256="0" * 64,
     )  # fmt: skip
