@@ -33,7 +33,6 @@ from hfanalysis.validate.histories import Histories
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.reduction import Reduced, Test, reduced
 from hfanalysis.validate.residuals import Residual, gaps
-from hfanalysis.validate.sensor_faults import ZERO, findings
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
 from hfanalysis.validate.thrust import motor_class
 
@@ -112,9 +111,7 @@ class _Work:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
         histories, found = self._histories(full, flows)
         measured |= found.impulses
-        sensors = [*findings(self.true, self.segments, self.definition, self.fire), *found.findings]
         kept = {mode: compared for mode, compared in residuals.items() if compared}
-        told = any(ZERO in warning for warning in self.log.warnings)
         notes = [note for of_mode in kept.values() for r in of_mode for note in r.notes]
         impulse = measured["total_impulse"].value
         about = {"motor_class": motor_class(impulse)} if impulse is not None and impulse > 0.0 else {}
@@ -124,13 +121,11 @@ class _Work:
             closure=self._closure(found),
             efficiency_basis=BASIS,
             **found.content,
-            sensors=tuple(sensors),
+            sensors=found.findings,
             absent=self.absent,
             notes=tuple(dict.fromkeys(notes)),
-            warnings=(
-                *(finding.text for finding in sensors if not (told and finding.verdict == ZERO)), *found.warnings
-            ),
-        )  # fmt: skip
+            warnings=(*(finding.text for finding in found.findings), *found.warnings),
+        )
         return Validated(product, kept, histories)
 
     @property
