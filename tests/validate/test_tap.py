@@ -11,6 +11,7 @@ import pytest
 from benchmarks.narrow_port import PAGE, rows
 from simulated.narrow_port import fired, judged
 
+from hfanalysis.engine.port import head_over_nozzle
 from hfanalysis.products.validation import Efficiencies
 from hfanalysis.quantity import Quantity
 from hfanalysis.validate.efficiency import above_one
@@ -94,3 +95,16 @@ def test_an_efficiency_above_one_by_more_than_its_interval_is_a_finding() -> Non
 def test_the_page_has_what_the_study_finds() -> None:
     page = PAGE.read_text(encoding="utf-8")
     assert all(line in page for line in rows(0.85))
+
+
+def test_wherever_the_gauge_sits_the_warning_has_the_same_head() -> None:
+    test = fired(0.5)
+    gamma, burning = np.full(test.flows.time.size, 1.24), test.flows.time > 0.0
+    said = []
+    for tap in ("head", "aft", None):
+        (found,) = narrow(tap, test.engine, before_nozzle(tap, test.flows.port, gamma, test.engine), burning)
+        said.append(found.text.partition("; ")[0])
+    assert len(set(said)) == 1
+    engine = test.engine
+    areas = [pi * r**2 / engine.throat_area for r in (test.flows.port[1], engine.outer_radius)]
+    assert f"up to {100.0 * (head_over_nozzle(1.24, *areas, 0.0) - 1.0):.0f} % above" in said[0]

@@ -11,6 +11,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, engine_of_test, exponent, starting_for
 from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar
+from hfanalysis.calibrate.head_pressure import before_nozzle_of
 from hfanalysis.calibrate.measured_pressures import quiet_noises
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.effect import Active
@@ -47,7 +48,7 @@ def evidence_of(
     t_v = segments.time("t_v")
     if t_v is None:
         raise AbsentError(f"no end of the liquid to fit with: {segments.events['t_v'].reason}")
-    origin = segments.t_open.value or 0.0
+    log, origin = before_nozzle_of(log, definition), segments.t_open.value or 0.0
     tank, chamber = (Signal.of(log[name]).shifted(origin) for name in ("p_tank", "p_chamber"))
     start = segments.time("t_feed") or min(0.1, 0.1 * t_v)
     pressure = line_at(tank, start)

@@ -15,6 +15,7 @@ from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.course import with_course
 from hfanalysis.calibrate.diagnostics import coefficient_history, other_masses, rest_of, tank_history
 from hfanalysis.calibrate.feed_loss import estimated_share
+from hfanalysis.calibrate.head_pressure import before_injector
 from hfanalysis.calibrate.loaded_mass import UNSTATED, LoadedMass, loaded_mass
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at_break
 from hfanalysis.calibrate.stated import Held
@@ -75,7 +76,8 @@ def calibrate(
         raise AbsentError(
             f"test {definition.test.id}: no end of the liquid to calibrate with: {segments.events['t_v'].reason}"
         )
-    return _Work(log, segments, definition, t_v, effects).result(samples)
+    read = before_injector(log, segments, definition)
+    return _Work(read, segments, definition, t_v, effects).result(samples)
 
 
 class _Work:

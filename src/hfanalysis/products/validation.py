@@ -117,7 +117,7 @@ class Closure(Part):
 
 
 class Finding(Part):
-    """A sensor that cannot be right."""
+    """A sensor that cannot be right by what the engine can give; what channels show by themselves is in health.json."""
 
     channels: Annotated[tuple[str, ...], Is("which")]
     verdict: Annotated[str, Is("what is wrong, in short")]
@@ -145,7 +145,7 @@ class Validation(Product):
     efficiencies: Annotated[Efficiencies | None, Is("c* and C_F over the liquid phase")] = None
     standard: Annotated[Standard | None, Is("by which engines are compared")] = None
     beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
-    sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors")]
+    sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors by what the engine can give")]
     budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     absent: Annotated[dict[str, Words], Is("what could not be done, and why")]
     notes: Notes

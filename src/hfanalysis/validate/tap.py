@@ -43,11 +43,15 @@ def tap_of(definition: TestDefinition) -> str | None:
 
 @dataclass(frozen=True)
 class Before:
-    """Stagnation pressure before the nozzle over the gauge's reading [-], (n,): as taken, and between what it lies."""
+    """Stagnation pressure before the nozzle over the gauge's reading [-], (n,): as taken, and between what it lies.
+
+    ``head``: the head's pressure over it [-], at most.
+    """
 
     factor: Array
     low: Array
     high: Array
+    head: Array
 
     def mean(self, part: NDArray[np.bool_]) -> tuple[float, float]:
         """Low and high over what is taken [-], mean of the samples ``part`` (n,)."""
@@ -61,15 +65,15 @@ def before_nozzle(tap: str | None, port: Array, gamma: Array, engine: Engine) ->
     """
     one, throat = np.ones(port.size), engine.throat_area
     area, chamber = pi * port**2 / throat, pi * engine.outer_radius**2 / throat
+    smooth, middle, mixed = (
+        np.nan_to_num(1.0 / heads_over_nozzle(gamma, area, chamber, r), nan=1.0) for r in (SMOOTH, MIDDLE, MIXED)
+    )
     if tap == "aft":
         known = np.isfinite(gamma)
         static = [stagnation_over_static(g, chamber) if there else 1.0 for g, there in zip(gamma, known, strict=True)]
         factor = np.array(static)
-        return Before(factor, factor, factor)
-    smooth, middle, mixed = (
-        np.nan_to_num(1.0 / heads_over_nozzle(gamma, area, chamber, r), nan=1.0) for r in (SMOOTH, MIDDLE, MIXED)
-    )
-    return Before(middle, mixed, smooth) if tap == "head" else Before(one, mixed, one)
+        return Before(factor, factor, factor, 1.0 / mixed)
+    return Before(*((middle, mixed, smooth) if tap == "head" else (one, mixed, one)), 1.0 / mixed)
 
 
 def narrow(tap: str | None, engine: Engine, found: Before, burning: NDArray[np.bool_]) -> Iterator[Beyond]:
@@ -78,7 +82,7 @@ def narrow(tap: str | None, engine: Engine, found: Before, burning: NDArray[np.b
     if ratio >= NARROW or not burning.any():
         return
     limit = CHOKES if ratio < CHOKES else NARROW
-    heads = 100.0 * (1.0 / found.low[burning] - 1.0)
+    heads = 100.0 * (found.head[burning] - 1.0)
     reads = {
         "head": "the gauge reads the head: c* and C_F take the stagnation pressure before the nozzle, lower by that",
         "aft": "the gauge reads behind the grain: the injector has the head's higher pressure behind it",

@@ -10,6 +10,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.head_pressure import before_injector, before_nozzle_of
 from hfanalysis.calibrate.narrow_port import with_stated_tap
 from hfanalysis.calibrate.water_flow import is_water
 from hfanalysis.engine.effect import Active
@@ -34,7 +35,6 @@ from hfanalysis.validate.histories import Histories
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.reduction import Reduced, Test, reduced
 from hfanalysis.validate.residuals import Residual, gaps
-from hfanalysis.validate.sensor_faults import ZERO, findings
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
 from hfanalysis.validate.thrust import motor_class, thrust_of
 
@@ -89,6 +89,7 @@ class _Work:
         self.log, self.segments, self.definition = log, segments, definition
         self.effects = effects
         self.true = corrected(log, segments.t_open.value or 0.0, effects)
+        self.before_nozzle = before_nozzle_of(log, definition)
         water = is_water(segments, definition)
         self._calibration = None if water else calibration
         self.uncalibrated = "water flows: there is no tank of nitrous oxide to run" if water else uncalibrated
@@ -103,7 +104,7 @@ class _Work:
         residuals = {
             "tank_free": self._try("tank_free", self._tank_free),
             "chamber_forced": self._try("chamber_forced", lambda: self._chamber_forced(full, flows)),
-            "full": compare_full(self.log, self.segments, full) if full else None,
+            "full": compare_full(self.before_nozzle, self.segments, full) if full else None,
         }
         measured = performance.measured(self.true, self.segments, self.definition, self._calibration)
         if full is not None:
@@ -112,9 +113,7 @@ class _Work:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
         histories, found = self._histories(full, flows)
         measured |= found.impulses
-        sensors = [*findings(self.true, self.segments, self.definition, self.fire), *found.findings]
         kept = {mode: compared for mode, compared in residuals.items() if compared}
-        told = any(ZERO in warning for warning in self.log.warnings)
         notes = [note for of_mode in kept.values() for r in of_mode for note in r.notes]
         impulse = measured["total_impulse"].value
         about = {"motor_class": motor_class(impulse)} if impulse is not None and impulse > 0.0 else {}
@@ -125,13 +124,11 @@ class _Work:
             efficiency_basis=BASIS,
             **found.content,
             budget=self._budgets(measured) | found.budget,
-            sensors=tuple(sensors),
+            sensors=found.findings,
             absent=self.absent,
             notes=tuple(dict.fromkeys(notes)),
-            warnings=(
-                *(finding.text for finding in sensors if not (told and finding.verdict == ZERO)), *found.warnings
-            ),
-        )  # fmt: skip
+            warnings=(*(finding.text for finding in found.findings), *found.warnings),
+        )
         return Validated(product, kept, histories)
 
     def _budgets(self, measured: dict[str, Quantity]) -> dict[str, Budget]:
@@ -157,7 +154,8 @@ class _Work:
             return None
 
     def _tank_free(self) -> list[Residual]:
-        return run_tank_free(self.log, self.segments, self.calibration, self.definition, self.effects)
+        read = before_injector(self.log, self.segments, self.definition)
+        return run_tank_free(read, self.segments, self.calibration, self.definition, self.effects)
 
     def _full(self) -> FullRun:
         if isinstance(self.fire, str):
@@ -169,11 +167,12 @@ class _Work:
         """The flows, and the nitrogen [kg/s] that passes the injector beside the oxidizer, where a purge is adopted."""
         if full is None or isinstance(self.fire, str):
             raise AbsentError(self.absent["full"])
+        read = before_injector(self.true, self.segments, self.definition)
         alone = run_tank_alone(
-            self.true, self.segments, self.calibration, self.definition, constant=False, effects=self.effects
+            read, self.segments, self.calibration, self.definition, constant=False, effects=self.effects
         )
         time = histories_of.clock(self.log, self.segments, self.fire.end)
-        flow = oxidizer_flow(self.true, self.segments, self.calibration, self.definition, alone, time)
+        flow = oxidizer_flow(read, self.segments, self.calibration, self.definition, alone, time)
         factor = full.factor("regression_factor", time)
         burnt = burn_fuel(full.engine, Regression.of(self.calibration), time, flow, factor)
         # all that flows drives the regression, as in the engine; what of it is nitrogen is no oxidizer
@@ -183,7 +182,7 @@ class _Work:
     def _chamber_forced(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> list[Residual]:
         if full is None or flows is None or isinstance(self.fire, str):
             raise AbsentError(self.absent.get("full") or self.absent["histories"])
-        return run_chamber_forced(self.log, self.segments, full, flows[0], self.ambient, self.fire.end)
+        return run_chamber_forced(self.before_nozzle, self.segments, full, flows[0], self.ambient, self.fire.end)
 
     def _histories(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> tuple[Histories, Reduced]:
         end = self.fire.end if isinstance(self.fire, Fire) else 10.0
