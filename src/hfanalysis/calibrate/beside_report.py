@@ -32,11 +32,13 @@ def beside_report(
 ) -> dict[str, Any]:  # fmt: skip
     """m_choked, vapor_C_d, inlet, C_d and joint, and m with what they say of it.
 
-    ``inputs`` and ``r`` without effects, ``draws`` with all errors; ``found``: the report's constants; ``no_vapor``:
-    why there is no vapor phase to tell of.
+    ``inputs`` and ``r`` without effects, ``draws`` with all errors; ``found``: the constants, the report's where ``r``
+    is what they are told by; ``no_vapor``: why there is no vapor phase to tell of.
     """
     measured = expansion(Tables.of(histories, saturation), saturation, inputs) if no_vapor is None else None
     vapor = VaporLaws(measured, r, draws).told(found["m"]) if measured else without_vapor(no_vapor or "no vapor phase")
+    if found["m"].value != r.m:  # effects act on it: it is by another law than the report's
+        vapor.pop("m", None)
     feed = Feed.of(histories, inputs.t_feed, inputs.t_v)
     bias = dict(zip(SENSORS, spread.bias, strict=True))
     inlet, by_law = inlet_of(feed, saturation, bias, found["C_i"], r.C_i, draws)

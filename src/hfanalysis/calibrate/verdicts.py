@@ -96,7 +96,7 @@ def judge_exponent(
     heat = implied_heat(saturation, r.m, r.vapor_mass, r.vapor_mass_end, r.temperature_v, r.Z)
     t_end = r.temperature_v * (r.vapor_mass_end / r.vapor_mass) ** (r.m - 1.0)
     power = f"{heat / duration / 1e3:+.1f} kW into the vapor"
-    implies = f"by the report's law it implies {power} and {t_end - 273.15:.0f} degC at its end"
+    implies = f"if the vapor flows so, it implies {power} and {t_end - 273.15:.0f} degC at its end"
     outside = high < PHYSICAL_M[0] or low > PHYSICAL_M[1]
     verdict = UNPHYSICAL if outside else IDENTIFIED
     lead = f"outside {PHYSICAL_M[0]} to {PHYSICAL_M[1]}, no property of nitrous oxide: " if outside else ""

@@ -70,7 +70,7 @@ def _inlet(material: Material) -> Markup | None:
     if calibration is None or calibration.inlet is None:
         return None
     rows = [
-        (html.symbol_and_words(name), html.value(q, name), html.interval(q, name), html.remark(q))
+        (html.symbol_and_words(name), html.value(q, name), html.interval(q, name), html.judged(q, material.reasons))
         for name, q in (calibration.inlet.quantities | dict(calibration.C_d)).items()
     ]
     return html.table("What reaches the injector", _INLET, ("quantity", ">value", ">95 % interval", "how"), rows)
