@@ -159,7 +159,7 @@ def known(
     t_v = segments.time("t_v")
     if segments.supercharged or t_v is None or t_purge < t_v:
         raise AbsentError("nitrogen enters before the liquid is gone: it belongs to the engine as it was fired")
-    if calibration is None or calibration.alone("C_i").value is None:
+    if calibration is None or not (calibration.alone("C_i").value or 0.0) > 0.0:
         raise AbsentError(f"no C_i is known; {UNKNOWN}")
     area = definition.injector.area if definition.injector is not None else None
     nozzle, grain = definition.nozzle, definition.grain
