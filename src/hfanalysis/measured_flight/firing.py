@@ -39,7 +39,7 @@ LIT = 1.3
 
 CURVES = 18
 """Curves drawn of what a thrust's correction may be. Evidence: each law of vapor and nozzle comes three times; with 12,
-24 or 48 of them the ends of HF5's band differ by 9 m of 690 m."""
+24 or 48 of them the ends of HF5's band lie within 40 m, of 690 m."""
 
 
 @dataclass(frozen=True)
