@@ -312,7 +312,7 @@ def draws(found: Known, nozzle: tuple[Law, ...], count: int, seed: int) -> Itera
 
 def _spread(columns: int, rows: int, seed: int) -> Array:
     """Standard deviations from the value, (rows, columns): each column goes evenly through the normal distribution
-    (Latin hypercube), since few rows drawn freely may all lie on one side."""
+    (the middles of a Latin hypercube), since few rows drawn freely may all lie on one side."""
     rng = np.random.default_rng([seed, 20])
-    places = [(rng.permutation(rows) + rng.random(rows)) / rows for _ in range(columns)]
+    places = [(rng.permutation(rows) + 0.5) / rows for _ in range(columns)]
     return np.asarray(ndtri(np.stack(places, axis=1)))
