@@ -92,33 +92,37 @@ def _burn(
     area: float,
     loss: float,
     m: float,
-    slope: float,
-    fill: float,
+    slope: Array,
+    full: Array,
+    flush: float,
     mass: float,
     t_k: float,
     step: float,
-    count: int,
-    vapor_time: float,
+    purge: tuple[float, float, float],
 ) -> tuple[Array, float, float, float]:
-    """Pressures of tank, line and chamber, tank mass and flow every step; t_v; t_purge; tank pressure at t_purge."""
-    out = np.empty((5, count))
+    """Pressures of tank, line and chamber, tank mass and flow every step; t_v; t_purge; tank pressure at t_purge.
+
+    ``slope`` [Pa s/kg] and how ``full`` the line is [-] every step; ``flush`` [s] of the chamber. ``purge``: seconds of
+    vapor before it, or, where that is NaN, the instant [s]; and the time constant [s] of its supply.
+    """
+    out = np.empty((5, slope.size))
     p_c = 101_325.0
-    t_v = t_purge = np.nan
+    vapor_time, t_purge, fades = purge
+    t_v = np.nan
     p_v = m_v = p_purge = 0.0
     nitrogen = 0.0
-    for i in range(count):
+    for i in range(slope.size):
         t = i * step
         liquid = np.isnan(t_v)
         if liquid:
-            p = np.exp(evaluate(*table, LN_PRESSURE, t_k)[0])
+            p = np.exp(evaluate(*table, LN_PRESSURE, t_k)[0]) + nitrogen
             density = 1.0 / evaluate(*table, LIQUID_VOLUME, t_k)[0]
         else:
             p = p_v * (mass / m_v) ** m + nitrogen
             density = mass / volume
-        full = 1.0 - np.exp(-t / fill)
         steady = mass_flow_with_feed(area, loss, density, p - p_c)
-        flow = np.sqrt(full) * steady
-        p_run = p_c + full * steady**2 / (2.0 * density * area**2)
+        flow = np.sqrt(full[i]) * steady
+        p_run = p_c + full[i] * steady**2 / (2.0 * density * area**2)
         out[0, i], out[1, i], out[2, i], out[3, i], out[4, i] = p, p_run, p_c, mass, flow
         if liquid:
             rate = temperature_rate(*energy_derivatives(table, volume, mass, t_k), flow, 0.0)
@@ -129,14 +133,15 @@ def _burn(
             if after <= 0.0:
                 t_v = t + step * before / (before - after)
                 p_v, m_v = np.exp(evaluate(*table, LN_PRESSURE, t_k)[0]), mass
-                t_purge = t_v + vapor_time
+                if np.isnan(t_purge):
+                    t_purge = t_v + vapor_time
         else:
             mass = max(mass - step * flow, 1e-3 * m_v)
-            if t >= t_purge:
-                if p_purge == 0.0:
-                    p_purge = p
-                nitrogen += step * 0.6 * max(p_purge - p, 0.0)
-        p_c += (1.0 - np.exp(-step / 0.003)) * (101_325.0 + slope * flow - p_c)
+        if t >= t_purge:
+            if p_purge == 0.0:
+                p_purge = p
+            nitrogen += step * 0.6 * max(p_purge * np.exp(-(t - t_purge) / fades) - p, 0.0)
+        p_c += (1.0 - np.exp(-step / flush)) * (101_325.0 + slope[i] * flow - p_c)
     return out, t_v, t_purge, p_purge
 
 
@@ -145,11 +150,11 @@ def make_log(folder: Path, seed: int) -> Truth:
     generator = np.random.default_rng([20220403, seed])
     truth = draw_truth(generator)
     step = 1e-4
-    source = saturation("coolprop")
     vapor_time = generator.uniform(0.25, 1.0)
-    out, t_v, t_purge, p_purge = _burn(
-        source.kernel_table, truth.volume, truth.area, truth.K_loss, truth.m, truth.chamber_slope, truth.fill_time,
-        truth.mass, truth.temperature, step, int(30.0 / step), vapor_time,
+    time = step * np.arange(int(30.0 / step))
+    out, t_v, t_purge, p_purge = empties(
+        truth, np.full(time.size, truth.chamber_slope), 1.0 - np.exp(-time / truth.fill_time), step,
+        (vapor_time, np.nan, np.inf),
     )  # fmt: skip
     if not t_purge < 26.0:
         raise ValueError(f"seed {seed}: the tank does not empty within the log")
@@ -157,6 +162,17 @@ def make_log(folder: Path, seed: int) -> Truth:
     _write_log(folder / "log.csv", truth, out, step, generator)
     (folder / "test.toml").write_text(_definition(folder.name, truth, generator), encoding="utf-8")
     return truth
+
+
+def empties(
+    truth: Truth, slope: Array, full: Array, step: float, purge: tuple[float, float, float], flush: float = 0.003
+) -> tuple[Array, float, float, float]:
+    """The stand's tank emptied, as :func:`_burn` does it."""
+    table = saturation("coolprop").kernel_table
+    return _burn(
+        table, truth.volume, truth.area, truth.K_loss, truth.m, slope, full, flush, truth.mass, truth.temperature,
+        step, purge,
+    )  # fmt: skip
 
 
 def noise(generator: np.random.Generator, count: int, rate: float, white: float, flicker: float) -> Array:

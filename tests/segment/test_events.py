@@ -15,7 +15,8 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_unchoking
 from hfanalysis.segment.falls import abrupt_falls
 from hfanalysis.segment.feed import find_line_full
-from hfanalysis.segment.fuel import _dated, find_fuel_end
+from hfanalysis.segment.fuel import find_fuel_end
+from hfanalysis.segment.fuel_at_once import _dated
 from hfanalysis.segment.kind import Known, recognize
 from hfanalysis.segment.liquid import dry_pressure, find_liquid_end
 from hfanalysis.segment.purge import find_nitrogen
@@ -191,7 +192,9 @@ def test_a_sudden_end_of_the_fuel_is_dated() -> None:
     assert not isinstance(found, str)
     assert found.time == pytest.approx(3.4, abs=3.0 * found.std)
     assert found.std < 0.02
-    assert found.gone == found.time
+    assert found.gone == pytest.approx(3.4, abs=2.0 * found.gone_std)
+    assert found.time < found.gone < 3.42
+    assert found.at_once
 
 
 def test_a_fall_that_the_thrust_does_not_share_is_no_end_of_the_fuel() -> None:
@@ -310,7 +313,8 @@ def test_a_fire_that_fades_is_dated_where_what_is_left_of_it_goes_out() -> None:
     assert not isinstance(found, str)
     assert found.time == pytest.approx(5.3, abs=0.01)
     assert found.std < 0.01
-    assert found.gone == found.time
+    assert found.gone == pytest.approx(5.3, abs=0.02)
+    assert found.at_once
 
 
 @pytest.mark.parametrize("then", [0.0, 1.15], ids=["ahead of its sensor", "behind it"])

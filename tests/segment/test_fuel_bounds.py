@@ -8,16 +8,17 @@ from tests.segment.stand import Stand, definition, fire, log_of
 
 from hfanalysis.record.sections import GrainSection, ObservedSection
 from hfanalysis.segment.fade import find_fade
-from hfanalysis.segment.fuel import GRID, _fall_at, _Response, _step
+from hfanalysis.segment.fire import GRID, Response
+from hfanalysis.segment.fuel_at_once import _fall_at, _step
 from hfanalysis.segment.phases import find_phases
 from hfanalysis.units import Value
 
 TIME = np.arange(0.0, 6.0, GRID)
 
 
-def response(value: np.ndarray, noise: float) -> _Response:
+def response(value: np.ndarray, noise: float) -> Response:
     scatter = noise * np.random.default_rng(1).standard_normal(value.size)
-    return _Response(TIME, value + scatter, noise)
+    return Response(TIME, value + scatter, noise, GRID)
 
 
 @pytest.mark.parametrize(("level", "fall", "seen"), [(0.1e5, 0.06e5, False), (0.3e5, 0.2e5, True), (10e5, 6e5, True)])

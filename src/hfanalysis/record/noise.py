@@ -23,8 +23,9 @@ LONG_STRETCH = 1500
 200 Hz a liquid phase of fewer samples let the fall of the pressure itself pass for wander, and m got fifty times its
 deviation."""
 
-SHORTEST_BLOCK = 16
-"""Samples per block from which on the wander is looked for; below, white noise hides it [samples]."""
+SHORTEST_BLOCK, LEAST_BLOCK = 16, 4
+"""Samples per block from which on the wander is looked for; below, white noise hides it [samples]. A stretch too
+short for those has smaller ones: the sensors of slow loggers wander as well."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +93,8 @@ def _flicker(quiet: Array, white: float) -> float:
     """A from Allan variances at blocks of SHORTEST_BLOCK samples and more, less what white noise leaves at each."""
     estimates, weights = [], []
     length = SHORTEST_BLOCK
+    while length > LEAST_BLOCK and quiet.size < 5 * length:
+        length //= 2
     while quiet.size >= 5 * length:
         blocks = quiet[: quiet.size // length * length].reshape(-1, length).mean(axis=1)
         allan = 0.5 * float(np.mean(np.diff(blocks) ** 2))

@@ -4,89 +4,18 @@ change, at once or over a second or two."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hfanalysis.arrays import Array
-from hfanalysis.record.signals import Signal, sample_noise
+from hfanalysis.record.signals import Signal
 from hfanalysis.segment.fade import Fade, find_fade
-from hfanalysis.segment.falls import RELAXATION, abrupt_falls
-from hfanalysis.segment.refine import refine_step
-
-GRID = 0.01
-"""Seconds from one value of the chamber's response to the next."""
-
-SMOOTH = 0.03
-"""Seconds over which the pressures are smoothed for it."""
-
-WINDOW = 0.3
-"""Seconds looked at on either side of a sudden fall."""
-
-GAP = 0.04
-"""Seconds left out on either side of it: the chamber empties and the smoothing spreads within these."""
-
-SUDDEN_FALL = 0.3
-"""Least part of the chamber's response that has to go at once. Evidence: test_fuel_bounds.py: a fall of a fifth is no
-end of the fuel; without fire the response is two to five times smaller."""
-
-SMALLEST_FALL = 0.1e5
-"""Least size of a sudden fall [Pa]: near ambient the wander of the sensor looks the same. Evidence:
-test_fuel_bounds.py: a fall of a twentieth of a bar is the wander of a sensor."""
-
-SUDDEN = 0.2
-"""A sudden fall is over within this time [s]. Evidence: test_events.py: a chamber that empties slowly after the liquid
-is no end of the fuel."""
-
-RESIDENCE = 0.006
-"""Standard deviation [s] of how far the pressure lags the end of the fuel: the chamber has to flush first. Evidence:
-the residence time of a chamber is milliseconds (docs/validation.md)."""
-
-SHARPLY_DATED = 0.01
-"""Standard deviation [s] within which a sudden fall has to be dated. Evidence: the bend where the chamber nears ambient
-was taken for an end of the fuel (test_events.py)."""
-
-CLOSE = 0.012
-"""Seconds left out before a fall, and before t_v, where the two are close and the pressure is hardly smoothed.
-Evidence: test_events.py: the two are told apart from 0.08 s on."""
-
-CLOSE_FALL = 0.2
-"""Least part of the response, and of the thrust, that has to go at once close to t_v. Evidence: test_events.py: near
-the end of the liquid too the thrust has to fall with the chamber."""
-
-SHORT = 0.03
-"""Least length [s] of what is seen between t_v and a fall close to it. Evidence: test_events.py: from 0.08 s on fuel
-and liquid are told apart."""
-
-OUT_LEVEL, OUT_AFTER = 0.06, 0.15
-"""Seconds [s] over which the chamber's level is taken before a fire goes out, and after it."""
-
-OUT = 0.5
-"""Least part of the chamber's level, and of the thrust, that goes at once where a fire goes out. Evidence:
-test_events.py: a fire that fades is dated where what is left of it goes out, one that fades to its end at no
-instant."""
-
-FEED_FALLS, FEED_RISES = 0.12, 0.02
-"""Parts of the feed's pressure by which it may change meanwhile: a tank empties by some percent in OUT_AFTER. Evidence:
-test_events.py: where the feed ends, a fire goes out with fuel left."""
-
-AT_ONCE = 0.05
-"""Seconds within which the chamber of a fire that goes out has flushed."""
-
-CLEAR_FALL = 8.0
-"""Least size of a sudden fall in standard deviations of its own scatter."""
+from hfanalysis.segment.fire import GAP, GRID, SMOOTH, WINDOW, Response, response_of, thrust_falls
+from hfanalysis.segment.fuel_at_once import Sudden, sudden_end
 
 FADE_THRUST = 0.1
 """Least part of the thrust that has to go with it: a third of the pressure's, for the cell drifts with heat. Evidence:
 a chamber that fades while the thrust does not is no end of the fuel (test_events.py)."""
-
-LOWEST_EXCESS = 0.08e5
-"""Chamber pressure above ambient [Pa] below which nothing can be said of the fire."""
-
-
-BLURRED = 0.03
-"""Standard deviation [s] of t_v from which on no step of chamber or thrust dates it: a sudden fall within its interval
-is then its own."""
 
 STARTS = 0.4
 """Seconds after the line is full in which a chamber may start hard: no part of how a fire settles."""
@@ -96,32 +25,18 @@ BEFORE_LIQUID_END = 0.1
 
 
 @dataclass(frozen=True)
-class Sudden:
-    """A sudden end [s] with its standard deviation, and how long the fall takes [s]."""
-
-    time: float
-    std: float
-    duration: float
-
-
-@dataclass(frozen=True)
 class FuelEnd:
-    """When the fade begins [s] and when it has ended, with their deviations; ``gone`` None: ``hidden`` says why."""
+    """When the fade begins [s] and when it has ended, with their deviations; ``gone`` None: ``hidden`` says why.
+
+    ``at_once``: a sudden fall, no fade.
+    """
 
     time: float
     std: float
     gone: float | None
     gone_std: float
     hidden: str = ""
-
-
-@dataclass(frozen=True)
-class _Response:
-    """(p_c - p_a) sqrt(median dp / dp) [Pa] on a grid of times, and the scatter of a grid value."""
-
-    time: Array
-    value: Array
-    noise: float
+    at_once: bool = False
 
 
 def find_fuel_end(
@@ -146,10 +61,10 @@ def find_fuel_end(
     """
     if "p_run" not in signals:
         return "without p_run a fall of the chamber pressure cannot be told from one of the feed"
-    response = _response(signals, ambient, end, SMOOTH, GRID)
+    response = response_of(signals, ambient, end, SMOOTH, GRID)
     if response is None:
         return "the chamber pressure is not above ambient for long enough"
-    sudden = _sudden_end(signals, response, ambient, t_feed, t_v, end)
+    sudden = sudden_end(signals, response, ambient, t_feed, t_v, end)
     fade = None
     if t_v is not None:
         until = t_v[0] - BEFORE_LIQUID_END - t_v[1]
@@ -157,7 +72,7 @@ def find_fuel_end(
     if fade is not None:
         return _faded(fade, sudden, t_v[0] if t_v is not None else np.inf)
     if sudden is not None:
-        return FuelEnd(sudden.time, sudden.std, sudden.time, sudden.std)
+        return FuelEnd(sudden.time, sudden.std, sudden.gone, sudden.gone_std, at_once=True)
     last = float(response.time[-1])
     return (
         f"chamber pressure and thrust do not fall against the feed up to {last:.1f} s, where the chamber nears ambient"
@@ -169,206 +84,21 @@ def _faded(fade: Fade, sudden: Sudden | None, t_v: float) -> FuelEnd:
     if fade.gone is not None:
         return FuelEnd(fade.begin, fade.begin_std, fade.gone, fade.gone_std)
     if sudden is not None:
-        return FuelEnd(fade.begin, fade.begin_std, sudden.time, sudden.std)
+        return FuelEnd(fade.begin, fade.begin_std, sudden.gone, sudden.gone_std)
     hidden = f"the fade from {fade.begin:.2f} s goes on to the end of the liquid at {t_v:.2f} s, which hides its own"
     return FuelEnd(fade.begin, fade.begin_std, None, np.inf, hidden)
 
 
-def _sudden_end(
-    signals: Mapping[str, Signal],
-    response: _Response,
-    ambient: float,
-    t_feed: float,
-    liquid_out: tuple[float, float] | None,
-    end: float,
-) -> Sudden | None:
-    """A fall at once that is no fall of the liquid's end."""
-    t_v, std = liquid_out if liquid_out is not None else (None, 0.0)
-    sudden = _sudden(signals, response, t_feed, t_v)
-    if sudden is None and t_v is not None and std < BLURRED:
-        sudden = _close(signals, ambient, end, t_feed, t_v)
-    if sudden is None or _is_liquids(sudden, t_v, std):
-        sudden = _goes_out(signals, ambient, t_feed, t_v, float(response.time[-1]))
-    return None if sudden is None or _is_liquids(sudden, t_v, std) else sudden
-
-
-def _is_liquids(sudden: Sudden, t_v: float | None, std: float) -> bool:
-    return t_v is not None and std >= BLURRED and abs(sudden.time - t_v) < WINDOW + 2.0 * std
-
-
-def _fade(signals: Mapping[str, Signal], response: _Response, t_feed: float, until: float) -> Fade | None:
+def _fade(signals: Mapping[str, Signal], response: Response, t_feed: float, until: float) -> Fade | None:
     """A fade up to an instant [s] that the thrust, where it is measured, shares."""
     part = (response.time > t_feed + STARTS) & (response.time < until)
     fade = find_fade(response.time[part], response.value[part])
     if fade is None:
         return None
+    blurred = response.width / np.sqrt(12.0)
+    fade = replace(
+        fade, begin_std=float(np.hypot(fade.begin_std, blurred)), gone_std=float(np.hypot(fade.gone_std, blurred))
+    )
     late = until if fade.gone is None else min(fade.gone + WINDOW, until)
-    shared = _thrust_falls(signals, (fade.begin - WINDOW, fade.begin), (late - WINDOW, late), FADE_THRUST)
+    shared = thrust_falls(signals, (fade.begin - WINDOW, fade.begin), (late - WINDOW, late), FADE_THRUST)
     return fade if shared else None
-
-
-def _response(signals: Mapping[str, Signal], ambient: float, end: float, width: float, step: float) -> _Response | None:
-    chamber, run = signals["p_chamber"], signals["p_run"]
-    width, step = max(width, 2.0 * chamber.step), max(step, chamber.step)
-    grid = np.arange(0.1, min(end, chamber.time[-1], run.time[-1]), step)
-    excess = np.interp(grid, chamber.time, chamber.smooth(width)) - ambient
-    drop = np.interp(grid, run.time, run.smooth(width)) - ambient - excess
-    fire = (excess > LOWEST_EXCESS) & (drop > 0.2e5)
-    if fire.sum() < 20:
-        return None
-    stop = min(int(np.flatnonzero(fire)[-1]) + round(WINDOW / step), grid.size)
-    drop = np.maximum(drop[:stop], 0.2e5)
-    value = excess[:stop] * np.sqrt(np.median(drop) / drop)
-    return _Response(grid[:stop], value, sample_noise(value))
-
-
-def _close(signals: Mapping[str, Signal], ambient: float, end: float, t_feed: float, t_v: float) -> Sudden | None:
-    """A sudden fall so close to t_v that only the hardly smoothed pressure tells the two apart."""
-    response = _response(signals, ambient, end, 0.25 * SMOOTH, 0.4 * GRID)
-    if response is None:
-        return None
-    near = np.abs(response.time - t_v) < WINDOW + GAP
-    seen = [_close_fall(response, float(t), t_v) for t in response.time[near & (response.time > t_feed + 0.2)]]
-    best = max(seen, default=None, key=lambda fall: fall.size)
-    if best is None or best.size == 0.0:
-        return None
-    if not _thrust_steps(signals, best):
-        return None
-    return _dated(signals, 0.5 * (best.before[1] + CLOSE + best.after[0] - GAP), t_v)
-
-
-@dataclass(frozen=True)
-class _Fall:
-    """A fall's size in standard deviations (0 where it is none), and the intervals [s] before and after it."""
-
-    size: float
-    before: tuple[float, float]
-    after: tuple[float, float]
-
-
-def _close_fall(response: _Response, t: float, t_v: float) -> _Fall:
-    """A fall at t, close to t_v. One slope for both sides, of the longer: a short one cannot tell slope from ripple."""
-    before = (max(t - WINDOW, t_v + GAP) if t > t_v else t - WINDOW, t - CLOSE)
-    after = (t + GAP, min(t + WINDOW, t_v - CLOSE) if t < t_v else t + WINDOW)
-    nothing = _Fall(0.0, before, after)
-    a, b, c, d = np.searchsorted(response.time, (*before, *after))
-    if min(before[1] - before[0], after[1] - after[0]) < SHORT or min(b - a, d - c) < 4:
-        return nothing
-    level, fall, error = _step(response.time, response.value, before, after, response.noise)
-    clear = fall > max(CLOSE_FALL * level, SMALLEST_FALL, CLEAR_FALL * error)
-    return _Fall(fall / error, before, after) if clear else nothing
-
-
-def _step(
-    time: Array, value: Array, before: tuple[float, float], after: tuple[float, float], noise: float
-) -> tuple[float, float, float]:
-    """Level before a step, how far it falls beyond the slope common to both sides, and the fall's deviation."""
-    a, b, c, d = np.searchsorted(time, (*before, *after))
-    instant = 0.5 * (before[1] + after[0])
-    longer = slice(a, b) if before[1] - before[0] > after[1] - after[0] else slice(c, d)
-    slope = min(float(np.polyfit(time[longer] - instant, value[longer], 1)[0]), 0.0)
-    left, right = (value[side] - slope * (time[side] - instant) for side in (slice(a, b), slice(c, d)))
-    scatter = max(float(np.hypot(left.std(), right.std())) / np.sqrt(2.0), noise)
-    sides = (before[1] - before[0], after[1] - after[0])
-    apart = 0.5 * (after[0] + after[1] - before[0] - before[1])
-    of_slope = 12.0 * GRID * apart**2 / max(sides) ** 3
-    error = scatter * np.sqrt(GRID / sides[0] + GRID / sides[1] + of_slope)
-    return float(left.mean()), float(left.mean() - right.mean()), float(error)
-
-
-def _thrust_steps(signals: Mapping[str, Signal], fall: _Fall) -> bool:
-    """Whether the thrust, where it is measured, falls with the chamber beyond its own decline."""
-    if "thrust" not in signals:
-        return True
-    thrust = signals["thrust"]
-    if min(thrust.between(*fall.before).time.size, thrust.between(*fall.after).time.size) < 4:
-        return True
-    level, size, error = _step(thrust.time, thrust.value, fall.before, fall.after, thrust.noise)
-    return size > max(CLOSE_FALL * abs(level), 2.0 * error)
-
-
-def _sudden(signals: Mapping[str, Signal], response: _Response, t_feed: float, t_v: float | None) -> Sudden | None:
-    best, at = 0.0, None
-    for t in response.time[(response.time > t_feed + 0.2) & (response.time < response.time[-1] - 0.1)]:
-        size = _fall_at(response, float(t), t_v)
-        if size > best:
-            best, at = size, float(t)
-    if at is None or not _thrust_falls(signals, (at - WINDOW, at - GAP), (at + GAP, at + WINDOW), 0.03):
-        return None
-    return _dated(signals, at, t_v)
-
-
-def _goes_out(
-    signals: Mapping[str, Signal], ambient: float, t_feed: float, t_v: float | None, last: float
-) -> Sudden | None:
-    """The last instant at which a fire that fades goes out: what is left of it goes within hundredths of a second.
-
-    The fade before it, which is no line, hides that fall from a search with windows of WINDOW. The feed goes on:
-    its pressure falls away where a valve closes ahead of its sensor, and rises to the tank's where one does behind it.
-    """
-    chamber, start = signals["p_chamber"], max(t_feed + 0.2, t_v + 2.0 * GAP if t_v is not None else 0.0)
-    for time in reversed(abrupt_falls(chamber, ambient, start, last)):
-        before, after = (time - OUT_LEVEL, time), (time + RELAXATION, time + OUT_AFTER)
-        level, left = chamber.mean(*before) - ambient, chamber.mean(*after) - ambient
-        feed, then = (signals["p_run"].mean(*when) - ambient for when in (before, after))
-        flows_on = (1.0 - FEED_FALLS) * feed < then < (1.0 + FEED_RISES) * feed
-        if left > (1.0 - OUT) * level or not flows_on or not _thrust_falls(signals, before, after, OUT):
-            continue
-        found = refine_step([chamber], time, OUT_LEVEL, OUT_AFTER, 0.5 * OUT_LEVEL)
-        if found is not None and found.std < SHARPLY_DATED and 3.0 * found.relaxation < AT_ONCE:
-            return Sudden(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)
-    return None
-
-
-def _fall_at(response: _Response, t: float, t_v: float | None) -> float:
-    """Size of a sudden fall at t in standard deviations; 0 where it is too small, unclear, or the windows too short."""
-    start, end = t - WINDOW, t + WINDOW
-    if t_v is not None:
-        start = max(start, t_v + GAP) if t > t_v else start
-        end = min(end, t_v - GAP) if t < t_v else end
-    a, b, c, d = np.searchsorted(response.time, (start, t - GAP, t + GAP, end))
-    if b - a < 6 or d - c < 4:
-        return 0.0
-    left, right = response.value[a:b], response.value[c:d]
-    x = response.time[a:b] - response.time[a:b].mean()
-    slope = float(x @ left / (x @ x))
-    ahead = float(response.time[c:d].mean() - response.time[a:b].mean())
-    predicted = float(left.mean()) + min(slope, 0.0) * ahead
-    fall = predicted - float(right.mean())
-    scatter = np.hypot(float((left - left.mean() - slope * x).std()), float(right.std()))
-    error = max(scatter, response.noise) * np.sqrt(3.0 / (b - a) + 1.0 / (d - c))
-    clear = fall > max(SUDDEN_FALL * predicted, SMALLEST_FALL, CLEAR_FALL * error)
-    return float(fall / error) if clear else 0.0
-
-
-def _thrust_falls(
-    signals: Mapping[str, Signal], early: tuple[float, float], late: tuple[float, float], share: float
-) -> bool:
-    """Whether the thrust, where it is measured, falls by this share between two intervals [s], beyond scatter."""
-    if "thrust" not in signals:
-        return True
-    thrust = signals["thrust"]
-    before, after = thrust.between(*early).value, thrust.between(*late).value
-    if before.size < 4 or after.size < 4:
-        return True
-    error = 2.0 * np.hypot(before.std() / np.sqrt(before.size), after.std() / np.sqrt(after.size))
-    return bool(before.mean() - after.mean() > max(share * abs(before.mean()), error))
-
-
-def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> Sudden | None:
-    """The instant of a fall near ``rough`` [s], from samples on its side of t_v; None where it is not sudden."""
-    chamber = signals["p_chamber"]
-    before, after, reach = WINDOW, WINDOW, max(0.1, 4.0 * chamber.step)
-    if t_v is not None and rough > t_v:
-        before = min(before, rough - t_v - 0.5 * GAP)
-        reach = min(reach, before)
-    elif t_v is not None:
-        after = min(after, t_v - rough - 0.5 * CLOSE)
-        reach = min(reach, after)
-    least = 3.0 * chamber.step
-    found = refine_step([chamber], rough, max(before, least), max(after, least), max(reach, least))
-    if found is None:
-        return Sudden(rough, GRID, 0.0)
-    if 3.0 * found.relaxation > SUDDEN or found.std > max(SHARPLY_DATED, chamber.step):
-        return None
-    return Sudden(found.time, float(np.hypot(found.std, RESIDENCE)), 3.0 * found.relaxation)

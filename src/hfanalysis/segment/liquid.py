@@ -13,12 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.engine.tank import mass_along_blowdown, split
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.breaks import Break
 from hfanalysis.segment.falls import abrupt_falls
 from hfanalysis.segment.refine import refine_knee, refine_step
+from hfanalysis.segment.sanity import anywhere_in
 from hfanalysis.thermo.saturation import Saturation
 
 STEEPER = 1.25
@@ -98,6 +100,8 @@ def find_liquid_end(
     if rough is None:
         return None
     noise = Noise.of(tank, tank.between(-3.0, -0.05))
+    for start, unseen_to in tank.holes(rough, rough):
+        return LiquidEnd(*anywhere_in(rough, 0.0, start, unseen_to), ("p_tank",), {})
     half = min(max(0.3, 15.0 * tank.step), max(0.8 * rough, 6.0 * tank.step))
     reach = max(0.12, 4.0 * tank.step)
     knee = refine_knee(tank, rough, half + reach, half + reach, reach, noise)
@@ -146,8 +150,9 @@ def _rough_knee(tank: Signal, end: float, expected: float | None, impossible: Ca
     times = np.arange(0.5 * width, end - 0.4 * width, 0.25 * width)
     if times.size == 0:
         return None
-    before = np.array([_slope(coarse, t - width if t > 1.2 * width else 0.2 * width, t) for t in times])
-    after = np.array([_slope(coarse, t, t + width) for t in times])
+    start, after_hole = _beside_holes(times, tank.holes(0.0, end))
+    before = np.array([_slope(coarse, t - width if t > 1.2 * width else 0.2 * width, t) for t in start])
+    after = np.array([_slope(coarse, t, t + width) for t in after_hole])
     fall = before - after
     pressure = np.maximum(coarse.at(times), 1.0)
     lost = coarse.at(np.zeros(1))[0] - coarse.at(times + 0.4 * width) > LEAST_LOSS * pressure
@@ -165,6 +170,16 @@ def _rough_knee(tank: Signal, end: float, expected: float | None, impossible: Ca
         if not impossible(float(times[k])):
             return float(times[k])
     return None
+
+
+def _beside_holes(times: Array, holes: Array) -> tuple[Array, Array]:
+    """Up to when [s] the fall before each of the times (n,) [s] shows, and from when on the fall after it: in a hole
+    (k, 2) [s] the liquid may go unseen, and what is on either side of it tells."""
+    before, after = times.copy(), times.copy()
+    for start, end in holes:
+        inside = (times > start) & (times < end)
+        before[inside], after[inside] = start, end
+    return before, after
 
 
 def _slope(signal: Signal, start: float, end: float) -> float:

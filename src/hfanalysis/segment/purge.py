@@ -8,6 +8,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.breaks import Break, kink
+from hfanalysis.segment.crossing import BENT, BENT_BY_WANDER, usual_noise
 from hfanalysis.segment.refine import refine_kink
 from hfanalysis.sentences import said, text
 
@@ -18,11 +19,9 @@ that keeps its pressure lets no nitrogen in."""
 SAG_LASTS = 0.4
 """Seconds over which a sag must go on. Evidence: test_events.py: valve hammer is no nitrogen."""
 
-SAG_SHARES = (1.0, 0.7, 0.5, 0.35)
+SAG_SHARES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.18)
 """Parts of the window after the kink that are tried until a parabola fits what is in it."""
 
-FITS = 1.6
-"""Scatter about that parabola, over the sensor's noise, up to which it fits."""
 
 WORSE = 3.0
 """Times by which a date from less of the sag may be less sure: a narrow window is preferred for what it leaves out."""
@@ -63,24 +62,30 @@ def find_nitrogen(
 def _kink(purge: Signal, rough: float, window: float, reach: float, noise: Noise) -> Break | None:
     """The kink with as much of the sag after it as a parabola fits: a tank's own corners bend the line again later."""
     best: Break | None = None
+    middle = rough
     for share in SAG_SHARES:
         after = max(share * window, 1.5 * reach)
-        found = refine_kink(purge, rough, window, after, reach, flat=True, noise=noise)
+        found = refine_kink(purge, middle, window, after, reach, flat=True, noise=noise)
         if found is None:
             break
-        left = _scatter(purge, found.time, rough - window, rough + after)
         best = found if best is None or found.std < WORSE * best.std else best
-        if left < FITS * max(noise.white, purge.noise):
+        if not _bent(purge.between(middle - window, middle + after), found.time, noise):
             break
+        middle, reach = best.time, max(min(reach, 4.0 * best.std), 6.0 * purge.step)
     return best
 
 
-def _scatter(purge: Signal, instant: float, start: float, end: float) -> float:
-    """What a flat line and a parabola after an instant [s] leave between ``start`` and ``end`` [s]."""
-    part = purge.between(start, end)
-    x = kink(order=2, before=0)(part.time, instant)
-    left = part.value - x @ np.linalg.lstsq(x, part.value, rcond=None)[0]
-    return float(np.sqrt(left @ left / max(left.size - x.shape[1] - 1, 1)))
+def _bent(part: Signal, instant: float, noise: Noise) -> bool:
+    """Whether what follows an instant [s] is clearly bent more than a parabola is."""
+    left = [_left(kink(order, before=0)(part.time, instant), part.value) for order in (2, 4)]
+    usual = max(noise.white, usual_noise(part.value)) ** 2 + BENT_BY_WANDER * part.time.size * noise.flicker
+    return left[0] - left[1] > BENT * usual
+
+
+def _left(x: Array, value: Array) -> float:
+    """Sum of squares that the columns (n, m) leave of a value (n,)."""
+    residual = value - x @ np.linalg.lstsq(x, value, rcond=None)[0]
+    return float(residual @ residual)
 
 
 def _before_knee(purge: Signal, found: Break, knee: float, window: float, reach: float, noise: Noise) -> Break:
