@@ -297,8 +297,8 @@ def _flight(context: Context, console: Console) -> None:
     from hfanalysis.products.flight import Flight
 
     product = context.read(Flight)
-    flown = ordered(product.flown)
-    _values(console, flown, f"flight, thrust {product.thrust_basis}, {product.thrust}", _reasons(context))
+    title = f"flight, thrust {product.thrust_basis}, {product.thrust}"
+    _values(console, ordered(product.flown), title, _reasons(context))
     console.print(Text(f"  the intervals hold {product.band_covers}"), soft_wrap=True)
     _values(console, ordered(product.stability.quantities), "stability")
     for name, check in product.checks.items():

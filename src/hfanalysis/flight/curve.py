@@ -28,7 +28,8 @@ class Curve:
     """Thrust [N] and the rocket's mass [kg] every ``step`` [s] from ignition to burn-out, (n + 1) each.
 
     ``mass_after``: what coasts [kg]. ``gain`` (n + 1, k): thrust [N] to add at the k ambient pressures that start at
-    and follow by ``ambients`` [Pa]; one column of zeros where the thrust is what it is at the altitude.
+    and follow by ``ambients`` [Pa]; one column of zeros where the thrust is what it is at the altitude. ``law``: of
+    several that may hold, the number of that by which it was made.
     """
 
     step: float
@@ -37,6 +38,7 @@ class Curve:
     mass_after: float
     gain: Array = field(default_factory=lambda: np.zeros((1, 1)))
     ambients: tuple[float, float] = (0.0, 1.0)
+    law: int = 0
 
     @property
     def time(self) -> Array:

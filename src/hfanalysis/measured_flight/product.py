@@ -20,7 +20,16 @@ from hfanalysis.flight.descent import Leg, descend, fall
 from hfanalysis.measured_flight import stability
 from hfanalysis.measured_flight.budget import apogee_budget
 from hfanalysis.measured_flight.firing import Firing
-from hfanalysis.measured_flight.uncertainty import DrawnFlights, Input, band_covers, disperse, inputs, rows
+from hfanalysis.measured_flight.uncertainty import (
+    DrawnFlights,
+    Input,
+    band_covers,
+    disperse,
+    inputs,
+    laws_of,
+    rows,
+    spread_of,
+)
 from hfanalysis.products import flight as products
 from hfanalysis.products.budget import Budget
 from hfanalysis.products.hdf5 import created
@@ -98,8 +107,7 @@ def _impulse(firing: Firing, flown: Ascent, drawn: Array) -> Quantity:
     each = np.array([_along(curve, firing) for curve in firing.curves])
     off = (drawn[:, THRUST_BIAS] + 0.5 * drawn[:, THRUST_DRIFT]) * burn
     may = drawn[:, THRUST_SCALE] * each[np.arange(len(drawn)) % each.size] + off
-    low, high = np.percentile(may, (2.5, 97.5))
-    return summary.FlightSpread(float(may.std()), (float(low), float(high))).about(_of_trace(flown, burn), "N s")
+    return spread_of(may, laws_of(firing.curves, len(drawn))).about(_of_trace(flown, burn), "N s")
 
 
 def _along(curve: Curve, firing: Firing) -> float:

@@ -160,21 +160,33 @@ def rows(firing: Firing, rocket: Rocket, samples: int, seed: int, shots: bool = 
 
 @dataclass(frozen=True)
 class DrawnFlights:
-    """Drawn flights: ``results`` (n, 8) of each, and bands (2.5, 50, 97.5 %) over ``time``: (3, n) by column."""
+    """Drawn flights: ``results`` (n, 8) of each, and bands (2.5, 50, 97.5 %) over ``time``: (3, n) by column.
+
+    ``laws`` (n,): by which of several laws each flies; none: by one.
+    """
 
     results: Array
     time: Array
     bands: dict[str, Array]
+    laws: NDArray[np.intp] | None = None
 
     def spreads(self) -> dict[str, FlightSpread]:
         """Standard deviation and 95 % interval of every quantity of the ascent that most flights have."""
         found = {}
         for name, (index, _) in ASCENT.items():
-            values = self.results[:, index][np.isfinite(self.results[:, index]) & (self.results[:, APOGEE] > 0.0)]
-            if values.size > 0.9 * len(self.results):
-                low, high = np.percentile(values, (2.5, 97.5))
-                found[name] = FlightSpread(float(values.std(ddof=1)), (float(low), float(high)))
+            there = np.isfinite(self.results[:, index]) & (self.results[:, APOGEE] > 0.0)
+            if there.sum() > 0.9 * len(self.results):
+                laws = None if self.laws is None else self.laws[there]
+                found[name] = spread_of(self.results[there, index], laws)
         return found
+
+
+def spread_of(values: Array, laws: NDArray[np.intp] | None = None) -> FlightSpread:
+    """Standard deviation and 95 % interval of drawn ``values`` (n,) [any unit]; of several ``laws`` (n,) of which one
+    holds, and no one knows which, the interval holds that of each."""
+    groups = [values] if laws is None else [values[laws == law] for law in np.unique(laws)]
+    ends = np.array([np.percentile(group, (2.5, 97.5)) for group in groups])
+    return FlightSpread(float(values.std(ddof=1)), (float(ends[:, 0].min()), float(ends[:, 1].max())))
 
 
 def disperse(
@@ -208,7 +220,13 @@ def disperse(
     turned = float(np.percentile(results[flying, TIME], 2.5)) if flying.mean() > 0.5 else -1.0
     time: Array = every * np.arange(POINTS, dtype=np.float64)
     kept = time <= turned
-    return DrawnFlights(results, time[kept], dict(_bands(paths[:, kept], firing.vehicle.launch_altitude)))
+    bands = dict(_bands(paths[:, kept], firing.vehicle.launch_altitude))
+    return DrawnFlights(results, time[kept], bands, laws_of(curves or firing.curves, len(drawn)))
+
+
+def laws_of(curves: Sequence[Curve], count: int) -> NDArray[np.intp]:
+    """By which law each of so many flights flies that are dealt to the curves in turn, (count,)."""
+    return np.array([curve.law for curve in curves], dtype=np.intp)[np.arange(count) % len(curves)]
 
 
 def _dealt(firing: Firing, curves: Sequence[Curve], count: int) -> Iterator[tuple[Arguments, NDArray[np.intp]]]:

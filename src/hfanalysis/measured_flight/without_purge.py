@@ -12,8 +12,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
+from scipy.special import ndtri
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import ASSUMED_EXPONENT
@@ -40,7 +42,7 @@ from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
 from hfanalysis.validate.thrust import AT_AMBIENT
 
-INCOMPRESSIBLE, CHOKED, CHOKED_GAS = range(3)
+VAPORS = INCOMPRESSIBLE, CHOKED, CHOKED_GAS = range(3)
 """How the vapor passes the injector: as the report has it; choked, with the liquid's coefficient; choked, with the
 coefficient that an exponent as gases have it asks for."""
 
@@ -118,6 +120,8 @@ class Draw:
     rate: float = 0.0
     gas: float = ASSUMED_EXPONENT[0]
 
+    SPREAD: ClassVar[tuple[str, ...]] = ("purge", "exponent", "fuel", "rate", "gas")
+
 
 @dataclass(frozen=True)
 class Tail:
@@ -159,7 +163,7 @@ def known(
     t_v = segments.time("t_v")
     if segments.supercharged or t_v is None or t_purge < t_v:
         raise AbsentError("nitrogen enters before the liquid is gone: it belongs to the engine as it was fired")
-    if calibration is None or calibration.alone("C_i").value is None:
+    if calibration is None or not (calibration.alone("C_i").value or 0.0) > 0.0:
         raise AbsentError(f"no C_i is known; {UNKNOWN}")
     area = definition.injector.area if definition.injector is not None else None
     nozzle, grain = definition.nozzle, definition.grain
@@ -297,10 +301,18 @@ def _fuel(found: Known, t_purge: float, draw: Draw) -> tuple[float, float, float
 def draws(found: Known, nozzle: tuple[Law, ...], count: int, seed: int) -> Iterator[tuple[int, Tail]]:
     """``count`` possible tails with their numbers, each law of vapor and ``nozzle`` (that of the stand's thrust) as
     often as the others; those that cannot be are left out."""
-    rng = np.random.default_rng([seed, 20])
+    spread = _spread(len(Draw.SPREAD), -(-count // len(VAPORS)), seed)
     for i in range(count):
-        purge, exponent, fuel, rate = rng.standard_normal(4)
-        gas = float(rng.normal(*ASSUMED_EXPONENT))
-        law = nozzle[(i // 3) % len(nozzle)]
+        law = nozzle[(i // len(VAPORS)) % len(nozzle)]
+        off = dict(zip(Draw.SPREAD, spread[i // len(VAPORS)].tolist(), strict=True))
+        gas = ASSUMED_EXPONENT[0] + ASSUMED_EXPONENT[1] * off.pop("gas")
         with suppress(AbsentError):
-            yield i, tail(found, Draw(i % 3, law, purge, exponent, fuel, rate, gas))
+            yield i, tail(found, Draw(VAPORS[i % len(VAPORS)], law, gas=gas, **off))
+
+
+def _spread(columns: int, rows: int, seed: int) -> Array:
+    """Standard deviations from the value, (rows, columns): each column goes evenly through the normal distribution
+    (the middles of a Latin hypercube), since few rows drawn freely may all lie on one side."""
+    rng = np.random.default_rng([seed, 20])
+    places = [(rng.permutation(rows) + 0.5) / rows for _ in range(columns)]
+    return np.asarray(ndtri(np.stack(places, axis=1)))
