@@ -211,6 +211,9 @@ def _calibrate(context: Context, console: Console) -> None:
     product, events = context.read(Calibration), context.read(Segments).events
     times = {name: events[name] for name in ("t_feed", "t_v", "t_purge")}
     _print(console, ordered(product.quantities) | times, "calibration", _reasons(context))
+    if product.inlet is not None:
+        reaching = product.inlet.quantities | dict(product.C_d)
+        _print(console, reaching, "what reaches the injector, and its C_d by law", _reasons(context))
     _regression(product.regression, console)
 
 
@@ -294,7 +297,9 @@ def _flight(context: Context, console: Console) -> None:
     from hfanalysis.products.flight import Flight
 
     product = context.read(Flight)
-    _values(console, ordered(product.quantities), f"flight, thrust {product.thrust}", _reasons(context))
+    title = f"flight, thrust {product.thrust_basis}, {product.thrust}"
+    _values(console, ordered(product.flown), title, _reasons(context))
+    console.print(Text(f"  the intervals hold {product.band_covers}"), soft_wrap=True)
     _values(console, ordered(product.stability.quantities), "stability")
     for name, check in product.checks.items():
         style = {"passed": "green", "failed": "red"}.get(check.result, "yellow")
