@@ -34,7 +34,7 @@ SMOOTHING = 0.1
 """[s] of the running mean of which a peak is the largest value: longer than a period of the chamber's oscillation.
 Evidence: test_performance_errors.py: one cycle of a rough chamber is no peak, an overshoot of 0.25 s is."""
 
-BURN_TIME, HOLES = "burn time", "holes in the log"
+BURN_TIME, HOLES = "burn time", "between samples"
 """Rows of a budget."""
 
 LARGEST_SPECIFIC_IMPULSE = 320.0
@@ -186,7 +186,7 @@ def impulse_to(log: TestLog, thrust: Thrust | None, fire: Fire, definition: Test
 
 
 def impulse_inputs(log: TestLog, thrust: Thrust, fire: Fire, definition: TestDefinition, impulse: float) -> list[Input]:
-    """What an ``impulse`` [N s] over the burn may be off by: the cell, the burn's end, and what lies between samples."""
+    """What an ``impulse`` [N s] over the burn may be off by: the cell, the burn's end, what lies between samples."""
     whole = thrust.signal.bridged()
     near = thrust.signal.mean(fire.end - 0.2, fire.end + 0.2)
     last = abs(near if np.isfinite(near) else float(whole.at(np.array([fire.end]))[0]))
