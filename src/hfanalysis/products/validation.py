@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings, Words
+from hfanalysis.products.stability import Stability
 from hfanalysis.quantity import Quantity
 
 
@@ -79,6 +80,7 @@ class Validation(Product):
     closure: Annotated[Closure, Is("of the masses")]
     sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors")]
     absent: Annotated[dict[str, Words], Is("what could not be done, and why")]
+    stability: Annotated[Stability | None, Is("how smoothly it burnt")] = None
     notes: Notes
     warnings: Warnings
     effects: Adopted = ()

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -29,6 +29,8 @@ from hfanalysis.validate.histories import Histories
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import Residual, gaps
 from hfanalysis.validate.sensor_faults import ZERO, findings
+from hfanalysis.validate.stability.modes import Mode, chamber_between
+from hfanalysis.validate.stability.stability import stability
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
 from hfanalysis.validate.thrust import motor_class
 
@@ -116,6 +118,7 @@ class _Work:
             closure=Closure.from_json(histories.closure),
             sensors=tuple(sensors),
             absent=self.absent,
+            **self._stability(full, flows, histories),
             notes=tuple(dict.fromkeys(notes)),
             warnings=tuple(finding.text for finding in sensors if not (told and finding.verdict == ZERO)),
         )
@@ -174,6 +177,22 @@ class _Work:
         ratios = histories_of.efficiencies(values, flows, full.engine, self.ambient, self.fire, purge)
         closed = histories_of.closure(flows, values, full.engine, self.ambient, self.fire, purge)
         return Histories(time, values | histories_of.flow_histories(flows) | ratios, {}, closed | self._heat())
+
+    def _stability(self, full: FullRun | None, flows: Flows | None, histories: Histories) -> dict[str, Any]:
+        """How a hot fire burnt."""
+        if isinstance(self.fire, str):
+            return {}
+
+        def modes(start: float, end: float) -> Iterable[Mode] | None:
+            chamber = self.definition.chamber
+            pressure = histories.values.get("p_chamber")
+            if full is None or flows is None or pressure is None or chamber is None:
+                return None
+            volumes = [v.value if v is not None else 0.0 for v in (chamber.pre_volume, chamber.post_volume)]
+            found = chamber_between(full.engine, (volumes[0], volumes[1]), flows, pressure, start, end)
+            return found.modes() if found is not None else None
+
+        return {"stability": stability(self.log, self.segments, self.fire.end, modes)}
 
     def _heat(self) -> dict[str, Quantity]:
         """Heat that the calibrated tank takes in the liquid phase, where it can be told."""
