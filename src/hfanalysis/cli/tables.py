@@ -243,6 +243,8 @@ def _performance(product: Validation, console: Console) -> None:
     console.print(table)
     if performance.motor_class:
         console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=True)
+    if product.stability is not None:
+        console.print(Text(f"  stability: {product.stability.verdict}: {product.stability.why}"), soft_wrap=True)
     for name, reason in product.absent.items():
         console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=True)
 

@@ -26,10 +26,10 @@ BEYOND = 1e-6
 """Weight of a window's wave outside of it: any that is less than those inside."""
 
 TWICE = float(np.log(2.0))
-"""Change of the logarithm of an amplitude over its time from which it grows or fades: by two."""
+"""Change of the logarithm of an amplitude over its time from which it grows or fades: by a factor of two."""
 
-SURE = 3.0
-"""Standard deviations from which such a change is believed."""
+SURE = 2.0
+"""Standard deviations by which it has to be more than that."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Track:
     @property
     def course(self) -> str:
         """Grows, fades or is steady."""
-        if abs(self.trend) < TWICE or abs(self.trend) < SURE * self.trend_std:
+        if abs(self.trend) - SURE * self.trend_std < TWICE:
             return "steady"
         return "grows" if self.trend > 0.0 else "fades"
 
