@@ -17,16 +17,10 @@ from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.sections import GrainSection, ObservedSection
 from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
+from hfanalysis.validate.efficiency import efficiencies, ideal
 from hfanalysis.validate.flows import Flows
-from hfanalysis.validate.histories import (
-    ABOUT,
-    Histories,
-    clock,
-    efficiencies,
-    measured_histories,
-    write_histories,
-)
-from hfanalysis.validate.performance import Fire, _impulse, fire_of, measured
+from hfanalysis.validate.histories import ABOUT, Histories, clock, measured_histories, write_histories
+from hfanalysis.validate.performance import Fire, fire_of, impulse_to, measured
 from hfanalysis.validate.sensor_faults import findings
 from hfanalysis.validate.thrust import Thrust
 
@@ -55,7 +49,7 @@ def test_the_impulse_is_that_of_the_burn(burn: Trial) -> None:
     true = float(np.trapezoid(burn.values["thrust"][inside], burn.time[inside]))
     assert found["total_impulse"].value == pytest.approx(true, rel=1e-3)
     assert found["average_thrust"].value == pytest.approx(true / 9.0, rel=1e-3)
-    assert found["specific_impulse"].value == pytest.approx(true / 9.80665 / (burn.stand.mass + 1.6), rel=1e-3)
+    assert found["specific_impulse_loaded"].value == pytest.approx(true / 9.80665 / (burn.stand.mass + 1.6), rel=1e-3)
 
 
 def test_the_raw_files_integral_stands_beside_it(burn: Trial) -> None:
@@ -105,7 +99,7 @@ def test_a_missing_channel_takes_its_numbers_with_it(burn: Trial, without: str, 
 
 def test_a_grain_that_is_not_stated_takes_the_specific_impulse(burn: Trial) -> None:
     found = table(log_of(burn), burn, grain=None)
-    assert found["specific_impulse"].reason == "test.toml does not state [grain] mass"
+    assert found["specific_impulse_loaded"].reason == "test.toml does not state [grain] mass"
     assert found["total_impulse"].value is not None
 
 
@@ -160,7 +154,9 @@ def test_c_star_ends_where_nitrogen_enters_and_the_thrust_coefficient_does_not()
     flows = Flows(time, fed, 0.12 * fed, np.full(time.size, 1e-3), np.full(time.size, 0.03))
     held = {"p_chamber": np.full(time.size, 10e5), "thrust_corrected": np.full(time.size, 2300.0)}
     fire = Fire(9.5, 0.1, "video")
-    blind, told = (efficiencies(held, flows, engine, AMBIENT, fire, purge) for purge in (None, 6.0))
+    blind, told = (
+        efficiencies(held, flows, engine, ideal(held, flows, engine, AMBIENT, fire, purge)) for purge in (None, 6.0)
+    )
     before, after = (time > 0.5) & (time < 5.8), (time > 6.5) & (time < 9.0)
     np.testing.assert_array_equal(told["c_star"][before], blind["c_star"][before])
     assert np.nanmax(blind["c_star"][after]) > 5.0 * blind["c_star"][before].mean()
@@ -175,7 +171,7 @@ def test_an_impulse_whose_burn_ends_in_a_hole_has_a_deviation() -> None:
     channel = Channel(
         "thrust", "N", time[kept], 5000.0 * (time[kept] < 5.0), np.zeros(kept.sum(), np.uint8), 5.0, True, ""
     )
-    found = _impulse(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 0.1, ""))
+    found = impulse_to(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 0.1, ""))
     assert found.std is not None
     assert abs((found.value or 0.0) - 25000.0) < 3.0 * found.std
 
@@ -189,7 +185,7 @@ def test_an_impulse_across_a_hole_hangs_on_means_and_is_less_sure() -> None:
         kept = np.ones(time.size, dtype=bool) if hole is None else (time <= hole[0]) | (time >= hole[1])
         read = clean + 300.0 * rng.standard_normal(time.size)
         channel = Channel("thrust", "N", time[kept], read[kept], np.zeros(kept.sum(), np.uint8), 5.0, True, "")
-        found = _impulse(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 1e-3, ""))
+        found = impulse_to(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 1e-3, ""))
         assert found.value is not None
         assert found.std is not None
         assert ("bridged" in (found.why or "")) == (hole is not None)

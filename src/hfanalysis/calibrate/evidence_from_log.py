@@ -74,6 +74,7 @@ def evidence_of(
         burn_time = replace(burn_time, std=float(np.hypot(burn_time.std, late)))
     remarks = (
         f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})",
+        *burning_of(segments, definition)[1],
         *_remarks(definition, calibration, engine.effects),
     )
     covariance = _covariance(draws, definition, calibration)
@@ -106,7 +107,7 @@ def _compared(chamber: Signal, start: float, stop: float, gone: tuple[float, flo
 
 def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[Scalar | None, Scalar | None, float]:
     """Burn time and fuel left, as far as they are known, and the end of the fire [s]."""
-    stated, observed = _burn_time(segments, definition), definition.observed
+    stated, observed = burning_of(segments, definition)[0], definition.observed
     end = stated.value if stated is not None else segments.time("t_end") or 2.0 * t_v
     left = observed.fuel_mass_after if observed is not None else None
     assert definition.grain is not None
@@ -117,14 +118,18 @@ def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[S
     return None, Scalar(left.value, _std(left, WEIGHED * grain), "[observed] fuel_mass_after"), end
 
 
-def _burn_time(segments: Segments, definition: TestDefinition) -> Scalar | None:
+def burning_of(segments: Segments, definition: TestDefinition) -> tuple[Scalar | None, tuple[str, ...]]:
+    """When the fuel is gone [s]; None with a remark where nobody saw it: t_end is no end of the fire."""
     observed = definition.observed
     if observed is not None and observed.burn_time is not None:
-        return Scalar(observed.burn_time.value, _std(observed.burn_time, VIDEO), "[observed] burn_time")
+        return Scalar(observed.burn_time.value, _std(observed.burn_time, VIDEO), "[observed] burn_time"), ()
     gone = segments.time("t_fuel_gone")
-    if gone is None:
-        return None
-    return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log")
+    if gone is not None:
+        return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log"), ()
+    low = segments.time("t_end")
+    if low is None:
+        return None, ()
+    return None, (f"compared until t_end, {low:.2f} s, which is no end of the fire: it may burn on, and fuel be left",)
 
 
 def _std(stated: Value, default: float) -> float:

@@ -135,16 +135,16 @@ class _Facts:
         seen = self.definition.observed.burn_time if self.definition.observed else None
         if seen is None or not self._burning:
             return None
-        choked = self.segments.time("t_end")
-        if choked is None or seen.value + 3.0 * (seen.std or VIDEO) >= choked - 3.0 * self.segments.std("t_end"):
+        above = self.segments.time("t_end")
+        if above is None or seen.value + 3.0 * (seen.std or VIDEO) >= above - 3.0 * self.segments.std("t_end"):
             return None
         words = text(
             "[observed] burn_time is {seen:.1f} s, but the chamber burns on: its pressure is above 1.8 times ambient "
-            "until {choked:.1f} s",
+            "until {above:.1f} s",
             seen=seen.value,
-            choked=choked,
+            above=above,
         )
-        return Doubt(words, {"a": seen.value / choked, "n": 1.0, "regression_rate_reference": seen.value / choked})
+        return Doubt(words, {"a": seen.value / above, "n": 1.0, "regression_rate_reference": seen.value / above})
 
     def _run_line(self) -> Doubt | None:
         """A run line so far below the tank that no liquid would come through."""

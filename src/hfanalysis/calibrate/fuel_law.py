@@ -12,6 +12,7 @@ from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.evidence_from_log import evidence_of
 from hfanalysis.calibrate.facts import nothing_to_regress
+from hfanalysis.calibrate.narrow_port import reaching_the_head, with_stated_tap
 from hfanalysis.calibrate.regression import Joint, fit, fit_together, result
 from hfanalysis.calibrate.stated import apart, held_law, law_of
 from hfanalysis.engine.effect import Active
@@ -62,12 +63,13 @@ def _fitted(
 ) -> FuelLaw:
     """As the log has it."""
     try:
-        found = fit([evidence_for(log, segments, definition, calibration, effects)])
+        found = fit([evidence_for(log, segments, definition, calibration, with_stated_tap(definition, effects))])
+        law = reaching_the_head(result(found), found, definition)
     except AbsentError as error:
         return FuelLaw.absent(str(error))
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return FuelLaw.absent(f"the engine's model cannot be fitted with what test.toml states: {error}")
-    return _conditional(result(found), calibration.constants.C_i)
+    return _conditional(law, calibration.constants.C_i)
 
 
 def _conditional(law: FuelLaw, discharge: Quantity) -> FuelLaw:

@@ -287,13 +287,18 @@ def _covariance(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: 
     """Of (ln r, n) from the model's slopes; a direction hardly seen is cut at LARGEST_STEP."""
     information = np.zeros((2, 2))
     for e, w in zip(evidence, weights, strict=True):
-        slopes = _slopes(e, flux, best)
-        information += slopes.T @ w.precision @ slopes
+        along = slopes(e, flux, best)
+        information += along.T @ w.precision @ along
     information[0, 0] = max(information[0, 0], LARGEST_RATE_STEP**-2)
     return np.asarray(np.linalg.inv(information + np.diag([0.0, LARGEST_STEP**-2])), dtype=np.float64)
 
 
-def _slopes(evidence: Evidence, flux: float, best: Array, step: float = 0.01) -> Array:
+def slopes(evidence: Evidence, flux: float, best: Array, step: float = 0.01) -> Array:
+    """Change of what is observed [Pa, s, kg] with ln r and n, (observations, 2), about ``best`` (2,) at ``flux``
+    [kg/m^2/s].
+
+    Raises AbsentError where the model cannot be run there.
+    """
     columns = []
     for axis in np.eye(2) * step:
         after, before = (evidence.predict(law_at(best + s * axis, flux)) for s in (1.0, -1.0))

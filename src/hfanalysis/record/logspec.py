@@ -161,7 +161,8 @@ class ChannelSpec(Section):
 
     ``accuracy`` [SI], one standard deviation of the sensor's bias; None takes the class default. ``missing``: readings
     that stand for none (999 of an open thermocouple), as logged. ``gauge``: the ambient pressure is still to be added,
-    as stated or as the unit says. ``trust``: why the channel is to be believed, whatever its health seems.
+    as stated or as the unit says. ``trust``: why the channel is to be believed, whatever its health seems. ``tap``:
+    where the chamber's gauge sits, at its head or aft of the grain.
     """
 
     column: Column
@@ -176,6 +177,7 @@ class ChannelSpec(Section):
     tare: Literal["auto", "before", "before_after", "none"] = "none"
     missing: ListOf[Number] = ()
     trust: Text | None = None
+    tap: Literal["head", "aft"] | None = None
     name: str = field(default="", metadata=DERIVED)
 
     @cached_property
@@ -195,6 +197,7 @@ class ChannelSpec(Section):
         self._unit_fits()
         self._corrections_fit()
         self._gauge_fits()
+        self._tap_fits()
         if self.accuracy is not None:
             differs = self.dimension in ("pressure", "temperature")
             dimension = f"{self.dimension}_difference" if differs else self.dimension
@@ -215,6 +218,10 @@ class ChannelSpec(Section):
                     raise Refused(f"found on a {self.dimension} channel; expected on pressures only", key)
         if self.tare != "none" and self.dimension not in ("force", "mass", "voltage", "dimensionless"):
             raise Refused(f"found on a {self.dimension} channel; expected on forces and masses only", "tare")
+
+    def _tap_fits(self) -> None:
+        if self.tap is not None and self.name != "p_chamber":
+            raise Refused("found on another channel; expected on p_chamber only", "tap")
 
     def _gauge_fits(self) -> None:
         """What is stated must not contradict the unit."""

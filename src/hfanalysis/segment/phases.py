@@ -16,7 +16,7 @@ from hfanalysis.record.log import TestLog
 from hfanalysis.record.noise import Noise
 from hfanalysis.record.signals import Signal, live_signals
 from hfanalysis.segment.coarse_load import CoarseLoad, coarse_load
-from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, QUIET, find_unchoking, pulses_after
+from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, QUIET, find_low_pressure, pulses_after
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.firings import Flow, find_flows, largest
 from hfanalysis.segment.fuel import BLURRED, FuelEnd, find_fuel_end
@@ -229,7 +229,7 @@ class _Search:
         self._take("t_purge", self._nitrogen())
         kind = self._kind()
         self._note_supercharge()
-        self._take("t_end", self._unchoking(kind))
+        self._take("t_end", self._low_pressure(kind))
         self._take_fuel(kind)
         self._check_order()
         return kind
@@ -324,13 +324,13 @@ class _Search:
             return find_nitrogen_by_tank(self.signals["p_tank"], self._time("t_v"))
         return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._sharp("t_v"))
 
-    def _unchoking(self, kind: Kind) -> tuple[float, float] | str:
+    def _low_pressure(self, kind: Kind) -> tuple[float, float] | str:
         if "p_chamber" not in self.signals:
             return "the log has no p_chamber"
         if kind.name != "hot_fire":
             return f"nothing burns: {kind.why}"
         chamber, offset = self.signals["p_chamber"], self._chamber_offset()
-        found = find_unchoking(
+        found = find_low_pressure(
             chamber, self.ambient, self._time("t_feed") or 0.3, offset, self._chamber_bias(), self._noise()
         )
         if not isinstance(found, str):

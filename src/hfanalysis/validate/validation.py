@@ -8,7 +8,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.narrow_port import with_stated_tap
 from hfanalysis.calibrate.water_flow import is_water
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
@@ -23,10 +25,12 @@ from hfanalysis.record.log import TestLog
 from hfanalysis.validate import histories as histories_of
 from hfanalysis.validate import performance
 from hfanalysis.validate.chamber_forced import run_chamber_forced
+from hfanalysis.validate.efficiency import BASIS
 from hfanalysis.validate.flows import Flows, burn_fuel, oxidizer_flow
 from hfanalysis.validate.full import compare_full
 from hfanalysis.validate.histories import Histories
 from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.reduction import Reduced, Test, reduced
 from hfanalysis.validate.residuals import Residual, gaps
 from hfanalysis.validate.sensor_faults import ZERO, findings
 from hfanalysis.validate.stability.modes import Mode, chamber_between
@@ -37,7 +41,8 @@ from hfanalysis.validate.thrust import motor_class
 Result = TypeVar("Result")
 MODES = ("tank_free", "chamber_forced", "full")
 FLOW_NAMES = ("oxidizer_flow", "fuel_flow", "regression_rate", "port_radius", "of_ratio")
-RATIO_NAMES = ("c_star", "c_star_efficiency", "thrust_coefficient", "thrust_coefficient_efficiency")
+RATIO_NAMES = ("c_star", "c_star_efficiency", "c_star_efficiency_frozen", "thrust_coefficient",
+               "thrust_coefficient_efficiency", "thrust_coefficient_efficiency_frozen")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -102,26 +107,31 @@ class _Work:
         }
         measured = performance.measured(self.true, self.segments, self.definition, self._calibration)
         if full is not None:
-            model = performance.modeled(full, self.calibration)
+            model = performance.modeled(full, self.calibration, self.segments.time("t_purge"))
         else:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
-        sensors = findings(self.true, self.segments, self.definition, self.fire)
-        kept = {mode: found for mode, found in residuals.items() if found}
+        histories, found = self._histories(full, flows)
+        measured |= found.impulses
+        sensors = [*findings(self.true, self.segments, self.definition, self.fire), *found.findings]
+        kept = {mode: compared for mode, compared in residuals.items() if compared}
         told = any(ZERO in warning for warning in self.log.warnings)
-        histories = self._histories(full, flows)
-        notes = [note for found in kept.values() for r in found for note in r.notes]
+        notes = [note for of_mode in kept.values() for r in of_mode for note in r.notes]
         impulse = measured["total_impulse"].value
         about = {"motor_class": motor_class(impulse)} if impulse is not None and impulse > 0.0 else {}
         product = Validation(
             performance=Performance(measured=Column.from_json(measured), model=Column.from_json(model), **about),
-            gap={mode: gaps(found) for mode, found in kept.items()},
-            closure=Closure.from_json(histories.closure),
+            gap={mode: gaps(compared) for mode, compared in kept.items()},
+            closure=self._closure(found),
+            efficiency_basis=BASIS,
+            **found.content,
             sensors=tuple(sensors),
             absent=self.absent,
-            **self._stability(full, flows, histories),
+            **self._stability(full, flows[0] if flows else None, histories),
             notes=tuple(dict.fromkeys(notes)),
-            warnings=tuple(finding.text for finding in sensors if not (told and finding.verdict == ZERO)),
-        )
+            warnings=(
+                *(finding.text for finding in sensors if not (told and finding.verdict == ZERO)), *found.warnings
+            ),
+        )  # fmt: skip
         return Validated(product, kept, histories)
 
     @property
@@ -145,9 +155,11 @@ class _Work:
     def _full(self) -> FullRun:
         if isinstance(self.fire, str):
             raise AbsentError(self.fire)
-        return run_full(self.true, self.segments, self.calibration, self.definition, self.effects)
+        acting = with_stated_tap(self.definition, self.effects)
+        return run_full(self.true, self.segments, self.calibration, self.definition, acting)
 
-    def _flows(self, full: FullRun | None) -> Flows:
+    def _flows(self, full: FullRun | None) -> tuple[Flows, Array]:
+        """The flows, and the nitrogen [kg/s] that passes the injector beside the oxidizer, where a purge is adopted."""
         if full is None or isinstance(self.fire, str):
             raise AbsentError(self.absent["full"])
         alone = run_tank_alone(
@@ -158,25 +170,25 @@ class _Work:
         factor = full.factor("regression_factor", time)
         burnt = burn_fuel(full.engine, Regression.of(self.calibration), time, flow, factor)
         # all that flows drives the regression, as in the engine; what of it is nitrogen is no oxidizer
-        nitrogen = np.interp(time, alone.measured.time, alone.nitrogen, left=0.0)
-        return replace(burnt, oxidizer=flow * (1.0 - nitrogen))
+        nitrogen = flow * np.interp(time, alone.measured.time, alone.nitrogen, left=0.0)
+        return replace(burnt, oxidizer=flow - nitrogen), nitrogen
 
-    def _chamber_forced(self, full: FullRun | None, flows: Flows | None) -> list[Residual]:
+    def _chamber_forced(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> list[Residual]:
         if full is None or flows is None or isinstance(self.fire, str):
             raise AbsentError(self.absent.get("full") or self.absent["histories"])
-        return run_chamber_forced(self.log, self.segments, full, flows, self.ambient, self.fire.end)
+        return run_chamber_forced(self.log, self.segments, full, flows[0], self.ambient, self.fire.end)
 
-    def _histories(self, full: FullRun | None, flows: Flows | None) -> Histories:
+    def _histories(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> tuple[Histories, Reduced]:
         end = self.fire.end if isinstance(self.fire, Fire) else 10.0
         time = histories_of.clock(self.log, self.segments, end)
         values = histories_of.measured_histories(self.true, self.segments, self.definition, time)
         if full is None or flows is None or isinstance(self.fire, str):
             reason = self.absent.get("histories", "")
-            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason))
-        purge = self.segments.time("t_purge")
-        ratios = histories_of.efficiencies(values, flows, full.engine, self.ambient, self.fire, purge)
-        closed = histories_of.closure(flows, values, full.engine, self.ambient, self.fire, purge)
-        return Histories(time, values | histories_of.flow_histories(flows) | ratios, {}, closed | self._heat())
+            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced()
+        found = reduced(
+            Test(self.true, self.segments, self.definition, self.calibration, self.fire, full.engine, *flows, values)
+        )
+        return Histories(time, values | histories_of.flow_histories(flows[0]) | found.ratios), found
 
     def _stability(self, full: FullRun | None, flows: Flows | None, histories: Histories) -> dict[str, Any]:
         """How a hot fire burnt."""
@@ -189,12 +201,14 @@ class _Work:
             if full is None or flows is None or pressure is None or chamber is None:
                 return None
             volumes = [v.value if v is not None else 0.0 for v in (chamber.pre_volume, chamber.post_volume)]
-            found = chamber_between(full.engine, (volumes[0], volumes[1]), flows, pressure, start, end)
-            return found.modes() if found is not None else None
+            state = chamber_between(full.engine, (volumes[0], volumes[1]), flows, pressure, start, end)
+            return state.modes() if state is not None else None
 
         return {"stability": stability(self.log, self.segments, self.fire.end, modes)}
 
-    def _heat(self) -> dict[str, Quantity]:
-        """Heat that the calibrated tank takes in the liquid phase, where it can be told."""
-        rest = self.calibration.rest
-        return {"liquid_phase_heat": rest.liquid_phase_heat} if rest else {}
+    def _closure(self, found: Reduced) -> Closure:
+        """How the masses close, and the heat that the calibrated tank takes in the liquid phase, where it is told."""
+        rest = self._calibration.rest if self._calibration is not None and found.closure else None
+        heat = {"liquid_phase_heat": rest.liquid_phase_heat} if rest else {}
+        judged = {"to_purge": found.balance, "verdict": found.balance.verdict} if found.balance else {}
+        return Closure.model_validate({**found.closure, **heat, **judged})
