@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings, Words
+from hfanalysis.products.reconstruction import Reconstruction
 from hfanalysis.products.stability import Stability
 from hfanalysis.quantity import Quantity
 
@@ -146,6 +147,7 @@ class Validation(Product):
     beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
     sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors")]
     absent: Annotated[dict[str, Words], Is("what could not be done, and why")]
+    reconstruction: Annotated[Reconstruction | None, Is("what the fuel did, without a regression law")] = None
     stability: Annotated[Stability | None, Is("how smoothly it burnt")] = None
     notes: Notes
     warnings: Warnings

@@ -17,6 +17,7 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun, run_full
 from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.reconstruction import Reconstruction
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Closure, Column, Performance, Validation
 from hfanalysis.quantity import Quantity
@@ -30,6 +31,7 @@ from hfanalysis.validate.flows import Flows, burn_fuel, oxidizer_flow
 from hfanalysis.validate.full import compare_full
 from hfanalysis.validate.histories import Histories
 from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.reconstruction.reconstruct import Reconstructed, reconstruct
 from hfanalysis.validate.reduction import Reduced, Test, reduced
 from hfanalysis.validate.residuals import Residual, gaps
 from hfanalysis.validate.sensor_faults import ZERO, findings
@@ -52,6 +54,7 @@ class Validated:
     product: Validation
     residuals: dict[str, list[Residual]]
     histories: Histories
+    reconstructed: Reconstructed
 
 
 def validate(
@@ -110,7 +113,7 @@ class _Work:
             model = performance.modeled(full, self.calibration, self.segments.time("t_purge"))
         else:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
-        histories, found = self._histories(full, flows)
+        histories, found, again = self._histories(full, flows)
         measured |= found.impulses
         sensors = [*findings(self.true, self.segments, self.definition, self.fire), *found.findings]
         kept = {mode: compared for mode, compared in residuals.items() if compared}
@@ -126,13 +129,14 @@ class _Work:
             **found.content,
             sensors=tuple(sensors),
             absent=self.absent,
+            reconstruction=again.product,
             **self._stability(full, flows[0] if flows else None, histories),
             notes=tuple(dict.fromkeys(notes)),
             warnings=(
                 *(finding.text for finding in sensors if not (told and finding.verdict == ZERO)), *found.warnings
             ),
         )  # fmt: skip
-        return Validated(product, kept, histories)
+        return Validated(product, kept, histories, again)
 
     @property
     def calibration(self) -> Calibration:
@@ -178,17 +182,20 @@ class _Work:
             raise AbsentError(self.absent.get("full") or self.absent["histories"])
         return run_chamber_forced(self.log, self.segments, full, flows[0], self.ambient, self.fire.end)
 
-    def _histories(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> tuple[Histories, Reduced]:
+    def _histories(
+        self, full: FullRun | None, flows: tuple[Flows, Array] | None
+    ) -> tuple[Histories, Reduced, Reconstructed]:
         end = self.fire.end if isinstance(self.fire, Fire) else 10.0
         time = histories_of.clock(self.log, self.segments, end)
         values = histories_of.measured_histories(self.true, self.segments, self.definition, time)
         if full is None or flows is None or isinstance(self.fire, str):
             reason = self.absent.get("histories", "")
-            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced()
-        found = reduced(
-            Test(self.true, self.segments, self.definition, self.calibration, self.fire, full.engine, *flows, values)
-        )
-        return Histories(time, values | histories_of.flow_histories(flows[0]) | found.ratios), found
+            without = Reconstructed(Reconstruction(variant=None, reason=reason))
+            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced(), without
+        test = Test(self.true, self.segments, self.definition, self.calibration, self.fire, full.engine, *flows, values)
+        found = reduced(test)
+        values |= histories_of.flow_histories(flows[0]) | found.ratios
+        return Histories(time, values), found, reconstruct(test)
 
     def _stability(self, full: FullRun | None, flows: Flows | None, histories: Histories) -> dict[str, Any]:
         """How a hot fire burnt."""

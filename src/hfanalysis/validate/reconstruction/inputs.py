@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
 
@@ -17,7 +18,8 @@ class Inputs:
     ``pressure`` before the nozzle [Pa], ``oxidizer`` flow [kg/s], ``throat`` area [m^2]; ``fuel`` burnt in the window
     [kg], None where nobody says; ``white``: standard deviation of each sample of the pressure, as share of it [-].
 
-    ``moved``: by the name of an error, what these are at one standard deviation of it; those that stay are not named.
+    ``moved``: two for each error, what these are at two standard deviations of it up and down; those that stay are not
+    named.
     ``drift`` (n,): of the efficiency, relative [-].
     """
 
@@ -49,6 +51,8 @@ class Inputs:
         right = np.asarray(pressure) * throat / ((1.0 + np.asarray(drift)) * oxidizer)
         return np.asarray(right), None if fuel is None else float(np.asarray(fuel))
 
-    def oxidizer_of(self, name: str) -> Array:
-        """Oxidizer flow [kg/s], (n,), with an error moved."""
-        return np.asarray(self.moved.get(name, {}).get("oxidizer", self.oxidizer)) * np.ones(self.time.size)
+    def along(self, what: str, lanes: Sequence[int] | NDArray[np.int64] | None = None) -> Array:
+        """One of pressure, oxidizer, throat and drift in some of the lanes, or all, (n, lanes)."""
+        names = self.lanes if lanes is None else [self.lanes[i] for i in lanes]
+        usual = getattr(self, what)
+        return np.column_stack([np.asarray(self.moved.get(name, {}).get(what, usual)) for name in names])
