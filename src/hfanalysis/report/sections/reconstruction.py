@@ -41,7 +41,7 @@ def render(material: Material) -> Iterator[Block]:
         yield html.paragraph(f"It is not the only course: {found.other}.")
     if found.told is not None and found.told < 1.0:
         yield html.paragraph(
-            f"In {tidy(100.0 * (1.0 - found.told), 2)} % of the window one per cent of chamber pressure is ten per cent "
+            f"In {tidy(100.0 * (1.0 - found.told), 2)} % of the window a per cent of chamber pressure is ten per cent "
             "of O/F or more, or two courses fit: nothing is drawn there."
         )
     table = material.table("performance", "reconstructed")
