@@ -6,6 +6,7 @@ masses carry errors of the size that they state.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi
 from types import SimpleNamespace
@@ -156,6 +157,7 @@ def _measured(
         observed=observed, nozzle=SimpleNamespace(throat_radius=Value(of.throat, ERRORS["radius"])),
         ambient_pressure=Value(AMBIENT, 0.0),
     )  # fmt: skip
+    definition.known = _known(definition)
     flow = oxidizer * (1.0 + e["flow"])
     engine = SimpleNamespace(
         throat_area=area, exit_area=exit_area, port_radius=port0, outer_radius=outer, grain_length=length,
@@ -168,6 +170,16 @@ def _measured(
         fire=SimpleNamespace(end=float(time[-1])), engine=engine, flows=rough, ambient=AMBIENT, purge=None,
         measured={"p_chamber": read, **({"thrust_corrected": force} if of.thrust else {})},
     ))  # fmt: skip
+
+
+def _known(definition: SimpleNamespace) -> Callable[[str], Value | None]:
+    """As a definition has it: all of it is stated with its deviation."""
+
+    def known(key: str) -> Value | None:
+        section, name = key.split(".")
+        return cast("Value | None", getattr(getattr(definition, section), name))
+
+    return known
 
 
 def _channel(name: str, time: Array, values: Array, accuracy: float) -> Channel:

@@ -20,7 +20,7 @@ from hfanalysis.units import Value
 from hfanalysis.validate.efficiency import efficiencies, ideal
 from hfanalysis.validate.flows import Flows
 from hfanalysis.validate.histories import ABOUT, Histories, clock, measured_histories, write_histories
-from hfanalysis.validate.performance import Fire, fire_of, impulse_to, measured
+from hfanalysis.validate.performance import HOLES, Fire, fire_of, impulse_inputs, impulse_to, measured
 from hfanalysis.validate.thrust import Thrust
 
 BURN = ObservedSection(burn_time=Value(9.0, 0.1))
@@ -195,8 +195,10 @@ def test_an_impulse_is_no_surer_than_its_samples_are_close(rate: float) -> None:
         read = np.where((time > 0.0) & (time < out), 4000.0 + 200.0 * rng.standard_normal(time.size), 0.0)
         channel = Channel("thrust", "N", time, read, np.zeros(time.size, np.uint8), 1.0, True, "")
         thrust = Thrust(Signal.of(channel), 0.0, np.nan)
-        one = _impulse(TestLog({"thrust": channel}), thrust, Fire(6.0, 1e-3, ""))
+        log, fire_ = TestLog({"thrust": channel}), Fire(6.0, 1e-3, "")
+        one = impulse_to(log, thrust, fire_, definition())
         assert one.value is not None
-        found.append((one.value - 4000.0 * out, one.std))
+        (between,) = (i.effect for i in impulse_inputs(log, thrust, fire_, definition(), one.value) if i.name == HOLES)
+        found.append((one.value - 4000.0 * out, between))
     off, std = np.array(found, dtype=float).T
     assert np.std(off) == pytest.approx(std.mean(), rel=0.35)

@@ -50,9 +50,7 @@ def render(material: Material) -> Iterator[Block]:
     yield _law(found, material.get(Calibration))
 
 
-def _chart(
-    material: Material, table: Table, name: str, title: str, axis: tuple[str, str], style: str
-) -> Chart | None:
+def _chart(material: Material, table: Table, name: str, title: str, axis: tuple[str, str], style: str) -> Chart | None:
     if name not in table:
         return None
     time = table["time"].values

@@ -108,7 +108,7 @@ def _png(decibels: np.ndarray[Any, np.dtype[np.float64]]) -> str:
 
     out = io.BytesIO()
     high = float(decibels.max())
-    imsave(out, decibels, vmin=high - _DEPTH, vmax=high, cmap="magma", metadata={"Software": None})
+    imsave(out, decibels, vmin=high - _DEPTH, vmax=high, cmap="magma")
     return base64.b64encode(out.getvalue()).decode("ascii")
 
 

@@ -11,7 +11,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
-from hfanalysis.validate.efficiency import MACHINED, Ideal, smooth, throat_spread
+from hfanalysis.validate.efficiency import Ideal, smooth, throat_spread
 from hfanalysis.validate.flows import HISTORY_STEP
 from hfanalysis.validate.performance import bias
 from hfanalysis.validate.reconstruction.inputs import Inputs
@@ -111,7 +111,7 @@ def _both(name: str, of: str, value: Array | float, std: Array | float) -> Moved
 def channel_noise(test: Test) -> float:
     """Standard deviation [Pa] of a smoothed sample of the chamber's pressure."""
     signal = Signal.of(test.log["p_chamber"])
-    return signal.noise / np.sqrt(max(0.2 / signal.step, 1.0))
+    return float(signal.noise / np.sqrt(max(0.2 / signal.step, 1.0)))
 
 
 def _window(test: Test, found: Ideal) -> tuple[float, float]:
@@ -147,14 +147,14 @@ def _tap(found: Ideal, test: Test, time: Array, pressure: Array) -> Moved:
 def _unmeasured_throat(test: Test, time: Array, throat: Array) -> Moved:
     after = _after(test)
     if after is not None:
-        by = (after.std or MACHINED) * (time - time[0]) / np.ptp(time)
+        by = (after.std or 0.0) * (time - time[0]) / np.ptp(time)
         return _both("after", "throat", pi * throat**2, 2.0 * pi * throat * by)
     wider = pi * (throat + 2.0 * EROSION * (time - time[0])) ** 2
     return {"erosion+": {"throat": wider}, "erosion-": {"throat": pi * throat**2}}
 
 
 def _after(test: Test) -> Value | None:
-    return test.definition.observed.throat_radius_after if test.definition.observed else None
+    return test.definition.known("observed.throat_radius_after")
 
 
 def _throat(test: Test, theory: Theory, time: Array, pressure: Array) -> tuple[Array, float | None]:
@@ -163,7 +163,7 @@ def _throat(test: Test, theory: Theory, time: Array, pressure: Array) -> tuple[A
     after = _after(test)
     if after is None:
         return np.full(time.size, before), None
-    slack = 3.0 * float(np.hypot(after.std or MACHINED, MACHINED))
+    slack = 3.0 * float(np.hypot(after.std or 0.0, 0.5 * throat_spread(test.definition) * before))
     if after.value < before - slack:
         raise AbsentError(
             f"the throat is {2e3 * after.value:.2f} mm wide after and {2e3 * before:.2f} mm before: it cannot shrink"
@@ -184,12 +184,12 @@ def _throat(test: Test, theory: Theory, time: Array, pressure: Array) -> tuple[A
 
 def _fuel(test: Test, start: float, end: float) -> tuple[float | None, str, dict[str, float]]:
     """Fuel burnt in the window [kg], what that rests on, and by how much its errors move it."""
-    grain = test.definition.grain.mass if test.definition.grain else None
+    grain = test.definition.known("grain.mass")
     if grain is None:
         return None, "the grain's mass is not stated", {}
-    left = test.definition.observed.fuel_mass_after if test.definition.observed else None
+    left = test.definition.known("observed.fuel_mass_after")
     gone = test.segments.time("t_fuel_gone")
-    watched = test.definition.observed is not None and test.definition.observed.burn_time is not None
+    watched = test.definition.known("observed.burn_time") is not None
     if left is None and gone is None and not watched:
         return None, "nobody weighed the fuel afterwards, and it is not seen to run out", {}
     total = grain.value - (left.value if left is not None else 0.0)

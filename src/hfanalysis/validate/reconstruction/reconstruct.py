@@ -109,8 +109,8 @@ def _told(test: Test, gathered: Gathered, closed: Closed) -> Reconstructed:
         throat_radius_change=_change(change, gathered),
         a=a,
         n=n,
-        **({} if nozzle is None else {"nozzle_efficiency": Quantity(nozzle, "")}),
-        **({} if closed.other is None else {"other": _other(*closed.other)}),
+        nozzle_efficiency=None if nozzle is None else Quantity(nozzle, ""),
+        other=None if closed.other is None else _other(*closed.other),
     )
     return Reconstructed(product, inputs.time, bands, closed.told.astype(float))
 

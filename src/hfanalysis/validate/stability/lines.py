@@ -126,13 +126,14 @@ def _wave(
     time: Array, value: Array, taper: Array, frequency: float, slope: float, spacing: float
 ) -> tuple[tuple[float, float, float, float], Array]:
     """Frequency [Hz], its standard deviation, power and its noise of one window, and the wave (n,) [SI]."""
-    start, wave = frequency, np.zeros(time.size)
+    start = frequency
+    wave: Array = np.zeros(time.size)
     left, size, covariance = value, np.zeros(2), np.eye(4)
     for _ in range(STEPS):
         angle = 2.0 * pi * (frequency * time + 0.5 * slope * time**2)
         basis = np.column_stack([np.cos(angle), np.sin(angle)])
         size = np.linalg.lstsq(basis * taper[:, None], value * taper, rcond=None)[0]
-        wave = basis @ size
+        wave = np.asarray(basis @ size, dtype=np.float64)
         left = value - wave
         turned = 2.0 * pi * (basis @ np.array([size[1], -size[0]]))
         slopes = np.column_stack([basis, turned * time, 0.5 * turned * time**2])

@@ -85,9 +85,9 @@ def _course(x: Array, y: Array) -> Array:
     range of which counts alike.
     """
     dense = np.exp(x[0] - x)
-    weight, found = dense, y
+    weight, found = dense, np.asarray(y)
     for _ in range(PASSES):
-        found = np.polyval(np.polyfit(x, y, BENDS, w=np.sqrt(weight)), x)
+        found = np.asarray(np.polyval(np.polyfit(x, y, BENDS, w=np.sqrt(weight)), x), dtype=np.float64)
         weight = dense / np.maximum(np.abs(y - found), NEAR)
     return np.asarray(found)
 
@@ -104,8 +104,8 @@ def _spectrum(found: Fluctuation, even: Array, length: float) -> Spectrum | None
         return None
     window = hann(count, sym=False)
     pieces = sliding_window_view(even, count)[:: count // 2]
-    power = np.abs(np.fft.rfft(pieces * window, axis=1)) ** 2 * (2.0 * found.step / np.sum(window**2))
-    frequency = np.fft.rfftfreq(count, found.step)
+    power: Array = np.abs(np.fft.rfft(pieces * window, axis=1)) ** 2 * (2.0 * found.step / np.sum(window**2))
+    frequency = np.asarray(np.fft.rfftfreq(count, found.step), dtype=np.float64)
     kept = (frequency >= max(LOWEST, TURNS / length)) & (frequency < found.nyquist - 1.0 / length)
     if kept.sum() < NEIGHBORS:
         return None
