@@ -54,9 +54,10 @@ all: $(TESTS:%=processed/%/report.html) ## report.html of every test in raw_test
 	@[ -z '$(ODD)' ] || sh pipeline/tests.sh each $(HFA) report --quiet --
 
 # A file's tests stay together, for they share what is slow to make, and the files in their order, for the slowest are the
-# first ones; linear algebra on one core, for the workers have the others.
+# first ones; linear algebra on one core, for the workers have the others. Byte code is kept, whatever the shell says:
+# the processes that tests start would each compile all sources anew.
 test: lint rocketpy ## ruff, mypy and the tests
-	OMP_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder $(FLAGS)
+	PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder $(FLAGS)
 
 lint: $(STAMP) ## ruff, mypy, and that no room of the package imports one above it
 	$(BIN)/ruff check --no-cache

@@ -10,6 +10,24 @@ from hypothesis import settings
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
 
+LONGEST = (
+    "acceptance/test_diagnosis.py",
+    "simulated/test_generator.py",
+    "diagnose/naming/test_naming.py",
+    "simulated/test_benchmark.py",
+    "inference/adopted/test_every_effect.py",
+    "inference/adopted/test_way.py",
+    "cli/test_commands.py",
+    "stages/test_freshness.py",
+    "acceptance/test_make.py",
+)
+"""Files that take ten seconds and more: where one of them is the last, its worker works alone."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """These first, else as they come."""
+    items.sort(key=lambda item: not item.path.as_posix().endswith(LONGEST))
+
 
 @pytest.fixture(autouse=True, scope="session")
 def _settings_of_nobody(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:

@@ -124,4 +124,4 @@ def test_every_library_has_the_version_of_the_distribution_that_brings_it() -> N
         (distribution,) = set(brings[name])
         expected[name] = importlib.metadata.version(distribution)
     assert library_versions(libraries(ALL)) == expected
-    assert {"numpy", "cea", "nlopt", "numba", "pint", "xarray", "jinja2"} <= set(expected)
+    assert {"numpy", "cea", "numba", "pint", "xarray", "jinja2"} <= set(expected)

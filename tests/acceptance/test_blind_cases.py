@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +13,7 @@ from simulated.blind import slots as s
 from simulated.blind import stand as st
 from simulated.blind.plan import Case
 from simulated.blind.write import write_case
+from tests.cli import run
 
 from hfanalysis.thermo.combustion import equilibrium
 
@@ -23,9 +22,8 @@ def test_a_test_without_an_effect_is_accepted_and_calibrates_to_its_truth(tmp_pa
     answer = json.loads(
         write_case(Case("NONE", "none", (), 0.0, "flicker", 77, 77), tmp_path).read_text(encoding="utf-8")
     )
-    command = [sys.executable, "-m", "hfanalysis", "calibrate", "NONE", "--root", str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    done = run.hfa("calibrate", "NONE", "--root", tmp_path)
+    assert done.status == 0, done.err
     product = tmp_path / "processed" / "NONE"
     found = json.loads((product / "calibration.json").read_text(encoding="utf-8"))
     segments = json.loads((product / "segments.json").read_text(encoding="utf-8"))
@@ -82,10 +80,9 @@ launch_altitude = "0 m"
 def test_two_independent_engines_agree_on_a_test_without_an_effect(seed: int, tmp_path: Path) -> None:
     stand = replace(st.draw(np.random.default_rng(seed)), ambient=101_496.0)
     (tmp_path / "stand.toml").write_text(engine_file(stand))
-    command = [sys.executable, "-m", "hfanalysis", "simulate", str(tmp_path / "stand.toml"), "--json"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    theirs, ours = json.loads(done.stdout), st.simulate(stand)
+    done = run.hfa("simulate", tmp_path / "stand.toml", "--json")
+    assert done.status == 0, done.err
+    theirs, ours = json.loads(done.out), st.simulate(stand)
     assert theirs["liquid_depletion_time"]["value"] == pytest.approx(ours.t_v, abs=1e-3)
     assert theirs["peak_chamber_pressure"]["value"] == pytest.approx(ours.trace(s.P_CHAMBER).max(), rel=1e-3)
     assert theirs["peak_thrust"]["value"] == pytest.approx(ours.trace(s.THRUST).max(), rel=1e-3)

@@ -12,6 +12,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from tests import few_effects
+from tests.cli import run
 from tests.inference.adopted.firing import make_root
 
 from hfanalysis.effects import effect
@@ -34,9 +36,15 @@ KEYS = {
 RATE = 2e-4
 
 
-def hfa(root: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+def hfa(root: Path, *arguments: str, environment: dict[str, str] | None = None) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "hfanalysis", *arguments, "--root", str(root)]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """An environment in which a diagnosis has a few effects to choose from: the whole library is asked once."""
+    return few_effects.environment(tmp_path_factory.mktemp("few"))
 
 
 @pytest.fixture(scope="module")
@@ -119,11 +127,11 @@ def cut(root: Path, to: Path, end: float) -> Path:
 
 
 @pytest.fixture(scope="module")
-def short(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def short(root: Path, few: dict[str, str], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same test, diagnosed as if thrust had not been recorded and the logger had stopped in the burn."""
     folder = tmp_path_factory.mktemp("short")
     made = cut(without(root, ("thrust",), folder / "without"), folder / "cut", 6.2)
-    done = hfa(made, "diagnose", "T1")
+    done = hfa(made, "diagnose", "T1", environment=few)
     assert done.returncode == 0, done.stderr
     return made
 
@@ -137,9 +145,9 @@ def test_what_was_not_recorded_is_not_compared(short: Path) -> None:
     assert "load_cell_drift" not in {**found["posterior"], **found["upper_limits"]}
 
 
-def test_a_second_run_writes_the_same_bytes(short: Path, tmp_path: Path) -> None:
+def test_a_second_run_writes_the_same_bytes(short: Path, few: dict[str, str], tmp_path: Path) -> None:
     shutil.copytree(short / "raw_tests", tmp_path / "raw_tests")
-    assert hfa(tmp_path, "diagnose", "T1").returncode == 0
+    assert hfa(tmp_path, "diagnose", "T1", environment=few).returncode == 0
     one, two = (folder / "processed" / "T1" / "diagnosis.json" for folder in (short, tmp_path))
     assert one.read_bytes() == two.read_bytes()
 
@@ -156,20 +164,23 @@ def test_a_second_run_writes_the_same_bytes(short: Path, tmp_path: Path) -> None
 def test_what_cannot_be_calibrated_is_refused_with_its_reason(
     missing: tuple[str, ...], reason: str, root: Path, tmp_path: Path
 ) -> None:
-    done = hfa(without(root, missing, tmp_path), "diagnose", "T1")
-    assert done.returncode == 3
-    assert re.search(reason, done.stderr), done.stderr
-    assert "Traceback" not in done.stderr
+    done = run.hfa("diagnose", "T1", "--root", without(root, missing, tmp_path))
+    assert done.status == 3
+    assert re.search(reason, done.err), done.err
+    assert "Traceback" not in done.err
     assert not (tmp_path / "processed" / "T1" / "diagnosis.json").exists()
 
 
-def test_without_the_run_line_injector_and_line_are_one(root: Path, tmp_path: Path) -> None:
+def test_without_the_run_line_injector_and_line_are_one(
+    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     made = without(root, ("p_run",), tmp_path)
-    calibrated = hfa(made, "calibrate", "T1")
-    assert calibrated.returncode == 0
-    assert "p_run is not logged: the feed line is taken to lose" in calibrated.stderr
-    done = hfa(made, "diagnose", "T1")
-    assert done.returncode == 0, done.stderr
+    calibrated = run.hfa("calibrate", "T1", "--root", made)
+    assert calibrated.status == 0
+    assert "p_run is not logged: the feed line is taken to lose" in calibrated.err
+    few_effects.install(monkeypatch)
+    done = run.hfa("diagnose", "T1", "--root", made)
+    assert done.status == 0, done.err
     found = json.loads((made / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
     assert found["compared"]["channels"] == ["p_tank", "p_chamber", "thrust"]
     assert found["verdict"] == "named"
@@ -198,8 +209,8 @@ def drifted(root: Path, to: Path) -> Path:
 
 def test_what_cannot_be_calibrated_still_has_its_sensors_judged(root: Path, tmp_path: Path) -> None:
     made = drifted(root, tmp_path)
-    done = hfa(made, "diagnose", "T1")
-    assert done.returncode == 0, done.stderr
+    done = run.hfa("diagnose", "T1", "--root", made)
+    assert done.status == 0, done.err
     found = json.loads((made / "processed" / "T1" / "diagnosis.json").read_text(encoding="utf-8"))
     assert set(found) >= KEYS
     assert [row["name"] for row in found["effects"]] == ["load_cell_drift"]
@@ -208,7 +219,7 @@ def test_what_cannot_be_calibrated_still_has_its_sensors_judged(root: Path, tmp_
 
 
 def test_a_log_that_stops_before_the_liquid_is_gone_is_refused(root: Path, tmp_path: Path) -> None:
-    done = hfa(cut(root, tmp_path, 2.0), "diagnose", "T1")
-    assert done.returncode == 3
-    assert "no end of the liquid" in done.stderr
-    assert "Traceback" not in done.stderr
+    done = run.hfa("diagnose", "T1", "--root", cut(root, tmp_path, 2.0))
+    assert done.status == 3
+    assert "no end of the liquid" in done.err
+    assert "Traceback" not in done.err

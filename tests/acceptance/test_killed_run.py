@@ -17,8 +17,11 @@ REPOSITORY = Path(__file__).parents[2]
 PRODUCTS = ("ingest.h5", "ingest.json", "segments.json", "calibration.json")
 
 
-def hfa(root: Path, *more: str) -> list[str]:
-    return [sys.executable, "-m", "hfanalysis", "calibrate", "HF5", "--root", str(root), "--quiet", *more]
+FEW = ("--set", "calibrate.samples=40")
+
+
+def hfa(root: Path) -> list[str]:
+    return [sys.executable, "-m", "hfanalysis", "calibrate", "HF5", "--root", str(root), "--quiet", *FEW]
 
 
 @pytest.fixture(scope="module")

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.cli import run
 
 MAELSTROM = Path(__file__).parents[2] / "engines" / "maelstrom.toml"
 
@@ -24,9 +23,9 @@ OTHERS = 0.005
 
 def hfa(*arguments: object) -> dict[str, Any]:
     """The JSON product of a command."""
-    command = [sys.executable, "-m", "hfanalysis", *map(str, arguments), "--json"]
-    ended = subprocess.run(command, capture_output=True, text=True, check=True)
-    product: dict[str, Any] = json.loads(ended.stdout)
+    ended = run.hfa(*arguments, "--json")
+    assert ended.status == 0, ended.err
+    product: dict[str, Any] = json.loads(ended.out)
     return product
 
 

@@ -8,9 +8,11 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests import few_effects
 from tests.cli.run import Run
 from tests.inference.adopted.firing import make_root
 
@@ -35,9 +37,11 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A root with a made-up test T1 that lacks nothing: soon diagnosed."""
-    return make_root(tmp_path_factory.mktemp("quick"))
+def quick(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A root with a made-up test T1 that lacks nothing, as a few effects see it: soon diagnosed."""
+    with pytest.MonkeyPatch.context() as patch:
+        few_effects.install(patch)
+        yield make_root(tmp_path_factory.mktemp("quick"))
 
 
 def test_the_version(run: Run) -> None:

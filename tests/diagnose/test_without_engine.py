@@ -12,6 +12,7 @@ from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.without_engine import channels_alone
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.subject import Subject
+from hfanalysis.products.health import Finding
 from hfanalysis.record.log import TestLog
 
 WHY = "tank.volume is not stated"
@@ -23,7 +24,15 @@ def subject(drift: float, layer: float = 0.0) -> Subject:
     grown = drift * np.clip(time / 3.0, 0.0, 1.0)
     made = logged.log(plus={"thrust": grown, "p_tank": layer * np.exp(-np.maximum(time, 0.0) / 0.3)})
     zeroed = TestLog({**made.channels, "p_chamber": replace(made["p_chamber"], zero_std=1e3)})
-    return Subject(zeroed, logged.segments(), None, logged.stated())
+    shifted = Finding(
+        kind="zero",
+        channels=("thrust",),
+        verdict="suspect",
+        evidence="reads 300 N after the firing",
+        means="",
+        cure=None,
+    )
+    return Subject(zeroed, logged.segments(), None, logged.stated(), (), (shifted,) if drift else ())
 
 
 def test_a_cell_that_does_not_come_back_has_drifted_and_nothing_is_certain() -> None:

@@ -11,7 +11,9 @@ from tests.health import fire
 from tests.health.fire import Columns
 
 from hfanalysis.health.judge import judge
+from hfanalysis.health.performance import BALANCE
 from hfanalysis.products.health import Finding
+from hfanalysis.thermo.combustion import equilibrium
 
 AMBIENT = 1.01325
 TANK = '[tank]\nvolume = "16 L"\noxidizer_mass = "8 kg"\n'
@@ -36,13 +38,14 @@ def after(start: float, by: Callable[[np.ndarray], np.ndarray]) -> Callable[[np.
     return lambda time, value: np.where(time < start, value, by(value))
 
 
-def between(start: float, end: float, level: float) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+def between(start: float, end: float, level: float | np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     """A level for a while."""
     return lambda time, value: np.where((time < start) | (time > end), value, level)
 
 
 RNG = np.random.default_rng(51)
 WILD = RNG.normal(0.0, 900.0, 2000)
+HISS = np.random.default_rng(52).normal(size=2000)
 
 
 def slow(time: np.ndarray, value: np.ndarray) -> np.ndarray:
@@ -67,7 +70,14 @@ CASES = {
     "last readings": ("edge", "p_run", lambda t, v: np.where(t > t[-3], 4095.0, v)),
     "zero shifted": ("zero", "thrust", after(1.0, lambda v: v + 90.0)),
     "zero drifts": ("drift", "thrust", lambda t, v: v + 12.0 * t),
+    "zero shifted down": ("zero", "thrust", after(1.0, lambda v: v - 60.0)),
+    "gauge shifted below ambient": ("zero", "p_chamber", after(1.0, lambda v: v - 0.3)),
+    "gauge drifts far": ("drift", "p_chamber", lambda t, v: v + 0.8 * (t - t[0])),
     "wired the other way": ("sign", "thrust", lambda t, v: -v),
+    "gauge the other way": ("sign", "p_chamber", lambda t, v: 2.0 - v),
+    "code with noise within its range": ("dropout", "p_chamber", between(2.0, 3.0, 9.99 + 1e-3 * HISS)),
+    "code far above": ("dropout", "thrust", between(2.0, 3.0, 9999.0 + HISS)),
+    "flat in a curve": ("dropout", "thrust", between(2.0, 3.0, -999.0 + 5.0 * HISS)),
     "chamber below its line late": ("lag", "p_chamber", slow),
 }  # fmt: skip
 
@@ -78,6 +88,35 @@ def test_a_channel_is_blamed_for_what_is_wrong_with_it(case: str, tmp_path: Path
     told = found(tmp_path, changed(name, by))
     assert (kind, (name,)) in [(f.kind, f.channels) for f in told]
     assert {n for f in told for n in f.channels if f.verdict == "unusable"} <= {name}
+
+
+def test_a_chamber_is_dead_that_shows_nothing_of_a_tank_emptied_into_a_fire(tmp_path: Path) -> None:
+    columns = changed("p_chamber", lambda t, v: 1.0 + 0.08 * np.sin(997.0 * t))
+    columns["p_tank"] = np.where(columns["time"] > 8.0, 20.0, columns["p_tank"])
+    del columns["thrust"]
+    text = "\n".join(table for table in fire.toml().split("\n\n") if "thrust" not in table)
+    assert ("dead", ("p_chamber",)) in [(f.kind, f.channels) for f in found(tmp_path, columns, text)]
+
+
+def test_a_slow_logs_channel_that_dies_is_told(tmp_path: Path) -> None:
+    columns = changed("thrust", lambda t, v: np.where(t < 2.0, v, WILD))
+    told = found(tmp_path, {name: values[::10] for name, values in columns.items()})
+    assert ("noise", ("thrust",)) in [(f.kind, f.channels) for f in told]
+
+
+def test_a_burst_between_two_jumps_is_no_drop_out(tmp_path: Path) -> None:
+    """At 10 Hz a short firing is far above all else, and begins and ends at once."""
+    columns = changed("thrust", lambda t, v: np.where((t > 0.0) & (t < 2.0), v, 12.0 + 8.0 * np.sin(997.0 * t)))
+    told = found(tmp_path, {name: values[::10] for name, values in columns.items()})
+    assert "dropout" not in {f.kind for f in told}
+
+
+def test_a_cell_that_has_not_settled_is_told_as_the_chamber_comes_to_ambient(tmp_path: Path) -> None:
+    columns = changed(
+        "thrust", lambda t, v: v + np.where(t > 1.0, 200.0 * np.exp(-np.maximum(t - 8.0, 0.0) / 6.0), 0.0)
+    )
+    (told,) = found(tmp_path, {name: values[columns["time"] < 11.0] for name, values in columns.items()})
+    assert (told.kind, told.channels, told.cure) == ("zero", ("thrust",), None)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -113,6 +152,33 @@ def test_a_chamber_gauge_that_reads_a_third_is_told_by_the_thrust(tmp_path: Path
     assert "p_chamber" in told.channels
     assert told.gain is not None
     assert 0.8 < told.gain < 3.5
+
+
+@pytest.mark.parametrize(("factor", "told"), [(0.9, False), (1.1, False), (0.65, True), (1.5, True)])
+def test_a_thrust_is_doubted_beyond_what_losses_and_the_throat_explain(
+    factor: float, told: bool, tmp_path: Path
+) -> None:
+    """A nozzle whose exit is stated gives 1.33 within a twentieth at 20 bar; its throat is known to 6 %."""
+    columns = changed("thrust", lambda t, v: factor * v)
+    kinds = {f.kind for f in found(tmp_path, columns, fire.toml() + THROAT + 'exit_radius = "24 mm"\n')}
+    assert kinds == ({"scale"} if told else set())
+
+
+@pytest.mark.parametrize(("factor", "told"), [(1.0, False), (0.5, True)])
+def test_a_throat_that_is_not_stated_is_that_of_the_propellant(factor: float, told: bool, tmp_path: Path) -> None:
+    """p_c A_t over 8 s is 8.35 kg at c* of 1500 m/s; then thrust and p_c A_t may disagree."""
+    columns = changed("thrust", lambda t, v: factor * v)
+    text = fire.toml() + '[tank]\nvolume = "16 L"\noxidizer_mass = "6 kg"\n[grain]\nmass = "0.75 kg"\n'
+    assert [f.channels for f in found(tmp_path, columns, text)] == [("thrust", "p_chamber")] * told
+
+
+def test_the_balance_of_propellant_and_pressure_holds_what_fires_have() -> None:
+    """Nine tenths of equilibrium to all of it, fuel-rich to lean at the pressures of small stands."""
+    gases = [equilibrium(p, ratio) for p in (6e5, 30e5) for ratio in (3.0, 5.0, 7.0, 9.0)]
+    velocities = [share * gas.characteristic_velocity for gas in gases for share in (0.9, 1.0)]
+    low, high = min(velocities), max(velocities)
+    assert np.sqrt(BALANCE[0] * BALANCE[1]) == pytest.approx(np.sqrt(low * high), rel=0.1)
+    assert BALANCE[1] - BALANCE[0] == pytest.approx(high - low, rel=0.35)
 
 
 def test_a_thrust_in_another_unit_is_told_with_the_unit(tmp_path: Path) -> None:

@@ -68,10 +68,6 @@ def test_a_cell_at_rest_on_both_sides_loses_its_drift(tmp_path: Path) -> None:
     assert 0.01 < channel.zero_std < 0.5
 
 
-def test_a_large_drift_is_told(tmp_path: Path) -> None:
-    assert any("does not return to zero" in w for w in ingested(tmp_path, drift=300.0).warnings)
-
-
 def test_a_level_that_still_decays_is_not_taken(tmp_path: Path) -> None:
     channel = ingested(tmp_path, tail=400.0)["thrust"]
     assert channel.drift == 0.0

@@ -132,27 +132,39 @@ VALIDATION: dict[str, Any] = {
     },
     "gap": {"full": {"thrust": {"liquid": _gap(40.0, "N")}}, "tank_free": {"p_tank": {"liquid": _gap(5e4, "Pa")}}},
     "closure": {"oxidizer_loaded": quantity(8.35, "kg", 0.05), "fuel_burned": quantity(1.6, "kg", 0.02, why="by a, n")},
-    "sensors": [
-        {
-            "channels": ["thrust"],
-            "verdict": "does not return to zero",
-            "text": "the thrust cell does not return to zero: +76 N after the burn",
-            "size": quantity(76.0, "N", 1.0),
-        },
-        {
-            "channels": ["thrust", "p_chamber"],
-            "verdict": "thrust and p_c A_t disagree",
-            "text": "thrust and p_c A_t disagree: 2430 N against 3100 N",
-            "size": quantity(0.6, "", 0.03),
-        },
-    ],
     "absent": {},
-    "warnings": ["thrust and p_c A_t disagree: 2430 N against 3100 N"],
-    "quoted": {
-        words: {"value": float(words.split()[0]), "unit": "N", "std": None} for words in ("2430 N", "3100 N", "+76 N")
-    },
+    "warnings": [],
     "provenance": {"hfanalysis": "0.1.0", "parameters": {"modes": "all"}},
 }
+
+_SHIFT = {
+    "kind": "zero",
+    "channels": ["thrust"],
+    "verdict": "suspect",
+    "evidence": "reads 76 N after the firing and 0 N before it",
+    "means": "its zero moved while it fired",
+    "cure": None,
+}
+_SCALE = {
+    "kind": "scale",
+    "channels": ["thrust", "p_chamber"],
+    "verdict": "suspect",
+    "evidence": "F/(p_c A_t) is 0.6",
+    "means": "thrust or p_chamber is off by a factor of 1.6 to 3.1",
+    "cure": None,
+}
+HEALTH: dict[str, Any] = {
+    "channels": {
+        "thrust": {"verdict": "suspect", "findings": [_SHIFT, _SCALE]},
+        "p_chamber": {"verdict": "suspect", "findings": [_SCALE]},
+        "p_tank": {"verdict": "healthy", "findings": []},
+    },
+    "between": [_SCALE],
+    "warnings": [],
+    "quoted": {words: {"value": float(words[:-2]), "unit": "N", "std": None} for words in ("76 N", "0 N")},
+    "provenance": {"hfanalysis": "0.1.0"},
+}
+"""A thrust cell that does not come back, and a chamber pressure that does not fit the thrust."""
 
 
 def _residual(level: float, unit: str) -> dict[str, StoredVariable]:

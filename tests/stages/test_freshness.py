@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests import few_effects
 from tests.inference.adopted.firing import make_root
 
 from hfanalysis.sources import PACKAGE, data
@@ -41,6 +42,8 @@ loaded = [m.__file__ for n, m in list(sys.modules.items()) if n.split(".")[0] ==
 print(json.dumps([loaded, sorted(opened)]))
 """
 
+ALONE_AMONG_FEW = ALONE.replace("out = root", few_effects.CODE + "out = root", 1)
+
 KEYS = """
 import json, sys
 from pathlib import Path
@@ -68,10 +71,10 @@ def printed(code: str, *arguments: object, package: Path = PACKAGE) -> object:
 
 @pytest.fixture(scope="module")
 def used(made: Path) -> dict[str, set[Path]]:
-    """What each stage, alone in a process, loads and opens of the package's files."""
+    """What each stage, alone in a process, loads and opens of the package's files; all effects, and few are tried."""
     found = {}
     for name in ORDER:
-        loaded, opened = printed(ALONE, made, name)  # type: ignore[misc]
+        loaded, opened = printed(ALONE if name != "diagnose" else ALONE_AMONG_FEW, made, name)  # type: ignore[misc]
         files = {Path(text).resolve() for text in (*loaded, *opened) if not text.isdigit()}
         found[name] = {p for p in files if PACKAGE in p.parents and "__pycache__" not in p.parts and p.is_file()}
     return found

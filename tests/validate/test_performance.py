@@ -27,7 +27,6 @@ from hfanalysis.validate.histories import (
     write_histories,
 )
 from hfanalysis.validate.performance import Fire, _impulse, fire_of, measured
-from hfanalysis.validate.sensor_faults import findings
 from hfanalysis.validate.thrust import Thrust
 
 BURN = ObservedSection(burn_time=Value(9.0, 0.1))
@@ -115,25 +114,6 @@ def test_the_end_of_the_fuel_ends_the_burn_where_nobody_saw_it(burn: Trial) -> N
     assert isinstance(found, Fire)
     assert (found.end, found.std) == (7.0, 0.02)
     assert fire_of(segments_of(burn), definition(burn.stand)).startswith("the end of the burn is not known")  # type: ignore[union-attr]
-
-
-def test_a_cell_that_does_not_come_back_to_zero_is_named(burn: Trial) -> None:
-    log = log_of(burn)
-    warm = replace(log["thrust"], zero=0.0, zero_std=1.0, drift=190.0)
-    seen = definition(burn.stand, observed=BURN)
-    found = findings(with_thrust(log, warm), segments_of(burn), seen, Fire(9.0, 0.1, "video"))
-    assert [f.verdict for f in found] == ["does not return to zero"]
-    assert "+190 N" in found[0].text
-    assert not findings(log, segments_of(burn), seen, Fire(9.0, 0.1, "video"))
-
-
-@pytest.mark.parametrize("factor", [0.6, 1.5])
-def test_a_thrust_that_no_nozzle_gives_is_named(burn: Trial, factor: float) -> None:
-    log = log_of(burn)
-    off = replace(log["thrust"], values=factor * log["thrust"].values)
-    found = findings(with_thrust(log, off), segments_of(burn), definition(burn.stand), Fire(9.0, 0.1, "video"))
-    assert [f.verdict for f in found] == ["thrust and p_c A_t disagree"]
-    assert found[0].channels == ("thrust", "p_chamber")
 
 
 def test_histories_are_read_with_their_units(burn: Trial, tmp_path: Path) -> None:

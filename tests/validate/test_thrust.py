@@ -9,8 +9,6 @@ import pytest
 from tests.segment.heated_cell import heated, quenched
 from tests.segment.stand import Trial, definition, segments_of
 
-from hfanalysis.validate.performance import Fire
-from hfanalysis.validate.sensor_faults import findings
 from hfanalysis.validate.thrust import thrust_of
 
 
@@ -27,13 +25,6 @@ def test_the_drift_up_to_the_end_of_the_fire_is_taken_off(burn: Trial, size: flo
     assert found.error == pytest.approx(size, rel=0.15)
     true = burn.values["thrust"]
     assert np.abs(found.signal.value - true).max() < 0.1 * abs(size)
-
-
-def test_it_is_named_though_the_log_ends_before_the_cell_settles(burn: Trial) -> None:
-    stated = definition(burn.stand)
-    found = findings(heated(burn, 200.0), segments_of(burn), stated, Fire(9.0, 0.1, "video"))
-    assert [f.verdict for f in found] == ["does not return to zero"]
-    assert not findings(heated(burn, 5.0), segments_of(burn), stated, Fire(9.0, 0.1, "video"))
 
 
 def test_without_a_zeroed_chamber_gauge_nothing_is_changed(burn: Trial) -> None:

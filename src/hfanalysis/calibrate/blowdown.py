@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 from scipy.optimize import brentq
 
 from hfanalysis.arrays import Array
@@ -99,7 +98,8 @@ class Tables:
 
     @cached_property
     def _totals(self) -> list[Array]:
-        return [cumulative_trapezoid(x, self.time, initial=0.0) for x in (self.loss, self.chamber)]
+        step = np.diff(self.time)
+        return [np.append(0.0, np.cumsum(0.5 * step * (x[1:] + x[:-1]))) for x in (self.loss, self.chamber)]
 
     def behind(self, at: Array) -> list[Array]:
         """Feed loss and chamber pressure [Pa], each (k,), at increasing times (k,) [s]: means over the cells about

@@ -14,10 +14,12 @@ from math import exp, log
 from typing import Any
 
 import numpy as np
+from scipy.linalg import block_diag
 from scipy.special import chdtrc
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.descent import least
 from hfanalysis.calibrate.evidence import Evidence, burn_time_of
 from hfanalysis.calibrate.likelihood import Surface, Weights, first_guess, surface, weights_from
 from hfanalysis.engine.grain import USUAL_N, oxidizer_flux
@@ -58,8 +60,6 @@ LARGEST_STEP = 0.2
 LARGEST_RATE_STEP = 1.0
 """The same of the logarithm of the rate [-], which is let grow to this where nothing tells it."""
 
-ROUNDS = 2
-"""Times that the weights follow from what a fit leaves, and the fit from the weights."""
 RESURVEYS = 3
 """Times the surface is followed from a lower point that it has shown. Evidence: without it values lay outside their own
 intervals."""
@@ -74,11 +74,11 @@ NEAR, EXACT = 1e-4, 1e-7
 """To what ln r and n are found of a minimum that is one of several, and of the one that is told. Evidence: along a
 valley, steps are short before its end is reached, and where a fit stood followed the last digits of a log."""
 
+FLOOR = 1e-2
+"""To what ln r is found at an exponent that a fit starts from."""
+
 SAME = 0.01
 """Of ln r and n [-], within which two minima are one: they are found to far less, and are told to far more."""
-
-FIRST_STEP = 500.0
-"""Of the search for a minimum, over what it is found to."""
 
 FAILED = 1e12
 """Misfit [-] of constants with which the engine cannot be run: above any other."""
@@ -142,11 +142,12 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
     evidence = list(tests)
     weights = [first_guess(e.time.size, float(e.chamber.mean()), e.scales) for e in evidence]
     best = _minimum(evidence, weights, flux, _scan(evidence, weights, flux))
-    for _ in range(ROUNDS):
+    for last in (False, True):
         law = law_at(best, flux)
         evidence = [e.with_regression(law) for e in evidence]
         weights = [_weighed(e, law) for e in evidence]
-        best, *rivals = _likeliest(evidence, _minima(evidence, weights, flux, best), flux)
+        minima = _minima(evidence, weights, flux, best) if last else [_minimum(evidence, weights, flux, best)]
+        best, *rivals = _likeliest(evidence, minima, flux)
     found = _surveyed(evidence, weights, flux, best)
     return replace(found, rivals=tuple(r for r in rivals if abs(r[1] - found.best[1]) > SAME))
 
@@ -185,34 +186,58 @@ def _scan(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float)
 
 
 def _minimum(
-    evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, start: Array, within: float = NEAR
+    evidence: Sequence[Evidence],
+    weights: Sequence[Weights],
+    flux: float,
+    start: Array,
+    within: float = NEAR,
+    range_n: tuple[float, float] = RANGE_N,
 ) -> Array:
-    """The least misfit from ``start``, by BOBYQA; a start beyond the range of n is moved to its border.
+    """The least misfit from ``start``; a start beyond the range of n is moved to its border.
 
     ``within``: to what ln r and n are found.
     """
-    import nlopt
 
-    objective = _objective(evidence, weights, flux)
-    start = np.array([start[0], np.clip(start[1], *RANGE_N)])
-    solver = nlopt.opt(nlopt.LN_BOBYQA, 2)
-    solver.set_min_objective(lambda x, _gradient: objective(np.array(x)))
-    solver.set_lower_bounds([start[0] - 2.0, RANGE_N[0]])
-    solver.set_upper_bounds([start[0] + 2.0, RANGE_N[1]])
-    solver.set_initial_step([FIRST_STEP * within] * 2)
-    solver.set_xtol_abs([within, within])
-    solver.set_maxeval(200)
-    return np.asarray(solver.optimize(start), dtype=np.float64)
+    def residual(point: Array) -> Array | None:
+        law = law_at(point, flux)
+        predicted = [e.predict(law) if possible(point) else None for e in evidence]
+        parts = [e.observed - p for e, p in zip(evidence, predicted, strict=True) if p is not None]
+        return np.concatenate(parts) if len(parts) == len(predicted) else None
+
+    box = np.array([start[0] - 2.0, range_n[0]]), np.array([start[0] + 2.0, range_n[1]])
+    return least(residual, block_diag(*(w.precision for w in weights)), start, box, within)
 
 
 def _minima(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array) -> list[Array]:
-    """The minima found from the best so far and from other exponents, each once: the valley may have several."""
-    starts = [best, *(np.array([best[0], n]) for n in RESTARTS if abs(n - best[1]) > 0.1)]
-    out: list[Array] = []
-    for found in (_minimum(evidence, weights, flux, start) for start in starts):
-        if not any(np.abs(found - other).max() < SAME for other in out):
+    """The minima found from the best so far and from other exponents, each once: the valley may have several.
+
+    On each side of the best the farthest exponent is the first; where its descent comes to a minimum that is known, it
+    has passed the nearer ones.
+    """
+    out = [_minimum(evidence, weights, flux, best)]
+    others = sorted((n for n in RESTARTS if abs(n - best[1]) > 0.1), key=lambda n: abs(n - best[1]))
+    for side in ([n for n in others if n < best[1]], [n for n in others if n > best[1]]):
+        for floor in reversed(_floors(evidence, weights, flux, out[0], side)):
+            found = _minimum(evidence, weights, flux, floor)
+            if any(np.abs(found - other).max() < SAME for other in out):
+                break
             out.append(found)
     return out
+
+
+def _floors(
+    evidence: Sequence[Evidence], weights: Sequence[Weights], flux: float, best: Array, exponents: Sequence[float]
+) -> list[Array]:
+    """The valley's floor at ``exponents``, which lead away from its ``best`` point, each along the line so far."""
+    if not exponents:
+        return []
+    covariance, out = _covariance(evidence, weights, flux, best), [best]
+    slope = covariance[0, 1] / covariance[1, 1]
+    for n in exponents:
+        start = np.array([out[-1][0] + slope * (n - out[-1][1]), n])
+        out.append(_minimum(evidence, weights, flux, start, FLOOR, (n, n)))
+        slope = (out[-1][0] - out[-2][0]) / (n - out[-2][1])
+    return out[1:]
 
 
 def _likeliest(evidence: Sequence[Evidence], minima: Sequence[Array], flux: float) -> list[Array]:

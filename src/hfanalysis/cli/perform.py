@@ -153,7 +153,21 @@ def _warnings(context: Context, name: str) -> list[str]:
             texts += [] if stage in _SPINE and name == "run" else [f"{stage}: {context.absent[stage]}"]
             continue
         texts += _product_warnings(context, stage)
-    return list(dict.fromkeys(texts))
+    return [_numbered(text, known) for known in [_reasons(context)] for text in dict.fromkeys(texts)]
+
+
+def _reasons(context: Context) -> list[str]:
+    """The sentences by which channels are doubted, in the order of the numbers that tables mark numbers with."""
+    from hfanalysis.health.reasons import reasons
+    from hfanalysis.products.health import Health
+
+    if not context.product(Health.file).is_file():
+        return []
+    return [str(doubt.sentence) for doubt in reasons(context.read(Health).channels)]
+
+
+def _numbered(text: str, known: list[str]) -> str:
+    return f"[{known.index(text) + 1}] {text}" if text in known else text
 
 
 def _product_warnings(context: Context, name: str) -> list[str]:

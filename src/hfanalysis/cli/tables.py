@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,13 +11,14 @@ from rich.table import Table
 from rich.text import Text
 
 from hfanalysis.cli.exit_status import nobody_reads
-from hfanalysis.products.health import TRUSTED
+from hfanalysis.health.reasons import Doubt, marked, reasons
+from hfanalysis.products.health import TRUSTED, Finding
 from hfanalysis.products.model import AdoptedEffect, Part
 from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context, load_stage
 from hfanalysis.wording import numbers as wording
-from hfanalysis.wording.numbers import Shown, in_words, ordered, shown
+from hfanalysis.wording.numbers import in_words, ordered, shown
 
 if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
     from hfanalysis.products.calibration import RegressionBasis
@@ -109,30 +110,45 @@ def new_table(*columns: str, title: str) -> Table:
     return table
 
 
-def _quantities(found: Mapping[str, Quantity], title: str, width: int) -> Table:
+def _quantities(found: Mapping[str, Quantity], title: str, width: int, known: Sequence[Doubt]) -> Table:
     wide, roomy = width >= _WIDE, width >= _ROOMY
     columns = ("symbol", *[""] * wide, "value", "± std", *["95 % interval"] * roomy, "unit", "verdict")
     table = new_table(*columns, title=title)
     for name, quantity in found.items():
         text = shown(quantity)
-        verdict = Text(text.verdict, style=_STYLES.get(text.verdict, "yellow"))
+        told = f"{text.verdict} {_marks(marked(quantity, known)[0])}".strip()
+        verdict = Text(told, style=_STYLES.get(text.verdict, "yellow"))
         numbers = (text.value, text.std, *[text.interval] * roomy, text.unit)
         table.add_row(name, *[in_words(name)] * wide, *numbers, verdict)
     return table
 
 
-def _notes(found: Mapping[str, Quantity]) -> Iterator[str]:
-    """Why a quantity is missing, or judged as it is, where that is not plain."""
+def _marks(numbers: Iterable[int]) -> str:
+    """The numbers of the reasons for a doubt; the warnings say them, each once."""
+    return " ".join(f"[{number}]" for number in numbers)
+
+
+def _notes(found: Mapping[str, Quantity], known: Sequence[Doubt]) -> Iterator[str]:
+    """Why quantities are missing, or judged as they are, where that is not plain: what is said of several, once."""
+    told: dict[str, list[str]] = {}
     for name, quantity in found.items():
-        text: Shown = shown(quantity)
-        if text.why and text.verdict not in (IDENTIFIED, ""):
-            yield f"{name}: {text.verdict}: {text.why}"
+        verdict, (_, why) = shown(quantity).verdict, marked(quantity, known)
+        if why and verdict not in (IDENTIFIED, ""):
+            told.setdefault(f"{verdict}: {why}", []).append(name)
+    return (f"{', '.join(names)}: {words}" for words, names in told.items())
 
 
-def _print(console: Console, found: Mapping[str, Quantity], title: str) -> None:
-    console.print(_quantities(found, title, console.width))
-    for note in _notes(found):
+def _print(console: Console, found: Mapping[str, Quantity], title: str, known: Sequence[Doubt] = ()) -> None:
+    console.print(_quantities(found, title, console.width, known))
+    for note in _notes(found, known):
         console.print(Text(f"  {note}"), soft_wrap=True)
+
+
+def _reasons(context: Context) -> list[Doubt]:
+    """Why channels of a test are doubted, in the order of their numbers."""
+    from hfanalysis.products.health import Health
+
+    return reasons(context.read(Health).channels)
 
 
 def _ingest(context: Context, console: Console) -> None:
@@ -152,10 +168,15 @@ def _health(context: Context, console: Console) -> None:
     from hfanalysis.products.health import HEALTHY, SUSPECT, Health
 
     product = context.read(Health)
+    known = reasons(product.channels)
     styles = {HEALTHY: "green", SUSPECT: "yellow"}
     table = new_table("channel", "verdict", "", title="health of the channels")
     for name, channel in product.channels.items():
-        what = dict.fromkeys(finding.kind.replace("_", " ") for finding in channel.findings)
+        numbered = {f: n for n, doubt in enumerate(known, 1) for f in channel.findings if _is(doubt, name, f)}
+        what = dict.fromkeys(
+            f"{f.kind.replace('_', ' ')} {_marks([numbered[f]] if f in numbered else [])}".strip()
+            for f in channel.findings
+        )
         trust = f"trusted: {channel.trust}; against: " if channel.trust and what else ""
         verdict = Text(channel.verdict, style=styles.get(channel.verdict, "red"))
         table.add_row(name, verdict, Text(f"{trust}{', '.join(what)}"))
@@ -166,12 +187,19 @@ def _health(context: Context, console: Console) -> None:
         console.print(Text(f"  hfa health {context.id} --apply writes the cures into test.toml, after asking"))
 
 
+def _is(doubt: Doubt, name: str, finding: Finding) -> bool:
+    """Whether a numbered reason is this finding of a channel."""
+    alike = (doubt.finding.kind, doubt.finding.evidence, doubt.finding.span)
+    return name in doubt.channels and alike == (finding.kind, finding.evidence, finding.span)
+
+
 def _segment(context: Context, console: Console) -> None:
     from hfanalysis.products.segments import Segments
 
     product = context.read(Segments)
     kind = wording.KINDS.get(product.kind, product.kind)
-    _print(console, product.quantities, f"phases (seconds after the valve opens): recognized as {kind}")
+    _print(console, product.quantities, f"phases (seconds after the valve opens): recognized as {kind}",
+           _reasons(context))  # fmt: skip
     if product.engineer:
         console.print(Text(f"  set by the engineer in test.toml: {', '.join(product.engineer)}"))
 
@@ -182,7 +210,7 @@ def _calibrate(context: Context, console: Console) -> None:
 
     product, events = context.read(Calibration), context.read(Segments).events
     times = {name: events[name] for name in ("t_feed", "t_v", "t_purge")}
-    _print(console, ordered(product.quantities) | times, "calibration")
+    _print(console, ordered(product.quantities) | times, "calibration", _reasons(context))
     _regression(product.regression, console)
 
 
@@ -229,7 +257,7 @@ def show_regression(product: CommonLaw) -> None:
         _print(console, ordered(found.quantities), f"{name} alone")
 
 
-def _performance(product: Validation, console: Console) -> None:
+def _performance(product: Validation, known: Sequence[Doubt], console: Console) -> None:
     performance = product.performance
     table = new_table("", "measured", "± std", "model", "± std ", "unit", "", title="performance")
     for column in table.columns[1:5]:
@@ -239,7 +267,7 @@ def _performance(product: Validation, console: Console) -> None:
         found = shown(measured)
         if measured.value is not None or model.value != "–":
             unit = found.unit or model.unit
-            table.add_row(in_words(name), found.value, found.std, model.value, model.std, unit, _doubt(measured))
+            table.add_row(in_words(name), found.value, found.std, model.value, model.std, unit, _doubt(measured, known))
     console.print(table)
     if performance.motor_class:
         console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=True)
@@ -251,7 +279,7 @@ def _validate(context: Context, console: Console) -> None:
     from hfanalysis.products.validation import Validation
 
     product = context.read(Validation)
-    _performance(product, console)
+    _performance(product, _reasons(context), console)
     table = new_table("run", "channel", "phase", "rms", "bias", "noise", "unit", title="measured minus model")
     for run, channels in product.gap.items():
         for channel, phases in channels.items():
@@ -266,7 +294,7 @@ def _flight(context: Context, console: Console) -> None:
     from hfanalysis.products.flight import Flight
 
     product = context.read(Flight)
-    _values(console, ordered(product.quantities), f"flight, thrust {product.thrust}")
+    _values(console, ordered(product.quantities), f"flight, thrust {product.thrust}", _reasons(context))
     _values(console, ordered(product.stability.quantities), "stability")
     for name, check in product.checks.items():
         style = {"passed": "green", "failed": "red"}.get(check.result, "yellow")
@@ -331,7 +359,7 @@ def _strength(effect: EffectEntry) -> str:
     return f"{name} {wording.tidy(factor * first.typical, 6)} {unit.strip('-')}".strip()
 
 
-def _values(console: Console, found: Mapping[str, Quantity], title: str) -> None:
+def _values(console: Console, found: Mapping[str, Quantity], title: str, known: Sequence[Doubt] = ()) -> None:
     """A table of values, with intervals where any has one, and below it what cannot be had, by reason."""
     spread = any(quantity.std for quantity in found.values())
     table = new_table("", "value", *(["± std", "95 % interval"] if spread else []), "unit", "", title=title)
@@ -342,20 +370,20 @@ def _values(console: Console, found: Mapping[str, Quantity], title: str) -> None
             absent.setdefault(text.why, []).append(in_words(name))
         else:
             extra = [text.std, text.interval] if spread else []
-            table.add_row(_WORDS.get(name, in_words(name)), text.value, *extra, text.unit, _doubt(quantity))
+            table.add_row(_WORDS.get(name, in_words(name)), text.value, *extra, text.unit, _doubt(quantity, known))
     if table.row_count:
         console.print(table)
     for reason, names in absent.items():
         console.print(Text(f"  without {', '.join(names)}: {reason}"))
 
 
-def _doubt(quantity: Quantity) -> Text:
-    """In a table without verdicts: that a number is doubted, or rests on a channel that is trusted, and for which
-    channel; the warnings say more."""
-    told = (quantity.why or "").partition(": ")[0]
+def _doubt(quantity: Quantity, known: Sequence[Doubt]) -> Text:
+    """In a table without verdicts: that a number is doubted, or rests on a channel that is trusted, and the numbers of
+    the reasons, or for which channel; the warnings say more."""
+    told, numbers = (quantity.why or "").partition(": ")[0], _marks(marked(quantity, known)[0])
     trusted = TRUSTED in told and quantity.value is not None
     doubted = quantity.verdict == DOUBTED and quantity.value is not None
-    return Text(f"doubted: {told}" if doubted else told if trusted else "", style="yellow")
+    return Text(f"doubted {numbers or told}" if doubted else f"{told} {numbers}" if trusted else "", style="yellow")
 
 
 _SHOWN = {

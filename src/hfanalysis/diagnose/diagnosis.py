@@ -80,7 +80,7 @@ def diagnose(
     product = _product(found, verdict, proof, catalogue)
     sentences = story(product)
     if poor_fit(found.named.leftover):
-        sentences += shown(subject.log, subject.segments, subject.definition).sentences
+        sentences += shown(subject).sentences
     notes = (*subject.notes, *product.notes)
     return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
 

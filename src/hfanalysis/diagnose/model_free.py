@@ -12,15 +12,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.health.reasons import Doubt
+from hfanalysis.inference.subject import Subject
+from hfanalysis.products.health import HEALTHY, Finding
 from hfanalysis.products.segments import Segments
-from hfanalysis.products.validation import Finding
 from hfanalysis.quantity import Quantity
-from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import capitalised, joined, said, text
-from hfanalysis.validate.performance import fire_of
-from hfanalysis.validate.sensor_faults import findings
+
+SHIFTS, FACTORS = ("zero", "drift"), ("scale", "unit")
+"""Kinds of finding that say by how much a cell's zero is off, and that a channel's size is."""
 
 BAR = 1e5
 """A bar [Pa]. Source: definition."""
@@ -74,22 +76,38 @@ def signs_of(log: TestLog, segments: Segments) -> list[Sign]:
 
 @dataclass(frozen=True)
 class ShownByChannels:
-    """What the channels of a test show by themselves: sensors that are ``wrong``, and signs of missing effects."""
+    """What the channels of a test show by themselves: thrust and chamber gauge that are ``wrong``, and signs of missing
+    effects."""
 
     wrong: tuple[Finding, ...]
     signs: tuple[Sign, ...]
 
     @property
+    def drift(self) -> bool:
+        """Whether the thrust cell does not come back to its zero."""
+        return any(found.kind in SHIFTS for found in self.wrong)
+
+    @property
     def sentences(self) -> list[str]:
         """All of it, sensors first."""
-        texts = [*(found.text for found in self.wrong), *(sign.text for sign in self.signs)]
+        of_sensors = (Doubt(found, found.channels).words for found in self.wrong)
+        texts = [*of_sensors, *(sign.text for sign in self.signs)]
         return [joined("", [words if words[1] == "_" else capitalised(words), "."]) for words in texts]
 
 
-def shown(log: TestLog, segments: Segments, definition: TestDefinition) -> ShownByChannels:
+def shown(subject: Subject) -> ShownByChannels:
     """Everything that takes no model to see."""
-    wrong = findings(log, segments, definition, fire_of(segments, definition, log))
-    return ShownByChannels(tuple(wrong), tuple(signs_of(log, segments)))
+    return ShownByChannels(
+        tuple(found for found in subject.found if _concerns(found)), tuple(signs_of(subject.log, subject.segments))
+    )
+
+
+def _concerns(found: Finding) -> bool:
+    """Whether a finding is one of what a diagnosis has names for: a cell's drift; thrust and p_c A_t that disagree."""
+    if found.verdict == HEALTHY or found.overruled:
+        return False
+    shifted = found.kind in SHIFTS and "thrust" in found.channels and found.cure is None
+    return shifted or (found.kind in FACTORS and bool({"thrust", "p_chamber"} & set(found.channels)))
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import scale
-from hfanalysis.diagnose.model_free import ShownByChannels, Sign, shown
+from hfanalysis.diagnose.model_free import SHIFTS, ShownByChannels, Sign, shown
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.subject import Subject
 from hfanalysis.products.diagnosis import NO_TIME, ClosedFraction, Compared, Diagnosis, Gap, NamedEffect, Place
-from hfanalysis.products.validation import Finding
+from hfanalysis.products.health import KINDS, Finding
 from hfanalysis.quantity import Quantity
 from hfanalysis.sentences import text
-from hfanalysis.validate.sensor_faults import ZERO
+from hfanalysis.validate.thrust import thrust_of
 
 DRIFT = "load_cell_drift"
 
@@ -27,11 +27,11 @@ def channels_alone(subject: Subject, why: str) -> Diagnosis:
     line show is in ``diagnose.model_free``. Nothing tells which of several explains most: a drift comes first, for its
     size is known, and nothing else is added to the model.
     """
-    seen = shown(subject.log, subject.segments, subject.definition)
+    seen = shown(subject)
     if not seen.wrong and not seen.signs:
         raise AbsentError(f"{why}; its channels, by themselves, show nothing wrong")
     stated = _stated(seen)
-    effects = tuple(_drift(found) for found in seen.wrong if found.verdict == ZERO)
+    effects = (_drift(subject),) if seen.drift else ()
     names = [name for name in (*stated.posterior, *stated.partners) if name not in ("none", "unknown")]
     channels = {c for f in seen.wrong for c in f.channels} | {s.channel for s in seen.signs}
     return Diagnosis(
@@ -75,7 +75,7 @@ class _Stated:
 
 def _stated(seen: ShownByChannels) -> _Stated:
     sure = _sure()
-    groups = [(DRIFT,) for found in seen.wrong if found.verdict == ZERO] + [sign.names for sign in seen.signs]
+    groups = [(DRIFT,)] * seen.drift + [sign.names for sign in seen.signs]
     if not groups:
         return _Stated("unknown", ("unknown",), {"unknown": sure, "none": 1.0 - sure}, {})
     even = {name: sure / len(group) for group in groups for name in group}
@@ -91,21 +91,29 @@ def _sure() -> float:
     return 1.0 - scale().misled
 
 
-def _drift(found: Finding) -> NamedEffect:
+def _drift(subject: Subject) -> NamedEffect:
+    size = _off_zero(subject)
     return NamedEffect(
         name=DRIFT,
         probability=_sure(),
         equation="sensor",
         meaning=effect(DRIFT).meaning,
-        parameters={"drift": found.size},
-        plausibility=judged(effect(DRIFT).at(drift=found.size.value or 0.0)),
+        parameters={"drift": size},
+        plausibility=judged(effect(DRIFT).at(drift=size.value or 0.0)),
     )
+
+
+def _off_zero(subject: Subject) -> Quantity:
+    """What the thrust cell reads beyond its zero once nothing pushes it [N]."""
+    channel, thrust = subject.log["thrust"], thrust_of(subject.log, subject.segments, subject.definition)
+    return Quantity(thrust.error, "N", channel.zero_std if channel.zero_std is not None else channel.accuracy)
 
 
 def _place(found: Finding, subject: Subject) -> Place:
     end = subject.segments.time("t_end") or subject.segments.time("t_fuel_out") or 0.0
-    equation = "sensor" if found.verdict == ZERO else "nozzle"
-    return _row(equation, found.verdict, "liquid", (0.0, end), found.size, found.channels[0])
+    shifted = found.kind in SHIFTS
+    size = _off_zero(subject) if shifted else Quantity(found.gain or 0.0, "")
+    return _row("sensor" if shifted else "nozzle", KINDS[found.kind], "liquid", (0.0, end), size, found.channels[0])
 
 
 def _place_of(sign: Sign) -> Place:

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 
+from hfanalysis.health.reasons import Doubt, reasons
 from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns, power_of_time, rests
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.diagnosis import Diagnosis
-from hfanalysis.products.health import HEALTHY, TRUSTED, UNUSABLE, Finding, Health
+from hfanalysis.products.health import HEALTHY, UNUSABLE, Finding, Health
 from hfanalysis.products.model import Part, Product
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import DOUBTED, NORMAL_95, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
-from hfanalysis.sentences import joined, text
+from hfanalysis.sentences import joined
 
 P = TypeVar("P", bound=Part)
 NEAR = 1.0
@@ -68,28 +69,6 @@ def _value(name: str, value: Any, product: str, health: Health) -> Any:
     return value
 
 
-@dataclass(frozen=True)
-class Doubt:
-    """Something found of channels that a quantity rests on; ``trust``: why the engineer overrules it."""
-
-    finding: Finding
-    channels: tuple[str, ...]
-    trust: str | None = None
-
-    @property
-    def words(self) -> str:
-        """Whose, what, and its evidence."""
-        kind = self.finding.kind.replace("_", " ")
-        return text(
-            "{names}{trusted} ({kind}{left}): {evidence}",
-            names=", ".join(self.channels),
-            trusted=f"{TRUSTED}{self.trust}) against" if self.trust else "",
-            kind=kind,
-            left=", left out" if self.finding.verdict == UNUSABLE and not self.trust else "",
-            evidence=self.finding.evidence,
-        )
-
-
 def asked(quantity: Quantity, product: str, name: str, health: Health, instant: float | None = None) -> Quantity:
     """A quantity of a product with the doubts about it; of an event, ``instant`` is when it is [s, log time]."""
     found = _doubts(product, name, quantity, health, instant)
@@ -98,31 +77,18 @@ def asked(quantity: Quantity, product: str, name: str, health: Health, instant: 
 
 
 def _doubts(product: str, name: str, quantity: Quantity, health: Health, instant: float | None) -> list[Doubt]:
-    """What was found of the channels that a quantity rests on; channels that the same is said of stand in one."""
-    whose: dict[tuple[str | None, str, str], Doubt] = {}
-    for channel in channels_of(product, name, quantity):
-        trust = health.of(channel).trust
-        for finding in health.of(channel).findings:
-            if not concerns(product, name, finding.kind):
-                continue
-            if not (_why_not(finding, trust) if quantity.value is None else _counts(finding, health, trust, instant)):
-                continue
-            key = (trust, finding.kind, finding.evidence)
-            before = whose[key].channels if key in whose else ()
-            whose[key] = Doubt(finding, (*before, channel), trust)
-    return list(whose.values())
+    """The reasons that concern a channel that a quantity rests on."""
+    rest = channels_of(product, name, quantity)
+    found = [doubt for doubt in reasons(health.channels) if set(rest) & set(doubt.channels)]
+    return [doubt for doubt in found if concerns(product, name, doubt.finding.kind)
+            and (not doubt.trust if quantity.value is None else _counts(doubt, health, instant))]  # fmt: skip
 
 
-def _counts(finding: Finding, health: Health, trust: str | None, instant: float | None) -> bool:
-    """Whether a finding is one of those that a number of its channel, or an event at an instant [s], has to do with."""
-    if finding.verdict == HEALTHY or (instant is not None and not _near(finding, instant)):
+def _counts(doubt: Doubt, health: Health, instant: float | None) -> bool:
+    """Whether a reason is one of those that a number of its channel, or an event at an instant [s], has to do with."""
+    if instant is not None and not _near(doubt.finding, instant):
         return False
-    return bool(trust) or finding.verdict != UNUSABLE or _in_firing(finding, health)
-
-
-def _why_not(finding: Finding, trust: str | None) -> bool:
-    """Whether it may be why a number is not there: its channel is left out, or nobody could say more of the number."""
-    return finding.verdict != HEALTHY and not trust
+    return bool(doubt.trust) or doubt.finding.verdict != UNUSABLE or _in_firing(doubt.finding, health)
 
 
 def _near(finding: Finding, instant: float) -> bool:

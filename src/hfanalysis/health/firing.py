@@ -26,12 +26,17 @@ HALF = 0.5
 
 def usable(test: SeenTest, seen: Seen) -> Trace:
     """The good samples of a channel outside of what it showed to be unusable: time [s], values [SI] as said."""
-    kept = np.ones(len(seen.trace.time), dtype=bool)
+    return without_unusable(test, seen, seen.trace)
+
+
+def without_unusable(test: SeenTest, seen: Seen, trace: Trace) -> Trace:
+    """A ``trace`` of a channel outside of what it showed to be unusable."""
+    kept = np.ones(len(trace.time), dtype=bool)
     for finding in test.found:
         if finding.verdict == "unusable" and seen.name in finding.channels and not finding.whole:
             low, high = finding.span
-            kept &= (seen.trace.time < low) | (seen.trace.time > high)
-    return Trace(seen.trace.time[kept], seen.trace.values[kept])
+            kept &= (trace.time < low) | (trace.time > high)
+    return Trace(trace.time[kept], trace.values[kept])
 
 
 def own_zero(seen: Seen) -> float:

@@ -24,7 +24,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.health.coarse import Coarse, Span, as_said, coarse, live_span
 from hfanalysis.products.health import Finding
 from hfanalysis.record.definition import TestDefinition
-from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.record.logspec import ChannelSpec
 from hfanalysis.record.quiet import Trace
 from hfanalysis.record.signals import Signal
@@ -66,8 +66,16 @@ class Seen:
 
     @cached_property
     def said(self) -> Array:
-        """What the sensor said (n,) [SI], before zero and tare, every sample in the log's order; NaN: no number."""
-        return as_said(self.channel)
+        """What the sensor said (n,) [SI], before zero and tare, every sample in the log's order; NaN: no reading."""
+        none = (self.channel.flags & np.uint8(Flag.DROPOUT)) != 0
+        return np.where(none, np.nan, as_said(self.channel)) if none.any() else as_said(self.channel)
+
+    @cached_property
+    def heard(self) -> Trace:
+        """All its numbers [SI], those too that no sensor can read: of a reversed or dying one they are the signal."""
+        values = as_said(self.channel)
+        kept = np.isfinite(values) & ((self.channel.flags & np.uint8(Flag.TIME | Flag.EXCLUDED)) == 0)
+        return Trace(self.channel.time[kept], values[kept])
 
     @cached_property
     def trace(self) -> Trace:
@@ -151,18 +159,24 @@ def _taken(log: TestLog, definition: TestDefinition, whole: Span | None) -> Span
     place = definition.log.firing - 1 if definition.log.firing else largest(flows, signals, fire=True)
     if place >= len(flows):
         return whole
-    start, end = flows[place].start, flows[place].end
-    return (max(start, whole[0]), whole[1] if place == len(flows) - 1 else end)
+    start, end = max(flows[place].start, whole[0]), whole[1] if place == len(flows) - 1 else flows[place].end
+    # what begins after all channels are at rest again is no firing that a plateau could be taken of
+    return (start, end) if start < end else whole
 
 
 def firing_of(live: Mapping[str, Span | None]) -> Span | None:
     """From when to when [s, log time] the firing lasts, by the channel that most others agree with on its beginning.
 
-    A tank's pressure, which filling raises long before, is asked only where no other channel moves.
+    A tank's pressure, which filling raises long before, is asked only where no other channel moves, or where as many
+    are for one as for another.
     """
     there = [span for span in map(live.get, FIRING[:-1]) if span is not None]
     if not there:
         return live.get(FIRING[-1])
-    starts = np.array([start for start, _ in there])
-    votes = [int(np.count_nonzero(np.abs(starts - start) <= TOGETHER)) for start in starts]
-    return there[int(np.argmax(votes))]
+    tank = live.get(FIRING[-1])
+
+    def votes(span: Span) -> tuple[int, bool]:
+        agree = sum(abs(start - span[0]) <= TOGETHER for start, _ in there)
+        return agree, tank is not None and abs(tank[0] - span[0]) <= TOGETHER
+
+    return max(there, key=votes)

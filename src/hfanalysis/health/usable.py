@@ -144,7 +144,7 @@ def _zero(channel: Channel, firing: FiringSpan | None, definition: TestDefinitio
     spec = definition.channels[channel.name]
     if spec.zero == "ambient":
         return ambient_zero(spec, _trace(channel), firing, definition.ambient_pressure, channel.accuracy)
-    return tare(spec, _trace(channel), firing, channel.accuracy)
+    return tare(spec, _trace(channel), firing)
 
 
 def widened(log: TestLog, health: Health) -> TestLog:

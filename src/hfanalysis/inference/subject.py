@@ -11,6 +11,7 @@ from hfanalysis.inference.full_run import run_full
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.reduction import observe_test
 from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.health import Finding
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
@@ -21,7 +22,8 @@ from hfanalysis.record.signals import Signal
 class Subject:
     """What a diagnosis is made from: a test's log, its segments and base calibration, and what was stated.
 
-    The calibration is None where none could be had; ``notes`` say what stands for a missing channel.
+    The calibration is None where none could be had; ``notes`` say what stands for a missing channel, ``found`` what its
+    channels' health tells.
     """
 
     log: TestLog
@@ -29,6 +31,7 @@ class Subject:
     calibration: Calibration | None
     definition: TestDefinition
     notes: tuple[str, ...] = ()
+    found: tuple[Finding, ...] = ()
 
     def observed(self) -> Observed:
         """What is compared."""

@@ -89,6 +89,11 @@ class Health(Product):
     compared: Annotated[tuple[str, ...], Is("other tests of the stand that were looked at")] = ()
     warnings: Warnings
 
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """All of them, each once."""
+        return tuple(dict.fromkeys(finding for channel in self.channels.values() for finding in channel.findings))
+
     def of(self, name: str) -> ChannelHealth:
         """The health of a channel; one that was not judged is healthy."""
         return self.channels.get(name) or ChannelHealth(verdict=HEALTHY, findings=())

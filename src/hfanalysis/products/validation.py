@@ -55,7 +55,7 @@ class Closure(Part):
 
 
 class Finding(Part):
-    """A sensor that cannot be right."""
+    """A sensor that cannot be right by what the engine can give; what channels show by themselves is in health.json."""
 
     channels: Annotated[tuple[str, ...], Is("which")]
     verdict: Annotated[str, Is("what is wrong, in short")]
@@ -77,7 +77,7 @@ class Validation(Product):
         ),
     ]
     closure: Annotated[Closure, Is("of the masses")]
-    sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors")]
+    sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors by what the engine can give")]
     absent: Annotated[dict[str, Words], Is("what could not be done, and why")]
     notes: Notes
     warnings: Warnings

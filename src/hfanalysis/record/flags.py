@@ -50,10 +50,11 @@ def flag_readings(readings: Array, dimension: str, missing: Sequence[float] = ()
 
 def flag_impossible(values: Array, dimension: str, flags: Flags) -> None:
     """Flags samples [SI] that no sensor of this dimension can read; ``values`` and ``flags`` have shape (n,)."""
-    if dimension in IMPOSSIBLE and len(values):
+    if dimension in IMPOSSIBLE:
         low, high = IMPOSSIBLE[dimension]
-        if not low <= np.nanmin(values) <= np.nanmax(values) <= high:
-            flags[(values < low) | (values > high)] |= np.uint8(Flag.DROPOUT)
+        wild = (values < low) | (values > high)
+        if wild.any():
+            flags[wild] |= np.uint8(Flag.DROPOUT)
 
 
 def _flag_unread(readings: Array, flags: Flags) -> None:

@@ -24,8 +24,8 @@ LONG_STRETCH = 1500
 deviation."""
 
 SHORTEST_BLOCK, LEAST_BLOCK = 16, 4
-"""Samples per block from which on the wander is looked for; below, white noise hides it [samples]. A stretch that is too
-short for those has smaller ones: a slow logger's sensors wander as well."""
+"""Samples per block from which on the wander is looked for; below, white noise hides it [samples]. A stretch too
+short for those has smaller ones: the sensors of slow loggers wander as well."""
 
 
 @dataclass(frozen=True)

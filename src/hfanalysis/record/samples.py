@@ -23,7 +23,10 @@ from hfanalysis.units import si_unit
 
 @dataclass(frozen=True)
 class Samples:
-    """Time [s, log time], values [SI] without zero and tare (NaN: no number), and flags of a channel."""
+    """Time [s, log time], values [SI] without zero and tare (NaN: no number), and flags of a channel.
+
+    A reading that no sensor can have is flagged, and stays: what a channel does there may tell what is wrong with it.
+    """
 
     time: Array
     values: Array
@@ -61,9 +64,9 @@ def read_samples(plan: Plan, spool: Spool, clock: Clock, definition: TestDefinit
     scale, offset = plan.spec.factor
     readings *= scale
     readings += offset + (definition.ambient_pressure.value if plan.spec.gauge else 0.0)
-    flag_impossible(readings, plan.spec.dimension, flags)
     if flags.any():
         readings[(flags & np.uint8(Flag.DROPOUT)) != 0] = np.nan
+    flag_impossible(readings, plan.spec.dimension, flags)
     return Samples(clock.time, readings, flags)
 
 
@@ -92,7 +95,7 @@ def _zero(
 ) -> Zero:
     if spec.zero == "ambient":
         return ambient_zero(spec, samples.trace, firing, definition.ambient_pressure, accuracy)
-    return tare(spec, samples.trace, firing, accuracy) if spec.tare != "none" else Zero()
+    return tare(spec, samples.trace, firing) if spec.tare != "none" else Zero()
 
 
 def _no_numbers(plan: Plan, spool: Spool, definition: TestDefinition) -> str:

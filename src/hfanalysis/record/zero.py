@@ -10,7 +10,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.record.logspec import ChannelSpec
 from hfanalysis.record.quiet import FiringSpan, Level, Trace, after, before, level
 from hfanalysis.sentences import said, text
-from hfanalysis.units import Value, si_unit
+from hfanalysis.units import Value
 
 FAR_FROM_AMBIENT = 50e3
 """[Pa] from ambient at which a quiet reading is no longer the open air, whatever the sensor's accuracy. Evidence:
@@ -66,15 +66,10 @@ def ambient_zero(spec: ChannelSpec, trace: Trace, firing: FiringSpan | None, amb
     return Zero(error, std, history=(f"zero: {error:.6g} Pa taken off, so that {found.time:.3f} s reads ambient",))
 
 
-def not_back(channel: str) -> str:
-    """How it is said that a cell does not come back."""
-    return f"channel {channel}: does not return to zero"
-
-
-def tare(spec: ChannelSpec, trace: Trace, firing: FiringSpan | None, accuracy: float) -> Zero:
+def tare(spec: ChannelSpec, trace: Trace, firing: FiringSpan | None) -> Zero:
     """The zero [N or kg] of a load cell: from before the firing, and after it where the cell is at rest again.
 
-    ``trace`` holds its good samples [s], [SI]; ``accuracy`` is the standard deviation of its bias [SI].
+    ``trace`` holds its good samples [s], [SI]. A cell that does not come back is for its health to tell.
     """
     first, reason = _quiet_level(trace, firing)
     if first is None or firing is None:
@@ -86,7 +81,7 @@ def tare(spec: ChannelSpec, trace: Trace, firing: FiringSpan | None, accuracy: f
     last = level(window) if window is not None else None
     if last is None:
         return _only_before(only, spec)
-    return _with_drift(spec, first, last, trace, firing.start, accuracy)
+    return _with_drift(first, last, firing.start)
 
 
 def _quiet_level(trace: Trace, firing: FiringSpan | None) -> tuple[Level | None, str]:
@@ -102,17 +97,12 @@ def _only_before(only: Zero, spec: ChannelSpec) -> Zero:
     return Zero(only.value, only.std, history=(*only.history, f"tare: {note}"), warnings=warned)
 
 
-def _with_drift(spec: ChannelSpec, first: Level, last: Level, trace: Trace, start: float, accuracy: float) -> Zero:
+def _with_drift(first: Level, last: Level, start: float) -> Zero:
     """The drift is linear from the firing's ``start`` [s], before which nothing warms the cell, to the last level."""
     drift = last.value - first.value
     std = float(np.sqrt((first.std**2 + last.std**2) / 2.0))
     history = (f"tare: {first.value:.6g} taken off at {first.time:.3f} s, {last.value:.6g} at {last.time:.3f} s",)
-    lot = max(5.0 * accuracy, 0.02 * float(np.max(np.abs(trace.values - first.value))))
-    unit = si_unit(spec.dimension)
-    note = f"{not_back(spec.name)} after the firing: {drift:.4g} {unit}"
-    return Zero(
-        first.value, std, drift, (max(first.time, start), last.time), history, (note,) if abs(drift) > lot else ()
-    )
+    return Zero(first.value, std, drift, (max(first.time, start), last.time), history)
 
 
 def _none(warning: str) -> Zero:

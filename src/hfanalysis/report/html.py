@@ -8,6 +8,7 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
+from hfanalysis.health.reasons import Doubt, marked
 from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 from hfanalysis.sentences import Quoted, Text
 from hfanalysis.wording.numbers import MINUS, Shown, decimals_for, fixed, in_words, shown, tidy
@@ -95,15 +96,29 @@ def _shown(quantity: Quantity, name: str) -> tuple[Shown, Shown]:
     return shown(quantity, "si", name), shown(quantity, "team", name)
 
 
-def remark(quantity: Quantity) -> Markup:
-    """Why it is as it is, or why it is not there."""
-    return switchable(quantity.why or quantity.reason or "")
+def remark(quantity: Quantity, known: Sequence[Doubt]) -> Markup:
+    """Why it is as it is, or why it is not there: what its channels are doubted for by the numbers of the ``known``
+    reasons, which the page says once.
+    """
+    numbers, rest = marked(quantity, known)
+    return Markup(" ").join(filter(None, (marks(numbers), switchable(rest))))
 
 
-def judged(quantity: Quantity) -> Markup:
+def judged(quantity: Quantity, known: Sequence[Doubt]) -> Markup:
     """The remark, after a badge where the number is doubted: for tables without a column of verdicts."""
     badge = verdict(DOUBTED) + Markup(" ") if quantity.verdict == DOUBTED else Markup()
-    return badge + remark(quantity)
+    return badge + remark(quantity, known)
+
+
+def marks(numbers: Iterable[int]) -> Markup:
+    """The numbers of reasons, each a link to where the page says it."""
+    link = Markup('<a class="mark" href="#{0}" aria-label="reason {1}">[{1}]</a>')
+    return Markup(" ").join(link.format(reason_id(number), number) for number in numbers)
+
+
+def reason_id(number: int) -> str:
+    """Where on the page the reason of that number is said."""
+    return f"reason-{number}"
 
 
 def symbol(name: str) -> Markup:

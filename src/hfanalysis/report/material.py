@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,8 +14,10 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.charts.svg import Event, Phase
 from hfanalysis.errors import AbsentError
+from hfanalysis.health.reasons import Doubt, reasons
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.flight import Flight
+from hfanalysis.products.health import Health
 from hfanalysis.products.model import Product
 from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.products.validation import Validation
@@ -78,6 +81,12 @@ class Material:
     def why_not(self, name: str) -> str:
         """Why a product is not there."""
         return self.absent.get(name) or f"{name.replace('_', ' ')}: not made for this test"
+
+    @cached_property
+    def reasons(self) -> list[Doubt]:
+        """Why channels are doubted, in the order of their numbers on the page."""
+        health = self.get(Health)
+        return [] if health is None else reasons(health.channels)
 
     @property
     def adopted(self) -> str:

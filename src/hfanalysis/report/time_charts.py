@@ -75,7 +75,7 @@ def lines_of(
         start, end = window(material)
         time = channel.time - material.opening
         part = (time >= start) & (time <= end)
-        left = np.where(lost, values, np.nan)[part]
+        left = np.where(lost & ((channel.flags & Flag.DROPOUT) == 0), values, np.nan)[part]
         yield Series(f"{label or channel.name}, not used", style, time[part], left, dashed=True)
 
 

@@ -49,18 +49,19 @@ def subject_of(context: Context) -> Subject:
     from hfanalysis.diagnose.without_run_line import NOTE, lumped_calibration
     from hfanalysis.inference.subject import Subject
     from hfanalysis.products.calibration import Calibration
+    from hfanalysis.products.health import Health
     from hfanalysis.products.segments import Segments
 
     # what may be wrong with a sensor is a hypothesis of the diagnosis: no accuracy is widened for it
     log = context.log(widened=False)
     segments = context.read(Segments).fired
+    told = context.read(Health).findings
     if "p_tank" in log and "p_run" not in log:
         with suppress(AbsentError):
             found = lumped_calibration(log, segments, context.definition)
-            return Subject(log, segments, found, context.definition, (NOTE,))
-    if "calibrate" not in context.absent:
-        return Subject(log, segments, context.read(Calibration, BASE + Calibration.file), context.definition)
-    return Subject(log, segments, None, context.definition)
+            return Subject(log, segments, found, context.definition, (NOTE,), told)
+    base = None if "calibrate" in context.absent else context.read(Calibration, BASE + Calibration.file)
+    return Subject(log, segments, base, context.definition, (), told)
 
 
 def _other(context: Context) -> OtherTest | None:

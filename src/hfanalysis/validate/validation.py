@@ -28,7 +28,6 @@ from hfanalysis.validate.full import compare_full
 from hfanalysis.validate.histories import Histories
 from hfanalysis.validate.performance import Fire
 from hfanalysis.validate.residuals import Residual, gaps
-from hfanalysis.validate.sensor_faults import ZERO, findings
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
 from hfanalysis.validate.thrust import motor_class
 
@@ -103,9 +102,7 @@ class _Work:
             model = performance.modeled(full, self.calibration)
         else:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
-        sensors = findings(self.true, self.segments, self.definition, self.fire)
         kept = {mode: found for mode, found in residuals.items() if found}
-        told = any(ZERO in warning for warning in self.log.warnings)
         histories = self._histories(full, flows)
         notes = [note for found in kept.values() for r in found for note in r.notes]
         impulse = measured["total_impulse"].value
@@ -114,10 +111,10 @@ class _Work:
             performance=Performance(measured=Column.from_json(measured), model=Column.from_json(model), **about),
             gap={mode: gaps(found) for mode, found in kept.items()},
             closure=Closure.from_json(histories.closure),
-            sensors=tuple(sensors),
+            sensors=(),
             absent=self.absent,
             notes=tuple(dict.fromkeys(notes)),
-            warnings=tuple(finding.text for finding in sensors if not (told and finding.verdict == ZERO)),
+            warnings=(),
         )
         return Validated(product, kept, histories)
 

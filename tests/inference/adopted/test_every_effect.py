@@ -16,7 +16,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
-SETTINGS = {"calibrate.samples": 40}
+SETTINGS = {"calibrate.samples": 10}
 
 
 @pytest.fixture(scope="module")

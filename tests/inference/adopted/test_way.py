@@ -33,7 +33,7 @@ HEATED = f'[tank_heat]\npower = "{HEAT} W"\nlag = "0.1 s"\nfade = "20 s"\nbegun 
 C_I = 0.2926
 """Of the stand's injector."""
 
-SETTINGS = {"calibrate.samples": 40, "flight.flights": 50, "flight.gust_seeds": 1, "flight.winds": [4.5]}
+SETTINGS = {"calibrate.samples": 40, "flight.flights": 10, "flight.gust_seeds": 1, "flight.winds": [4.5]}
 
 
 @pytest.fixture(scope="module")

@@ -18,8 +18,8 @@ from hfanalysis.products.health import Finding
 from hfanalysis.record.quiet import Trace
 from hfanalysis.sentences import text
 
-BLOCKS = 80
-"""Blocks whose noise is compared."""
+BLOCKS, LEAST = 80, 8
+"""Blocks whose noise is compared, and samples in one at least: a deviation of eight is known to a third."""
 LOUDER = 4.0
 """Times the noise of the channel before (in a firing that has begun: of that firing) that noise without a signal has at
 least [-]. Evidence: benchmarks/health_rates.py; a tank cell on a shaking stand has seven times that of its rest."""
@@ -28,8 +28,9 @@ OF_RANGE = 0.2
 Source: chamber oscillation of an unstable motor, 10 % of the mean and more."""
 MOVED = ("p_run", "p_chamber", "thrust", "m_tank", "p_tank")
 """Channels that a firing moves: noise that begins within one, with nothing else in it, is no flow's."""
-STAYS = 0.9
-"""Share of the blocks after the instant that are as loud as half of the usual one there [-]."""
+STAYS, AS_LOUD = 0.9, 1.0 / 3.0
+"""Share of the blocks after the instant that are as loud as so much of the usual one there [-]. Source: a deviation of
+eight samples, by differences, is known to a third."""
 LASTING = 5
 """Blocks at the end of the log that it lasts at least."""
 
@@ -38,7 +39,7 @@ def find(seen: Seen) -> Iterator[Finding]:
     """From an instant to the end of the log."""
     if seen.dimension not in ("pressure", "force", "mass"):
         return
-    blocks = by_blocks(Trace(*_finite(seen)), BLOCKS)
+    blocks = by_blocks(seen.heard, BLOCKS, LEAST)
     if len(blocks) < 4 * LASTING:
         return
     noise = np.array([spread_about_neighbors(block.values) for block in blocks])
@@ -47,24 +48,25 @@ def find(seen: Seen) -> Iterator[Finding]:
         yield told
 
 
-def _finite(seen: Seen) -> tuple[Array, Array]:
-    finite = np.isfinite(seen.said)
-    return seen.channel.time[finite], seen.said[finite]
-
-
 def _turn(noise: Array) -> int | None:
     """The first block from which on it is loud to the end; None where there is none.
 
-    Where the contrast of the logarithms is greatest, as for a step in a noisy line.
+    Of those from which on it stays so, where the contrast of the logarithms is greatest, as for a step in a noisy line:
+    a stand that begins to shake with the firing is a step too, but the louder noise of a dead sensor comes after it.
     """
     loud = np.log(np.maximum(noise, 1e-9 * max(float(noise.max()), 1e-300)))
     n, total = len(loud), np.cumsum(loud)
-    k = np.arange(LASTING, n - LASTING + 1)
+    k = np.array([k for k in range(LASTING, n - LASTING + 1) if _stays(noise, k)], dtype=int)
+    if not len(k):
+        return None
     contrast = ((total[-1] - total[k - 1]) / (n - k) - total[k - 1] / k) * np.sqrt(k * (n - k))
-    best = int(k[np.argmax(contrast)])
-    after = noise[best:]
-    stays = float(np.mean(after > 0.5 * np.median(after))) >= STAYS
-    return best if stays and np.median(after) > LOUDER * np.median(noise[:best]) else None
+    return int(k[np.argmax(contrast)])
+
+
+def _stays(noise: Array, k: int) -> bool:
+    """Whether the blocks from one on are all loud, and those before are not."""
+    usual = float(np.median(noise[k:]))
+    return bool(np.mean(noise[k:] > AS_LOUD * usual) >= STAYS and usual > LOUDER * np.median(noise[:k]))
 
 
 def _finding(seen: Seen, blocks: list[Trace], noise: Array, at: int) -> Finding | None:

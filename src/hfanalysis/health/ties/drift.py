@@ -36,7 +36,7 @@ def find(test: SeenTest) -> Iterator[Finding]:
         seen = test.get(name)
         if seen is None or test.fire is None or seen.coarse.rest is None or not seen.coarse.rise:
             continue
-        if seen.dimension == "pressure" and seen.coarse.rest.value > EMPTY_LINE:
+        if name == "p_run" and seen.coarse.rest.value > EMPTY_LINE:
             continue
         found = _drift(test, seen)
         if found is not None:

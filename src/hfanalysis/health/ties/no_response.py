@@ -34,7 +34,13 @@ AT_REST = 0.05
 SHORTEST = 0.1
 """[s] for which a channel is dead at least."""
 
-NEEDS = {"p_chamber": ("thrust",), "thrust": ("p_chamber",), "p_run": ("p_chamber",), "p_tank": ("p_run", "p_chamber")}
+EMPTIED = 0.3
+"""Part of its pressure that a tank loses at least when it is emptied through its line [-]. Source: health/ties/sign.py:
+one that is empty of liquid has lost a third to a half."""
+NEEDS = {
+    "p_chamber": ("thrust", "p_run"), "thrust": ("p_chamber",), "p_run": ("p_chamber",),
+    "p_tank": ("p_run", "p_chamber"),
+}  # fmt: skip
 """Channel -> those that cannot rise without it."""
 
 
@@ -46,7 +52,7 @@ def find(test: SeenTest) -> Iterator[Finding]:
         seen = test.get(name)
         if seen is None:
             continue
-        shown = next((o for o in others if _shows(test, o)), None)
+        shown = next((o for o in others if _shows(test, o) and (o != "p_run" or _fed(test, name))), None)
         if shown is not None and _nothing(test, seen, test.channels[shown]):
             yield _dead(test, seen, test.channels[shown])
     yield from _gone_for_a_while(test)
@@ -55,6 +61,21 @@ def find(test: SeenTest) -> Iterator[Finding]:
 def _shows(test: SeenTest, name: str) -> bool:
     seen = test.get(name)
     return seen is not None and (_rise(test, seen) or 0.0) > FIRES[name]
+
+
+def _fed(test: SeenTest, name: str) -> bool:
+    """Whether what the line shows reaches a channel behind the injector: the tank is emptied, into a stated fire.
+
+    Of a fire that is only stated, and a line that is only filled, a chamber shows nothing.
+    """
+    tank = test.get("p_tank")
+    if name == "p_tank":
+        return True
+    if test.definition.test.kind != "hot_fire" or tank is None or tank.coarse.rest is None or tank.coarse.last is None:
+        return False
+    run = test.channels["p_run"].coarse
+    falls = run.last is not None and run.plateau is not None and run.last.value < run.plateau
+    return falls and tank.coarse.last.value < (1.0 - EMPTIED) * tank.coarse.rest.value
 
 
 def _rise(test: SeenTest, seen: Seen) -> float | None:
@@ -81,7 +102,7 @@ def _nothing(test: SeenTest, seen: Seen, other: Seen) -> bool:
     if seen.name == "p_chamber":
         # a low gauge rises with the thrust, a dead one does not: the throat that the two would need tells
         small = rise < max(noise, seen.channel.accuracy)
-        return small or (rise < INTERFERENCE and (_rise(test, other) or 0.0) / rise > WIDEST)
+        return small or (other.name == "thrust" and rise < INTERFERENCE and (_rise(test, other) or 0.0) / rise > WIDEST)
     if seen.name == "thrust":
         return abs(rise) < max(noise, 1e-6 * (_rise(test, other) or 0.0))
     # a line that is filled up to its valve falls in the firing, but not below the chamber

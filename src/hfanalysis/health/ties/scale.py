@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import hypot, pi
+from math import hypot, pi, sqrt
 
 import numpy as np
 
@@ -33,6 +33,17 @@ GREATEST = 1e3
 """A factor beyond which nothing is told from a channel that says nothing [-]: units differ by less."""
 COLD_SHARE = 0.18
 """Chamber over run-line pressure, above ambient, below which nothing burns [-]. Source: segment/kind.py."""
+
+
+@dataclass(frozen=True)
+class Throat:
+    """Its ``area`` [m^2] and its relative deviation ``error``, the ``exit`` area [m^2] where it is stated, and where
+    the throat is from, if not stated."""
+
+    area: float
+    error: float
+    exit: float | None
+    source: str = ""
 
 
 @dataclass(frozen=True)
@@ -92,35 +103,33 @@ def _ties(test: SeenTest) -> Ties:
     both, chamber, alone = burn_of(test, "p_chamber", "thrust"), burn_of(test, "p_chamber"), burn_of(test, "thrust")
     throat, mass = _throat(test), _mass(test)
     words: list[str] = []
-    f_p = _by_pressure(test, both, throat, words) if both and throat else None
+    any_throat = throat or (_throat_by_mass(test, chamber) if chamber else None)
+    f_p = _by_pressure(test, both, any_throat, words) if both and any_throat else None
     p_m = _velocity(test, chamber, throat, mass, words) if chamber and throat and mass else None
     f_m = _impulse(test, alone, both, mass, words) if alone and mass else None
     return Ties(f_p, p_m, f_m, tuple(words))
 
 
-def _by_pressure(test: SeenTest, burn: Burn, throat: tuple[float, float], words: list[str]) -> Factor | None:
-    pressure = burn.mean("p_chamber")
-    thrust, (area, error) = burn.mean("thrust"), throat
+def _by_pressure(test: SeenTest, burn: Burn, throat: Throat, words: list[str]) -> Factor | None:
+    pressure, thrust = burn.mean("p_chamber"), burn.mean("thrust")
     if pressure < 1.3 * test.ambient or thrust <= 0.0:
         return None
-    low, high = engine.thrust_coefficients(pressure, test.ambient)
+    low, high = engine.thrust_coefficients(pressure, test.ambient, throat.area, throat.exit)
     low = low if engine.choked(pressure, test.ambient) else 1e-3 * high
-    value = thrust / (pressure * area)
+    value = thrust / (pressure * throat.area)
     words.append(
         text(
-            "F/(p_c A_t) is {value:.2g}, a nozzle gives {low:.2f} to {high:.2f} at {pressure}", value=value, low=low,
-            high=high, pressure=said(pressure, "bar", ".3g"),
+            "F/(p_c A_t) is {value:.2g}, a nozzle gives {low:.2f} to {high:.2f} at {pressure}{source}", value=value,
+            low=low, high=high, pressure=said(pressure, "bar", ".3g"), source=throat.source,
         )
     )  # fmt: skip
-    slack = DEVIATIONS * float(np.hypot(error, _accuracy(test, "p_chamber", pressure)))
+    slack = DEVIATIONS * float(np.hypot(throat.error, _accuracy(test, "p_chamber", pressure)))
     return Factor(low / value / (1.0 + slack), high / value * (1.0 + slack))
 
 
-def _velocity(
-    test: SeenTest, burn: Burn, throat: tuple[float, float], mass: tuple[float, float], words: list[str]
-) -> Factor | None:
-    value = burn.integral("p_chamber") * throat[0]
-    slack = 1.0 + DEVIATIONS * throat[1]
+def _velocity(test: SeenTest, burn: Burn, throat: Throat, mass: tuple[float, float], words: list[str]) -> Factor | None:
+    value = burn.integral("p_chamber") * throat.area
+    slack = 1.0 + DEVIATIONS * throat.error
     low, high = value / mass[1], value / mass[0]
     factor = Factor(engine.SLOWEST_COLD / high / slack, engine.FASTEST_FIRE / low * slack)
     if factor.high < 1.0:
@@ -157,8 +166,8 @@ def _impulse(
     return factor
 
 
-def _throat(test: SeenTest) -> tuple[float, float] | None:
-    """Area [m^2] and its relative deviation, as stated."""
+def _throat(test: SeenTest) -> Throat | None:
+    """As stated."""
     nozzle, observed = test.definition.nozzle, test.definition.observed
     if nozzle is None or nozzle.throat_radius is None:
         return None
@@ -166,7 +175,21 @@ def _throat(test: SeenTest) -> tuple[float, float] | None:
     error = max(radius.std / radius.value if radius.std is not None else 0.0, THROAT)
     if after is not None:
         error = max(error, abs(after.value / radius.value - 1.0))
-    return pi * radius.value**2, 2.0 * error
+    exit_area = pi * nozzle.exit_radius.value**2 if nozzle.exit_radius is not None else None
+    return Throat(pi * radius.value**2, 2.0 * error, exit_area)
+
+
+def _throat_by_mass(test: SeenTest, burn: Burn) -> Throat | None:
+    """The throat that propellant, c* and chamber pressure demand, of a fire whose masses are stated."""
+    tank, grain, total = test.definition.tank, test.definition.grain, burn.integral("p_chamber")
+    if not _burns(test) or not engine.choked(burn.mean("p_chamber"), test.ambient):
+        return None
+    if tank is None or tank.oxidizer_mass is None or grain is None or grain.mass is None or total <= 0.0:
+        return None
+    low, high = ((tank.oxidizer_mass.value + grain.mass.value) * c / total for c in engine.BALANCE)
+    area = sqrt(low * high)
+    source = text(" (throat of {area:.0f} mm^2, not stated: by propellant, c* and p_c)", area=area * 1e6)
+    return Throat(area, 0.25 * (high - low) / area, None, source)
 
 
 def _mass(test: SeenTest) -> tuple[float, float] | None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hfanalysis.health.firing import usable
+from hfanalysis.health.firing import usable, without_unusable
 from hfanalysis.health.seen import Seen, SeenTest
 from hfanalysis.health.words import level
 from hfanalysis.products.health import Finding
@@ -40,6 +40,9 @@ def _ways(test: SeenTest, seen: Seen) -> tuple[float, float] | None:
     """How far below its rest and how far above it a channel is held in the firing [SI]."""
     assert test.fire is not None
     rest, part = seen.coarse.rest, usable(test, seen).between(*test.fire).values
+    heard = without_unusable(test, seen, seen.heard).between(*test.fire).values
+    if len(part) < 0.5 * len(heard):  # most of the firing is no reading: of a reversed gauge, which goes below vacuum
+        part = heard
     if rest is None or len(part) < 8 or (seen.dimension == "pressure" and rest.value > 4e5):
         return None
     low, high = np.percentile(part, (10.0, 90.0))

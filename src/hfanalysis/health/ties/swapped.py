@@ -68,7 +68,8 @@ def _manner(test: SeenTest, name: str) -> Manner | None:
 def _swapped(test: SeenTest, first: str, second: str, ways: dict[str, Manner]) -> bool:
     a, b = ways[first], ways[second]
     if second in ("p_run", "p_chamber") and first == "p_tank":
-        return _open_and_rises(a) and b.before > HOLDS and b.falls > FALLS and b.early > a.early
+        # no tank rests at ambient, and neither chamber nor line is full before and loses it: how much is no matter
+        return _open_and_rises(a) and b.before > HOLDS and b.falls > STAYS and b.early > a.early
     if first == "p_tank":
         run = ways.get("p_run")
         follows = run is None or run.late < (1.0 - FALLS) * run.early

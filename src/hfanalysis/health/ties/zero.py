@@ -15,16 +15,25 @@ from hfanalysis.record.quiet import FiringSpan, Level, Trace, after, in_blocks
 from hfanalysis.record.quiet import level as level_of
 from hfanalysis.sentences import text
 
-SHIFT_SHARE = {"force": 0.015, "pressure": 0.02}
+SHIFT_SHARE = {"force": 0.015, "pressure": 0.01}
 """Part of the rise in the firing from which on a shift of the zero is called so [-]: below, heat and hysteresis of a
-sound sensor do it. Source: data sheets' temperature effects on zero, a few tenths of a percent per 10 K."""
+sound sensor do it. Source: data sheets' temperature effects on zero, a few tenths of a percent per 10 K; a stand warms
+by 30 K, and a cell has hysteresis besides."""
 NOISES = 5.0
 """Deviations of both levels' means that a shift has to exceed [-]."""
 ACCURACIES = {"force": 3.0, "pressure": 2.0}
-"""Deviations of the stated accuracy that a shift has to exceed [-]; where none is stated, the share alone counts."""
+"""Deviations of the stated accuracy that a shift has to exceed [-]; a single one of that of its class, where none is
+stated: that is wide."""
 TAKEN_OFF, LEFT_IN = 12.0**-0.5, 3.0**-0.5
 """Deviation of a mean over the firing for a shift of one [-], where a linear drift was taken off and where it was not.
 Source: of a shift at any instant a uniform share is in the mean; its deviation from one half, and from nothing."""
+AT_AMBIENT = 0.04
+"""Chamber pressure above its rest over ambient below which the thrust is nothing [-]. Source: a nozzle that is not
+choked gives 0.1 p_a A_t or less."""
+LATE = 2.0
+"""[s] at the end of the time in which a channel is flat again whose mean is its level after the firing."""
+PUSHES = 2.0
+"""Deviations of what still pushes that a shift has to be above it [-]."""
 LOWEST = 0.5
 """[s] for which a pressure is below its rest at least."""
 MOST = 0.5
@@ -79,7 +88,7 @@ def _told(test: SeenTest, seen: Seen) -> bool:
 def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
     """The level after the firing against the one before, less what still pushes."""
     trace = usable(test, seen)
-    last = _settled(test, trace) or _lowest(test, seen, trace)
+    last = _settled(test, seen, trace) or _unpushed(test, seen, trace) or _lowest(test, seen, trace)
     if last is None or seen.coarse.rest is None:
         return None
     rise = float(np.percentile(np.abs(trace.values - seen.coarse.rest.value), 99.0))
@@ -89,9 +98,10 @@ def _shifted(test: SeenTest, seen: Seen) -> Finding | None:
     before = seen.coarse.rest
     error = float(np.hypot(before.noise / np.sqrt(20.0), NOISES * last.std))
     shift = last.value - before.value
-    stated = ACCURACIES[seen.dimension] * seen.channel.accuracy if seen.channel.accuracy_stated else 0.0
-    least = max(SHIFT_SHARE[seen.dimension] * rise, error, stated, 2.0 * left[1])
-    if not (least < abs(shift) < MOST * rise and least < abs(shift - left[0])):
+    stated = (ACCURACIES[seen.dimension] if seen.channel.accuracy_stated else 1.0) * seen.channel.accuracy
+    # what still pushes, pushes up: a cell below its rest is off by that and more
+    own, unsure = (-shift, 0.0) if shift < 0.0 else (shift - left[0], PUSHES * left[1])
+    if not max(SHIFT_SHARE[seen.dimension] * rise, error, stated, unsure) < own < MOST * rise:
         return None
     words = "reads {after} after the firing and {before} before it: {shift} of {rise} of its largest rise"
     evidence = text(
@@ -107,10 +117,26 @@ def _bias(seen: Seen, shift: float) -> float:
     return float(abs(shift) * (TAKEN_OFF if seen.channel.drift else LEFT_IN))
 
 
-def _settled(test: SeenTest, trace: Trace) -> Level | None:
+def _settled(test: SeenTest, seen: Seen, trace: Trace) -> Level | None:
+    """The level at the end of the time in which the channel is flat again, as late as can be: what flows on fades."""
     assert test.fire is not None
-    window = after(trace, FiringSpan(*test.fire, "")) if len(trace.time) else None
-    return level_of(window) if window is not None else None
+    live = seen.coarse.live
+    end = min(test.fire[1], live[1]) if live is not None and seen.dimension == "force" else test.fire[1]
+    window = after(trace, FiringSpan(test.fire[0], end, "")) if len(trace.time) else None
+    return level_of(window.between(window.time[-1] - LATE, np.inf)) if window is not None else None
+
+
+def _unpushed(test: SeenTest, seen: Seen, trace: Trace) -> Level | None:
+    """The level of a cell that has not settled, from when on the chamber stays at ambient: nothing pushes it then."""
+    chamber = test.get("p_chamber")
+    if seen.dimension != "force" or chamber is None or chamber.coarse.rest is None or test.fire is None:
+        return None
+    blocks = in_blocks(usable(test, chamber).between(test.fire[0], np.inf), LOWEST)
+    under = np.flatnonzero(blocks.values - chamber.coarse.rest.value > AT_AMBIENT * test.ambient)
+    if not under.size or under[-1] + 1 >= len(blocks.time):
+        return None
+    since = float(blocks.time[under[-1] + 1])
+    return level_of(trace.between(since, since + LATE))
 
 
 def _lowest(test: SeenTest, seen: Seen, trace: Trace) -> Level | None:

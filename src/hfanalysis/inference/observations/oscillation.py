@@ -12,15 +12,18 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import toeplitz
-from scipy.signal import savgol_coeffs, savgol_filter
-from scipy.signal.windows import parzen
 
 from hfanalysis.arrays import Array
 
 SMOOTHED, ORDER = 25, 3
 """Blocks over which the smooth course is a polynomial, and its order."""
 
-KEPT = 1.0 - float(savgol_coeffs(SMOOTHED, ORDER)[SMOOTHED // 2])
+_POWERS = np.vander(np.linspace(-1.0, 1.0, SMOOTHED), ORDER + 1)
+_SMOOTHING = _POWERS @ np.linalg.pinv(_POWERS)
+"""(blocks, blocks) The polynomial's values by the blocks' [-]. Source: Savitzky and Golay, Analytical Chemistry 36,
+1964. scipy.signal has it, too, and takes half a second to load."""
+
+KEPT = 1.0 - float(_SMOOTHING[SMOOTHED // 2, SMOOTHED // 2])
 """Part of the variance of noise that is left of it beside the smooth course, which follows some of it. Source: Savitzky
 and Golay, Analytical Chemistry 36, 1964: the smooth course takes its middle weight. Evidence: without it the variance
 came out too small by a tenth."""
@@ -73,16 +76,29 @@ def _rough(values: Array, stretches: list[slice]) -> Array:
     """What is left of the blocks after their smooth course; wild ones are cut."""
     out = np.zeros(values.size)
     for s in stretches:
-        left = values[s] - savgol_filter(values[s], SMOOTHED, ORDER)
+        left = values[s] - _smooth(values[s])
         spread = 1.4826 * float(np.median(np.abs(left)))
         out[s] = np.clip(left, -WILD * spread, WILD * spread)
     return out
 
 
+def _smooth(values: Array) -> Array:
+    """The smooth course of ``SMOOTHED`` blocks or more: the polynomial around each, at the ends that of the last."""
+    half = SMOOTHED // 2
+    middle = np.convolve(values, _SMOOTHING[half], mode="valid")
+    return np.concatenate([_SMOOTHING[:half] @ values[:SMOOTHED], middle, _SMOOTHING[half + 1 :] @ values[-SMOOTHED:]])
+
+
+def _taper() -> Array:
+    """Weights of the lags (LAGS + 1,) [-]. Source: Parzen, Technometrics 3, 1961: a window of 2 LAGS + 1 blocks."""
+    lag = np.arange(LAGS + 1) / (LAGS + 0.5)
+    return np.where(lag < 0.5, 1.0 - 6.0 * lag**2 * (1.0 - lag), 2.0 * (1.0 - lag) ** 3)
+
+
 def _autocovariance(a: Array, b: Array, level: Array, stretches: list[slice], noise: float) -> Array:
     """At lags of 0, 1, ... blocks, for a level of 1; the same forwards and backwards."""
     found = np.zeros(a.size)
-    taper = parzen(2 * LAGS + 1)[LAGS:]
+    taper = _taper()
     for lag in range(min(LAGS + 1, a.size)):
         product = scale = count = 0.0
         for s in stretches:

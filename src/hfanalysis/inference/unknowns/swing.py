@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, median_filter
-from scipy.signal.windows import hann
 
 from hfanalysis.arrays import Array
 from hfanalysis.engine.effect import Parameter
@@ -254,7 +253,7 @@ def _spectra(rough: Mapping[str, Array], count: int) -> tuple[Array, dict[str, _
     out = {}
     for name, values in rough.items():
         starts = np.arange(0, values.size - count + 1, count // 4)
-        windows = np.stack([values[i : i + count] for i in starts]) * hann(count)
+        windows = np.stack([values[i : i + count] for i in starts]) * np.hanning(count)
         spectrum = np.fft.rfft(windows, 2 * count, axis=1)
         power = np.abs(spectrum) ** 2
         # a window may be quiet by chance, or loud by the oscillation itself: the background is that of all of them
@@ -268,7 +267,7 @@ def _swing_at(line: Array, time: Array, peak: _Peak, by_pascal: float, price: fl
     inside = (time >= peak.start) & (time < peak.start + peak.length)
     near = peak.frequency + np.linspace(-0.5, 0.5, FINE) / peak.length
     window = np.zeros(time.size)
-    window[inside] = hann(int(inside.sum()))
+    window[inside] = np.hanning(int(inside.sum()))
     strength = [abs(np.sum((line * window) * np.exp(-2j * np.pi * f * time))) for f in near]
     frequency = float(near[int(np.argmax(strength))])
     turning = gaussian_filter1d(

@@ -19,14 +19,16 @@ def render(material: Material) -> Iterator[Block]:
     """The table, and the notes of the calibration."""
     product = material.need(Calibration)
     columns = ("quantity", ">value", ">95 % interval", "verdict", "why")
-    yield html.table("Calibration", _CAPTION, columns, (_row(*item) for item in ordered(product.quantities).items()))
+    rows = (_row(*item, material) for item in ordered(product.quantities).items())
+    yield html.table("Calibration", _CAPTION, columns, rows)
     for note in product.notes:
         yield html.paragraph(html.switchable(note))
 
 
-def _row(name: str, quantity: Quantity) -> tuple[Any, ...]:
+def _row(name: str, quantity: Quantity, material: Material) -> tuple[Any, ...]:
     number = html.value(quantity, name), html.interval(quantity, name)
-    return html.symbol_and_words(name), *number, html.verdict(quantity.verdict or ""), html.remark(quantity)
+    remark = html.remark(quantity, material.reasons)
+    return html.symbol_and_words(name), *number, html.verdict(quantity.verdict or ""), remark
 
 
 SECTION = Section("Calibration", 70, ("calibration",), render)

@@ -34,7 +34,7 @@ def render(material: Material) -> Iterator[Block]:
     caption = "One standard deviation and 95 % interval from flights that differ in what is uncertain."
     columns = ("quantity", ">value", ">95 % interval", "remark")
     found = ordered(product.quantities) | ordered(product.stability.quantities)
-    yield html.table("Flight", caption, columns, (_row(*item) for item in found.items()))
+    yield html.table("Flight", caption, columns, (_row(*item, material) for item in found.items()))
     yield html.bullets((_check(*item) for item in product.checks.items()), "plain")
     for name, (title, unit) in _CURVES.items():
         yield _curve(material, name, title, unit)
@@ -43,8 +43,9 @@ def render(material: Material) -> Iterator[Block]:
         yield html.paragraph(html.switchable(note))
 
 
-def _row(name: str, quantity: Quantity) -> tuple[Any, ...]:
-    return in_words(name), html.value(quantity, name), html.interval(quantity, name), html.judged(quantity)
+def _row(name: str, quantity: Quantity, material: Material) -> tuple[Any, ...]:
+    remark = html.judged(quantity, material.reasons)
+    return in_words(name), html.value(quantity, name), html.interval(quantity, name), remark
 
 
 def _check(name: str, check: Check) -> Markup:

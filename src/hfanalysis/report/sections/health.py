@@ -7,6 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from hfanalysis.health.reasons import Doubt
 from hfanalysis.products.health import HEALTHY, KINDS, SUSPECT, Finding, Health
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
@@ -15,24 +16,15 @@ from hfanalysis.wording.numbers import listed
 
 _MARKS: dict[str, str] = {HEALTHY: "good", SUSPECT: "doubt"}
 _CAPTION = "What is unusable is left out of every number; numbers that rest on a suspect channel are doubted."
-_COLUMNS = (
-    "channels",
-    "verdict",
-    "what",
-    "log time",
-    "evidence",
-    "what it would mean",
-    "line of test.toml that cures it",
-)
+_COLUMNS = ("channels", "verdict", "what", "log time", "evidence", "line of test.toml that cures it")
 
 
 def render(material: Material) -> Iterator[Block]:
     """The verdicts in a line, then a row for every finding."""
     health = material.need(Health)
     yield html.paragraph(_verdicts(health))
-    findings = list(dict.fromkeys(f for channel in health.channels.values() for f in channel.findings))
-    if findings:
-        yield html.table("Findings", _CAPTION, _COLUMNS, (_row(finding) for finding in findings))
+    if found := [*enumerate(material.reasons, 1), *((0, doubt) for doubt in _only_told(health))]:
+        yield html.table("Findings", _CAPTION, _COLUMNS, (_row(number, doubt) for number, doubt in found))
     for name, channel in health.channels.items():
         if channel.trust:
             words = Markup("The engineer trusts <bdi>{}</bdi>, whatever was found: {}.")
@@ -52,16 +44,23 @@ def _badge(verdict: str) -> Markup:
     return badge.format(kind, html.MARKS[kind], verdict)
 
 
-def _row(finding: Finding) -> tuple[Any, ...]:
+def _only_told(health: Health) -> Iterator[Doubt]:
+    """What was found that makes no channel worse than healthy: it stands nowhere else."""
+    found = dict.fromkeys(f for channel in health.channels.values() for f in channel.findings if f.verdict == HEALTHY)
+    return (Doubt(finding, finding.channels) for finding in found)
+
+
+def _row(number: int, doubt: Doubt) -> tuple[Any, ...]:
+    """The evidence of a numbered reason is said in the verdict."""
+    finding = doubt.finding
     cure = Markup("<code>{}</code>").format(finding.cure) if finding.cure else Markup("–")
     verdict = _badge(finding.verdict) + (Markup(" overruled") if finding.overruled else Markup())
     return (
-        listed(list(finding.channels)),
+        listed(list(doubt.channels)),
         verdict,
         KINDS.get(finding.kind, finding.kind),
         _when(finding),
-        html.switchable(finding.evidence),
-        html.switchable(finding.means),
+        html.marks([number]) if number else html.switchable(finding.evidence),
         cure,
     )
 

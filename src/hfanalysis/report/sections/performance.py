@@ -22,29 +22,29 @@ def render(material: Material) -> Iterator[Block]:
     validation = material.need(Validation)
     measured, model = (side.quantities for side in (validation.performance.measured, validation.performance.model))
     columns = ("quantity", ">measured", ">95 % interval", ">model", ">model − measured", "remark")
-    rows = (_row(name, quantity, model.get(name)) for name, quantity in ordered(measured).items())
+    rows = (_row(name, quantity, model.get(name), material) for name, quantity in ordered(measured).items())
     yield html.table("Performance", _CAPTION, columns, rows)
     if validation.performance.motor_class:
         yield html.paragraph(Markup("Motor class {}.").format(validation.performance.motor_class))
     for reason in dict.fromkeys(quantity.reason for quantity in ordered(model).values() if quantity.reason):
         yield html.paragraph(Markup("No model: {}.").format(html.switchable(reason)))
-    yield _closure(ordered(validation.closure.quantities))
+    yield _closure(ordered(validation.closure.quantities), material)
 
 
-def _closure(found: Mapping[str, Quantity]) -> Markup | None:
-    rows = [(in_words(name), html.value(q, name), html.judged(q)) for name, q in found.items()]
+def _closure(found: Mapping[str, Quantity], material: Material) -> Markup | None:
+    rows = [(in_words(name), html.value(q, name), html.judged(q, material.reasons)) for name, q in found.items()]
     caption = "Whether masses and energy close."
     return html.table("Closure", caption, ("quantity", ">value", "remark"), rows) if rows else None
 
 
-def _row(name: str, measured: Quantity, model: Quantity | None) -> tuple[Any, ...]:
+def _row(name: str, measured: Quantity, model: Quantity | None, material: Material) -> tuple[Any, ...]:
     return (
         in_words(name),
         html.value(measured, name),
         html.interval(measured, name),
         html.value(model, name) if model else Markup("–"),
         _share(measured.value, model.value if model else None),
-        html.judged(measured),
+        html.judged(measured, material.reasons),
     )
 
 

@@ -44,12 +44,12 @@ def _item(phase: Phase) -> Markup:
 def _rows(material: Material) -> Iterator[tuple[Any, ...]]:
     segments = material.need(Segments)
     for name, event in segments.quantities.items():
-        yield _row(name, event, name in segments.engineer)
+        yield _row(name, event, name in segments.engineer, material)
 
 
-def _row(name: str, quantity: Quantity, by_hand: bool) -> tuple[Any, ...]:
+def _row(name: str, quantity: Quantity, by_hand: bool, material: Material) -> tuple[Any, ...]:
     hand = Markup("<strong>set by the engineer</strong> ") if by_hand else Markup()
-    why = hand + html.judged(quantity)
+    why = hand + html.judged(quantity, material.reasons)
     return html.symbol(name), in_words(name), html.value(quantity), html.interval(quantity), why
 
 

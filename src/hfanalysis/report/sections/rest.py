@@ -29,7 +29,7 @@ def render(material: Material) -> Iterator[Block]:
 
 
 def _finding(name: str, found: Quantity) -> Markup:
-    return Markup("{} {}").format(html.value(found, name), html.remark(found))
+    return Markup("{} {}").format(html.value(found, name), html.remark(found, ()))
 
 
 SECTION = Section("The tank at rest", 75, ("calibration",), render)

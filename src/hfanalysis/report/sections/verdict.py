@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from markupsafe import Markup
 
+from hfanalysis.health.reasons import marked
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.diagnosis import Diagnosis
-from hfanalysis.products.health import TRUSTED
+from hfanalysis.products.health import KINDS, TRUSTED, Health
 from hfanalysis.products.ingest import Ingest
-from hfanalysis.products.validation import Finding, Validation
+from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import DOUBTED, Quantity
 from hfanalysis.record.flag_notes import of_one, with_flag
-from hfanalysis.record.zero import not_back
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
@@ -36,7 +35,7 @@ def render(material: Material) -> Iterator[Block]:
     for stage, reason in absence_reasons(material).items():
         absent = Markup('<p class="absent"><strong>{}:</strong> {}</p>')
         yield absent.format(stage, html.switchable(reason))
-    yield _numbers(key_numbers(material))
+    yield _numbers(key_numbers(material), material)
     yield Markup('<div class="findings">{}</div>').format(Markup().join(_findings(material)))
 
 
@@ -68,21 +67,23 @@ def key_numbers(material: Material) -> dict[str, Quantity]:
     return {"oxidizer_flow_peak": flow} if flow is not None and flow.value is not None else {}
 
 
-def _numbers(found: Mapping[str, Quantity]) -> Markup | None:
+def _numbers(found: Mapping[str, Quantity], material: Material) -> Markup | None:
     if not found:
         return None
     item = Markup("<div><dt>{}</dt><dd>{}</dd></div>")
-    items = (item.format(in_words(name), _key_number(name, quantity)) for name, quantity in found.items())
+    items = (item.format(in_words(name), _key_number(name, quantity, material)) for name, quantity in found.items())
     return Markup('<dl class="key-numbers">{}</dl>').format(Markup().join(items))
 
 
-def _key_number(name: str, quantity: Quantity) -> Markup:
+def _key_number(name: str, quantity: Quantity, material: Material) -> Markup:
     """With a badge where it is doubted, or rests on a channel that the engineer trusts, which says why."""
     number, why = html.value(quantity, name, True), quantity.why or ""
     if quantity.verdict != DOUBTED and TRUSTED not in why:
         return number
     badge = html.verdict(DOUBTED) if quantity.verdict == DOUBTED else Markup("(trusted)")
-    return Markup('{} <span class="doubt" title="{}">{}</span>').format(number, why, badge)
+    numbers, _ = marked(quantity, material.reasons)
+    doubt = Markup('{} <span class="doubt" title="{}">{}</span> {}')
+    return doubt.format(number, why, badge, html.marks(numbers))
 
 
 def sentence(material: Material) -> str:
@@ -104,19 +105,9 @@ def sentence(material: Material) -> str:
 
 
 def _sensor_sentence(material: Material) -> list[str]:
-    """What looks wrong with the sensors, in a sentence of its own."""
-    found = [_of_channels(fault) for fault in _faults(material)]
-    return [f"Sensors: {'; '.join(found)}."] if found else []
-
-
-def _faults(material: Material) -> tuple[Finding, ...]:
-    validation = material.get(Validation)
-    return validation.sensors if validation is not None else ()
-
-
-def _of_channels(fault: Finding) -> str:
-    channels, verdict = list(fault.channels), fault.verdict
-    return verdict if not channels or verdict.startswith(channels[0]) else f"{listed(channels)} {verdict}"
+    """What is found of the channels, in a sentence of its own."""
+    found = [f"{listed(list(d.channels))} {KINDS[d.finding.kind]}" for d in material.reasons if not d.trust]
+    return [f"Sensors: {'; '.join(dict.fromkeys(found))}."] if found else []
 
 
 def by_mark(material: Material) -> dict[str, dict[str, Quantity]]:
@@ -133,10 +124,11 @@ def _findings(material: Material) -> Iterator[Markup]:
     heads = {"good": "Identified", "doubt": "Doubted", "bad": "Outside its physical range", "open": "Not identified"}
     for kind, found in by_mark(material).items():
         if found:
-            yield _finding(kind, heads[kind], map(_judged, *zip(*_by_reason(found, kind), strict=True)))
-    faults, others = warnings(material)
-    if faults:
-        yield _finding("sensor", "Sensors and log", map(html.switchable, faults))
+            yield _finding(kind, heads[kind], map(_judged, *zip(*_by_reason(found, kind, material), strict=True)))
+    reasons = [_reason(number, doubt.sentence) for number, doubt in enumerate(material.reasons, 1)]
+    logged, others = warnings(material)
+    if reasons or logged:
+        yield _finding("sensor", "Sensors and log", [*reasons, *map(html.switchable, logged)])
     elif material.log.channels:
         yield _finding("good", "Sensors and log", [Markup("Nothing looks wrong with the sensors.")])
     if others:
@@ -148,18 +140,27 @@ def _finding(kind: str, head: str, items: Any) -> Markup:
     return Markup(block).format(kind, html.MARKS[kind], head, html.bullets(items, "plain"))
 
 
-def _by_reason(found: Mapping[str, Quantity], kind: str) -> list[tuple[str, dict[str, Quantity]]]:
+def _reason(number: int, sentence: str) -> Markup:
+    """Why a channel is doubted, where the marks of that number lead."""
+    item = Markup('<span id="{}" class="reason">[{}]</span> {}')
+    return item.format(html.reason_id(number), number, html.switchable(sentence))
+
+
+def _by_reason(
+    found: Mapping[str, Quantity], kind: str, material: Material
+) -> list[tuple[Markup, dict[str, Quantity]]]:
     """The quantities with their reason, those together that have the same one."""
-    groups: dict[str, dict[str, Quantity]] = {}
+    if kind == "good":
+        return [(Markup(), {name: quantity}) for name, quantity in found.items()]
+    groups: dict[Markup, dict[str, Quantity]] = {}
     for name, quantity in found.items():
-        why = "" if kind == "good" else quantity.why or quantity.reason or ""
-        groups.setdefault(why, {})[name] = quantity
-    return list(groups.items()) if kind != "good" else [("", {name: found[name]}) for name in found]
+        groups.setdefault(html.remark(quantity, material.reasons), {})[name] = quantity
+    return list(groups.items())
 
 
-def _judged(why: str, found: Mapping[str, Quantity]) -> Markup:
+def _judged(why: Markup, found: Mapping[str, Quantity]) -> Markup:
     names = Markup().join(_named(name, quantity) for name, quantity in found.items())
-    return names + (Markup('<span class="because">{}</span>').format(html.switchable(why)) if why else Markup())
+    return names + (Markup('<span class="because">{}</span>').format(why) if why else Markup())
 
 
 def _named(name: str, quantity: Quantity) -> Markup:
@@ -169,21 +170,18 @@ def _named(name: str, quantity: Quantity) -> Markup:
     return Markup('<span class="names">{}{}</span>').format(html.symbol_and_words(name), number)
 
 
-_OF_SENSORS = re.compile(r"^channel |\b(cell|gauge|thermometer|clock|sensor|disagree)\b", re.IGNORECASE)
-
-
 def warnings(material: Material) -> tuple[list[str], list[str]]:
-    """What every product warns of, each once: of the sensors and the log, and of the rest."""
-    found = _faults(material)
-    faults = [fault.text for fault in found]
-    # what validation says at length, ingest has said in short
-    said = tuple(not_back(channel) for fault in found for channel in fault.channels)
-    others: list[str] = []
-    for product in reversed(list(material.products.values())):
-        for text in () if isinstance(product, Ingest) else product.warned:
-            (faults if _OF_SENSORS.search(text) else others).append(text)
-    faults += [text for text in _logged(material.get(Ingest)) if not text.startswith(said)]
-    return list(dict.fromkeys(faults)), list(dict.fromkeys([*others, *material.definition.warnings]))
+    """What the products warn of beside the channels' health, each once: of the log, and of the rest."""
+    said = {str(doubt.sentence) for doubt in material.reasons}
+    others = [
+        text
+        for product in reversed(list(material.products.values()))
+        if not isinstance(product, (Ingest, Health))
+        for text in product.warned
+        if text not in said
+    ]
+    logged = list(dict.fromkeys(_logged(material.get(Ingest))))
+    return logged, list(dict.fromkeys([*others, *material.definition.warnings]))
 
 
 def _logged(ingest: Ingest | None) -> list[str]:
