@@ -125,11 +125,12 @@ def find_fade(time: Array, response: Array) -> Fade | None:
     return None if found is None else _fine(phase, *found)
 
 
-def date_fall(time: Array, value: Array, onset: tuple[float, float], relaxes: float) -> Fade | None:
+def date_fall(time: Array, value: Array, onset: tuple[float, float], relaxes: float, flush: float) -> Fade | None:
     """The bends of a fall of a signal (n,), in any unit, that begins at an ``onset`` (instant and deviation [s]) and
     ``relaxes`` with a time constant [s]; None where there are too few samples.
 
-    What stops at once and what fades count by their likelihood: of the former only a chamber is left that flushes.
+    What stops at once and what fades count by their likelihood. After either the chamber flushes: of what fades the end
+    shows ``flush`` [s] late.
     """
     t, y = _reduced(time, value / max(float(np.ptp(value)), 1e-9))
     if t.size < 8:
@@ -139,14 +140,14 @@ def date_fall(time: Array, value: Array, onset: tuple[float, float], relaxes: fl
     samples = _Samples(t, y, np.stack([np.ones_like(t), t - t[0]], axis=1))
     begins, ends = rough + lasts * np.linspace(-0.7, 0.7, FINE), rough + lasts * np.linspace(0.1, 2.5, FINE)
     coarse = samples.fitted(*_grid(begins, ends, SHAPES, 0.1 * step))
-    looked = [_looked_at(x, coarse, samples.variance(coarse), 0.1 * lasts) for x in (coarse.begin, coarse.end)]
-    fades = samples.fitted(*_grid(*looked, SHAPES, 0.1 * step))
+    begins, ends = (_looked_at(x, coarse, samples.variance(coarse), 0.1 * lasts) for x in (coarse.begin, coarse.end))
+    fades = samples.fitted(*_grid(begins, ends, SHAPES, 0.1 * step))
     stops = rough + max(4.0 * onset[1], 0.5 * step) * np.linspace(-1.0, 1.0, FINE)
     at_once, left = samples.flushed(stops, max(relaxes, 0.2 * step) * FLUSHES)
     least = min(float(fades.left.min()), float(left.min()))
     weights = [np.exp(-0.5 * (x - least) / samples.variance(fades)) / x.size for x in (fades.left, left)]
     weight, begin = np.concatenate(weights), np.concatenate([fades.begin, at_once])
-    return Fade(*_mean(weight, begin), *_mean(weight, np.concatenate([fades.end, at_once])))
+    return Fade(*_mean(weight, begin), *_mean(weight, np.concatenate([fades.end - flush, at_once])))
 
 
 def _coarse(phase: _Samples) -> tuple[_Trials, bool, float] | None:

@@ -259,7 +259,7 @@ def _bends(part: Signal, found: Break) -> Sudden:
     """Both bends of a sudden fall, as well as a chamber that has to flush shows them."""
     lasts = max(3.0 * found.relaxation, 2.0 * part.step)
     near = part.between(found.time - 2.0 * lasts - GAP, found.time + 3.0 * lasts + GAP)
-    fall = date_fall(near.time, near.value, (found.time, found.std), found.relaxation)
+    fall = date_fall(near.time, near.value, (found.time, found.std), found.relaxation, RESIDENCE)
     if fall is None or fall.gone is None:
         std = float(np.hypot(found.std, RESIDENCE))
         return Sudden(found.time, std, found.time, std)
