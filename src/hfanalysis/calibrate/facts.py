@@ -8,7 +8,6 @@ from math import pi, sqrt
 
 import numpy as np
 
-from hfanalysis.calibrate.evidence_from_log import VIDEO
 from hfanalysis.engine.thrust_coefficient import flows_full
 from hfanalysis.products.calibration import Calibration, TankConstants
 from hfanalysis.products.segments import Segments
@@ -109,19 +108,19 @@ class _Facts:
 
     def _fuel_end(self) -> Doubt | None:
         """A stated burn whose end the log shows at another time."""
-        seen = self.definition.observed.burn_time if self.definition.observed else None
+        seen = self.definition.known("observed.burn_time")
         if seen is None or not self._burning:
             return None
-        choked = self.segments.time("t_end")
-        if choked is None or seen.value + 3.0 * (seen.std or VIDEO) >= choked - 3.0 * self.segments.std("t_end"):
+        above = self.segments.time("t_end")
+        if above is None or seen.value + 3.0 * (seen.std or 0.0) >= above - 3.0 * self.segments.std("t_end"):
             return None
         words = text(
             "[observed] burn_time is {seen:.1f} s, but the chamber burns on: its pressure is above 1.8 times ambient "
-            "until {choked:.1f} s",
+            "until {above:.1f} s",
             seen=seen.value,
-            choked=choked,
+            above=above,
         )
-        return Doubt(words, {"a": seen.value / choked, "n": 1.0, "regression_rate_reference": seen.value / choked})
+        return Doubt(words, {"a": seen.value / above, "n": 1.0, "regression_rate_reference": seen.value / above})
 
     def _run_line(self) -> Doubt | None:
         """A run line so far below the tank that no liquid would come through."""
