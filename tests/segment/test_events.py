@@ -107,6 +107,18 @@ def test_the_knee_of_the_tank_pressure_dates_the_end_of_the_liquid() -> None:
     assert found.std < 0.05
 
 
+@pytest.mark.parametrize("step", [0.2, 0.4, 0.58, 0.7])
+def test_a_slow_log_dates_it_badly_and_says_so(step: float) -> None:
+    """Its windows reach from the rest before the opening to the nitrogen, whose corners are none of the liquid."""
+    test = fire(rate=RATE)
+    every = slice(None, None, round(step * RATE))
+    slow = {n: signal(n, s.time[every], s.value[every]) for n, s in signals_of(test).items()}
+    found = find_liquid_end(slow, test.t_purge, test.p_v)
+    assert found is not None
+    assert abs(found.time - test.t_v) < 2.0 * found.std
+    assert found.std < 2.0 * step
+
+
 def test_chamber_and_thrust_fall_with_the_liquid_and_date_it_best() -> None:
     test = fire(rate=RATE)
     found = find_liquid_end(signals_of(test), test.t_purge, test.p_v)
@@ -156,6 +168,16 @@ def test_the_corner_at_the_end_of_the_liquid_is_not_that_of_the_nitrogen(early: 
     assert not isinstance(found, str)
     assert found[0] == pytest.approx(6.3, abs=max(4.0 * found[1], 0.01))
     assert found[1] < 0.03
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_ten_times_a_sensors_makes_the_date_less_sure_and_not_later(seed: int) -> None:
+    """The sag shows itself above the noise a second or two after it has begun."""
+    line = signal("p_purge", TIME[::5], noisy("p_purge", sagging(4.3), 1.2e5, seed).value[::5])
+    found = find_nitrogen(line, 9.9, None)
+    assert not isinstance(found, str)
+    assert abs(found[0] - 4.3) < 2.6 * found[1]
+    assert 0.02 < found[1] < 0.5
 
 
 def test_valve_hammer_is_no_nitrogen() -> None:

@@ -14,7 +14,7 @@ from tests.products.filled import filled
 
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.inference.full_run import FullRun
-from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.calibration import Calibration, Joint
 from hfanalysis.quantity import Quantity
 from hfanalysis.validate.performance import modeled
 
@@ -125,3 +125,22 @@ def drawn(values: list[float]) -> float:
     """Standard deviation of what has these values at -sqrt(3), 0 and sqrt(3) of a normal constant's deviations."""
     weights = np.array([1.0, 4.0, 1.0]) / 6.0
     return float(np.sqrt(weights @ (np.array(values) - weights @ values) ** 2))
+
+
+def test_constants_that_err_together_are_moved_together() -> None:
+    """More flow and more loss at once, as the balance has them: less is left open than by each alone."""
+    engine = run().engine
+    std = (0.02 * engine.feed.area, 0.1 * engine.feed.loss_factor)
+
+    def told(correlation: float) -> float:
+        rows = ((1.0, correlation), (correlation, 1.0))
+        joint = Joint(names=("flow_area", "K_loss"), std=std, correlation=rows)
+        return modeled(run(), calibration().but(joint=joint))["peak_thrust"].std or 0.0
+
+    moved = [
+        float(burn(one, longest=60.0).output("thrust").max() - run().burnt.output("thrust").max())
+        for one in (with_area(engine, 0.3 * 0.02), with_loss(engine, std[1]))
+    ]
+    for correlation in (0.0, 0.8, -1.0):
+        variance = moved[0] ** 2 + moved[1] ** 2 + 2.0 * correlation * moved[0] * moved[1]
+        assert told(correlation) == pytest.approx(np.sqrt(variance), rel=0.05)

@@ -22,7 +22,16 @@ SEGMENTS = {
 CALIBRATION = {
     "C_i": PRESSURES,
     "C_d": ("p_run", "m_tank"),
+    "spi": PRESSURES,
+    "hem": PRESSURES,
+    "dyer": PRESSURES,
+    "subcooling": ("p_tank", "p_run"),
+    "quality": ("p_tank", "p_run"),
+    "density": ("p_tank", "p_run"),
+    "drift": PRESSURES,
     "m": PRESSURES,
+    "m_choked": PRESSURES,
+    "vapor_C_d": PRESSURES,
     "Z": ("p_tank",),
     "K_loss": PRESSURES,
     "p_loss_liquid": ("p_tank", "p_run"),
@@ -86,7 +95,8 @@ VALIDATION = {
 FLOWN = (
     "apogee", "time_to_apogee", "rail_departure_velocity", "peak_velocity", "peak_mach", "peak_acceleration",
     "time_to_main", "main_deployment_acceleration", "landing_time", "impact_velocity_ballistic",
-    "pad_thrust_to_weight", "total_impulse", "burn_time", "average_thrust", "margin_at_rail_departure",
+    "pad_thrust_to_weight", "liftoff_thrust_to_weight", "apogee_as_measured", "impulse_flown", "impulse_stand",
+    "total_impulse", "burn_time", "average_thrust", "margin_at_rail_departure",
 )  # fmt: skip
 FLIGHT = dict.fromkeys(FLOWN, ("thrust",))
 
@@ -104,10 +114,12 @@ TOGETHER = " together"
 
 PACED = {
     **dict.fromkeys(("t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end", "burn_time"), 1.0),
-    **dict.fromkeys(("C_i", "oxidizer_flow_peak", "a", "regression_rate_reference"), -1.0),
+    **dict.fromkeys(("C_i", "spi", "hem", "dyer", "vapor_C_d"), -1.0),
+    **dict.fromkeys(("oxidizer_flow_peak", "a", "regression_rate_reference"), -1.0),
     **dict.fromkeys(("total_impulse", "specific_impulse", "total_impulse_of_file", *FLOWN), 1.0),
     "specific_impulse_loaded": 1.0,
     "K_loss": 2.0,
+    "drift": -2.0,
 }  # fmt: skip
 """With which power of the clock's pace a quantity goes, about: a clock at half its pace makes flows of twice the size.
 Source: the definitions; of a flight's numbers no more than their size."""

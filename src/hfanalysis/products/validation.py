@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
+from hfanalysis.products.budget import MADE_OF, Budget
 from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings, Words
+from hfanalysis.products.reconstruction import Reconstruction
+from hfanalysis.products.stability import Stability
 from hfanalysis.quantity import Quantity
 
 
@@ -144,7 +148,10 @@ class Validation(Product):
     standard: Annotated[Standard | None, Is("by which engines are compared")] = None
     beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
     sensors: Annotated[tuple[Finding, ...], Is("what looks wrong with sensors by what the engine can give")]
+    budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     absent: Annotated[dict[str, Words], Is("what could not be done, and why")]
+    reconstruction: Annotated[Reconstruction | None, Is("what the fuel did, without a regression law")] = None
+    stability: Annotated[Stability | None, Is("how smoothly it burnt")] = None
     notes: Notes
     warnings: Warnings
     effects: Adopted = ()

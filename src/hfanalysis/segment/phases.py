@@ -21,9 +21,19 @@ from hfanalysis.segment.fuel_at_once import BLURRED
 from hfanalysis.segment.kind import Kind, Known, recognize
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.segment.purge_by_tank import find_nitrogen_by_tank
-from hfanalysis.segment.sanity import BESIDE_HOLE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
+from hfanalysis.segment.sanity import (
+    BESIDE_HOLE,
+    BY_HAND,
+    HAND_STD,
+    SHOWN_BY,
+    anywhere_in,
+    beside_hole,
+    contradicted,
+    lies_in_hole,
+    strange_tank,
+)
 from hfanalysis.segment.supercharge import supercharge
-from hfanalysis.segment.taken import BY_HAND, TakenFiring, check_stated
+from hfanalysis.segment.taken import TakenFiring, check_stated
 from hfanalysis.sentences import text
 
 FUEL_LEFT = 0.05
@@ -126,12 +136,13 @@ class _Search:
                 Quantity.absent(self._why_not(name, found)) if isinstance(found, str) else self._seconds(name, *found)
             )
             return
-        self.events[name] = Quantity(stated.value, "s", stated.std or 1e-3, why=BY_HAND)
+        self.events[name] = Quantity(stated.value, "s", stated.std or HAND_STD, why=BY_HAND)
         if isinstance(found, str):
             self.notes.append(f"{name} is {BY_HAND} at {stated.value:.3f} s; the search found none: {found}")
             return
         self.found[name] = found[0]
         self.notes.append(f"{name} is {BY_HAND} at {stated.value:.3f} s; the search finds {found[0]:.3f} s")
+        self.warnings += contradicted(name, stated, *found)
 
     def _seconds(self, name: str, time: float, std: float) -> Quantity:
         """An event's instant, no surer than the hole of its channel that it was found in or beside."""

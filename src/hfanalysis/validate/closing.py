@@ -16,7 +16,7 @@ from hfanalysis.engine.unsteady import Engine
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.validation import Balance
 from hfanalysis.quantity import NORMAL_95, Quantity
-from hfanalysis.validate.efficiency import Ideal, Spread
+from hfanalysis.validate.efficiency import Ideal, Spread, oxidizer_spread
 from hfanalysis.validate.flows import Flows, nozzle_along
 from hfanalysis.validate.performance import Fire
 
@@ -61,9 +61,9 @@ def _integral(time: Array, value: Array, part: NDArray[np.bool_], why: str, rela
 
 def spreads(calibration: Calibration, spread: Spread) -> tuple[float, float, float]:
     """Relative standard deviations [-] of what passes injector, grain and nozzle."""
-    rate, flow = calibration.regression_rate_reference, calibration.C_i
-    relative = [(q.std or 0.0) / q.value if q.value else 0.0 for q in (flow, rate)]
-    return relative[0], relative[1], float(np.linalg.norm([spread.pressure, spread.throat, CHEMISTRY]))
+    rate = calibration.regression_rate_reference
+    by_rate = (rate.std or 0.0) / rate.value if rate.value else 0.0
+    return oxidizer_spread(calibration), by_rate, float(np.linalg.norm([spread.pressure, spread.throat, CHEMISTRY]))
 
 
 def balance(

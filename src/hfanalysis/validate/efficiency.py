@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array
 from hfanalysis.engine.nozzle import SUPERSONIC, characteristic_velocity, expand
 from hfanalysis.engine.unsteady import Engine
+from hfanalysis.inference.budget import Input, relative, total
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Efficiencies, Finding
@@ -26,15 +27,12 @@ from hfanalysis.segment.end_of_burn import CRITICAL_RATIO
 from hfanalysis.sentences import text
 from hfanalysis.thermo.shifting import shifting
 from hfanalysis.validate.flows import HISTORY_STEP, Flows, nozzle_along
+from hfanalysis.validate.load_cell import CellError
 from hfanalysis.validate.performance import Fire, bias
 from hfanalysis.validate.tap import Before, before_nozzle
 
 EFFICIENCY_WIDTH = 0.2
 """[s] of the running mean from which efficiencies are taken: a ratio of noisy values is noisier than either."""
-
-MACHINED = 6e-5
-"""[m] standard deviation of a throat's radius that is stated without one. Source: ISO 2768-1, fine: 0.1 mm either way
-for 6 to 30 mm, as a limit."""
 
 BASIS = "shifting"
 """Of the efficiencies. Source: definition; NASA RP-1311, section 6, has both."""
@@ -135,38 +133,57 @@ def liquid_phase(time: Array, segments: Segments, fire: Fire) -> NDArray[np.bool
 
 @dataclass(frozen=True)
 class Spread:
-    """Relative standard deviations [-] of what efficiencies rest on: gauge, throat, flow of propellant, thrust."""
+    """Relative standard deviations [-] of what efficiencies rest on: gauge, throat, flows of oxidizer and fuel as parts
+    of the whole; ``cell``: what each error of the load cell does, relative."""
 
     pressure: float
     throat: float
-    flow: float
-    thrust: float
+    oxidizer: float
+    fuel: float
+    cell: tuple[Input, ...] = ()
+
+    @property
+    def flow(self) -> float:
+        """Of oxidizer and fuel together."""
+        return float(np.hypot(self.oxidizer, self.fuel))
+
+    @property
+    def thrust(self) -> float:
+        """By all errors of the cell."""
+        return total(self.cell)
 
     @classmethod
     def of(
         cls, log: TestLog, definition: TestDefinition, calibration: Calibration, flows: Flows,
-        measured: Mapping[str, Array], part: NDArray[np.bool_],
+        measured: Mapping[str, Array], part: NDArray[np.bool_], cell: CellError | None = None,
     ) -> Spread:  # fmt: skip
         """Over the samples ``part`` (n,)."""
 
-        def share(name: str, history: str) -> float:
-            level = float(np.mean(measured[history][part])) if history in measured else 0.0
-            return bias(log[name]) / level if level > 0.0 else 0.0
+        def level(history: str) -> float:
+            return float(np.mean(measured[history][part])) if history in measured else 0.0
 
+        chamber, thrust = level("p_chamber"), level("thrust_corrected")
         oxidizer, fuel = float(flows.oxidizer[part].mean()), float(flows.fuel[part].mean())
-        by_flow = np.hypot(
-            oxidizer * _relative(calibration.C_i), fuel * _relative(calibration.regression_rate_reference)
-        )
-        whole = float(by_flow) / max(oxidizer + fuel, 1e-9)
+        whole = max(oxidizer + fuel, 1e-9)
         return cls(
-            share("p_chamber", "p_chamber"), throat_spread(definition), whole, share("thrust", "thrust_corrected")
+            bias(log["p_chamber"]) / chamber if chamber > 0.0 else 0.0,
+            throat_spread(definition),
+            oxidizer * oxidizer_spread(calibration) / whole,
+            fuel * _relative(calibration.regression_rate_reference) / whole,
+            relative(cell.at(thrust, 0.5), thrust) if cell is not None and thrust > 0.0 else (),
         )
+
+
+def oxidizer_spread(calibration: Calibration) -> float:
+    """Relative standard deviation [-] of the flow of liquid: that of the mass that it adds up to, for an error of the
+    holes' area is in C_i and not in their product."""
+    return _relative(calibration.oxidizer_mass_liquid_phase)
 
 
 def throat_spread(definition: TestDefinition) -> float:
     """Relative standard deviation of the throat's area [-]: as stated, else as it is machined."""
-    radius = definition.nozzle.throat_radius if definition.nozzle else None
-    return 0.0 if radius is None else 2.0 * (MACHINED if radius.std is None else radius.std) / radius.value
+    radius = definition.known("nozzle.throat_radius")
+    return 0.0 if radius is None else 2.0 * (radius.std or 0.0) / radius.value
 
 
 def _relative(quantity: Quantity) -> float:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.validate.flows import HISTORY_STEP, Flows
 from hfanalysis.validate.residuals import FORMAT
 from hfanalysis.validate.thrust import thrust_of
+
+if TYPE_CHECKING:
+    import h5py
 
 BEFORE, AFTER = 2.0, 3.0
 """[s] shown before the opening and after the burn."""
@@ -99,8 +102,10 @@ def flow_histories(flows: Flows) -> dict[str, Array]:
     return {name: np.where(lit, value, np.nan) for name, value in found.items()}
 
 
-def write_histories(path: Path, histories: Histories, provenance: Mapping[str, Any]) -> None:
-    """Write performance.h5: one time axis, a data set per history; byte-identical each time."""
+def write_histories(
+    path: Path, histories: Histories, provenance: Mapping[str, Any], also: Callable[[h5py.File], None] | None = None
+) -> None:
+    """Write performance.h5: one time axis, a data set per history, and what ``also`` adds; byte-identical each time."""
     from hfanalysis.products.hdf5 import created
 
     with created(path, libver=FORMAT, track_order=False) as file:
@@ -116,3 +121,5 @@ def write_histories(path: Path, histories: Histories, provenance: Mapping[str, A
                 data = file.create_dataset(name, data=histories.values[name], track_times=False)
                 data.dims[0].attach_scale(time)
                 data.attrs.update(units=ABOUT[name][0], long_name=ABOUT[name][1])
+        if also is not None:
+            also(file)

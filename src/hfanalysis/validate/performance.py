@@ -8,19 +8,22 @@ from typing import Any
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.calibrate.evidence_from_log import VIDEO
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
+from hfanalysis.inference.budget import Input, total
 from hfanalysis.inference.full_run import FullRun, moved
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import STATED, UNPHYSICAL, Quantity
+from hfanalysis.quantity import UNPHYSICAL, Quantity
+from hfanalysis.record.accuracy import left_by_zero
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
-from hfanalysis.record.signals import Signal
+from hfanalysis.record.signals import Signal, sample_noise
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
+from hfanalysis.validate.load_cell import CellError, cell_error
+from hfanalysis.validate.model_errors import changes
 from hfanalysis.validate.stand import unknown_weight
 from hfanalysis.validate.thrust import AT_AMBIENT, OUT, Thrust, burnt_out, thrust_of
 
@@ -31,10 +34,8 @@ SMOOTHING = 0.1
 """[s] of the running mean of which a peak is the largest value: longer than a period of the chamber's oscillation.
 Evidence: test_performance_errors.py: one cycle of a rough chamber is no peak, an overshoot of 0.25 s is."""
 
-SPAN = 0.25
-"""Part of a cell's accuracy that a tare does not take away, and of its drift that a straight line may miss. Evidence:
-test_performance_errors.py: a tare takes away three quarters of what a cell may be off by."""
-
+BURN_TIME, HOLES = "burn time", "between samples"
+"""Rows of a budget."""
 
 LARGEST_SPECIFIC_IMPULSE = 320.0
 """[s] that nothing with nitrous oxide reaches. Source: characteristic velocity of 1700 m/s at most times a thrust
@@ -65,9 +66,9 @@ def fire_of(segments: Segments, definition: TestDefinition, log: TestLog | None 
     (after which it may burn on), else until the ``log``'s thrust is gone; or why there is none."""
     if segments.kind != "hot_fire" or segments.misfire:
         return "nothing burns in this test"
-    seen = definition.observed.burn_time if definition.observed else None
+    seen = definition.known("observed.burn_time")
     if seen is not None:
-        return Fire(seen.value, seen.std if seen.std is not None else VIDEO, "[observed] burn_time")
+        return Fire(seen.value, seen.std or 0.0, "[observed] burn_time")
     gone = segments.time("t_fuel_gone")
     if gone is not None:
         return Fire(gone, max(segments.std("t_fuel_gone"), 1e-3), "t_fuel_gone: the solid fuel is gone")
@@ -103,9 +104,9 @@ def measured(
         return none | {"oxidizer_mass": _oxidizer(log, segments, definition, calibration)}
     out = {"burn_time": Quantity(fire.end, "s", fire.std, why=fire.source).reaching(fire.latest or fire.end)}
     thrust = thrust_of(log, segments, definition) if "thrust" in log else None
-    impulse, later = impulse_to(log, thrust, fire), None
+    impulse, later = impulse_to(log, thrust, fire, definition), None
     if fire.latest is not None and fire.latest > fire.end:
-        later = impulse_to(log, thrust, replace(fire, end=fire.latest)).value
+        later = impulse_to(log, thrust, replace(fire, end=fire.latest), definition).value
     impulse = impulse if later is None else impulse.reaching(later)
     if impulse.value is not None and (weight := unknown_weight(definition)):
         # the fuel's weight goes over the burn, whichever way the nozzle points: half of it on average
@@ -117,7 +118,10 @@ def measured(
     out["specific_impulse_loaded"] = specific_impulse(impulse, *loaded(log, segments, definition, calibration))
     out["largest_chamber_pressure"] = _largest(log, "p_chamber", _signal(log, segments, "p_chamber"), fire)
     out["peak_chamber_pressure"] = _peak(log, "p_chamber", _signal(log, segments, "p_chamber"), fire)
-    out["peak_thrust"] = _peak(log, "thrust", thrust.signal if thrust else log.lacks("thrust"), fire)
+    out["peak_thrust"] = _peak(
+        log, "thrust", thrust.signal if thrust else log.lacks("thrust"), fire,
+        cell_error_of(log, thrust, definition, fire.end) if thrust else None,
+    )  # fmt: skip
     average = _average(impulse, out["burn_time"])
     out["average_thrust"] = average if later is None else average.reaching(later / (fire.latest or fire.end))
     out |= {"oxidizer_mass": oxidizer, "fuel_mass": fuel}
@@ -147,16 +151,21 @@ def _signal(log: TestLog, segments: Segments, name: str) -> Signal | str:
 
 def bias(channel: Channel) -> float:
     """Standard deviation of what a zero leaves [SI]."""
-    if channel.zero_std is None:
-        return channel.accuracy
-    return float(np.hypot(channel.zero_std, SPAN * channel.accuracy))
+    return left_by_zero(channel.accuracy, channel.zero_std)
 
 
-def impulse_to(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
+def cell_error_of(log: TestLog, thrust: Thrust, definition: TestDefinition, end: float) -> CellError:
+    """What the cell may be off by over a burn that ends at ``end`` [s]."""
+    spec = definition.channels.get("thrust")
+    calibrated = spec.calibrated if spec is not None else None
+    return cell_error(log["thrust"], thrust, thrust.signal.between(0.0, end).value, calibrated, definition.test.date)
+
+
+def impulse_to(log: TestLog, thrust: Thrust | None, fire: Fire, definition: TestDefinition) -> Quantity:
     """Integral of the thrust over the burn, the cell's drift taken off."""
     if thrust is None:
         return Quantity.absent(log.lacks("thrust"))
-    signal, channel = thrust.signal, log["thrust"]
+    signal = thrust.signal
     if signal.time.size < 9:
         return Quantity.absent("thrust has too few good samples")
     if signal.time[-1] < fire.end - EARLY:
@@ -166,17 +175,26 @@ def impulse_to(log: TestLog, thrust: Thrust | None, fire: Fire) -> Quantity:
     inner = whole.between(*edges)
     time = np.concatenate((edges[:1], inner.time, edges[1:]))
     value = float(np.trapezoid(whole.at(time), time))
-    near = signal.mean(fire.end - 0.2, fire.end + 0.2)
-    last = abs(near if np.isfinite(near) else float(whole.at(edges[1:])[0]))
-    bridged = [_across(whole, max(start, 0.0), min(end, fire.end)) for start, end in unseen]
-    errors = (bias(channel) * fire.end, SPAN * thrust.error * 0.5 * fire.end, last * fire.std, *bridged)
+    inputs = impulse_inputs(log, thrust, fire, definition, value)
     drift = (
         text("; {error} of the cell's drift taken off", error=said(thrust.error, "N", ".0f")) if thrust.error else ""
     )
     lacking = sum(min(end, fire.end) - max(start, 0.0) for start, end in unseen)
     holes = f"; {lacking:.2f} s without samples bridged by straight lines" if lacking else ""
     why = text("over the burn{drift}{holes}", drift=drift, holes=holes)
-    return Quantity(value, "N s", float(np.linalg.norm(errors)), why=why)
+    return Quantity(value, "N s", total(inputs), why=why)
+
+
+def impulse_inputs(log: TestLog, thrust: Thrust, fire: Fire, definition: TestDefinition, impulse: float) -> list[Input]:
+    """What an ``impulse`` [N s] over the burn may be off by: the cell, the burn's end, what lies between samples."""
+    whole = thrust.signal.bridged()
+    near = thrust.signal.mean(fire.end - 0.2, fire.end + 0.2)
+    last = abs(near if np.isfinite(near) else float(whole.at(np.array([fire.end]))[0]))
+    inner = whole.between(0.0, fire.end)
+    scatter = sample_noise(inner.value) * np.sqrt(thrust.signal.step * fire.end)
+    cell = cell_error_of(log, thrust, definition, fire.end).of_impulse(impulse, fire.end)
+    ends = Input(BURN_TIME, last * fire.std, random=True)
+    return [*cell, ends, Input(HOLES, float(np.hypot(scatter, _between_samples(inner.time, inner.value))), random=True)]
 
 
 def _ends_early(name: str, signal: Signal, fire: Fire) -> str:
@@ -184,10 +202,9 @@ def _ends_early(name: str, signal: Signal, fire: Fire) -> str:
     return f"the good samples of {name} end at {signal.time[-1]:.1f} s, before the burn does ({fire.end:.1f} s)"
 
 
-def _across(signal: Signal, start: float, end: float) -> float:
-    """What an integral across a hole may be off by: the change may come at any instant of it."""
-    first, last = signal.at(np.array([np.nextafter(start, end), np.nextafter(end, start)]))
-    return float(abs(last - first) * (end - start) / np.sqrt(12.0))
+def _between_samples(time: Array, value: Array) -> float:
+    """What an integral may be off by: between two samples the change may come at any instant."""
+    return float(np.linalg.norm(np.diff(value) * np.diff(time)) / np.sqrt(12.0))
 
 
 def _raw_integral(log: TestLog) -> Quantity:
@@ -219,8 +236,9 @@ def specific_impulse(impulse: Quantity, oxidizer: Quantity, fuel: Quantity) -> Q
     return replace(found, verdict=UNPHYSICAL, why=why)
 
 
-def _peak(log: TestLog, name: str, signal: Signal | str, fire: Fire) -> Quantity:
-    """Largest value of the mean curve: flagged samples left out, the chamber's oscillation averaged."""
+def _peak(log: TestLog, name: str, signal: Signal | str, fire: Fire, cell: CellError | None = None) -> Quantity:
+    """Largest value of the mean curve: flagged samples left out, the chamber's oscillation averaged; of a ``cell``'s
+    reading, where it is one."""
     if isinstance(signal, str):
         return Quantity.absent(signal)
     part = signal.between(0.0, fire.end)
@@ -230,10 +248,10 @@ def _peak(log: TestLog, name: str, signal: Signal | str, fire: Fire) -> Quantity
     inside = (part.time > 0.5 * SMOOTHING) & (part.time < fire.end - 0.5 * SMOOTHING)
     place = int(np.argmax(np.where(inside, smooth, -np.inf)))
     count = max(SMOOTHING / part.step, 1.0)
-    error = np.hypot(bias(log[name]), part.noise / np.sqrt(count))
-    return Quantity(
-        float(smooth[place]), log[name].unit, float(error), why=f"of the mean curve, at {part.time[place]:.2f} s"
-    )
+    value, when = float(smooth[place]), float(part.time[place])
+    off = bias(log[name]) if cell is None else total(cell.at(value, when / fire.end))
+    error = float(np.hypot(off, part.noise / np.sqrt(count)))
+    return Quantity(value, log[name].unit, error, why=f"of the mean curve, at {when:.2f} s")
 
 
 def _largest(log: TestLog, name: str, signal: Signal | str, fire: Fire) -> Quantity:
@@ -341,15 +359,15 @@ _UNITS = ("s", "N s", "s", "Pa", "N", "N", "kg", "kg", "s", "s")
 
 
 def modeled(full: FullRun, calibration: Calibration, purge: float | None = None) -> dict[str, Quantity]:
-    """The model's column [s, N s, Pa, N, kg], with what the calibrated constants' uncertainties make of it; ``purge``
-    [s]: when nitrogen enters in the log."""
+    """The model's column [s, N s, Pa, N, kg], with what the errors of its constants make of it, drawn jointly;
+    ``purge`` [s]: when nitrogen enters in the log."""
     engine = full.engine
     nominal = _Column.of(full, full.burnt, engine.oxidizer_mass, engine.fuel_mass, purge).values
     errors = np.zeros(len(NAMES))
-    for change in _changes(full, calibration):
-        oxidizer = change.get("oxidizer_mass", engine.oxidizer_mass)
+    for change in changes(engine, calibration):
+        oxidizer, fuel = (change.get(n, getattr(engine, n)) for n in ("oxidizer_mass", "fuel_mass"))
         try:
-            other = _Column.of(full, moved(full, change), oxidizer, engine.fuel_mass, purge).values
+            other = _Column.of(full, moved(full, change), oxidizer, fuel, purge).values
         except (ValueError, ArithmeticError):
             continue
         errors += (other - nominal) ** 2
@@ -360,20 +378,3 @@ def modeled(full: FullRun, calibration: Calibration, purge: float | None = None)
         reason = f"the model's fuel is not gone after {full.burnt.burn_time:.0f} s"
         out |= {name: Quantity.absent(reason) for name in ("burn_time", "average_thrust")}
     return out
-
-
-def _changes(full: FullRun, calibration: Calibration) -> list[dict[str, float]]:
-    """One standard deviation of each calibrated constant; a and n along and across their combination."""
-    engine, discharge, m = full.engine, calibration.C_i, calibration.m.std or 0.0
-    rate, flux = calibration.regression_rate_reference, calibration.regression.reference_flux
-    assert discharge.value is not None
-    area = engine.feed.area * (1.0 + (discharge.std or 0.0) / discharge.value)
-    changes = [{"area": area}, {"loss_factor": engine.feed.loss_factor + (calibration.K_loss.std or 0.0)}]
-    changes.append({"oxidizer_mass": engine.oxidizer_mass + (calibration.load.std or 0.0)})
-    if engine.polytropic_exponent is not None and m > 0.0:
-        changes.append({"polytropic_exponent": engine.polytropic_exponent + m})
-    n = engine.n + (calibration.n.std or 0.0)
-    if STATED in (calibration.a.verdict, calibration.n.verdict) or not rate.value or flux is None or not flux.value:
-        return [*changes, {"a": engine.a + (calibration.a.std or 0.0)}, {"n": n}]
-    changes.append({"a": engine.a * (1.0 + (rate.std or 0.0) / rate.value)})
-    return [*changes, {"n": n, "a": rate.value / flux.value**n}]

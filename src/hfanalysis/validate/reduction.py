@@ -11,16 +11,19 @@ from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
 from hfanalysis.engine.unsteady import Engine
+from hfanalysis.products.budget import Budget
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Balance, Beyond, Efficiencies, Finding, Standard
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.validate.budgets import ratio_budgets
 from hfanalysis.validate.closing import OPEN, balance, closure, spreads
 from hfanalysis.validate.efficiency import Ideal, Spread, above_one, efficiencies, ideal, liquid_phase, means
 from hfanalysis.validate.flows import Flows
-from hfanalysis.validate.performance import Fire, impulse_to, loaded
+from hfanalysis.validate.load_cell import CellError
+from hfanalysis.validate.performance import Fire, cell_error_of, impulse_to, loaded
 from hfanalysis.validate.specific_impulse import expended, impulses
 from hfanalysis.validate.standard import standard
 from hfanalysis.validate.tap import narrow, tap_of
@@ -62,6 +65,7 @@ class Reduced:
     efficiencies: Efficiencies | None = None
     standard: Standard | None = None
     beyond: tuple[Beyond, ...] = ()
+    budget: dict[str, Budget] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     impulses: dict[str, Quantity] = field(default_factory=dict)
 
@@ -88,7 +92,7 @@ def reduced(test: Test) -> Reduced:
         part = part & found.counted
     if not part.any():
         return Reduced(ratios, closure(test.flows, test.measured, test.engine, test.ambient, test.fire, test.purge))
-    spread = Spread.of(test.log, test.definition, test.calibration, test.flows, test.measured, part)
+    spread = Spread.of(test.log, test.definition, test.calibration, test.flows, test.measured, part, _cell(test))
     of_masses = spreads(test.calibration, spread)
     sums = closure(test.flows, test.measured, test.engine, test.ambient, test.fire, test.purge, of_masses)
     return Reduced(
@@ -98,6 +102,14 @@ def reduced(test: Test) -> Reduced:
         impulses=_impulses(test),
         **(_of_chamber(test, found, ratios, part, spread, of_masses) if found is not None else {}),
     )
+
+
+def _cell(test: Test) -> CellError | None:
+    """What the load cell may be off by; None without one."""
+    if "thrust" not in test.log:
+        return None
+    thrust = thrust_of(test.log, test.segments, test.definition)
+    return cell_error_of(test.log, thrust, test.definition, test.fire.end)
 
 
 def _of_chamber(
@@ -111,6 +123,7 @@ def _of_chamber(
     return {
         "balance": closed,
         "efficiencies": judged,
+        "budget": ratio_budgets(judged, spread),
         "beyond": (*beyond, *([_open(closed)] if closed.verdict == OPEN else [])),
         "findings": tuple(above_one(judged)),
     }
@@ -135,5 +148,5 @@ def _impulses(test: Test) -> dict[str, Quantity]:
     thrust = thrust_of(test.log, test.segments, test.definition)
     to_purge = Fire(gone.until, min(test.fire.std, 0.02) if test.purge else test.fire.std, test.fire.source)
     masses = loaded(test.log, test.segments, test.definition, test.calibration)
-    whole, first = (impulse_to(test.log, thrust, fire) for fire in (test.fire, to_purge))
+    whole, first = (impulse_to(test.log, thrust, fire, test.definition) for fire in (test.fire, to_purge))
     return impulses(gone, whole, first, masses)

@@ -24,6 +24,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
+from hfanalysis.validate.efficiency import oxidizer_spread
 from hfanalysis.validate.flows import HISTORY_STEP, Flows
 from hfanalysis.validate.performance import Fire, specific_impulse
 
@@ -55,8 +56,8 @@ def expended(
     """By the ``flows``; ``nitrogen`` [kg/s], (n,), comes beside the oxidizer where an adopted purge says so."""
     purge = segments.time("t_purge")
     until = fire.end if purge is None else min(purge, fire.end)
-    flow, rate = calibration.C_i, calibration.regression_rate_reference
-    spread = [(q.std or 0.0) / q.value if q.value else 0.0 for q in (flow, rate)]
+    rate = calibration.regression_rate_reference
+    spread = (oxidizer_spread(calibration), (rate.std or 0.0) / rate.value if rate.value else 0.0)
 
     def passed(start: float, end: float) -> tuple[float, float]:
         part = (flows.time >= start) & (flows.time <= end)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -17,7 +17,9 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun, run_full
+from hfanalysis.products.budget import Budget
 from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.reconstruction import Reconstruction
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Closure, Column, Performance, Validation
 from hfanalysis.quantity import Quantity
@@ -25,16 +27,20 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.validate import histories as histories_of
 from hfanalysis.validate import performance
+from hfanalysis.validate.budgets import budgets
 from hfanalysis.validate.chamber_forced import run_chamber_forced
 from hfanalysis.validate.efficiency import BASIS
 from hfanalysis.validate.flows import Flows, burn_fuel, oxidizer_flow
 from hfanalysis.validate.full import compare_full
 from hfanalysis.validate.histories import Histories
 from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.reconstruction.reconstruct import Reconstructed, reconstruct
 from hfanalysis.validate.reduction import Reduced, Test, reduced
 from hfanalysis.validate.residuals import Residual, gaps
+from hfanalysis.validate.stability.modes import Mode, chamber_between
+from hfanalysis.validate.stability.stability import stability
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
-from hfanalysis.validate.thrust import motor_class
+from hfanalysis.validate.thrust import motor_class, thrust_of
 
 Result = TypeVar("Result")
 MODES = ("tank_free", "chamber_forced", "full")
@@ -50,6 +56,7 @@ class Validated:
     product: Validation
     residuals: dict[str, list[Residual]]
     histories: Histories
+    reconstructed: Reconstructed
 
 
 def validate(
@@ -109,7 +116,7 @@ class _Work:
             model = performance.modeled(full, self.calibration, self.segments.time("t_purge"))
         else:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
-        histories, found = self._histories(full, flows)
+        histories, found, again = self._histories(full, flows)
         measured |= found.impulses
         kept = {mode: compared for mode, compared in residuals.items() if compared}
         notes = [note for of_mode in kept.values() for r in of_mode for note in r.notes]
@@ -121,12 +128,22 @@ class _Work:
             closure=self._closure(found),
             efficiency_basis=BASIS,
             **found.content,
+            budget=self._budgets(measured) | found.budget,
             sensors=found.findings,
             absent=self.absent,
+            reconstruction=again.product,
+            **self._stability(full, flows[0] if flows else None, histories),
             notes=tuple(dict.fromkeys(notes)),
             warnings=(*(finding.text for finding in found.findings), *found.warnings),
         )
-        return Validated(product, kept, histories)
+        return Validated(product, kept, histories, again)
+
+    def _budgets(self, measured: dict[str, Quantity]) -> dict[str, Budget]:
+        impulse = measured["total_impulse"].value
+        if impulse is None or isinstance(self.fire, str):
+            return {}
+        thrust = thrust_of(self.true, self.segments, self.definition)
+        return budgets(measured, performance.impulse_inputs(self.true, thrust, self.fire, self.definition, impulse))
 
     @property
     def calibration(self) -> Calibration:
@@ -174,17 +191,36 @@ class _Work:
             raise AbsentError(self.absent.get("full") or self.absent["histories"])
         return run_chamber_forced(self.before_nozzle, self.segments, full, flows[0], self.ambient, self.fire.end)
 
-    def _histories(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> tuple[Histories, Reduced]:
+    def _histories(
+        self, full: FullRun | None, flows: tuple[Flows, Array] | None
+    ) -> tuple[Histories, Reduced, Reconstructed]:
         end = self.fire.end if isinstance(self.fire, Fire) else 10.0
         time = histories_of.clock(self.log, self.segments, end)
         values = histories_of.measured_histories(self.true, self.segments, self.definition, time)
         if full is None or flows is None or isinstance(self.fire, str):
             reason = self.absent.get("histories", "")
-            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced()
-        found = reduced(
-            Test(self.true, self.segments, self.definition, self.calibration, self.fire, full.engine, *flows, values)
-        )
-        return Histories(time, values | histories_of.flow_histories(flows[0]) | found.ratios), found
+            without = Reconstructed(Reconstruction(variant=None, reason=reason))
+            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced(), without
+        test = Test(self.true, self.segments, self.definition, self.calibration, self.fire, full.engine, *flows, values)
+        found = reduced(test)
+        values |= histories_of.flow_histories(flows[0]) | found.ratios
+        return Histories(time, values), found, reconstruct(test)
+
+    def _stability(self, full: FullRun | None, flows: Flows | None, histories: Histories) -> dict[str, Any]:
+        """How a hot fire burnt."""
+        if isinstance(self.fire, str):
+            return {}
+
+        def modes(start: float, end: float) -> Iterable[Mode] | None:
+            chamber = self.definition.chamber
+            pressure = histories.values.get("p_chamber")
+            if full is None or flows is None or pressure is None or chamber is None:
+                return None
+            volumes = [v.value if v is not None else 0.0 for v in (chamber.pre_volume, chamber.post_volume)]
+            state = chamber_between(full.engine, (volumes[0], volumes[1]), flows, pressure, start, end)
+            return state.modes() if state is not None else None
+
+        return {"stability": stability(self.log, self.segments, self.fire.end, modes)}
 
     def _closure(self, found: Reduced) -> Closure:
         """How the masses close, and the heat that the calibrated tank takes in the liquid phase, where it is told."""
