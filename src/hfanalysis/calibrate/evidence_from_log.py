@@ -11,6 +11,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, engine_of_test, exponent, starting_for
 from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar
+from hfanalysis.calibrate.head_pressure import before_nozzle_of
 from hfanalysis.calibrate.measured_pressures import quiet_noises
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.effect import Active
@@ -47,7 +48,7 @@ def evidence_of(
     t_v = segments.time("t_v")
     if t_v is None:
         raise AbsentError(f"no end of the liquid to fit with: {segments.events['t_v'].reason}")
-    origin = segments.t_open.value or 0.0
+    log, origin = before_nozzle_of(log, definition), segments.t_open.value or 0.0
     tank, chamber = (Signal.of(log[name]).shifted(origin) for name in ("p_tank", "p_chamber"))
     start = segments.time("t_feed") or min(0.1, 0.1 * t_v)
     pressure = line_at(tank, start)
@@ -66,6 +67,7 @@ def evidence_of(
         burn_time = replace(burn_time, std=float(np.hypot(burn_time.std, late)))
     remarks = (
         f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})",
+        *burning_of(segments, definition)[1],
         *_remarks(definition, calibration, engine.effects),
     )
     covariance = covariance_of(draws, calibration, _stated_variances(definition))
@@ -98,7 +100,7 @@ def _compared(chamber: Signal, start: float, stop: float, gone: tuple[float, flo
 
 def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[Scalar | None, Scalar | None, float]:
     """Burn time and fuel left, as far as they are known, and the end of the fire [s]."""
-    stated, observed = _burn_time(segments, definition), definition.observed
+    stated, observed = burning_of(segments, definition)[0], definition.observed
     end = stated.value if stated is not None else segments.time("t_end") or 2.0 * t_v
     left = observed.fuel_mass_after if observed is not None else None
     assert definition.grain is not None
@@ -110,14 +112,18 @@ def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[S
     return None, Scalar(left.value, std, "[observed] fuel_mass_after"), end
 
 
-def _burn_time(segments: Segments, definition: TestDefinition) -> Scalar | None:
+def burning_of(segments: Segments, definition: TestDefinition) -> tuple[Scalar | None, tuple[str, ...]]:
+    """When the fuel is gone [s]; None with a remark where nobody saw it: t_end is no end of the fire."""
     seen = definition.known("observed.burn_time")
     if seen is not None:
-        return Scalar(seen.value, seen.std or 0.0, "[observed] burn_time")
+        return Scalar(seen.value, seen.std or 0.0, "[observed] burn_time"), ()
     gone = segments.time("t_fuel_gone")
-    if gone is None:
-        return None
-    return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log")
+    if gone is not None:
+        return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log"), ()
+    low = segments.time("t_end")
+    if low is None:
+        return None, ()
+    return None, (f"compared until t_end, {low:.2f} s, which is no end of the fire: it may burn on, and fuel be left",)
 
 
 def _window_end(

@@ -19,7 +19,9 @@ from typing import Any
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.beside_report import joint_of
+from hfanalysis.calibrate.conditions import conditioned, conditions
 from hfanalysis.calibrate.evidence import burn_time_of
 from hfanalysis.calibrate.regression import judge_regression, rate_at
 from hfanalysis.calibrate.tank import PEAK_OVER
@@ -243,7 +245,8 @@ class _Constants:
         assert n.ci95 is not None
         along = np.array([1.0, log(flux)])
         spread = float(np.sqrt(along @ self._covariance_of_law @ along))
-        verdict, why = judge_regression("", n.ci95, n.std or 0.0, flux, spread)
+        on = conditions(Regression(a.value, n.value), flux, [self._fluxes])
+        verdict, why = conditioned(judge_regression("", n.ci95, n.std or 0.0, flux, spread), n.ci95, on)
         rate, around = a.value * flux**n.value, exp(NORMAL_95 * spread)
         return {
             "a": replace(a, verdict=verdict, why=why),

@@ -8,16 +8,19 @@ errors that the weights do not know add H S C_v S' H', and the correlation of a 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import exp, log
 
 import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.beside_report import joint_of
+from hfanalysis.calibrate.drifting import by_drift
 from hfanalysis.calibrate.evidence import NUISANCES
-from hfanalysis.calibrate.regression import Fitted, law_at
+from hfanalysis.calibrate.likelihood import Weights
+from hfanalysis.calibrate.regression import WIDEST_N, Fitted, law_at, weighed
 from hfanalysis.products.calibration import FuelLaw, Joint
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import CONDITIONAL, IDENTIFIED, Quantity
 
 STEP = 0.01
 """Of ln r and n [-], to either side, over which slopes are taken."""
@@ -34,13 +37,38 @@ class LawErrors:
     found: Fitted
     whole: Array
 
+    @cached_property
+    def _slopes(self) -> Array:
+        return np.column_stack([self._slope(axis) for axis in STEP * np.eye(2)])
+
+    @cached_property
+    def _gain(self) -> Array:
+        """Change of (ln r, n) [-] by what was observed [1/Pa, 1/s, 1/kg], (2, observations)."""
+        return np.asarray(self.found.surface.covariance @ self._slopes.T @ self.found.weights[0].precision)
+
+    def _gain_of(self, weights: Weights) -> Array:
+        """The same with the weights that a fit takes which leaves more."""
+        by_slopes = self._slopes.T @ weights.precision
+        return np.asarray(np.linalg.solve(by_slopes @ self._slopes, by_slopes))
+
     @property
     def _response(self) -> Array:
         """Change of (ln r, n) [-] by one deviation of each nuisance, (2, nuisances)."""
-        evidence, weights = self.found.evidence[0], self.found.weights[0]
-        slopes = np.column_stack([self._slope(axis) for axis in STEP * np.eye(2)])
-        gain = self.found.surface.covariance @ slopes.T @ weights.precision
-        return -gain @ replace(evidence, covariance=self.whole).sensitivities(self.found.law)
+        evidence = self.found.evidence[0]
+        return -self._gain @ replace(evidence, covariance=self.whole).sensitivities(self.found.law)
+
+    def drifting(self, law: FuelLaw, std: float, lasts: float) -> FuelLaw:
+        """The ``law`` with what a C_i that drifts by ``std`` [-] over ``lasts`` [s] does to it; on the condition that
+        it does not, where n is not known to WIDEST_N otherwise."""
+        best, evidence = self.found.law, self.found.evidence[0]
+        off = by_drift(evidence, best.a, best.n, std, lasts)
+        moved = self._gain_of(weighed(evidence.moved(off), best)) @ off
+        wider = self._wider(law, np.outer(moved, moved))
+        if not (wider.n.verdict == IDENTIFIED and (wider.n.std or 0.0) > WIDEST_N):
+            return wider
+        why = f"a C_i that drifts by {100.0 * std:.0f} % while the liquid lasts moves n by {abs(float(moved[1])):.2f}"
+        held = {name: replace(getattr(wider, name), verdict=CONDITIONAL, why=why) for name in ("a", "n")}
+        return wider.but(**held)
 
     def _slope(self, axis: Array) -> Array:
         evidence, best, flux = self.found.evidence[0], self.found.best, self.found.flux

@@ -10,12 +10,14 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.beside_report import beside_report
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
+from hfanalysis.calibrate.budgets import budgets
 from hfanalysis.calibrate.calibration import TankCalibration
 from hfanalysis.calibrate.course import with_course
 from hfanalysis.calibrate.diagnostics import coefficient_history, other_masses, rest_of, tank_history
 from hfanalysis.calibrate.feed_loss import estimated_share
+from hfanalysis.calibrate.head_pressure import before_injector
 from hfanalysis.calibrate.loaded_mass import UNSTATED, LoadedMass, loaded_mass
-from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at_break
+from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at
 from hfanalysis.calibrate.stated import Held
 from hfanalysis.calibrate.systematic import systematic_errors, with_systematic
 from hfanalysis.calibrate.uncertainty import HELD, Draws, InputSpread, draw
@@ -28,6 +30,7 @@ from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankConstants, TankHistory
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import CONDITIONAL, DERIVED, IDENTIFIED, NOT_IDENTIFIABLE, STATED, Quantity
+from hfanalysis.record.accuracy import left_by_zero
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import live_signals
@@ -39,9 +42,9 @@ VAPOR_PRESSURE_SHARE = 0.6
 """Without nitrogen the vapor phase is followed until the tank has this share of its pressure at t_v. Evidence:
 test_deviations.py, test_refusals.py: the m of a tank that lost two fifths is found."""
 
-SPAN_SHARE = 0.25
-"""Part of a sensor's accuracy that a zero at ambient does not take away: its error of span. Evidence:
-test_deviations.py."""
+FEWEST = 8
+"""Samples on either side of an instant that a pressure there is read from. Evidence: a vapor phase of fewer was read
+across its other end, and m came out by three deviations too high (test_refusals.py)."""
 
 LONGEST_GAP = 0.1
 """Part of the liquid phase that one channel may miss in one piece; good samples around it are joined linearly."""
@@ -77,7 +80,8 @@ def calibrate(
         raise AbsentError(
             f"test {definition.test.id}: no end of the liquid to calibrate with: {segments.events['t_v'].reason}"
         )
-    return _Work(log, segments, definition, t_v, effects).result(samples)
+    read = before_injector(log, segments, definition)
+    return _Work(read, segments, definition, t_v, effects).result(samples)
 
 
 class _Work:
@@ -101,9 +105,10 @@ class _Work:
         self.t_feed = segments.time("t_feed") or 0.0
         self.volume = definition.tank.volume if definition.tank else None
         self.area = definition.injector.area if definition.injector else None
-        self.at_v = self._read(t_v, 0.3, self._after_t_v())
+        self.at_v = self._read(t_v, 0.3, 0.3, True, self._until_purge())
         self.t_end, self.t_end_std, self.end_reason = self._vapor_end()
-        self.at_end = self._read(self.t_end, self.t_end - t_v, 0.3) if np.isfinite(self.t_end) else None
+        fed = segments.time("t_purge") is not None
+        self.at_end = self._read(self.t_end, self.t_end - t_v, 0.3, fed) if np.isfinite(self.t_end) else None
         low, high = self.saturation.pressure_range
         at_end = float(self.saturation.temperature(np.clip(self.at_v.value, low, 0.999 * high)))
         self.held = Held.of(definition, self.saturation, at_end)
@@ -161,7 +166,9 @@ class _Work:
         history = coefficient_history(self.saturation, self.histories, inputs, left)
         content = tank_history(self.saturation, self.histories, inputs, left)
         quantities = self._quantities(nominal, whole, inputs, left)
+        steady = quantities["C_i"].std or 0.0
         quantities["C_i"] = self._over_time(quantities["C_i"], draws, history, left)
+        course = max((quantities["C_i"].std or 0.0) ** 2 - steady**2, 0.0) ** 0.5
         if self.held.values:
             by_log = self._by_log(tables, inputs, mass, samples, vapor)
             quantities |= {name: self.held.quantity(name, by_log[name]) for name in by_log}
@@ -174,7 +181,8 @@ class _Work:
         beside = beside_report(
             self.histories, self.saturation, plain, alone, whole, spread, quantities, self.end_reason
         )
-        return TankCalibration(self._constants(quantities | beside, rest, history, content), draws, whole)
+        constants = self._constants(quantities | beside, rest, history, content)
+        return TankCalibration(constants.but(budget=budgets(whole, constants, course)), draws, whole)
 
     def _over_time(
         self, discharge: Quantity, draws: Draws, history: CoefficientHistory | None, left: Array
@@ -317,7 +325,7 @@ class _Work:
         still = self.histories.signals[name].between(-30.0, -0.02).time
         rest = (float(still[0]), -0.02) if still.size > 1 else (-1.0, -0.02)
         since = self.histories.noises[name].difference_std(rest, (0.0, self.t_v))
-        return float(np.sqrt(channel.zero_std**2 + since**2 + (SPAN_SHARE * channel.accuracy) ** 2))
+        return float(np.hypot(left_by_zero(channel.accuracy, channel.zero_std), since))
 
     def _mass_left(self, r: Reduction, inputs: Inputs) -> Array:
         """Mass that has left through the injector at the histories' times [kg]."""
@@ -337,15 +345,19 @@ class _Work:
         starts = t[t <= t[-1] - PEAK_OVER]
         return float((np.interp(starts + PEAK_OVER, t, x) - np.interp(starts, t, x)).max()) / PEAK_OVER
 
-    def _read(self, instant: float, before: float, after: float) -> PressureReading:
+    def _read(
+        self, instant: float, before: float, after: float, breaks: bool, until: float = np.inf
+    ) -> PressureReading:
+        """The tank's pressure at an instant [s], from what lies up to ``before`` and ``after`` [s] of it, or as far as
+        FEWEST samples, but not ``until`` [s] after it another event bends it."""
         tank = self.histories.signals["p_tank"]
-        least = 8.0 * tank.step
+        least = FEWEST * tank.step
         left, right = (min(max(span, least), 0.4 + least) for span in (before, after))
-        return read_at_break(tank, self.histories.noises["p_tank"], instant, left, right)
+        return read_at(tank, instant, left, min(right, until), breaks)
 
-    def _after_t_v(self) -> float:
+    def _until_purge(self) -> float:
         t_purge = self.segments.time("t_purge")
-        return 0.3 if t_purge is None or t_purge <= self.t_v else t_purge - self.t_v
+        return np.inf if t_purge is None or t_purge <= self.t_v else t_purge - self.t_v
 
     def _last(self, t_v: float) -> float:
         t_purge = self.segments.time("t_purge")
@@ -364,7 +376,10 @@ class _Work:
         if gap > max(0.1, 4.0 * self.histories.signals["p_tank"].step):
             return np.nan, 0.0, f"{name} has no good samples for {gap:.2f} s of the vapor phase"
         if t_purge is not None:
-            return t_purge, self.segments.std("t_purge"), None
+            held = self.histories.signals["p_tank"].between(self.t_v, t_purge).time.size
+            phase = f"the vapor phase lasts {t_purge - self.t_v:.3f} s and holds {held} samples of p_tank"
+            few = f"{phase}: too little to tell m, the pressures at its two ends take {FEWEST}"
+            return (t_purge, self.segments.std("t_purge"), None) if held >= FEWEST else (np.nan, 0.0, few)
         h = self.histories
         low = (h.time > self.t_v) & (h.tank < VAPOR_PRESSURE_SHARE * self.at_v.value)
         if not low.any():

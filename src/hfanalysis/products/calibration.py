@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
+from hfanalysis.products.budget import MADE_OF, Budget
 from hfanalysis.products.model import Adopted, Is, Notes, Numbers, Part, Product, Warnings, Words
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 
@@ -128,6 +129,7 @@ class TankConstants(Part):
     inlet: Annotated[Inlet | None, Is("what reaches the injector")] = None
     C_d: Annotated[Mapping[str, Quantity], Is("discharge coefficient by law: spi, hem, dyer")] = {}
     joint: Annotated[Joint | None, Is("errors of the constants together: flow_area is C_i N_i A_i", "")] = None
+    budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     notes: Notes
     warnings: Warnings
 
