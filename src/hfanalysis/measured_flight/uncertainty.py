@@ -243,6 +243,9 @@ def _bands(paths: Array, laws: NDArray[np.intp], ground: float) -> Iterator[tupl
     offsets = {"height": ground, "speed": 0.0, "acceleration": 0.0}
     for column, (name, offset) in enumerate(offsets.items()):
         values = paths[:, :, column]
-        each = [np.nanpercentile(values[laws == law], (2.5, 97.5), axis=0) for law in np.unique(laws)]
+        flying = np.isfinite(values).any(axis=0)  # of a law by which no rocket leaves its pad there is no band
+        groups = [values[laws == law] for law in np.unique(laws)]
+        seen = [group for group in groups if np.isfinite(group[:, flying]).any(axis=0).all()] or [values]
+        each = [np.nanpercentile(group, (2.5, 97.5), axis=0) for group in seen]
         low, high = np.min([ends[0] for ends in each], axis=0), np.max([ends[1] for ends in each], axis=0)
         yield name, np.stack((low, np.nanmedian(values, axis=0), high)) - offset
