@@ -1,7 +1,8 @@
-"""Does the calibration find what is in a log, and do its intervals hold it? Three studies, each resumable.
+"""Does the calibration find what is in a log, and do its intervals hold it? Four studies, each resumable.
 
 ``own``: 400 logs of the virtual stand (random truth, noise, declared biases, line filling, purge), each taken through
-ingest, segment and calibrate. ``engine``: logs of whole engines (simulated/engine.py), for a and n.
+ingest, segment and calibrate. ``sensors``: the like by poor and good loggers (noise 0.2 to 10 times the usual, 50 to
+1000 Hz, converters of 8 to 14 bits). ``engine``: logs of whole engines (simulated/engine.py), for a and n.
 ``blind``: the cases without an effect of another generator, where its folder is given.
 Results are written as they come to .cache/recovery-*.jsonl; the table goes to docs/recovery.md.
 
@@ -33,7 +34,10 @@ TITLE = """# Recovery
 Made by `make recovery` (the second table, if there is one, with `FLAGS='--blind FOLDER'`). z is (found - truth) /
 stated standard deviation.
 """
+LOGGERS = """White noise 0.2 to 10 times that of the logs above, 50, 200 or 1000 Hz, pressures in steps of a converter
+over 1000 psi. In how many of the logs that have an answer its 95 % interval holds the truth."""
 QUANTITIES = ("C_i", "m", "K_loss", "t_v", "t_purge", "t_open")
+RATES, BITS = (50.0, 200.0, 1000.0), (0, 8, 10, 12, 14)
 REGRESSION = ("regression_rate_reference", "a", "n", "C_i")
 
 
@@ -62,16 +66,34 @@ def read_folder(folder: Path) -> tuple[Any, Any]:
         return read_log(product), definition
 
 
-def own_case(seed: int) -> dict[str, Any]:
-    """One log of the virtual stand and what is found in it."""
-    from simulated.stand import make_log
+def own_case(seed: int, sensors: Any = None) -> dict[str, Any]:
+    """One log of the virtual stand, by its ``sensors``, and what is found in it."""
+    from simulated.stand import Sensors, make_log
 
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / f"S{seed:04d}"
         folder.mkdir()
-        truth = make_log(folder, seed)
+        truth = make_log(folder, seed, sensors or Sensors())
         found = recover(folder)
     return {"case": seed, "truth": {n: getattr(truth, n) for n in QUANTITIES}, "found": found}
+
+
+def sensors_case(seed: int) -> dict[str, Any]:
+    """The like by another logger."""
+    from simulated.stand import Sensors
+
+    from hfanalysis.errors import AbsentError
+    from hfanalysis.quantity import Quantity
+
+    draw = np.random.default_rng([20261128, seed])
+    noise = float(np.exp(draw.uniform(np.log(0.2), np.log(10.0))))
+    sensors = Sensors(noise, float(draw.choice(RATES)), int(draw.choice(BITS)))
+    try:
+        case = own_case(seed, sensors)
+    except AbsentError as missing:
+        absent = Quantity.absent(str(missing)).to_json()
+        case = {"case": seed, "truth": {}, "found": dict.fromkeys(QUANTITIES, absent)}
+    return {**case, "sensors": [sensors.noise, sensors.rate, sensors.bits]}
 
 
 def engine_case(seed: int) -> dict[str, Any]:
@@ -134,6 +156,24 @@ def _code() -> str:
     for path in sorted([*ROOT.glob("src/**/*.py"), *ROOT.glob("simulated/*.py")]):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
+
+
+def by_noise(results: list[dict[str, Any]]) -> str:
+    """Coverage of each interval by the sensor's noise and by the converter's bits."""
+    noises = [(f"noise {low:g} to {high:g} times", [r for r in results if low <= r["sensors"][0] < high])
+              for low, high in ((0.2, 0.7), (0.7, 2.5), (2.5, 10.1))]  # fmt: skip
+    bits = [(f"{n} bits" if n else "no steps", [r for r in results if r["sensors"][2] == n]) for n in BITS]
+    rows = [f"| logs | cases | {' | '.join(QUANTITIES[:-1])} |", "|---|---|" + "---|" * len(QUANTITIES[:-1])]
+    for words, some in [("all", results), *noises, *bits]:
+        rows.append(f"| {words} | {len(some)} | {' | '.join(covered(some, name) for name in QUANTITIES[:-1])} |")
+    return "\n".join(rows)
+
+
+def covered(results: list[dict[str, Any]], name: str) -> str:
+    """In how many of those that answer the interval holds the truth."""
+    answered = [(r["truth"][name], r["found"][name]) for r in results if r["found"][name]["value"] is not None]
+    held = sum(f["ci95"][0] <= t <= f["ci95"][1] for t, f in answered)
+    return f"{held} of {len(answered)}" + (f" ({100.0 * held / len(answered):.0f} %)" if answered else "")
 
 
 def separable(results: list[dict[str, Any]]) -> str:
@@ -206,6 +246,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=400)
     parser.add_argument("--first", type=int, default=0, help="first seed; others than the default are a check on it")
+    parser.add_argument("--sensors", type=int, default=400, help="logs of poor and good loggers")
     parser.add_argument("--engines", type=int, default=400, help="logs of whole engines")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--blind", type=Path)
@@ -213,6 +254,9 @@ def main() -> None:
     text = TITLE
     own = run("own", range(arguments.first, arguments.first + arguments.cases), own_case, arguments.processes)
     text += f"\n## {len(own)} logs of the project's own tank model\n\n{table(own)}\n"
+    logs = range(arguments.first, arguments.first + arguments.sensors)
+    sensors = run("sensors", logs, sensors_case, arguments.processes)
+    text += f"\n## {len(sensors)} of them by poor and good loggers\n\n{LOGGERS}\n\n{by_noise(sensors)}\n"
     engines = run(
         "engine", range(arguments.first, arguments.first + arguments.engines), engine_case, arguments.processes
     )

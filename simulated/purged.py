@@ -7,6 +7,7 @@ that the flight of a rocket without a stand is known exactly.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from datetime import date
 from functools import cache
 from math import pi
 from pathlib import Path
@@ -28,7 +29,7 @@ from hfanalysis.measured_flight.firing import Firing, firing
 from hfanalysis.products.calibration import Calibration, RegressionBasis
 from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import IDENTIFIED, Quantity
-from hfanalysis.record.definition import FileSpec, LogSpec, Test, TestDefinition
+from hfanalysis.record.definition import ChannelSpec, FileSpec, LogSpec, Test, TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.record.sections import (
@@ -210,10 +211,14 @@ def _fuel_left(run: Burn, end: float) -> float:
     return DENSITY * pi * LENGTH * (OUTER**2 - float(np.interp(end, run.time, run.state("port_radius"))) ** 2)
 
 
+CELL = ChannelSpec(column="thrust", unit="N", calibrated=date(2024, 5, 2), name="thrust")
+"""A load cell that was calibrated in place: what is flown of its thrust is not lost in its gain."""
+
+
 def _definition(fuel_left: float) -> TestDefinition:
     grain = GrainSection(Value(FUEL, 0.005), Value(LENGTH), Value(DENSITY), Value(OUTER))
     return TestDefinition(
-        Test("PURGED", "hot_fire"), LogSpec((FileSpec("log.csv"),)), {},  # not read from disk
+        Test("PURGED", "hot_fire"), LogSpec((FileSpec("log.csv"),)), {"thrust": CELL},  # not read from disk
         tank=Tank(Value(VOLUME), Value(MASS, 0.01)), injector=Injector(HOLES, Value(HOLE_AREA)), grain=grain,
         purge=Purge(Value(CRACKING)), chamber=Chamber(Value(0.218e-3), Value(0.885e-3)),
         nozzle=NozzleSection(Value(THROAT), Value(EXIT)), site=Site(ambient_pressure=Value(AMBIENT, 0.0)),

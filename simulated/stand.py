@@ -6,7 +6,7 @@ know. What the calibration then finds can be compared with the truth (benchmarks
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 
 PSI = 6894.757293168361
 AMBIENT = 101_325.0
+FULL_SCALE = 1000.0
 HOLE_AREA = 3.142e-6
 
 
@@ -52,6 +53,21 @@ class Truth:
     def area(self) -> float:
         """Effective injector area [m^2]."""
         return self.C_i * self.holes * HOLE_AREA
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """What a logger makes of a test: white ``noise`` over the usual [-], samples a second where they are not drawn, and
+    the ``bits`` of its converter over FULL_SCALE [psi]; 0: as fine as it is printed."""
+
+    noise: float = 1.0
+    rate: float | None = None
+    bits: int = 0
+
+    def converted(self, pressure: Array) -> Array:
+        """Pressures [psi] in the converter's steps."""
+        step = FULL_SCALE / 2**self.bits
+        return np.round(pressure / step) * step if self.bits else pressure
 
 
 def draw_truth(generator: np.random.Generator) -> Truth:
@@ -145,10 +161,11 @@ def _burn(
     return out, t_v, t_purge, p_purge
 
 
-def make_log(folder: Path, seed: int) -> Truth:
+def make_log(folder: Path, seed: int, sensors: Sensors = Sensors()) -> Truth:
     """Write ``folder``/log.csv and ``folder``/test.toml for a random truth; returns the truth with its phase times."""
     generator = np.random.default_rng([20220403, seed])
     truth = draw_truth(generator)
+    truth = replace(truth, white=truth.white * sensors.noise, rate=sensors.rate or truth.rate)
     step = 1e-4
     vapor_time = generator.uniform(0.25, 1.0)
     time = step * np.arange(int(30.0 / step))
@@ -159,7 +176,7 @@ def make_log(folder: Path, seed: int) -> Truth:
     if not t_purge < 26.0:
         raise ValueError(f"seed {seed}: the tank does not empty within the log")
     truth = Truth(**{**asdict(truth), "t_v": t_v, "t_purge": t_purge, "purge_pressure": p_purge + truth.cracking})
-    _write_log(folder / "log.csv", truth, out, step, generator)
+    _write_log(folder / "log.csv", truth, out, step, generator, sensors)
     (folder / "test.toml").write_text(_definition(folder.name, truth, generator), encoding="utf-8")
     return truth
 
@@ -186,7 +203,9 @@ def noise(generator: np.random.Generator, count: int, rate: float, white: float,
     return np.fft.irfft(spectrum, padded)[:count] + white * generator.standard_normal(count)
 
 
-def _write_log(path: Path, truth: Truth, out: Array, step: float, generator: np.random.Generator) -> None:
+def _write_log(
+    path: Path, truth: Truth, out: Array, step: float, generator: np.random.Generator, sensors: Sensors
+) -> None:
     before = generator.uniform(1.5, 4.0)
     time = np.arange(truth.t_open - before, truth.t_open + truth.t_purge + 3.0, 1.0 / truth.rate)
     after = time - truth.t_open
@@ -201,7 +220,8 @@ def _write_log(path: Path, truth: Truth, out: Array, step: float, generator: np.
     biases = 2.0 * PSI * generator.standard_normal(4)
     columns = [time]
     for value, bias in zip((tank, run, chamber, purge), biases, strict=True):
-        columns.append((value + bias + noise(generator, time.size, truth.rate, truth.white, truth.flicker)) / PSI)
+        own = noise(generator, time.size, truth.rate, truth.white, truth.flicker)
+        columns.append(sensors.converted((value + bias + own) / PSI))
     thrust = 1.4 * 1.7e-3 * np.maximum(chamber - AMBIENT, 0.0) + 5.0 * generator.standard_normal(time.size)
     shaking = 0.02 + 0.15 * (after > 0.0)
     columns += [thrust, mass + shaking * generator.standard_normal(time.size)]
@@ -254,7 +274,7 @@ volume = "{volume * 1e3:.6f} +/- {volume_std * 1e3:.6f} L"
 oxidizer_mass = "{mass:.6f} +/- {mass_std:.6f} kg"
 [injector]
 holes = {truth.holes}
-hole_area = "{HOLE_AREA * 1e6:.3f} mm^2"
+hole_area = "{HOLE_AREA * 1e6:.3f} +/- 0 mm^2"
 [purge]
 cracking_pressure = "{truth.cracking / 1e5:.2f} bar"
 [nozzle]

@@ -1,11 +1,13 @@
-"""python -m benchmarks.fuzz run [--n 10000] [--jobs 2] [--seed 1] | table [--write PAGE] | show NUMBER FOLDER
+"""python -m benchmarks.fuzz run [--n 10000] [--jobs 2] [--seed 1] [--again] | table [--write PAGE] | show NUMBER FOLDER
 
-Cases that have been run are kept in ``--out`` (.cache/fuzz), from where a later run goes on.
+Cases that have been run are kept in ``--out`` (.cache/fuzz), each with the digest of the code that ran it; a later run
+goes on from there. ``--again`` runs those of another code anew once all have been run: first what came out wrong.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import os
 import subprocess
@@ -22,6 +24,9 @@ from benchmarks.fuzz.judge import Judged, judge  # noqa: E402
 from benchmarks.fuzz.table import STANDS  # noqa: E402
 
 DEFECTS = ("traceback", "hang", "killed")
+ROOT = Path(__file__).resolve().parents[2]
+OF_CASES = ("cases", "document", "formats", "mutators", "table")
+"""What makes the cases: with another of these a number is another case."""
 
 
 def main() -> int:
@@ -39,7 +44,7 @@ def main() -> int:
     pairs = _judged(options)
     print(page.summary(pairs))
     if options.write:
-        page.write(options.write, pairs, options.seed)
+        page.write(options.write, pairs, options.seed, code())
     return int(any(judged.end in DEFECTS for _, judged in pairs))
 
 
@@ -51,6 +56,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--n", type=int, default=10_000)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--again", action="store_true", help="run anew what other code ran")
     parser.add_argument("--out", type=Path, default=Path(".cache/fuzz"))
     parser.add_argument("--write", type=Path, help="the page to write the tables into")
     return parser.parse_args()
@@ -60,6 +66,7 @@ def _run(options: argparse.Namespace) -> None:
     """Workers that share the numbers out among themselves, each with a file of its own."""
     command = [sys.executable, "-m", "benchmarks.fuzz", "work"]
     shared = [word for name in ("n", "jobs", "seed", "out") for word in (f"--{name}", str(getattr(options, name)))]
+    shared += ["--again"] if options.again else []
     running = [subprocess.Popen([*command, str(number), *shared]) for number in range(options.jobs)]
     try:
         for process in running:
@@ -74,24 +81,45 @@ def _work(options: argparse.Namespace) -> None:
     """Every ``--jobs``-th case from ``number`` on that has not been run."""
     from benchmarks.fuzz.attempt import attempt
 
+    mine = code()
     warm()
-    done = {row["number"] for row in _rows(options)}
     bases = [(f"{stand}.{format}", cases.unspoilt(stand, format)) for stand in STANDS for format in formats.NAMES]
+    have = {row["base"] for row in _rows(options) if row.get("code") == mine and "base" in row}
     own = [(i, name, case) for i, (name, case) in enumerate(bases, 1) if i % options.jobs == options.number]
     with (options.out / f"{options.seed}-{options.number}-of-{options.jobs}.jsonl").open("a") as file:
 
         def keep(row: dict[str, Any]) -> None:
-            file.write(json.dumps(row) + "\n")
+            file.write(json.dumps({**row, "code": mine}) + "\n")
             file.flush()
 
         for i, name, case in own:
-            if -i not in done:
+            if name not in have:
                 keep({"number": -i, "base": name, **attempt(case)})
-        for number in range(options.number, options.n, options.jobs):
-            if number not in done:
-                case = cases.build(number, options.seed)
-                about = {"stand": case.stand, "format": case.format, "mutators": case.mutators, "hit": sorted(case.hit)}
-                keep({"number": number, **about, **attempt(case)})
+        for number in _to_run(options, mine):
+            case = cases.build(number, options.seed)
+            about = {"stand": case.stand, "format": case.format, "mutators": case.mutators, "hit": sorted(case.hit)}
+            keep({"number": number, **about, **attempt(case)})
+
+
+def _to_run(options: argparse.Namespace, mine: str) -> list[int]:
+    """Numbers of this worker: those never run, then with ``--again`` those of other code, what came out wrong first."""
+    last = {row["number"]: row for row in _rows(options)}
+    numbers = range(options.number, options.n, options.jobs)
+    never = [number for number in numbers if number not in last]
+    if not options.again:
+        return never
+    wrong = {row["number"] for row, judged in _judged(options) if judged.silent or judged.end in DEFECTS}
+    old = [number for number in numbers if number in last and last[number].get("code") != mine]
+    return [*never, *sorted(old, key=lambda number: (number not in wrong, number))]
+
+
+def code() -> str:
+    """Digest of what runs a case and of what makes it."""
+    own = [ROOT / "benchmarks" / "fuzz" / f"{name}.py" for name in OF_CASES]
+    digest = hashlib.sha256()
+    for path in [*sorted((ROOT / "src").rglob("*.py")), *own]:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
 
 
 def warm() -> None:
@@ -117,10 +145,13 @@ def _rows(options: argparse.Namespace) -> list[dict[str, Any]]:
 
 
 def _judged(options: argparse.Namespace) -> list[tuple[dict[str, Any], Judged]]:
-    rows = {row["number"]: row for row in _rows(options)}
-    bases = {row["base"]: row for row in rows.values() if "base" in row}
-    mutated = [rows[number] for number in sorted(rows) if 0 <= number < options.n]
-    return [(row, judge(row, bases[f"{row['stand']}.{row['format']}"])) for row in mutated]
+    """The last outcome of each case, beside the unspoilt test as the same code had it."""
+    rows = _rows(options)
+    bases = {(row["base"], row.get("code")): row for row in rows if "base" in row}
+    last = {row["number"]: row for row in rows}
+    mutated = [last[number] for number in sorted(last) if 0 <= number < options.n]
+    beside = [(row, bases.get((f"{row['stand']}.{row['format']}", row.get("code")))) for row in mutated]
+    return [(row, judge(row, base)) for row, base in beside if base is not None]
 
 
 if __name__ == "__main__":

@@ -50,7 +50,7 @@ def _end(row: Mapping[str, Any]) -> str:
     if row["status"] == 1:
         return "traceback"
     if row["status"] == -1:
-        return "hang" if row["error"] == "hang" else "killed"
+        return "hang" if row["error"].startswith("hang") else "killed"
     if "Traceback" in row["said"]:
         return "traceback"
     return {0: "answer", 2: "refused (2)", 3: "refused (3)"}.get(row["status"], f"exit {row['status']}")

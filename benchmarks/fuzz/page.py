@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks.fuzz.explained import EXPLAINED
+from benchmarks.fuzz.explained import reason
 from benchmarks.fuzz.judge import Judged
 from benchmarks.studies import percent, put
 
@@ -18,10 +18,10 @@ MOST = 60
 """Silent cases that are listed; of more there is the count."""
 
 
-def write(page: Path, pairs: Sequence[Pair], seed: int) -> None:
-    """The tables between the page's marks."""
-    put(page, "table", _table(pairs, seed))
-    put(page, "wrong", _wrong(pairs))
+def write(page: Path, pairs: Sequence[Pair], seed: int, code: str) -> None:
+    """The tables between the page's marks; ``code``: the digest of the present code."""
+    put(page, "table", _table(pairs, seed, code))
+    put(page, "wrong", _wrong(pairs, seed))
 
 
 def summary(pairs: Sequence[Pair]) -> str:
@@ -35,12 +35,24 @@ def summary(pairs: Sequence[Pair]) -> str:
     return f"{len(pairs)} cases: {listed}; {said}; peak {peak} MB"
 
 
+def _by_code(pairs: Sequence[Pair], code: str) -> str:
+    """How many cases the present code has run, and what it made of them."""
+    now = [pair for pair in pairs if pair[0].get("code") == code]
+    states = {row.get("code") for row, _ in pairs} - {code}
+    if not states:
+        return f"All by the present code ({code})."
+    earlier = f"{len(pairs) - len(now)} are of {len(states)} earlier state{'s' if len(states) > 1 else ''} of the code"
+    moved = [judged for _, judged in now if judged.moved]
+    own = f"moved {len(moved)}, pointed out {sum(judged.points for judged in moved)} ({percent(_share(moved))})"
+    return f"{earlier}, {len(now)} of the present one ({code}): {own}."
+
+
 def _share(moved: Sequence[Judged]) -> float | None:
     return sum(judged.points for judged in moved) / len(moved) if moved else None
 
 
-def _table(pairs: Sequence[Pair], seed: int) -> Iterator[str]:
-    yield f"{summary(pairs)}. Seed {seed}."
+def _table(pairs: Sequence[Pair], seed: int, code: str) -> Iterator[str]:
+    yield f"{summary(pairs)}. Seed {seed}. {_by_code(pairs, code)}"
     yield ""
     yield "| mutation | cases | answer | refused | traceback | hang or killed | moved | pointed out |"
     yield "|---|---|---|---|---|---|---|---|"
@@ -59,16 +71,17 @@ def _table(pairs: Sequence[Pair], seed: int) -> Iterator[str]:
     yield "By format: " + ", ".join(f"{name} {len(found)}" for name, found in sorted(by_format.items())) + "."
 
 
-def _wrong(pairs: Sequence[Pair]) -> Iterator[str]:
+def _wrong(pairs: Sequence[Pair], seed: int) -> Iterator[str]:
     defects = [(row, judged) for row, judged in pairs if judged.end in ("traceback", "hang", "killed", "exit 1")]
     for (kind, error), rows in _grouped(defects):
         yield f"- {kind}, {len(rows)} times: `{error}` (cases {_numbers(rows)})"
     silent = [(row, judged) for row, judged in pairs if judged.silent]
     if not defects and not silent:
         yield "None."
-    unexplained = [pair for pair in silent if not _reason(pair[0])]
-    for reason, rows in _by_reason(silent):
-        yield f"- {len(rows)} moved without a word that names what was hit: {reason} (cases {_numbers(rows)})"
+    explained = [(reason(row, seed), row, judged) for row, judged in silent]
+    for why, rows in _by_reason(explained):
+        yield f"- {len(rows)} moved and nothing can tell: {why} (cases {_numbers(rows)})"
+    unexplained = [(row, judged) for why, row, judged in explained if not why]
     for row, judged in unexplained[:MOST]:
         values = ", ".join(f"{name} {row['found'][name]['value']:.5g}" for name in judged.moved)
         yield f"- case {row['number']}, {row['stand']} as {row['format']}, {' and '.join(row['mutators'])}: {values}"
@@ -83,17 +96,12 @@ def _grouped(pairs: Sequence[Pair]) -> list[tuple[tuple[str, str], list[Row]]]:
     return sorted(found.items())
 
 
-def _by_reason(pairs: Sequence[Pair]) -> list[tuple[str, list[Row]]]:
+def _by_reason(explained: Sequence[tuple[str, Row, Judged]]) -> list[tuple[str, list[Row]]]:
     found: defaultdict[str, list[Row]] = defaultdict(list)
-    for row, _ in pairs:
-        if reason := _reason(row):
-            found[reason].append(row)
+    for why, row, _ in explained:
+        if why:
+            found[why].append(row)
     return sorted(found.items())
-
-
-def _reason(row: Row) -> str:
-    """Why a kind cannot be told from a log alone, where it cannot."""
-    return next((EXPLAINED[kind] for kind in row["mutators"] if kind in EXPLAINED), "")
 
 
 def _numbers(rows: Sequence[Row]) -> str:

@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.calibrate.engine_sample import TRUTH, evidence
-from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of
+from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments_of, signal
 
 from hfanalysis.calibrate.evidence import Evidence
+from hfanalysis.calibrate.measured_pressures import read_at
 from hfanalysis.calibrate.regression import fit, law_at, result
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.products.calibration import TankConstants
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.noise import Noise
 from hfanalysis.units import Value
 
 NOISE, BURN_TIME = 0.05e5, 0.1
@@ -64,10 +66,10 @@ def with_sensors(log: TestLog, accuracy: float, zeroed: bool) -> TestLog:
     return replace(log, channels={n: replace(c, **change) for n, c in log.channels.items()})
 
 
-def test_a_zero_at_ambient_takes_away_three_quarters_of_what_a_sensor_may_be_off_by(burn: Trial) -> None:
-    """The rest is its error of span: sensors without a zero that are four times as accurate are as good."""
+def test_a_zero_at_ambient_takes_away_half_of_a_sensors_variance(burn: Trial) -> None:
+    """The rest is its error of span: sensors without a zero that are the root of 2 better are as good."""
     log = log_of(burn, white=100.0)
-    zeroed, better = (calibrated(with_sensors(log, a, z), burn) for a, z in ((8e4, True), (2e4, False)))
+    zeroed, better = (calibrated(with_sensors(log, a, z), burn) for a, z in ((8e4, True), (8e4 / np.sqrt(2.0), False)))
     for name in ("C_i", "m", "K_loss", "p_loss_liquid", "vapor_mass_at_t_v"):
         assert zeroed.quantities[name].std == pytest.approx(better.quantities[name].std, rel=0.03), name
 
@@ -94,3 +96,18 @@ def test_without_nitrogen_a_tank_that_lost_two_fifths_of_its_pressure_tells_m(fa
     assert (m.value is not None) is known
     if known:
         assert m.value == pytest.approx(test.stand.m, rel=0.02)
+
+
+@pytest.mark.parametrize("white", [1e3, 2e4, 6e4])
+def test_a_pressure_at_a_corner_is_read_the_same_way_whatever_the_noise(white: float) -> None:
+    """A curve laid smoothly through a corner that the noise hides reads it low."""
+    time = np.arange(-0.4, 0.4, 0.02)
+    corner = 33e5 - 2e5 * time - 5e5 * np.maximum(time, 0.0)
+    drawn = np.random.default_rng(3).standard_normal((60, time.size))
+    noise = Noise(white, 0.0, 0.02)
+    read = [read_at(signal("p_tank", time, corner + white * z), 0.0, 0.4, 0.4, breaks=True) for z in drawn]
+    errors = np.array([one.value - 33e5 for one in read])
+    std = noise.std_of(read[0].weights, read[0].time)
+    assert abs(errors.mean()) < 3.0 * std / np.sqrt(60)
+    assert errors.std() == pytest.approx(std, rel=0.3)
+    assert read_at(signal("p_tank", time, corner), 0.0, 0.4, 0.4, breaks=False).value < 33e5 - 1e4

@@ -118,6 +118,10 @@ def test_a_vapor_phase_of_milliseconds_does_not_tell_m() -> None:
     assert "0.004 s" in reason
 
 
+def test_a_vapor_phase_of_a_few_samples_does_not_tell_m() -> None:
+    assert "samples of p_tank: too little to tell m" in refused(calibrated(fire(Stand(vapor_time=0.5), rate=10.0)), "m")
+
+
 def test_a_tank_pressure_that_rises_tells_no_m(burn: Trial) -> None:
     rising = np.where(burn.time > burn.t_v, burn.p_v + 1e5 * (burn.time - burn.t_v), burn.values["p_tank"])
     assert "does not fall over the vapor phase" in refused(calibrated(with_values(burn, p_tank=rising)), "m")

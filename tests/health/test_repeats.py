@@ -59,6 +59,15 @@ def test_quiet_time_that_was_pasted_is_no_buffer(tmp_path: Path) -> None:
     assert judged(tmp_path, columns).warnings == ()
 
 
+def test_quiet_rows_written_over_an_opening_are_a_buffer(tmp_path: Path) -> None:
+    """The fire would begin where they end, and every time would count from there."""
+    columns = fire.columns()
+    first = int(np.searchsorted(columns["time"], -0.5))
+    for name in NAMES:
+        columns[name][first : first + 150] = columns[name][first - 150 : first]
+    assert ("repeated", "unusable") in kinds(judged(tmp_path, columns), "p_tank")
+
+
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("samples", [17, 400, None])
 def test_a_channel_that_freezes_in_the_burn_is_stuck(tmp_path: Path, name: str, samples: int | None) -> None:

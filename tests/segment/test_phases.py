@@ -108,11 +108,18 @@ def test_the_engineers_instant_wins_and_what_was_found_is_shown(burn: Trial) -> 
     assert segments.found_where_engineer_set["t_v"] == pytest.approx(burn.t_v, abs=0.02)
     (note,) = (n for n in segments.notes if n.startswith("t_v is"))
     assert note.startswith("t_v is set by the engineer at 5.000 s; the search finds 5.7")
+    assert any("t_v is set by the engineer at 5.000 s, but the log shows it at 5.7" in w for w in segments.warnings)
+
+
+def test_an_instant_that_the_log_agrees_with_is_no_warning(burn: Trial) -> None:
+    segments = found_in(burn, segments={"t_v": Value(burn.t_v), "t_open": Value(T_OPEN)})
+    assert not [words for words in segments.warnings if "set by the engineer" in words]
 
 
 def test_the_engineers_opening_moves_the_origin(burn: Trial) -> None:
     segments = found_in(burn, segments={"t_open": Value(T_OPEN - 0.2)})
     assert segments.t_open.value == T_OPEN - 0.2
+    assert any(words.startswith("t_open is set by the engineer") for words in segments.warnings)
     assert segments.engineer == ("t_open",)
     assert segments.time("t_v") == pytest.approx(burn.t_v + 0.2, abs=0.02)
 

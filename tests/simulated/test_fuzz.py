@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from benchmarks.fuzz import cases, document, formats
+from benchmarks.fuzz.explained import REASONS, reason
 from benchmarks.fuzz.judge import judge
 from benchmarks.fuzz.mutators import UNITS
 
@@ -91,3 +92,21 @@ def test_a_number_that_moved_has_to_say_why(row: dict[str, Any], moved: tuple[st
 )
 def test_how_a_case_ended(change: dict[str, Any], end: str) -> None:
     assert judge(spoilt(0.29) | change, BASE).end == end
+
+
+@pytest.mark.parametrize(
+    ("number", "mutators", "hit", "why"),
+    [
+        (212, ["clock: other pace"], [], "pace"),
+        (106, ["values: scale"], [], "gain"),
+        (318, ["values: drift"], [], "drift"),
+        (107, ["toml: statement added"], ["model", "properties"], "table"),
+        (212, ["clock: other pace", "values: scale"], [], None),
+        (281, ["toml: statement added"], ["segments", "t_purge"], None),
+        (262, ["rows: every nth"], [], None),
+    ],
+)
+def test_what_no_log_can_tell_has_its_reason(number: int, mutators: list[str], hit: list[str], why: str | None) -> None:
+    """By the size of what was done: these clocks and gauges are off by less than an engine's own efficiencies."""
+    row = {"number": number, "mutators": mutators, "hit": hit}
+    assert reason(row, 4) == (REASONS[why] if why else "")

@@ -17,10 +17,6 @@ from hfanalysis.record.signals import Signal, live_signals
 from hfanalysis.segment.breaks import kink
 from hfanalysis.thermo.saturation import Saturation
 
-BREAK = 3.0
-"""Standard deviations by which the slopes on both sides of an instant must differ to count as a break. Evidence:
-reading through a break only where there is one halved the noise in m."""
-
 PRESSURES = ("p_tank", "p_run", "p_chamber", "p_purge")
 READING_POINTS = 150
 """Block means over the window of a reading: few enough for a full covariance."""
@@ -112,21 +108,22 @@ class PressureReading:
     time: Array
 
 
-def read_at_break(signal: Signal, noise: Noise, instant: float, before: float, after: float) -> PressureReading:
-    """A signal at an ``instant`` [s] where its slope may break, from smooth curves over ``before`` and ``after`` [s].
+def read_at(signal: Signal, instant: float, before: float, after: float, breaks: bool) -> PressureReading:
+    """A signal at an ``instant`` [s] from smooth curves over ``before`` and ``after`` [s].
 
-    Where the slopes on both sides do not differ beyond what the noise does, one cubic through both reads better.
+    ``breaks``: its slope may change there at once, as it does where the liquid ends or nitrogen enters. What is known
+    to happen decides, not whether the noise lets it be seen: where that decided, m jumped by two deviations between
+    logs that differed in their noise alone.
     """
     window = signal.between(instant - before, instant + after).reduced((before + after) / READING_POINTS)
     if window.time.size < 8:
         nearest = np.array([float(np.interp(instant, signal.time, signal.value))])
         return PressureReading(float(nearest[0]), 0.0, np.ones(1), np.array([instant]))
-    weights = np.linalg.pinv(kink(order=2)(window.time, instant), rcond=1e-9)
-    beta = weights @ window.value
-    if abs(beta[3] - beta[1]) > BREAK * noise.std_of(weights[3] - weights[1], window.time):
-        return PressureReading(float(beta[0]), 0.5 * float(beta[1] + beta[3]), weights[0], window.time)
-    weights = np.linalg.pinv(np.vander(window.time - instant, 4, increasing=True), rcond=1e-9)
-    return PressureReading(float(weights[0] @ window.value), float(weights[1] @ window.value), weights[0], window.time)
+    x = window.time - instant
+    columns = kink(order=2)(window.time, instant) if breaks else np.vander(x, 4, increasing=True)
+    weights = np.linalg.pinv(columns, rcond=1e-9)
+    slopes = weights[[1, 3] if breaks else [1]] @ window.value
+    return PressureReading(float(weights[0] @ window.value), float(slopes.mean()), weights[0], window.time)
 
 
 def quiet_noises(log: TestLog, segments: Segments) -> dict[str, Noise]:

@@ -18,6 +18,7 @@ from hfanalysis.flight.ascent import LIFT_OFF, THRUST_BIAS, THRUST_DRIFT, THRUST
 from hfanalysis.flight.curve import Curve
 from hfanalysis.flight.descent import Leg, descend, fall
 from hfanalysis.measured_flight import stability
+from hfanalysis.measured_flight.budget import apogee_budget
 from hfanalysis.measured_flight.firing import Firing
 from hfanalysis.measured_flight.uncertainty import (
     DrawnFlights,
@@ -30,6 +31,7 @@ from hfanalysis.measured_flight.uncertainty import (
     spread_of,
 )
 from hfanalysis.products import flight as products
+from hfanalysis.products.budget import Budget
 from hfanalysis.products.hdf5 import created
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.rocket import Rocket
@@ -57,6 +59,7 @@ class MeasuredFlight:
     impulse: Quantity
     as_measured: Quantity
     covers: str
+    budget: Budget | None = None
 
 
 def fly_measured(
@@ -79,7 +82,8 @@ def fly_measured(
     spread = disperse(firing, drawn, 1.25 * flown.end[0], progress)
     given, covers = inputs(firing, rocket, shots), band_covers(firing, rocket, shots)
     impulse, measured = _impulse(firing, flown, drawn), _as_measured(firing, drawn)
-    return MeasuredFlight(firing, flown, spread, given, samples, seed, impulse, measured, covers)
+    made = apogee_budget(drawn, spread.results, len(firing.curves), shots)
+    return MeasuredFlight(firing, flown, spread, given, samples, seed, impulse, measured, covers, made)
 
 
 AS_MEASURED_FLIGHTS = 1000
@@ -137,6 +141,7 @@ def product(launched: MeasuredFlight, rocket: Rocket, stable: stability.Stabilit
         "masses": dict(firing.propellant.how),
         "dispersion": products.Dispersion(flights=launched.samples, seed=launched.seed, inputs=drawn),
         "stability": stability.product(stable),
+        "budget": {"apogee": launched.budget} if launched.budget is not None else {},
         "notes": firing.notes,
     }
     return products.Flight.from_json({**flown, **_on_pad(launched), **about})

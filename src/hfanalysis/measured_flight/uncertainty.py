@@ -104,8 +104,8 @@ def _inputs(firing: Firing, rocket: Rocket) -> dict[str, Input]:
     speed = _wind(wind)
     return {
         "thrust_gain": Input(thrust.gain_std, "", False, "relative, of the load cell"),
-        "thrust_bias": Input(thrust.bias_std, "N", False, "of the load cell's zero"),
-        "thrust_drift": Input(thrust.drift_std, "N", False, "of the zero's change over the burn"),
+        "thrust_bias": Input(thrust.bias_std, "N", False, "of the load cell's zero and its drift's course"),
+        "thrust_drift": Input(thrust.drift_std, "N", False, "of drift left in, at the end of the burn"),
         "dry_mass": Input(*_stated(rocket.dry_mass, DRY_MASS_UNSTATED * rocket.dry_mass.value, "kg"), "of the rocket"),
         "propellant": Input(load.loaded_std, "kg", load.stated_std, "oxidizer and fuel loaded"),
         "drag": Input(drag or DRAG_UNSTATED, "", drag is not None, "relative, coefficient and air density together"),

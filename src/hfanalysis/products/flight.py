@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from hfanalysis.products.budget import MADE_OF, Budget
 from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings
 from hfanalysis.quantity import Quantity
 
@@ -127,6 +129,7 @@ class Flight(FlightNumbers, Product):
     masses: Annotated[dict[str, str], Is("how the masses over time were found, by propellant")]
     dispersion: Annotated[Dispersion, Is("what the bands come from")]
     stability: Annotated[Stability, Is("static margin")]
+    budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     notes: Notes
     effects: Adopted = ()
     warnings: Warnings = ()

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import PlainValidator
 
 from hfanalysis.record.schema import (
+    ANY,
     NOT_NEGATIVE,
     POSITIVE,
     Altitude,
@@ -197,6 +198,14 @@ class Site(Section):
     ambient_pressure: Annotated[Value, quantity("pressure", _AMBIENT)] | None = None
     launch_temperature: Annotated[Value, quantity("temperature", _LAUNCH)] | None = None
     launch_pressure: Annotated[Value, quantity("pressure", _AMBIENT)] | None = None
+
+
+@section
+class StandSection(Section):
+    """[stand]: how the engine stands, and the force [N] with which a full feed line pushes on the thrust cell."""
+
+    orientation: Literal["horizontal", "vertical", "nozzle up", "nozzle down"] = "horizontal"
+    feed_line_tare: Annotated[Value, quantity("force", ANY)] | None = None
 
 
 @section

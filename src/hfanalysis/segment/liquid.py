@@ -104,8 +104,8 @@ def find_liquid_end(
         return LiquidEnd(*anywhere_in(rough, 0.0, start, unseen_to), ("p_tank",), {})
     half = min(max(0.3, 15.0 * tank.step), max(0.8 * rough, 6.0 * tank.step))
     reach = max(0.12, 4.0 * tank.step)
-    knee = refine_knee(tank, rough, half + reach, half + reach, reach, noise)
-    if knee is None:
+    knee = refine_knee(tank, rough, min(half + reach, rough), half + reach, reach, noise)
+    if knee is None or not _steeper(tank, knee.time, half):
         return LiquidEnd(rough, 0.5 * reach, ("p_tank",), {})
     dated = _dated_by_steps(signals, knee, half)
     if dated.channels != ("p_tank",):
@@ -170,6 +170,12 @@ def _rough_knee(tank: Signal, end: float, expected: float | None, impossible: Ca
         if not impossible(float(times[k])):
             return float(times[k])
     return None
+
+
+def _steeper(tank: Signal, instant: float, width: float) -> bool:
+    """Whether the pressure falls faster after an instant [s] than before it, over ``width`` [s] each: in a slow log the
+    best corner near a knee may be the next one, where nitrogen holds the pressure up."""
+    return _slope(tank, instant - width, instant) > _slope(tank, instant, instant + width)
 
 
 def _beside_holes(times: Array, holes: Array) -> tuple[Array, Array]:

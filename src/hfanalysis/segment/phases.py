@@ -14,16 +14,26 @@ from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, live_signals
 from hfanalysis.segment import chamber_gauge
 from hfanalysis.segment.dry_tank import liquid_end
-from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_unchoking, pulses_after
+from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_low_pressure, pulses_after
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.fuel import FuelEnd, find_fuel_end
 from hfanalysis.segment.fuel_at_once import BLURRED
 from hfanalysis.segment.kind import Kind, Known, recognize
 from hfanalysis.segment.purge import find_nitrogen
 from hfanalysis.segment.purge_by_tank import find_nitrogen_by_tank
-from hfanalysis.segment.sanity import BESIDE_HOLE, SHOWN_BY, anywhere_in, beside_hole, lies_in_hole, strange_tank
+from hfanalysis.segment.sanity import (
+    BESIDE_HOLE,
+    BY_HAND,
+    HAND_STD,
+    SHOWN_BY,
+    anywhere_in,
+    beside_hole,
+    contradicted,
+    lies_in_hole,
+    strange_tank,
+)
 from hfanalysis.segment.supercharge import supercharge
-from hfanalysis.segment.taken import BY_HAND, TakenFiring, check_stated
+from hfanalysis.segment.taken import TakenFiring, check_stated
 from hfanalysis.sentences import text
 
 FUEL_LEFT = 0.05
@@ -114,7 +124,7 @@ class _Search:
         self._take("t_purge", self._nitrogen())
         kind = self._kind()
         self._note_supercharge()
-        self._take("t_end", self._unchoking(kind))
+        self._take("t_end", self._low_pressure(kind))
         self._take_fuel(kind)
         self._check_order()
         return kind
@@ -126,12 +136,13 @@ class _Search:
                 Quantity.absent(self._why_not(name, found)) if isinstance(found, str) else self._seconds(name, *found)
             )
             return
-        self.events[name] = Quantity(stated.value, "s", stated.std or 1e-3, why=BY_HAND)
+        self.events[name] = Quantity(stated.value, "s", stated.std or HAND_STD, why=BY_HAND)
         if isinstance(found, str):
             self.notes.append(f"{name} is {BY_HAND} at {stated.value:.3f} s; the search found none: {found}")
             return
         self.found[name] = found[0]
         self.notes.append(f"{name} is {BY_HAND} at {stated.value:.3f} s; the search finds {found[0]:.3f} s")
+        self.warnings += contradicted(name, stated, *found)
 
     def _seconds(self, name: str, time: float, std: float) -> Quantity:
         """An event's instant, no surer than the hole of its channel that it was found in or beside."""
@@ -174,7 +185,7 @@ class _Search:
             return find_nitrogen_by_tank(self.signals["p_tank"], self._time("t_v"))
         return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._sharp("t_v"))
 
-    def _unchoking(self, kind: Kind) -> tuple[float, float] | str:
+    def _low_pressure(self, kind: Kind) -> tuple[float, float] | str:
         if "p_chamber" not in self.signals:
             return "the log has no p_chamber"
         if kind.name != "hot_fire":
@@ -182,7 +193,7 @@ class _Search:
         chamber, offset = self.signals["p_chamber"], self.offset
         bias = chamber_gauge.limit_std(self.definition, self.zeros.get("p_chamber", 0.0))
         noise = chamber_gauge.noise(self.signals)
-        found = find_unchoking(chamber, self.ambient, self._time("t_feed") or 0.3, offset, bias, noise)
+        found = find_low_pressure(chamber, self.ambient, self._time("t_feed") or 0.3, offset, bias, noise)
         if not isinstance(found, str):
             for start, end in pulses_after(chamber, CRITICAL_RATIO * self.ambient + offset, found[0]):
                 self.notes.append(

@@ -16,6 +16,9 @@ SMALLEST_SAG = 0.01
 """The line has to lose at least this part of its pressure before a sag is believed. Evidence: test_events.py: a line
 that keeps its pressure lets no nitrogen in."""
 
+FINEST = 0.02
+"""Block means of the line over this time [s], unless noise asks for longer ones."""
+
 SAG_LASTS = 0.4
 """Seconds over which a sag must go on. Evidence: test_events.py: valve hammer is no nitrogen."""
 
@@ -25,6 +28,13 @@ SAG_SHARES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.18)
 
 WORSE = 3.0
 """Times by which a date from less of the sag may be less sure: a narrow window is preferred for what it leaves out."""
+
+AT_END = 0.7
+"""Part of the reach beyond which a kink counts as at its end: it lies further off. Evidence: noise ten times a sensor's
+hides a sag for up to two seconds, and t_purge was up to eleven deviations late (test_events.py)."""
+
+MOVES = 30
+"""How often at most the search moves on [-]; by AT_END of the reach each."""
 
 KNEE_AWAY = 0.05
 """Seconds between two corners of the line from which on they are told apart. Evidence: the corner at the end of the
@@ -44,7 +54,7 @@ def find_nitrogen(
     if quiet.time.size < 8:
         return "the log has no quiet purge line before the opening"
     level = float(np.median(quiet.value))
-    coarse = purge.between(-1.0, end).reduced(max(0.02, purge.step))
+    coarse = _quiet_enough(purge.between(-1.0, end), SMALLEST_SAG * abs(level))
     rough = _start_of_sag(coarse, level, max(6.0 * coarse.noise, SMALLEST_SAG * abs(level)))
     if rough is None:
         return "the purge line keeps its pressure to the end of the log"
@@ -52,11 +62,24 @@ def find_nitrogen(
         return obstacle
     window = max(0.35, 15.0 * purge.step)
     reach = max(0.2, 6.0 * purge.step)
-    noise = Noise.of(purge, purge.between(-np.inf, rough - reach))
-    found = _kink(purge, rough, window + reach, reach, noise)
+    rough, found, noise = _within_reach(purge, rough, window, reach)
     if found is not None and knee is not None and found.time < knee < rough + window + reach:
         found = _before_knee(purge, found, knee, window, reach, noise)
     return (found.time, found.std) if found else (rough, reach)
+
+
+def _within_reach(purge: Signal, rough: float, window: float, reach: float) -> tuple[float, Break | None, Noise]:
+    """The kink, the instant [s] it was looked for around, and the line's noise.
+
+    A kink at the end of the reach is looked for again from there.
+    """
+    for _ in range(MOVES):
+        noise = Noise.of(purge, purge.between(-np.inf, rough - reach))
+        found = _kink(purge, rough, window + reach, reach, noise)
+        if found is None or abs(found.time - rough) < AT_END * reach:
+            break
+        rough = found.time
+    return rough, found, noise
 
 
 def _kink(purge: Signal, rough: float, window: float, reach: float, noise: Noise) -> Break | None:
@@ -99,6 +122,14 @@ def _before_knee(purge: Signal, found: Break, knee: float, window: float, reach:
             break
         found = again
     return found
+
+
+def _quiet_enough(purge: Signal, drop: float) -> Signal:
+    """Block means as long as it takes for the noise not to hide a ``drop`` [Pa], within half of a sag."""
+    width = max(FINEST, purge.step)
+    while 6.0 * (coarse := purge.reduced(width)).noise > drop and width < 0.5 * SAG_LASTS:
+        width *= 2.0
+    return coarse
 
 
 def _start_of_sag(coarse: Signal, level: float, drop: float) -> float | None:

@@ -1,4 +1,5 @@
-"""Whether what was found can be so: events in holes of the log, and a tank's pressure that no nitrous oxide has."""
+"""Whether what was found or set can be so: events in holes of the log, or set where it shows none; a tank's pressure
+that no nitrous oxide has."""
 
 from __future__ import annotations
 
@@ -7,9 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from hfanalysis.quantity import NORMAL_95
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.opening import Opening
 from hfanalysis.sentences import said, text
+from hfanalysis.units import Value
 
 SHOWN_BY = {
     "t_feed": "p_run", "t_v": "p_tank", "t_purge": "p_purge", "t_fuel_out": "p_chamber", "t_fuel_gone": "p_chamber",
@@ -19,6 +22,10 @@ SHOWN_BY = {
 
 BESIDE_HOLE = 0.1
 """[s] before or after a hole of that channel in which an event found may be the hole's edge (test_holes.py)."""
+
+BY_HAND = "set by the engineer"
+HAND_STD = 1e-3
+"""Standard deviation of an instant set by hand without one [s]: it is worked with as it stands."""
 
 IN_TANKS = (8e5, 130e5)
 """Pressure [Pa] of any tank of nitrous oxide at rest, supercharged or not; another one is another unit's. Source: it
@@ -64,3 +71,14 @@ def strange_tank(tank: Signal | None) -> list[str]:
             most=said(IN_TANKS[1], "bar", ".0f"),
         )
     ]
+
+
+def contradicted(name: str, stated: Value, found: float, std: float) -> list[str]:
+    """The warning where an instant set by hand and the one ``found`` [s] lie apart by more than both intervals."""
+    if abs(stated.value - found) <= NORMAL_95 * ((stated.std or HAND_STD) + std):
+        return []
+    words = (
+        "{name} is {hand} at {stated:.3f} s, but the log shows it at {found:.3f} +/- {std:.3f} s: what rests on {name} "
+        "is worth what the statement is"
+    )
+    return [text(words, name=name, hand=BY_HAND, stated=stated.value, found=found, std=std)]

@@ -13,8 +13,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.firings import Flow, find_flows, largest
 from hfanalysis.segment.opening import Opening, find_opening, under_way
-
-BY_HAND = "set by the engineer"
+from hfanalysis.segment.sanity import BY_HAND, HAND_STD, contradicted
 
 
 class TakenFiring:
@@ -28,6 +27,7 @@ class TakenFiring:
         self.opened = self._openings()
         self.chosen = self._chosen(number)
         self.said: list[str] = self._several(number) if len(self.opened) > 1 else []
+        self.said += self._against_search()
         self.taken: Opening | None = self.opened[self.chosen][1] if self.opened else None
         flow = self.opened[self.chosen][0] if self.opened else Flow(0.0, 0.0, -np.inf, np.inf)
         self.cut = {name: part for name, s in signals.items() if (part := _cut(s, flow)).time.size > 7}
@@ -38,7 +38,7 @@ class TakenFiring:
         flows = find_flows(self.signals)
         whole = Flow(-np.inf, np.inf, -np.inf, np.inf)
         if stated is not None:
-            by_hand = Opening(stated.value, stated.std or 1e-3, (BY_HAND,))
+            by_hand = Opening(stated.value, stated.std or HAND_STD, (BY_HAND,))
             own = [flow for flow in flows if flow.since <= stated.value < flow.until] if len(flows) > 1 else [whole]
             others = [] if len(flows) < 2 else [(f, o) for f in flows if f not in own and (o := self._opening(f))]
             return sorted([*others, *((flow, by_hand) for flow in own)], key=lambda pair: pair[1].time)
@@ -52,6 +52,12 @@ class TakenFiring:
             )
         opening = find_opening(self.signals)
         return [] if opening is None else [(whole, opening)]
+
+    def _against_search(self) -> list[str]:
+        """What the log says against an opening that was set by hand; of several flows nobody knows which was meant."""
+        stated = self.definition.segments.get("t_open")
+        found = find_opening(self.signals) if stated is not None and len(self.opened) == 1 else None
+        return contradicted("t_open", stated, found.time, found.std) if stated is not None and found else []
 
     def _opening(self, flow: Flow) -> Opening | None:
         opening = find_opening({name: _cut(s, flow) for name, s in self.signals.items()})

@@ -78,7 +78,15 @@ def _clipped(seen: Seen, time: Array, values: Array) -> list[Finding]:
         # at rest a channel may well stand at its lower end: only what is cut off of the firing matters
         if sign > 0.0 or _in_the_middle(seen, time, values == -rail):
             found.append(_finding(seen, time, values, sign * rail, side))
-    return found
+    return found or _held_up(seen, time, values)
+
+
+def _held_up(seen: Seen, time: Array, values: Array) -> list[Finding]:
+    """Nothing is seen of what empties below a level at which it never rests, though its noise is seen above."""
+    rail = _rail(-values)
+    if rail is None or not _of_no_rest(seen, -rail) or not _noisy(seen, values, -rail):
+        return []
+    return [_finding(seen, time, values, -rail, "lowest")]
 
 
 def _rail(values: Array) -> float | None:
@@ -101,6 +109,10 @@ def _shows_noise(seen: Seen, values: Array, rail: float) -> bool:
     rest = seen.coarse.rest
     if rest is not None and abs(rail - rest.value) > max(3.0 * seen.channel.accuracy, 10.0 * seen.coarse.quantum):
         return True
+    return _noisy(seen, values, rail)
+
+
+def _noisy(seen: Seen, values: Array, rail: float) -> bool:
     return sample_noise(values[values != rail]) >= NOISY * seen.coarse.quantum
 
 
@@ -110,6 +122,13 @@ def _in_the_middle(seen: Seen, time: Array, at: Array) -> bool:
     start, end = seen.fire
     middle = (time > start + 0.25 * (end - start)) & (time < end - 0.25 * (end - start))
     return bool(middle.any()) and float(np.mean(at[middle])) > 1.0 / 3.0
+
+
+def _of_no_rest(seen: Seen, rail: float) -> bool:
+    """Whether a channel stands at a level where it rests neither before the firing nor, emptied, after it."""
+    rest, off = seen.coarse.rest, max(3.0 * seen.channel.accuracy, 10.0 * seen.coarse.quantum)
+    empty = (0.0, seen.ambient) if seen.dimension == "pressure" else (0.0,)
+    return rest is not None and all(abs(rail - level) > off for level in (rest.value, *empty))
 
 
 def _finding(seen: Seen, time: Array, values: Array, rail: float, side: str) -> Finding:

@@ -20,6 +20,8 @@ SHORTEST = 3
 """Rows that a repeated block has at least [rows]."""
 LAGS = 8
 """Lags that are looked at. Evidence: a log has few blocks of which another is a copy."""
+RIGHT_AFTER = 8
+"""Rows after a block of quiet ones in which a firing under way was opened in it [rows]."""
 AROUND = 32
 """Rows on either side of held ones that say how often rows repeat there [rows]."""
 AWAY = 0.1
@@ -90,10 +92,12 @@ def _at(rows: NDArray[np.uint64], lag: int) -> Iterator[Run]:
 
 
 def _live(test: SeenTest, time: Array, run: Run) -> bool:
-    """Whether anything happens in the rows. Quiet time that comes twice was pasted in to fill up a log, as people do;
-    no number rests on it."""
+    """Whether anything happens in the rows, or right after them. Quiet time that comes twice was pasted in to fill up a
+    log, as people do; no number rests on it where it does not hide an opening."""
     asked = [test.channels[name] for name in FIRING if name in test.channels]
-    return any(_away(seen, float(time[run.first]), float(time[run.last])) for seen in asked[:2])
+    spans = [(run.first, run.last), (run.last + 1, run.last + RIGHT_AFTER)]
+    inside = [(float(time[a]), float(time[min(b, len(time) - 1)])) for a, b in spans if a < len(time)]
+    return any(_away(seen, *span) for seen in asked[:2] for span in inside)
 
 
 def _away(seen: Seen, start: float, end: float) -> bool:
