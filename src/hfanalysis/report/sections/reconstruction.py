@@ -41,11 +41,12 @@ def render(material: Material) -> Iterator[Block]:
         yield html.paragraph(f"It is not the only course: {found.other}.")
     if found.told is not None and found.told < 1.0:
         yield html.paragraph(
-            f"In {tidy(100.0 * (1.0 - found.told), 2)} % of the window a per cent of chamber pressure is ten per cent "
-            "of O/F or more, or two courses fit: nothing is drawn there."
+            f"In {tidy(100.0 * (1.0 - found.told), 2)} % of the window O/F is not told, and not drawn: a per cent of "
+            "chamber pressure is ten per cent of O/F or more, two courses fit, or the band is wider than a factor of 1.5."
         )
     table = material.table("performance", "reconstructed")
-    for name, title, axis, style in _CHARTS:
+    # an efficiency that was assumed, and a throat that nobody measured, are no findings to draw
+    for name, title, axis, style in _CHARTS if found.variant != "a" else _CHARTS[:2]:
         yield _chart(material, table, name, title, axis, style)
     yield _law(found, material.get(Calibration))
 
