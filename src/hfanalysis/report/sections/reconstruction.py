@@ -42,7 +42,7 @@ def render(material: Material) -> Iterator[Block]:
     if found.told is not None and found.told < 1.0:
         yield html.paragraph(
             f"In {tidy(100.0 * (1.0 - found.told), 2)} % of the window O/F is not told, and not drawn: a per cent of "
-            "chamber pressure is ten per cent of O/F or more, two courses fit, or the band is wider than a factor of 1.5."
+            "chamber pressure is ten per cent of O/F or more, two courses fit, or the band is wider than 1.5 times."
         )
     table = material.table("performance", "reconstructed")
     # an efficiency that was assumed, and a throat that nobody measured, are no findings to draw
