@@ -132,3 +132,12 @@ def test_the_noise_of_a_sample_does_not_see_slow_changes_or_single_spikes() -> N
     value = WHITE * np.random.default_rng(3).standard_normal(time.size) + 1e5 * np.sin(time)
     value[::500] += 50.0 * WHITE
     assert sample_noise(value) == pytest.approx(WHITE, rel=0.03)
+
+
+def test_a_slow_loggers_short_rest_shows_the_wander_as_well() -> None:
+    """Sixty samples: too few for the usual blocks, and a wander of nothing made every interval too narrow."""
+    found = []
+    for seed in range(40):
+        rest = signal("p_tank", 0.05 * np.arange(60), noise(np.random.default_rng(seed), 60, 20.0, 0.5, 1.0))
+        found.append(Noise.of(rest, rest).flicker)
+    assert 0.5 < np.mean(found) < 2.5

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +73,7 @@ class Trial:
     mass: Array = field(repr=False)
 
 
+@cache
 def fire(stand: Stand | None = None, rate: float = 1000.0, before: float = 3.0, after: float = 3.0) -> Trial:
     """A test of this stand, without noise: quiet for ``before`` seconds and logged ``after`` seconds past t_purge."""
     s = stand or Stand()

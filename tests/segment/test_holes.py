@@ -71,3 +71,15 @@ def test_an_event_beside_a_hole_of_its_channel_is_unsure_and_one_far_from_it_is_
     assert near.events["t_v"].std == pytest.approx(0.25 / np.sqrt(12.0), rel=0.05)
     assert far.events["t_v"].std < 0.01
     assert far.events["t_v"].value == pytest.approx(t_v.value, abs=0.01)
+
+
+def test_a_liquid_that_ends_in_a_hole_of_the_tanks_pressure_ends_somewhere_in_it() -> None:
+    test = fire(rate=100.0)
+    log = log_of(test, white=5e3)
+    tank = log["p_tank"]
+    unseen = np.abs(tank.time - 100.0 - test.t_v + 0.2) < 0.5
+    flags = np.where(unseen, np.uint8(Flag.UNUSABLE), tank.flags)
+    found = find_phases(TestLog({**log.channels, "p_tank": replace(tank, flags=flags)}), definition())
+    assert abs(found.time("t_v") - test.t_v) < 1.96 * found.std("t_v")
+    assert found.std("t_v") == pytest.approx(1.0 / np.sqrt(12.0), rel=0.1)
+    assert any("t_v lies in a hole of p_tank" in text for text in found.warnings)

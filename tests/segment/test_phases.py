@@ -36,7 +36,7 @@ def filled(test: Trial, fill: float = 0.15) -> Trial:
 
 @pytest.fixture(scope="module")
 def burn() -> Trial:
-    return filled(fire(rate=500.0))
+    return filled(fire(rate=250.0))
 
 
 @pytest.fixture(scope="module")

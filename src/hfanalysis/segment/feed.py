@@ -47,7 +47,8 @@ def find_line_full(run: Signal, t_v: float) -> tuple[float, float] | str:
     error = float(np.sqrt((1.0 + FULL**2) * single**2 + noise.flicker * np.log(apart / width)))
     times = np.array([part.time[int(np.argmax(smooth >= min(one, top)))] for one in target + error * NODES])
     wider = BY_WIDTH * (width - RUN_SMOOTHING)
-    return float(times.mean()), float(np.linalg.norm([times.std(), wider, run.step / np.sqrt(12.0)]))
+    half = 0.5 * run.step  # the first sample above is as much late in the mean
+    return float(times.mean()) - half, float(np.linalg.norm([times.std(), wider, run.step / np.sqrt(12.0)]))
 
 
 def _largest_of(number: float) -> float:
