@@ -1,7 +1,7 @@
 """Start-up beside the bare import of the stack: `hfa calibrate` done anew and found fresh, and the quick look at the
 stand, each in a new process.
 
-Usage: startup.py [--test HF5] [--repeat 7]
+Usage: startup.py [--test HF5] [--repeat 7] [--against CHECKOUT]
 """
 
 from __future__ import annotations
@@ -27,11 +27,6 @@ AT_STAND = 3.0
 """Within which `hfa run TEST --quick` has answered [s]. Source: what was promised (docs/at-the-stand.md)."""
 
 
-STACK_THEN = 3.3
-"""Processor time of a calibration of HF5 done anew, over that of the stack's bare import [-], of which at most half is
-wanted; its channels' health is not counted. Evidence: git archive 347b1ac, measured by this file's `beside`."""
-
-
 def processor(command: Sequence[str]) -> float:
     """Processor time [s] of a command and of all it starts."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -40,18 +35,26 @@ def processor(command: Sequence[str]) -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def beside(calibrate: Sequence[str], log: Path, repeat: int) -> float:
-    """Processor time of a calibration done anew over that of the stack's import [-]: the median of pairs in turn.
+def beside(calibrate: Sequence[str], other: Sequence[str], log: Path, repeat: int) -> float:
+    """Processor time of a calibration done anew over that of another command [-]: the median of pairs in turn.
 
     ``log``: the run's own, which says how long the health took; that does not count.
     """
     ratios = []
     for _ in range(repeat):
-        stack, whole = processor([sys.executable, "-c", STACK]), processor([*calibrate, "--force"])
+        against, whole = processor(other), processor(calibrate)
         stages = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
         health = [stage["seconds"] for stage in stages if stage["stage"] == "health"][-1:]
-        ratios.append((whole - sum(health)) / stack)
+        ratios.append((whole - sum(health)) / against)
     return statistics.median(ratios)
+
+
+def elsewhere(checkout: Path, test: str, out: str) -> list[str]:
+    """The calibration done anew by the source of another checkout, warm."""
+    code = f"import sys; sys.path.insert(0, {str(checkout / 'src')!r}); from hfanalysis.cli import main; main()"
+    command = [sys.executable, "-c", code, "calibrate", test, "--out", str(Path(out) / "elsewhere"), "--force"]
+    processor(command)
+    return command
 
 
 def median_wall(command: Sequence[str], repeat: int) -> float:
@@ -76,6 +79,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--test", default="HF5")
     parser.add_argument("--repeat", type=int, default=7)
+    parser.add_argument(
+        "--against", type=Path, metavar="CHECKOUT", help="another checkout, to compare a calibration with"
+    )
     options = parser.parse_args()
     hfa = str(Path(sys.executable).with_name("hfa"))
     with tempfile.TemporaryDirectory() as out:
@@ -96,9 +102,11 @@ def main() -> None:
             print(f"  {name:<42} {took[name]:7.3f} s", flush=True)
         verdict = "within" if took[quick] <= AT_STAND else "NOT within"
         print(f"  the quick look: {verdict} {AT_STAND:g} s")
-        ratio = beside(calibrate, Path(out) / options.test / "run.log", options.repeat)
-        print(f"processor time of a calibration done anew, over that of the stack's import, in pairs: {ratio:.2f}")
-        print(f"  {ratio / STACK_THEN:.2f} of what it was at 347b1ac ({STACK_THEN:g}); at most 0.5 wanted")
+        other, what = [sys.executable, "-c", STACK], "the stack's import"
+        if options.against:
+            other, what = elsewhere(options.against, options.test, out), f"the one of {options.against}"
+        ratio = beside([*calibrate, "--force"], other, Path(out) / options.test / "run.log", options.repeat)
+        print(f"processor time of a calibration done anew, over that of {what}, in pairs: {ratio:.2f}")
         for name, arguments in (("redone", [*calibrate[1:], "--force"]), ("nothing changed", calibrate[1:])):
             print(f"  heavy libraries loaded, {name}: {', '.join(imported(arguments)) or 'none'}")
 

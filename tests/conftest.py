@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
 
+from hfanalysis.cli import COLLECTED_AFTER
+
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
+gc.set_threshold(COLLECTED_AFTER)
 
 LONGEST = (
     "acceptance/test_diagnosis.py",
@@ -25,8 +29,9 @@ LONGEST = (
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """These first, else as they come."""
+    """These first, else as they come. Modules and tests stay: no search for circles goes through them any more."""
     items.sort(key=lambda item: not item.path.as_posix().endswith(LONGEST))
+    gc.freeze()
 
 
 @pytest.fixture(autouse=True, scope="session")
