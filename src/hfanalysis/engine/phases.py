@@ -429,6 +429,31 @@ def advance(y: Array, s: Scratch) -> None:
     copy(s.out, s.start_out, s.out.size)
 
 
+@inner
+def up_to_event(
+    t: float, y: Array, h: float, liquid: bool, burning: bool, model: int, s: Scratch, dense: Array
+) -> tuple[int, float]:
+    """The first event in a step of ``h`` [s] from ``t`` on (-1: none), and the step that ends there [s]."""
+    arrive(t + h, liquid, burning, model, s, dense)
+    event, theta = first_event(t, y, h, dense, liquid, burning, model, s)
+    if theta < 1.0:
+        h *= theta
+        attempt(t, y, h, liquid, burning, model, s)
+        arrive(t + h, liquid, burning, model, s, dense)
+    return event, h
+
+
+@inner
+def leave(event: int, falling: bool, h: float, s: Scratch) -> None:
+    """Put an event behind that a step of ``h`` [s] has passed, or the same crossing would be found again.
+
+    Else the step was that much too short, for its interpolant errs: the crossing is still to come.
+    """
+    passed_by = s.before[event] < 0.0 if falling else s.before[event] > 0.0
+    if event >= CHOKING and (passed_by or h < FIRST_STEP):
+        s.before[event] = -1e-300 if falling else 1e-300
+
+
 @compiled(nogil=True)
 def integrate(
     y0: Array, longest: float, run_on: bool, rtol: float, scales: Array, m: Equations, liquid: bool, burning: bool
@@ -463,13 +488,8 @@ def integrate(
             continue
         if n == steps.times.shape[0]:
             steps = first(steps, n, 2 * n)
-        arrive(t + h, liquid, burning, model, s, steps.dense[n])
-        event, theta = first_event(t, y, h, steps.dense[n], liquid, burning, model, s)
         whole = h
-        if theta < 1.0:
-            h *= theta
-            attempt(t, y, h, liquid, burning, model, s)
-            arrive(t + h, liquid, burning, model, s, steps.dense[n])
+        event, h = up_to_event(t, y, h, liquid, burning, model, s, steps.dense[n])
         if event == GROUND:
             s.trial[eq.ALTITUDE] = m.c[eq.LAUNCH_ALTITUDE] - PAD  # by definition; the shortened step only comes near
         record(steps, n, t, y, h, liquid, burning, event, s)
@@ -488,10 +508,7 @@ def integrate(
             burning, happened[FUEL_OUT] = False, t
             ending = REACHED_END if run_on else BURNT_OUT
         s = enter(t, y, liquid, burning, model)
-        passed_by = s.before[event] < 0.0 if falling else s.before[event] > 0.0
-        if event >= CHOKING and (passed_by or h < FIRST_STEP):
-            s.before[event] = -1e-300 if falling else 1e-300  # or the same crossing would be found again
-        # else the step was that much too short, for its interpolant errs: the crossing is still to come
+        leave(event, falling, h, s)
         h = whole if event in (CHOKING, SHOCK) else min(whole, 10.0 * FIRST_STEP)
         old_error, rejected = 1.0, False
     return ending, first(steps, n, n), happened
