@@ -19,6 +19,7 @@ from simulated.engines import engine_on_stand
 from hfanalysis.arrays import Array
 from hfanalysis.engine.nozzle import mach_at_area, pressure_ratio
 from hfanalysis.engine.unsteady import Burn, Engine, burn
+from hfanalysis.inference.budget import Input
 from hfanalysis.products.validation import Efficiencies
 from hfanalysis.validate.efficiency import Ideal, Spread, efficiencies, ideal, means
 from hfanalysis.validate.flows import HISTORY_STEP, Flows
@@ -28,8 +29,8 @@ FIRE = Fire(4.4, 0.01, "simulated")
 STEADY = 0.4
 """[s] from which on means are taken: the chamber is filled."""
 
-SURE = Spread(0.002, 0.003, 0.002, 0.003)
-"""Relative deviations of gauge, throat, flow and cell [-] that the analysis is told."""
+SURE = Spread(pressure=0.002, throat=0.003, oxidizer=0.002, fuel=0.0, cell=(Input("load cell", 0.003),))
+"""Relative deviations of gauge, throat, flow of oxidizer and cell [-] that the analysis is told."""
 
 FRICTION = 0.003
 """Fanning's factor of the port's wall [-]. Source: turbulent pipes at a Reynolds number of 1e6."""
