@@ -82,7 +82,8 @@ def fly_measured(
     spread = disperse(firing, drawn, 1.25 * flown.end[0], progress)
     given, covers = inputs(firing, rocket, shots), band_covers(firing, rocket, shots)
     impulse, measured = _impulse(firing, flown, drawn), _as_measured(firing, drawn)
-    made = apogee_budget(drawn, spread.results, len(firing.curves), shots)
+    scattered = bool(shots or rocket.shot_to_shot)
+    made = apogee_budget(drawn, spread.results, len(firing.curves), scattered)
     return MeasuredFlight(firing, flown, spread, given, samples, seed, impulse, measured, covers, made)
 
 
