@@ -1,7 +1,8 @@
 """python -m benchmarks.fuzz run [--n 10000] [--jobs 2] [--seed 1] [--again] | table [--write PAGE] | show NUMBER FOLDER
 
 Cases that have been run are kept in ``--out`` (.cache/fuzz), each with the digest of the code that ran it; a later run
-goes on from there. ``--again`` runs those of another code anew once all have been run: first what came out wrong.
+goes on from there. ``--again`` runs those of another code anew: what came out wrong first, the
+others once all have been run.
 """
 
 from __future__ import annotations
@@ -19,9 +20,8 @@ from benchmarks.studies import one_thread
 
 one_thread()
 
-from benchmarks.fuzz import cases, formats, page  # noqa: E402
+from benchmarks.fuzz import cases, page  # noqa: E402
 from benchmarks.fuzz.judge import Judged, judge  # noqa: E402
-from benchmarks.fuzz.table import STANDS  # noqa: E402
 
 DEFECTS = ("traceback", "hang", "killed")
 ROOT = Path(__file__).resolve().parents[2]
@@ -83,26 +83,26 @@ def _work(options: argparse.Namespace) -> None:
 
     mine = code()
     warm()
-    bases = [(f"{stand}.{format}", cases.unspoilt(stand, format)) for stand in STANDS for format in formats.NAMES]
     have = {row["base"] for row in _rows(options) if row.get("code") == mine and "base" in row}
-    own = [(i, name, case) for i, (name, case) in enumerate(bases, 1) if i % options.jobs == options.number]
     with (options.out / f"{options.seed}-{options.number}-of-{options.jobs}.jsonl").open("a") as file:
 
         def keep(row: dict[str, Any]) -> None:
             file.write(json.dumps({**row, "code": mine}) + "\n")
             file.flush()
 
-        for i, name, case in own:
-            if name not in have:
-                keep({"number": -i, "base": name, **attempt(case)})
         for number in _to_run(options, mine):
             case = cases.build(number, options.seed)
+            base = f"{case.stand}.{case.format}"
+            if base not in have:
+                have.add(base)
+                keep({"number": -1, "base": base, **attempt(cases.unspoilt(case.stand, case.format))})
             about = {"stand": case.stand, "format": case.format, "mutators": case.mutators, "hit": sorted(case.hit)}
             keep({"number": number, **about, **attempt(case)})
 
 
 def _to_run(options: argparse.Namespace, mine: str) -> list[int]:
-    """Numbers of this worker: those never run, then with ``--again`` those of other code, what came out wrong first."""
+    """Numbers of this worker: those never run; with ``--again`` what came out wrong by other code before, and the rest
+    of it after."""
     last = {row["number"]: row for row in _rows(options)}
     numbers = range(options.number, options.n, options.jobs)
     never = [number for number in numbers if number not in last]
@@ -110,7 +110,7 @@ def _to_run(options: argparse.Namespace, mine: str) -> list[int]:
         return never
     wrong = {row["number"] for row, judged in _judged(options) if judged.silent or judged.end in DEFECTS}
     old = [number for number in numbers if number in last and last[number].get("code") != mine]
-    return [*never, *sorted(old, key=lambda number: (number not in wrong, number))]
+    return [*(n for n in old if n in wrong), *never, *(n for n in old if n not in wrong)]
 
 
 def code() -> str:

@@ -22,7 +22,7 @@ from typing import Any, TypeVar, overload
 from numba import config, njit, types
 from numba.core import cgutils
 from numba.core.ccallback import CFunc
-from numba.core.runtime import rtsys
+from numba.core.runtime.nrt import rtsys
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic, register_jitable
 

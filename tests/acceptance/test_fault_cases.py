@@ -80,7 +80,7 @@ def as_unspoilt(s: Seen) -> bool:
 
 
 LOGS: dict[str, Callable[[Seen], bool]] = {
-    "logs/crash_low_chamber_gauge": lambda s: doubted_by(s.quick.C_i, "p_chamber (scale)"),
+    "logs/crash_low_chamber_gauge": lambda s: doubted_by(s.quick.C_i, "p_chamber"),
     "logs/hf5_chamber_gauge_low": lambda s: doubted_by(s.quick.C_i, "p_chamber") and holds(s.quick.C_i, C_I),
     "logs/tv_slow_valve": lambda s: s.segments.t_v.value == pytest.approx(8.57, abs=0.06),
     "logs/purge_pulse_after_burn": lambda s: s.segments.t_end.value == pytest.approx(11.2, abs=0.1),

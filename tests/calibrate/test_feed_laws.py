@@ -9,6 +9,8 @@ import pytest
 from simulated.feed import CASES, Emptied, Feed, definition_of, emptied, log_of, segments_of
 
 from hfanalysis.calibrate.tank import calibrate
+from hfanalysis.effects import effect
+from hfanalysis.engine.effect import Active
 from hfanalysis.products.calibration import TankConstants
 from hfanalysis.quantity import Quantity
 
@@ -103,3 +105,14 @@ def test_values_hang_on_no_default() -> None:
     sure, open_ = found(OWN), found(OWN, area=None)
     for name, told in sure.quantities.items():
         assert told.value == open_.quantities[name].value, name
+
+
+def test_an_adopted_effect_that_chokes_acts_on_m_alone() -> None:
+    """Nothing chokes twice: m is that of the choked vapor then, and what stands beside it is as it was."""
+    true, plain = run(FIRST), found(FIRST)
+    choked = Active(effect("injector_choked_vapor"), (1.0, 1.2))
+    told = calibrate(log_of(FIRST, true), segments_of(true), definition_of(FIRST), 60, [choked]).constants
+    assert told.m.value == pytest.approx(FIRST.m, abs=0.15)  # line and injector are one restriction to the effect
+    assert told.m_choked == plain.m_choked
+    assert told.vapor_C_d == plain.vapor_C_d
+    assert "report's law" not in str(told.m.why)

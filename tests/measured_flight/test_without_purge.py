@@ -13,7 +13,7 @@ from hfanalysis.flight.ascent import ascend
 from hfanalysis.flight.curve import Curve, altitude_gain
 from hfanalysis.measured_flight.firing import AS_MEASURED, WITHOUT_PURGE, Firing, firing
 from hfanalysis.measured_flight.product import fly_measured, product
-from hfanalysis.measured_flight.uncertainty import disperse, rows
+from hfanalysis.measured_flight.uncertainty import disperse, rows, spread_of
 from hfanalysis.products.flight import Flight
 from hfanalysis.quantity import Quantity
 
@@ -166,3 +166,14 @@ def test_thrust_to_weight_at_lift_off_is_the_mean_on_the_rail() -> None:
     assert said.liftoff_thrust_to_weight.value == pytest.approx(mean, rel=0.05)
     assert said.liftoff_thrust_to_weight.value < said.pad_thrust_to_weight.value
     assert up.height == pytest.approx(said.apogee.value)
+
+
+def test_of_several_laws_the_interval_holds_that_of_each() -> None:
+    """Ten flights in a hundred by a law of its own are no tail."""
+    rng = np.random.default_rng(1)
+    values, laws = rng.normal(0.0, 1.0, 1000), np.repeat([0, 1], [900, 100])
+    values[laws == 1] += 20.0
+    low, high = spread_of(values, laws).ci95
+    assert low == pytest.approx(-1.96, abs=0.2)
+    assert high == pytest.approx(21.96, abs=0.6)
+    assert spread_of(values).ci95[0] == pytest.approx(low, abs=0.2)

@@ -217,11 +217,12 @@ def disperse(
             if progress is not None:
                 progress("flying with drawn inputs", done / len(parts))
     flying = results[:, APOGEE] > 0.0
-    turned = float(np.percentile(results[flying, TIME], 2.5)) if flying.mean() > 0.5 else -1.0
+    laws = laws_of(curves or firing.curves, len(drawn))
+    turned = spread_of(results[flying, TIME], laws[flying]).ci95[0] if flying.mean() > 0.5 else -1.0
     time: Array = every * np.arange(POINTS, dtype=np.float64)
     kept = time <= turned
-    bands = dict(_bands(paths[:, kept], firing.vehicle.launch_altitude))
-    return DrawnFlights(results, time[kept], bands, laws_of(curves or firing.curves, len(drawn)))
+    bands = dict(_bands(paths[:, kept], laws[: len(paths)], firing.vehicle.launch_altitude))
+    return DrawnFlights(results, time[kept], bands, laws)
 
 
 def laws_of(curves: Sequence[Curve], count: int) -> NDArray[np.intp]:
@@ -237,7 +238,14 @@ def _dealt(firing: Firing, curves: Sequence[Curve], count: int) -> Iterator[tupl
             yield fixed, mine[start : start + CHUNK]
 
 
-def _bands(paths: Array, ground: float) -> Iterator[tuple[str, Array]]:
+def _bands(paths: Array, laws: NDArray[np.intp], ground: float) -> Iterator[tuple[str, Array]]:
+    """As :func:`spread_of`, over time: the median of all, and what holds the band of every law."""
     offsets = {"height": ground, "speed": 0.0, "acceleration": 0.0}
     for column, (name, offset) in enumerate(offsets.items()):
-        yield name, np.nanpercentile(paths[:, :, column], (2.5, 50.0, 97.5), axis=0) - offset
+        values = paths[:, :, column]
+        flying = np.isfinite(values).any(axis=0)  # of a law by which no rocket leaves its pad there is no band
+        groups = [values[laws == law] for law in np.unique(laws)]
+        seen = [group for group in groups if np.isfinite(group[:, flying]).any(axis=0).all()] or [values]
+        each = [np.nanpercentile(group, (2.5, 97.5), axis=0) for group in seen]
+        low, high = np.min([ends[0] for ends in each], axis=0), np.max([ends[1] for ends in each], axis=0)
+        yield name, np.stack((low, np.nanmedian(values, axis=0), high)) - offset

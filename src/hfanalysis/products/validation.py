@@ -35,6 +35,19 @@ class Column(Part):
         Quantity | None, Is("largest good sample, which the structure has seen", "Pa")
     ] = None
     mean_chamber_pressure: Annotated[Quantity | None, Is("over the burn", "Pa")] = None
+    ignition_delay: Annotated[Quantity | None, Is("opening to 10 % of the plateau of p_chamber", "s")] = None
+    rise_time: Annotated[Quantity | None, Is("10 to 90 % of the plateau of p_chamber", "s")] = None
+    ignition_overshoot: Annotated[Quantity | None, Is("largest p_chamber of the ignition over the plateau", "")] = None
+    action_time: Annotated[Quantity | None, Is("first to last passing of 10 % of the largest thrust", "s")] = None
+    burn_time_5_percent: Annotated[Quantity | None, Is("first to last passing of 5 % of the largest thrust", "s")] = (
+        None
+    )
+    impulse_liquid: Annotated[Quantity | None, Is("of the liquid phase", "N s")] = None
+    impulse_vapor: Annotated[Quantity | None, Is("of the vapor phase", "N s")] = None
+    impulse_nitrogen: Annotated[Quantity | None, Is("from when nitrogen enters", "N s")] = None
+    tail_impulse: Annotated[Quantity | None, Is("after the liquid is gone", "N s")] = None
+    injector_drop_liquid: Annotated[Quantity | None, Is("over p_chamber, mean of the liquid phase", "")] = None
+    injector_drop_vapor: Annotated[Quantity | None, Is("over p_chamber, mean of the vapor phase", "")] = None
     total_impulse_of_file: Annotated[Quantity | None, Is("raw channel over the whole file, drift and all", "N s")] = (
         None
     )

@@ -41,6 +41,7 @@ from hfanalysis.validate.stability.modes import Mode, chamber_between
 from hfanalysis.validate.stability.stability import stability
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
 from hfanalysis.validate.thrust import motor_class, thrust_of
+from hfanalysis.validate.transients import transients
 
 Result = TypeVar("Result")
 MODES = ("tank_free", "chamber_forced", "full")
@@ -118,6 +119,8 @@ class _Work:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
         histories, found, again = self._histories(full, flows)
         measured |= found.impulses
+        if not isinstance(self.fire, str):
+            measured |= transients(self.true, self.segments, self.definition, self.fire)
         kept = {mode: compared for mode, compared in residuals.items() if compared}
         notes = [note for of_mode in kept.values() for r in of_mode for note in r.notes]
         impulse = measured["total_impulse"].value

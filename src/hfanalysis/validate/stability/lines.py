@@ -128,11 +128,13 @@ def _wave(
     """Frequency [Hz], its standard deviation, power and its noise of one window, and the wave (n,) [SI]."""
     start = frequency
     wave: Array = np.zeros(time.size)
-    left, size, covariance = value, np.zeros(2), np.eye(4)
+    left: Array = value
+    size: Array = np.zeros(2)
+    covariance: Array = np.eye(4)
     for _ in range(STEPS):
         angle = 2.0 * pi * (frequency * time + 0.5 * slope * time**2)
         basis = np.column_stack([np.cos(angle), np.sin(angle)])
-        size = np.linalg.lstsq(basis * taper[:, None], value * taper, rcond=None)[0]
+        size = np.asarray(np.linalg.lstsq(basis * taper[:, None], value * taper, rcond=None)[0], dtype=np.float64)
         wave = np.asarray(basis @ size, dtype=np.float64)
         left = value - wave
         turned = 2.0 * pi * (basis @ np.array([size[1], -size[0]]))
