@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from tests.report.sample import material
 
+from hfanalysis.cli import budget as command
 from hfanalysis.cli.budget import headline, rows
+from hfanalysis.cli.request import Request
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.budget import Budget
 from hfanalysis.products.budgets import made_of
 from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.model import Product
 from hfanalysis.products.validation import Validation
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections.budget import SECTION
@@ -52,6 +56,42 @@ def test_the_page_has_a_row_for_every_input(made: Material) -> None:
 def test_a_test_without_budgets_says_so(tmp_path: Path) -> None:
     with pytest.raises(AbsentError, match="no quantity of this test has a budget"):
         list(SECTION.render(material(tmp_path)))
+
+
+def asked(as_json: bool = False) -> Request:
+    return Request("HF0", Path(), None, as_json, force=False, quiet=False)
+
+
+class Done:
+    """A test whose stages were brought up to date; it has no rocket."""
+
+    def __init__(self, material: Material) -> None:
+        self.material = material
+
+    def read(self, kind: type[Product]) -> Product:
+        if kind.file == "flight.json":
+            raise AbsentError("test.toml has no [rocket] to fly")
+        return self.material.need(kind)
+
+
+def test_hfa_budget_says_what_there_is_and_what_is_missing(
+    made: Material, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(command, "bring", lambda stage, request: Done(made))
+    command.budget(asked(as_json=True))
+    said = capsys.readouterr()
+    told = json.loads(said.out)["budget"]
+    assert told["C_i"]["shares"] == OF_C_I.shares
+    assert told["total_impulse"]["product"] == "validation.json"
+    assert "flight: test.toml has no [rocket] to fly" in said.err
+    command.budget(asked())
+    assert "60 %  injector holes" in capsys.readouterr().out
+
+
+def test_hfa_budget_of_a_test_without_any_has_a_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(command, "bring", lambda stage, request: Done(material(tmp_path)))
+    with pytest.raises(AbsentError, match="no quantity has a budget"):
+        command.budget(asked())
 
 
 def test_the_command_collects_what_the_products_have(made: Material) -> None:

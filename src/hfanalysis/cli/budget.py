@@ -43,7 +43,7 @@ def budget(request: Request) -> None:
             absent.append(f"{stage}: {missing}")
     found = made_of(products)
     if not found:
-        raise AbsentError(absent[0] if absent else f"test {request.test}: no quantity has a budget")
+        raise AbsentError(f"test {request.test}: no quantity has a budget" if products else absent[0])
     if request.as_json:
         put(to_json({"test": request.test, "budget": {made.name: _json(made) for made in found}}))
     elif not request.quiet:
