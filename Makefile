@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases readme lock clean flown-thrust coverage narrow-port feed-laws
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -94,8 +94,20 @@ LOGS ?= ../shared/real_tests
 real-logs: $(STAMP) ## logs of other teams by hfa new, their facts and hfa run: docs/real-logs.md; LOGS=FOLDER
 	$(BIN)/python -m benchmarks.real_logs --logs '$(LOGS)' --write docs/real-logs.md $(FLAGS)
 
+phases-coverage: $(STAMP) ## how often the intervals of the phases hold, on simulated logs: into docs/phases.md; goes on where stopped
+	$(BIN)/python -m benchmarks.phase_coverage --write $(FLAGS)
+
+flown-thrust: $(STAMP) ## flights without the stand's nitrogen and of a separated flow, beside the truth: docs/flight.md
+	$(BIN)/python -m benchmarks.flown_thrust --write docs/flight.md $(FLAGS)
+
 recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 	$(BIN)/python -m benchmarks.recovery $(FLAGS)
+
+narrow-port: $(STAMP) ## a gauge at the head of a port as wide as the throat, with and without that: docs/narrow-port.md
+	$(BIN)/python -m benchmarks.narrow_port --write
+
+coverage: $(STAMP) ## 95 % intervals of simulated tests with systematic errors: docs/coverage.md; goes on where stopped
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.coverage --write docs/coverage.md $(FLAGS)
 
 mutants: $(STAMP) ## small errors put into a copy of the source, and whether tests notice: docs/mutants.md; FLAGS='--each 40'
 	$(BIN)/python -m benchmarks.mutants --write docs/mutants.md $(FLAGS)
@@ -108,6 +120,9 @@ kills: $(STAMP) ## 200 times `make all` killed, interrupted or run twice at once
 
 constants-trial: $(STAMP) ## which constants without source or evidence change nothing on 24 tests: docs/constants-trial.md
 	PYTHONPATH=. $(BIN)/python -m benchmarks.constants_trial --write docs/constants-trial.md $(FLAGS)
+
+feed-laws: $(STAMP) ## injectors that flash and choke, and the replicas, by the report's laws and by others: docs/feed-laws.md
+	$(BIN)/python -m benchmarks.feed_laws --write docs/feed-laws.md
 
 last-digits: $(STAMP) ## how far numbers move by the last digits of logs, FLAGS='--cases FOLDER' with others too: docs/last-digits.md
 	$(BIN)/python -m benchmarks.last_digits --write docs/last-digits.md $(FLAGS)

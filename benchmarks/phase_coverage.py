@@ -2,7 +2,7 @@
 
 Constants were chosen on seeds from 0 on, which are not reported. Results are kept in .cache/: goes on where stopped.
 
-    python -m benchmarks.phase_coverage [--cases 600] [--first 1000] [--write]
+    python -m benchmarks.phase_coverage [--cases 300] [--first 1000] [--write]
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def _invented(results: list[dict[str, Any]], name: str) -> int:
 def main() -> None:
     """Go through the logs that have no result yet, and print or write the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=600)
+    parser.add_argument("--cases", type=int, default=300)
     parser.add_argument("--first", type=int, default=1000, help="first seed")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--write", action="store_true", help="docs/phases.md")

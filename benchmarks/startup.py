@@ -7,6 +7,8 @@ Usage: startup.py [--test HF5] [--repeat 7]
 from __future__ import annotations
 
 import argparse
+import json
+import resource
 import statistics
 import subprocess
 import sys
@@ -23,6 +25,33 @@ HEAVY = ("pandas", "xarray", "matplotlib", "CoolProp", "pint", "numba", "scipy",
 
 AT_STAND = 3.0
 """Within which `hfa run TEST --quick` has answered [s]. Source: what was promised (docs/at-the-stand.md)."""
+
+
+STACK_THEN = 3.3
+"""Processor time of a calibration of HF5 done anew, over that of the stack's bare import [-], of which at most half is
+wanted; its channels' health is not counted. Evidence: git archive 347b1ac, measured by this file's `beside`."""
+
+
+def processor(command: Sequence[str]) -> float:
+    """Processor time [s] of a command and of all it starts."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=ROOT)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def beside(calibrate: Sequence[str], log: Path, repeat: int) -> float:
+    """Processor time of a calibration done anew over that of the stack's import [-]: the median of pairs in turn.
+
+    ``log``: the run's own, which says how long the health took; that does not count.
+    """
+    ratios = []
+    for _ in range(repeat):
+        stack, whole = processor([sys.executable, "-c", STACK]), processor([*calibrate, "--force"])
+        stages = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+        health = [stage["seconds"] for stage in stages if stage["stage"] == "health"][-1:]
+        ratios.append((whole - sum(health)) / stack)
+    return statistics.median(ratios)
 
 
 def median_wall(command: Sequence[str], repeat: int) -> float:
@@ -67,6 +96,9 @@ def main() -> None:
             print(f"  {name:<42} {took[name]:7.3f} s", flush=True)
         verdict = "within" if took[quick] <= AT_STAND else "NOT within"
         print(f"  the quick look: {verdict} {AT_STAND:g} s")
+        ratio = beside(calibrate, Path(out) / options.test / "run.log", options.repeat)
+        print(f"processor time of a calibration done anew, over that of the stack's import, in pairs: {ratio:.2f}")
+        print(f"  {ratio / STACK_THEN:.2f} of what it was at 347b1ac ({STACK_THEN:g}); at most 0.5 wanted")
         for name, arguments in (("redone", [*calibrate[1:], "--force"]), ("nothing changed", calibrate[1:])):
             print(f"  heavy libraries loaded, {name}: {', '.join(imported(arguments)) or 'none'}")
 

@@ -6,6 +6,7 @@ drawn, and the log goes on after it is gone. No nitrogen enters the tank; the pu
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import pi, sqrt
 from pathlib import Path
@@ -22,6 +23,7 @@ from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property
 
 STEP = 2e-3
+Law = Callable[[np.random.Generator, float], tuple[float, float]]
 COLD = 620.0
 """[m/s]: chamber pressure times throat over flow, of oxidizer that no longer burns."""
 
@@ -45,10 +47,16 @@ class EngineTruth:
         return self.engine.n
 
 
-def draw_engine(generator: np.random.Generator) -> tuple[Truth, Engine, Burn]:
+def any_law(generator: np.random.Generator, flux: float) -> tuple[float, float]:
+    """A rate [m/s] at a ``flux`` [kg/m^2/s], and n [-], of whatever fuel."""
+    return generator.uniform(0.8e-3, 2.0e-3), generator.uniform(0.2, 0.75)
+
+
+def draw_engine(generator: np.random.Generator, law: Law = any_law, early: float = 0.4) -> tuple[Truth, Engine, Burn]:
     """An engine at 12 to 28 bar that burns for 0.6 to 1.6 times as long as its liquid lasts.
 
-    Within a tenth of that the two ends would fall together, which is a matter of finding the phases.
+    Within a tenth of that the two ends would fall together, which is a matter of finding the phases. ``law``: draws the
+    fuel's rate and n; ``early``: how many of the engines run out of fuel before the liquid.
     """
     u = generator.uniform
     stand = draw_truth(generator)
@@ -59,7 +67,8 @@ def draw_engine(generator: np.random.Generator) -> tuple[Truth, Engine, Burn]:
     drop = float(source.pressure(stand.temperature)) - pressure
     density = float(source.liquid_density(stand.temperature))
     flow = sqrt(density * drop / (stand.K_loss + 0.5 / stand.area**2))
-    flux, ratio, rate, n = u(180.0, 500.0), u(4.0, 11.0), u(0.8e-3, 2.0e-3), u(0.2, 0.75)
+    flux, ratio = u(180.0, 500.0), u(4.0, 11.0)
+    rate, n = law(generator, flux)
     port = sqrt(flow / (pi * flux))
     length = flow / ratio / (900.0 * 2.0 * pi * port * rate)
     enthalpy = FORMATION_OFFSET + float(source.energy(Property.LIQUID_ENTHALPY, stand.temperature)[0])
@@ -73,7 +82,7 @@ def draw_engine(generator: np.random.Generator) -> tuple[Truth, Engine, Burn]:
         fuel_density=900.0, a=rate / flux**n, n=n, dead_volume=u(0.5e-3, 2e-3), throat_area=throat,
         exit_area=throat * u(2.0, 5.0), ambient_pressure=AMBIENT, oxidizer_enthalpy=enthalpy,
     )  # fmt: skip
-    return stand, *_with_web(engine, u(0.6, 0.9) if u() < 0.4 else u(1.1, 1.6))
+    return stand, *_with_web(engine, u(0.6, 0.9) if u() < early else u(1.1, 1.6))
 
 
 def _with_web(engine: Engine, part: float) -> tuple[Engine, Burn]:
@@ -90,11 +99,11 @@ def _with_web(engine: Engine, part: float) -> tuple[Engine, Burn]:
     return cut, done
 
 
-def possible(generator: np.random.Generator) -> tuple[Truth, Engine, Burn]:
+def possible(generator: np.random.Generator, law: Law = any_law, early: float = 0.4) -> tuple[Truth, Engine, Burn]:
     """The first engine drawn that runs."""
     while True:
         try:
-            return draw_engine(generator)
+            return draw_engine(generator, law, early)
         except (ValueError, ArithmeticError):
             continue
 

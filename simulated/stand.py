@@ -274,7 +274,7 @@ volume = "{volume * 1e3:.6f} +/- {volume_std * 1e3:.6f} L"
 oxidizer_mass = "{mass:.6f} +/- {mass_std:.6f} kg"
 [injector]
 holes = {truth.holes}
-hole_area = "{HOLE_AREA * 1e6:.3f} mm^2"
+hole_area = "{HOLE_AREA * 1e6:.3f} +/- 0 mm^2"
 [purge]
 cracking_pressure = "{truth.cracking / 1e5:.2f} bar"
 [nozzle]

@@ -40,10 +40,10 @@ class Error:
 
 CATALOGUE = (
     Error("n_std_doubled", "_Told", "return 0.5 *", "return 1.0 *", "law_at"),
-    Error("span_error_a_fifth", "SPAN_SHARE", "0.25", "0.05", "VAPOR_PRESSURE_SHARE"),
-    Error("span_error_a_fifth_in_flight", "SPAN_SHARE", "0.25", "0.05", "UNSEEN_DRIFT"),
-    Error("span_error_a_fifth_in_performance", "SPAN", "0.25", "0.05", "_raw_integral"),
-    Error("drift_impulse_error_doubled", "_impulse", "thrust.error * 0.5 *", "thrust.error *"),
+    Error("span_error_a_fifth", "SPAN_SHARE", "0.7071", "0.14"),
+    Error("drift_course_doubled", "ANY_COURSE", "12.0", "3.0"),
+    Error("drift_left_in_doubled", "CellError", "0.5 * self.left", "self.left"),
+    Error("gain_without_calibration", "GAIN", "0.01", "0.001", "GAIN_IN_PLACE"),
     Error("model_specific_impulse_without_fuel", "_Column", "(oxidizer + fuel)", "oxidizer"),
     Error("peak_smoothed_over_0.3_s", "SMOOTHING", "0.1", "0.3", "_raw_integral"),
     Error("m_shot_to_40_percent", "VAPOR_PRESSURE_SHARE", "0.6", "0.4"),

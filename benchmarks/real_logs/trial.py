@@ -51,9 +51,11 @@ class Outcome:
         number, unit = injector["hole_diameter"].split()
         diameter = float(number) * {"mm": 1e-3, "in": 0.0254}[unit]
         area = injector["holes"] * math.pi / 4.0 * diameter**2
-        interval = found.get("ci95")
-        scaled = {key: None if found.get(key) is None else area * found[key] for key in ("value", "std")}
-        return {**found, **scaled, "ci95": None if interval is None else [area * x for x in interval], "unit": "m^2"}
+        joint = self.products.get("calibration", {}).get("joint")
+        value = None if found.get("value") is None else area * found["value"]
+        std = joint["std"][joint["names"].index("flow_area")] if joint else None  # what no error of the holes is in
+        interval = None if value is None or std is None else [value - 1.96 * std, value + 1.96 * std]
+        return {**found, "value": value, "std": std, "ci95": interval, "unit": "m^2"}
 
 
 def tried(facts: Facts, logs: Path, root: Path) -> Outcome:

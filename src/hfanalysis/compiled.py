@@ -22,6 +22,7 @@ from typing import Any, TypeVar, overload
 from numba import config, njit, types
 from numba.core import cgutils
 from numba.core.ccallback import CFunc
+from numba.core.runtime.nrt import rtsys
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic, register_jitable
 
@@ -221,12 +222,22 @@ def _stamp(made: Any, function: Callable[..., Any]) -> None:
     cache = made._cache
     index = cache._cache_file
     known = ("_source_stamp", "_load_index", "_load_data", "_save_data", "_dump", "_data_path", "_open_for_write")
-    if not all(hasattr(index, name) for name in known):
+    if not all(hasattr(index, name) for name in known) or not hasattr(cache, "_load_overload"):
         raise RuntimeError("this version of numba keeps its cache in another way; hfanalysis.compiled does not know it")
     index._source_stamp = source_digest(Path(function.__code__.co_filename), inside=False)
     index._load_index = _readable(index._load_index)
     index._save_data, index._load_data = partial(_seal, index), partial(_unseal, index)
     cache.save_overload = _if_possible(cache.save_overload)
+    cache.load_overload = partial(_kept, cache)
+
+
+def _kept(cache: Any, signature: Any, context: Any) -> Any:
+    """What is kept for a signature. numba loads all that compiling may need before it looks, for a quarter of a second;
+    what is compiled asks for its memory management alone, and a compiler that starts for what is not kept loads the
+    rest by itself."""
+    rtsys.initialize(context)
+    with cache._guard_against_spurious_io_errors():
+        return cache._load_overload(signature, context)
 
 
 def _seal(index: Any, name: str, data: Any) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 NORMAL_95 = 1.959963984540054
@@ -81,6 +81,26 @@ class Quantity:
             return None
         half = NORMAL_95 * self.std
         return (self.value - half, self.value + half)
+
+    def reaching(self, *values: float) -> Quantity:
+        """The same with an interval that holds ``values`` [``unit``] too: what it may be on one side.
+
+        >>> [round(end, 2) for end in Quantity(1.0, "", 0.01).reaching(0.8).interval or ()]
+        [0.8, 1.02]
+        """
+        if self.value is None:
+            return self
+        low, high = self.interval or (self.value, self.value)
+        return replace(self, ci95=(min(low, *values), max(high, *values)))
+
+    def scaled_to(self, *factors: float) -> Quantity:
+        """The same with an interval that holds its own at each of these ``factors`` [-], too.
+
+        >>> [round(end, 2) for end in Quantity(1.0, "", 0.01).scaled_to(0.8).interval or ()]
+        [0.78, 1.02]
+        """
+        ends = self.interval or ((self.value, self.value) if self.value is not None else ())
+        return self.reaching(*(end * factor for end in ends for factor in factors))
 
     def doubted(self, why: str, reach: tuple[float, float] | None = None) -> Quantity:
         """The same in doubt: its interval has ``reach`` [``unit``] too, what it may be if the doubt is right.

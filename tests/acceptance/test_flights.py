@@ -75,6 +75,16 @@ def test_the_rail_is_left_too_slowly_as_the_report_says(replicas: dict[str, Any]
     assert replicas[name][0]["checks"]["rail_departure_velocity"]["result"] == "failed"
 
 
+@pytest.mark.parametrize(("name", "apogee"), [("HF4", 1491.8), ("HF5", 2822.4)])
+def test_the_stand_s_nitrogen_lifts_nothing(replicas: dict[str, Any], name: str, apogee: float) -> None:
+    """The thrust with it in flies as before; without it lower, but higher than the stand's raw thrust."""
+    product, raw = replicas[name][0], replicas["raw"][name]
+    assert (product["thrust_basis"], raw["thrust_basis"]) == ("without purge gas", "as measured")
+    assert product["apogee_as_measured"]["value"] == pytest.approx(apogee, abs=0.5)
+    assert raw["apogee"]["value"] < product["apogee"]["value"] < apogee - 30.0
+    assert any("one-dimensional law of the nozzle: as the log has it" in note for note in product["notes"])
+
+
 @pytest.mark.parametrize("name", REPORT)
 def test_every_quantity_of_the_contract_is_there(replicas: dict[str, Any], name: str) -> None:
     product = replicas[name][0]
@@ -90,10 +100,7 @@ def test_every_quantity_of_the_contract_is_there(replicas: dict[str, Any], name:
 @pytest.mark.parametrize("name", REPORT)
 def test_the_engine_files_keep_the_rules_and_the_impulse(replicas: dict[str, Any], name: str) -> None:
     product, out = replicas[name]
-    with h5py.File(out / "flight.h5") as file:
-        time, thrust = file["ascent/time"][:], file["ascent/thrust"][:]
-    burnt = time <= product["burn_time"]["value"] + 1e-9
-    impulse = float(np.trapezoid(np.maximum(thrust[burnt], 0.0), time[burnt]))
+    impulse = product["impulse_flown"]["value"]
     eng = rasp.read((out / f"{name}.eng").read_text())
     rse = rocksim.read((out / f"{name}.rse").read_text())
     for points in (eng[1], rse[1]):
@@ -225,14 +232,18 @@ def test_the_center_of_gravity_moves_ahead_as_the_tank_empties(shaped: tuple[dic
         center, mass = file["balance/center_of_gravity"][:], file["balance/mass"][:]
     assert mass[0] == pytest.approx(52.5 + 8.35 + 1.594, abs=0.02)
     assert center[0] == pytest.approx((40.0 * 1.75 + 12.5 * 3.1 + 8.35 * 2.87 + 1.594 * 3.75) / mass[0], abs=0.02)
-    assert center[-1] == pytest.approx((40.0 * 1.75 + 12.5 * 3.1) / 52.5, abs=1e-3)
+    rest = mass[-1] - 52.5  # of vapor and fuel, 1.7 m behind the rocket's center at most
+    assert 0.0 <= rest < 0.5
+    assert center[-1] == pytest.approx((40.0 * 1.75 + 12.5 * 3.1) / 52.5, abs=1e-3 + 1.7 * rest / mass[-1])
 
 
 def test_the_rocksim_file_carries_the_engine_s_center_of_gravity(shaped: tuple[dict[str, Any], Path]) -> None:
     motor, points, _, _ = rocksim.read((shaped[1] / "HF5.rse").read_text())
     assert motor.total_mass == pytest.approx(12.5 + 9.944, abs=1e-3)
     assert points.center is not None
-    assert points.center[-1] == pytest.approx(3.1 - 2.1, abs=1e-3)
+    assert points.mass is not None
+    left = points.mass[-1] / (12.5 + points.mass[-1])  # in tank and grain, 0.7 m from the empty engine's center at most
+    assert points.center[-1] == pytest.approx(3.1 - 2.1, abs=1e-3 + 0.7 * left)
     assert points.center[0] != pytest.approx(points.center[-1], abs=0.02)
 
 

@@ -29,12 +29,16 @@ def validated(root: Path, test: str) -> dict[str, Any]:
     return found
 
 
+def told(root: Path, test: str) -> set[str]:
+    """The kinds of what health tells of the thrust cell."""
+    health = json.loads((root / "processed" / test / "health.json").read_text())
+    return {finding["kind"] for finding in health["channels"]["thrust"]["findings"]}
+
+
 def test_a_cell_that_stays_off_zero_and_a_thrust_that_no_nozzle_gives(tmp_path: Path) -> None:
     """HF3.1: some 170 N when the chamber is empty, and half the thrust that its chamber pressure makes."""
     found = validated(tmp_path, "MRT-HF3.1")
-    sensors = {s["verdict"]: s for s in found["sensors"]}
-    assert set(sensors) == {"does not return to zero", "thrust and p_c A_t disagree"}
-    assert 140.0 < sensors["does not return to zero"]["size"]["value"] < 200.0
+    assert told(tmp_path, "MRT-HF3.1") == {"zero", "scale"}
     measured = found["performance"]["measured"]
     assert measured["total_impulse"]["value"] < 0.75 * measured["total_impulse_of_file"]["value"]
     assert measured["peak_thrust"]["value"] == pytest.approx(1699.0, rel=0.05)
@@ -43,8 +47,7 @@ def test_a_cell_that_stays_off_zero_and_a_thrust_that_no_nozzle_gives(tmp_path: 
 def test_a_thrust_that_fits_its_chamber_pressure(tmp_path: Path) -> None:
     """HF3.4: the cell is off by hundreds of newtons after the burn, the thrust in the burn is plausible."""
     found = validated(tmp_path, "MRT-HF3.4")
-    assert [s["verdict"] for s in found["sensors"]] == ["does not return to zero"]
-    assert found["sensors"][0]["size"]["value"] > 300.0
+    assert told(tmp_path, "MRT-HF3.4") == {"zero"}
     measured = found["performance"]["measured"]
     assert 18_000.0 < measured["total_impulse"]["value"] < 28_583.0  # their integral over the whole file
     assert measured["peak_chamber_pressure"]["value"] == pytest.approx(582 * 6894.757, rel=0.06)

@@ -55,5 +55,7 @@ def test_an_n_that_is_called_identified_is_right(engines: list[dict[str, Any]]) 
         true, found = case["truth"]["n"], case["found"]["n"]
         if found["verdict"] == "identified":
             assert found["value"] == pytest.approx(true, abs=0.3)
+        elif found["verdict"] == "conditional":
+            assert abs(found["value"] - true) < 4.0 * found["std"]
         else:
             assert "combination" in found["why"]

@@ -66,10 +66,10 @@ def with_sensors(log: TestLog, accuracy: float, zeroed: bool) -> TestLog:
     return replace(log, channels={n: replace(c, **change) for n, c in log.channels.items()})
 
 
-def test_a_zero_at_ambient_takes_away_three_quarters_of_what_a_sensor_may_be_off_by(burn: Trial) -> None:
-    """The rest is its error of span: sensors without a zero that are four times as accurate are as good."""
+def test_a_zero_at_ambient_takes_away_half_of_a_sensors_variance(burn: Trial) -> None:
+    """The rest is its error of span: sensors without a zero that are the root of 2 better are as good."""
     log = log_of(burn, white=100.0)
-    zeroed, better = (calibrated(with_sensors(log, a, z), burn) for a, z in ((8e4, True), (2e4, False)))
+    zeroed, better = (calibrated(with_sensors(log, a, z), burn) for a, z in ((8e4, True), (8e4 / np.sqrt(2.0), False)))
     for name in ("C_i", "m", "K_loss", "p_loss_liquid", "vapor_mass_at_t_v"):
         assert zeroed.quantities[name].std == pytest.approx(better.quantities[name].std, rel=0.03), name
 

@@ -27,6 +27,10 @@ STANDS = {
 }
 
 
+OTHER_VERDICTS = {"Z": "derived", "vapor_mass_at_t_v": "derived", "m_choked": "conditional", "vapor_C_d": "conditional"}
+"""Of what a table says, and of what hangs on how the vapor flows."""
+
+
 def calibrated(test: Trial, samples: int = 20) -> TankConstants:
     return calibrate(log_of(test), segments_of(test), definition(test.stand), samples).constants
 
@@ -147,4 +151,4 @@ def test_the_tanks_content_over_time_fills_it_and_weighs_what_it_should() -> Non
 def test_every_quantity_of_a_good_test_has_an_answer() -> None:
     for name, quantity in calibrated(fire(rate=200.0)).quantities.items():
         assert quantity.value is not None, f"{name}: {quantity.reason}"
-        assert quantity.verdict == "identified", name
+        assert quantity.verdict == OTHER_VERDICTS.get(name, "identified"), name

@@ -29,7 +29,7 @@ def calibrated(test: Trial, **change: Any) -> TankConstants:
 
 
 def injector(discharge: Value) -> Injector:
-    return Injector(HOLES, Value(HOLE_AREA), C_i=discharge)
+    return Injector(HOLES, Value(HOLE_AREA, 0.0), C_i=discharge)
 
 
 def test_a_stated_C_i_is_held_and_the_log_that_bears_it_out_is_beside(burn: Trial) -> None:

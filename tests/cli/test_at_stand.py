@@ -73,7 +73,7 @@ def test_a_log_that_lands_takes_the_last_tests_facts_and_doubts_its_load(run: Ru
     assert seen["source"] == "measured"
     assert "that of HF5" in seen["facts"]
     assert "8.350 kg of oxidizer" in seen["facts"]
-    for found in (seen["C_i"], *(seen["performance"][name] for name in ("oxidizer_mass", "specific_impulse"))):
+    for found in (seen["C_i"], *(seen["performance"][name] for name in ("oxidizer_mass", "specific_impulse_loaded"))):
         assert found["verdict"] == "doubted"
         assert "with the load that HF5 had" in found["why"]
     assert "[observed]" not in seen["performance"]["burn_time"]["why"]  # HF5's video saw HF5

@@ -21,6 +21,7 @@ SIZES = {
     "grain_pressure_regression": ("exponent", 0.3, 1.0),  # classical fuels of radiating flames; a solid propellant
     "ignition_transient": ("mass", 0.05, 0.5),  # a charge of 50 g; as much as a third of the grain
     "fuel_sliver": ("depth", 0.6, 1.5),
+    "head_end_pressure": ("weight", 0.9, 1.5),  # a port of the throat's area; more than momentum has
     "nozzle_throat_erosion": ("rate", 1.5e-4, 1e-3),  # graphite; a millimeter a second
     "nozzle_divergence": ("loss", 0.017, 0.3),  # a cone of 15 degrees loses (1 - cos 15)/2; none of 60 degrees is built
     "load_cell_drift": ("drift", 150.0, 1500.0),  # some per cent of 3 kN; half of it

@@ -32,6 +32,14 @@ def loaded(points: Points) -> Points:
     return Points(points.time, points.thrust, left, np.linspace(0.5, 0.7, points.time.size))
 
 
+def test_the_burn_time_of_a_share_is_between_its_crossings() -> None:
+    """Up from 0 in a second, 100 N for two, down in ten: above 5 N from 0.05 s to 12.5 s."""
+    points = Points(np.array([0.0, 1.0, 3.0, 13.0]), np.array([0.0, 100.0, 100.0, 0.0]))
+    time, mean = points.by_share(0.05)
+    assert time == pytest.approx(12.5 - 0.05)
+    assert mean == pytest.approx((0.95 * 52.5 + 200.0 + 9.5 * 52.5) / time)
+
+
 @settings(deadline=None, max_examples=60)
 @given(curves())
 def test_a_curve_of_any_shape_keeps_rules_and_impulse(curve: tuple[np.ndarray, np.ndarray]) -> None:

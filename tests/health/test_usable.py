@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +10,13 @@ import numpy as np
 import pytest
 from tests.health import fire
 from tests.health.test_judge import finding
+from tests.segment import stand
 
 from hfanalysis.errors import AbsentError
-from hfanalysis.health.usable import as_accurate, marked, usable, widened
+from hfanalysis.health.usable import as_accurate, marked, of_firing, usable, widened, zeros_of_firing
 from hfanalysis.products.health import ChannelHealth, Health
+from hfanalysis.record.log import Channel, TestLog
+from hfanalysis.record.logspec import ChannelSpec
 
 
 def health_of(name: str, verdict: Any, **about: Any) -> Health:
@@ -94,3 +98,34 @@ def test_a_factor_counts_as_an_offset_at_the_plateau(tmp_path: Path) -> None:
     log, _ = fire.ingested(tmp_path, fire.columns())
     found = widened(log, health_of("thrust", "suspect", gain=0.1))
     assert found["thrust"].zero_std == pytest.approx(200.0, rel=0.1)
+
+
+def two_firings(pause: float) -> TestLog:
+    """A cell that rests at 10 N before the first firing and at 60 N before the second, ``pause`` seconds apart."""
+    time = np.arange(0.0, 20.0 + pause, 0.01)
+    second = 10.0 + pause
+    lit = ((time > 5.0) & (time < 10.0)) | ((time > second) & (time < second + 5.0))
+    rng = np.random.default_rng(3)
+    thrust = np.where(lit, 2000.0, 0.0) + np.where(time > 7.0, 60.0, 10.0) + rng.standard_normal(time.size)
+    chamber = 1e5 + np.where(lit, 20e5, 0.0) + 1e3 * rng.standard_normal(time.size)
+    flags = np.zeros(time.size, dtype=np.uint8)
+    read = {
+        "thrust": Channel("thrust", "N", time, thrust - 10.0, flags, 1.0, True, "F", 10.0, 0.1, raw=thrust),
+        "p_chamber": Channel("p_chamber", "Pa", time, chamber, flags, 1e3, True, "P"),
+    }
+    return TestLog(read)
+
+
+@pytest.mark.parametrize(("pause", "tare"), [(5.0, 60.0), (0.2, 10.0)], ids=["a rest between", "no rest between"])
+def test_a_tare_is_of_the_rest_before_the_firing_taken(pause: float, tare: float) -> None:
+    log = two_firings(pause)
+    spec = ChannelSpec(column="F", unit="N", tare="before", name="thrust")
+    definition = replace(stand.definition(), channels={"thrust": spec})
+    part = of_firing(log, 10.0 + 0.5 * pause, None, definition)
+    assert part["thrust"].zero == pytest.approx(tare, abs=0.5)
+    assert np.median(part["thrust"].values[-200:]) == pytest.approx(60.0 - tare, abs=1.0)
+    (told,) = zeros_of_firing(log, part)
+    assert told.startswith("thrust: ")
+    assert ("that of the log's first firing is used" in told) is (pause < 1.0)
+    assert of_firing(log, None, None, definition) is log
+    assert zeros_of_firing(log, log) == ()

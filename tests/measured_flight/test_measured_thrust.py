@@ -9,10 +9,11 @@ import pytest
 from tests.segment.heated_cell import EMPTY, heated, quenched
 from tests.segment.stand import Trial, definition, segments_of
 
-from hfanalysis.measured_flight.thrust import SHAPE_OF_DRIFT, UNSEEN_DRIFT, MeasuredThrust, measured_thrust
+from hfanalysis.measured_flight.thrust import MeasuredThrust, measured_thrust
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
+from hfanalysis.validate.load_cell import ANY_COURSE, UNSEEN_DRIFT
 from hfanalysis.validate.performance import measured
 
 
@@ -39,19 +40,23 @@ def test_a_cell_s_drift_adds_nothing_to_the_flight(burn: Trial, size: float) -> 
     still = impulse(flown(burn, heated(burn, 0.0)))
     drifted = flown(burn, heated(burn, size))
     assert impulse(drifted) == pytest.approx(still, abs=0.1 * abs(0.5 * size * EMPTY))
-    assert drifted.drift_std == pytest.approx(SHAPE_OF_DRIFT * abs(size), rel=0.15)
+    assert drifted.bias_std == pytest.approx(np.hypot(1.0, ANY_COURSE * size), rel=0.15)
     assert any("drift taken off" in note for note in drifted.notes)
 
 
 def test_flight_and_performance_have_the_same_impulse(burn: Trial) -> None:
     log, stated = heated(burn, 300.0), definition(burn.stand)
-    reported = measured(log, phases(burn), stated, None)["total_impulse"].value
-    assert impulse(flown(burn, log)) == pytest.approx(reported, rel=1e-4)
+    reported = measured(log, phases(burn), stated, None)["total_impulse"]
+    found = flown(burn, log)
+    assert impulse(found) == pytest.approx(reported.value, rel=1e-4)
+    parts = (found.gain_std * impulse(found), found.bias_std * EMPTY, 0.5 * found.drift_std * EMPTY)
+    assert np.linalg.norm(parts) == pytest.approx(reported.std, rel=1e-3)
 
 
 def test_a_drift_too_small_to_be_taken_off_counts_as_uncertain(burn: Trial) -> None:
     found = flown(burn, heated(burn, 10.0))
-    assert found.drift_std == pytest.approx(np.hypot(SHAPE_OF_DRIFT, 1.0) * 10.0, rel=0.15)
+    assert found.drift_std == pytest.approx(10.0, rel=0.15)
+    assert found.bias_std == pytest.approx(np.hypot(1.0, ANY_COURSE * 10.0), rel=0.15)
 
 
 def test_a_drift_that_nothing_shows_is_a_share_of_the_peak(burn: Trial) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import date as date_of
 
 import numpy as np
 import pytest
@@ -12,12 +13,14 @@ from tests.segment.stand import Trial, definition, segments_of
 
 from hfanalysis.flight.ascent import RESULTS
 from hfanalysis.flight.summary import ASCENT
-from hfanalysis.measured_flight.propellant import _exponent, propellant
+from hfanalysis.measured_flight.propellant import exponent_of, propellant
 from hfanalysis.measured_flight.thrust import MeasuredThrust, _drift_taken, measured_thrust
 from hfanalysis.measured_flight.uncertainty import DrawnFlights
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.definition import ChannelSpec
 from hfanalysis.record.log import TestLog
+from hfanalysis.record.schema import changed
 from hfanalysis.record.sections import GrainSection
 from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
@@ -36,7 +39,7 @@ def flown(test: Trial, log: TestLog) -> MeasuredThrust:
 def test_how_far_a_drift_has_come_is_anything_from_nothing_to_all(burn: Trial) -> None:
     """At any moment: the standard deviation of even odds between 0 and its size."""
     drawn = 300.0 * np.random.default_rng(6).uniform(size=20_000)
-    assert flown(burn, heated(burn, 300.0)).drift_std == pytest.approx(np.std(drawn), rel=0.15)
+    assert flown(burn, heated(burn, 300.0)).bias_std == pytest.approx(np.std(drawn), rel=0.15)
 
 
 def test_a_drift_that_nothing_shows_is_a_hundredth_of_the_peak(burn: Trial) -> None:
@@ -46,10 +49,22 @@ def test_a_drift_that_nothing_shows_is_a_hundredth_of_the_peak(burn: Trial) -> N
     assert flown(burn, blind).drift_std == pytest.approx(0.01 * peak, rel=0.02)
 
 
-def test_a_cell_of_which_nothing_is_said_is_off_by_a_hundredth(burn: Trial) -> None:
-    log = heated(burn, 0.0)
-    unknown = replace(log["thrust"], accuracy_stated=False)
-    assert flown(burn, replace(log, channels={**log.channels, "thrust": unknown})).gain_std == 0.01
+@pytest.mark.parametrize(
+    ("tested", "calibrated", "gain"),
+    [(None, None, 0.01), ((2022, 4, 3), (2022, 1, 10), 0.0025), (None, (2022, 1, 10), 0.0025),
+     ((2022, 4, 3), (2020, 1, 10), 0.01)],
+)  # fmt: skip
+def test_a_gain_is_as_good_as_its_calibration_in_place(
+    burn: Trial, tested: tuple[int, int, int] | None, calibrated: tuple[int, int, int] | None, gain: float
+) -> None:
+    """However accurate the cell itself is, without one the stand may carry a hundredth of the thrust beside it."""
+    log, stated = heated(burn, 0.0), definition(burn.stand)
+    date = date_of(*tested) if tested else None
+    known = ChannelSpec(column="F", unit="N", calibrated=date_of(*calibrated) if calibrated else None, name="thrust")
+    stated = changed(stated, test=changed(stated.test, date=date), channels={**stated.channels, "thrust": known})
+    exact = replace(log["thrust"], accuracy=0.1)
+    found = measured_thrust(replace(log, channels={**log.channels, "thrust": exact}), segments_of(burn), stated)
+    assert found.gain_std == gain
 
 
 @pytest.mark.parametrize(("size", "told"), [(200.0, True), (0.0, False)])
@@ -69,7 +84,7 @@ def test_masses_without_a_deviation_are_known_to_a_hundredth(burn: Trial) -> Non
 @pytest.mark.parametrize(("n", "used"), [(0.45, 0.45), (1.5, 1.5), (-0.1, 0.5), (2.4, 0.5), (None, 0.5)])
 def test_a_calibrated_exponent_is_taken_where_fuels_may_have_it(n: float | None, used: float) -> None:
     calibration = filled(Calibration, {"n": Quantity.absent("not known") if n is None else Quantity(n)})
-    assert _exponent(definition(), calibration)[0] == used
+    assert exponent_of(definition(), calibration)[0] == used
 
 
 def results(reached: int) -> DrawnFlights:

@@ -121,6 +121,7 @@ def weighed() -> str:
     text = text.replace("[rocket.drogue]", f'wind_speed = "3 +/- 1 m/s"\n{GEOMETRY}[rocket.drogue]')
     text = text.replace('"1594 g"', '"1594 +/- 5 g"').replace("[tank]", '[tank]\ninner_diameter = "130 mm"')
     text = text.replace("[grain]", '[feed]\nK_loss = "6e8 1/m^4"\n[grain]\na = 4e-4')
+    text += '[stand]\norientation = "nozzle up"\nfeed_line_tare = "5 N"\n'
     return text + '[[exclude]]\nchannels = ["thrust"]\nstart = "19 s"\nend = "19.2 s"\n'
 
 

@@ -110,6 +110,12 @@ CALIBRATION: dict[str, Any] = {
         "flow": list(1.3 - 0.02 * _TIME),
     },
     "C_i_history": {"time": list(_TIME), "value": list(0.29 + 0.002 * _TIME), "std": [0.004] * _TIME.size},
+    "inlet": {
+        "subcooling": quantity(-11.4, "K", 0.2, verdict="derived"),
+        "quality": quantity(0.133, "", 0.002, verdict="derived", why="isenthalpic from the tank's liquid to p_run"),
+        "density": quantity(439.0, "kg/m^3", 4.0, verdict="derived"),
+    },
+    "C_d": {"hem": quantity(0.91, "", 0.05, verdict="derived", why="homogeneous equilibrium")},
     "warnings": ["the purge check valve opens before the liquid is gone"],
     "provenance": {"hfanalysis": "0.1.0", "raw": {"log.csv": "ab" * 32}, "parameters": {}},
 }

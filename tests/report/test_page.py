@@ -171,7 +171,7 @@ def test_a_replica_is_called_a_replica(tmp_path: Path, text: str) -> None:
 def test_the_verdict_names_what_is_known_and_what_is_not(tmp_path: Path) -> None:
     said = sentence(material(tmp_path))
     assert said.startswith(
-        "Identified: injector coefficient, feed loss coefficient, liquid-phase feed loss and "
+        "Identified: effective injector coefficient, feed loss coefficient, liquid-phase feed loss and "
         "regression rate at the reference flux."
     )
     assert "Outside its physical range: polytropic exponent." in said
@@ -465,3 +465,15 @@ def test_the_code_of_every_stage_is_stated_and_what_they_share_once(tmp_path: Pa
     (table,) = provenance.render(replace(made, products=origins))
     assert [str(table).count(f"<code>{name}!</code>") for name in origins] == [1] * len(origins)
     assert str(table).count("libraries / numpy") == 1
+
+
+def test_the_page_says_what_reaches_the_injector_and_what_a_small_coefficient_does_not_say(text: str) -> None:
+    found = text[text.index("What reaches the injector") :]
+    for words in (
+        "439",
+        "isenthalpic",
+        "homogeneous equilibrium",
+        "effective",
+        "does not say that the injector is poor",
+    ):
+        assert words in found, words

@@ -18,6 +18,7 @@ from hfanalysis.engine.blowdown import blow_down
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.default_deviations import Deviation, Deviations
 from hfanalysis.record.definition import FileSpec, LogSpec, Test, TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.sections import Injector, Model, NozzleSection, Purge, Site, Tank
@@ -28,6 +29,8 @@ from hfanalysis.units import Value
 AMBIENT = 101_325.0
 HOLES, HOLE_AREA = 22, 3.142e-6
 THROAT = 23.3e-3
+EXACT = Deviations(line_volume=Deviation(), properties=Deviation())
+"""No line beside the tank, and its table of nitrous oxide."""
 UNITS = {"thrust": "N", "m_tank": "kg", "valve": ""}
 
 
@@ -142,14 +145,15 @@ def signal(name: str, time: Array, value: Array) -> Signal:
 
 
 def definition(stand: Stand | None = None, **change: Any) -> TestDefinition:
-    """What an engineer states of a test; ``kind``, ``mass``, ``volume`` and sections may be given."""
+    """What an engineer states of a test, all of it exact; ``kind``, ``mass``, ``volume`` and sections may be given."""
     s = stand or Stand()
     kind, conventions = change.pop("kind", "hot_fire"), change.pop("conventions", "corrected")
     volume, mass = change.pop("volume", Value(s.volume, 0.0)), change.pop("mass", Value(s.mass, 0.02))
     sections = {
         "model": Model(conventions, s.source),
         "tank": Tank(volume, mass),
-        "injector": Injector(HOLES, Value(HOLE_AREA)),
+        "injector": Injector(HOLES, Value(HOLE_AREA, 0.0)),
+        "deviations": EXACT,
         "purge": Purge(Value(4.2e5)),
         "nozzle": NozzleSection(Value(THROAT), Value(38.1e-3)),
         "site": Site(ambient_pressure=Value(AMBIENT, 0.0)),

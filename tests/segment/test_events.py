@@ -12,7 +12,7 @@ from tests.segment.stand import AMBIENT, Stand, Trial, fire, signal
 from hfanalysis.arrays import Array
 from hfanalysis.engine.tank import mass_along_blowdown
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_unchoking
+from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_low_pressure
 from hfanalysis.segment.falls import abrupt_falls
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.fuel import find_fuel_end
@@ -364,36 +364,36 @@ def test_a_chamber_at_ambient_says_nothing_of_the_fuel() -> None:
     assert "not above ambient for long enough" in str(find_fuel_end(signals, AMBIENT, 0.1, (5.0, 1e-3), 9.0))
 
 
-# --- the chamber unchokes ---------------------------------------------------------------------------------------------
+# --- the chamber's pressure falls for good ----------------------------------------------------------------------------
 
 
 def test_a_chamber_that_empties_between_two_samples_dates_its_own_end() -> None:
     chamber = noisy("p_chamber", AMBIENT + 2e5 * ((TIME > 0.0) & (TIME < 4.0)))
-    found = find_unchoking(chamber, AMBIENT, 0.1)
+    found = find_low_pressure(chamber, AMBIENT, 0.1)
     assert not isinstance(found, str)
     assert found[0] == pytest.approx(4.0, abs=chamber.step)
     assert found[1] < chamber.step
 
 
-def test_the_burn_ends_where_the_nozzle_unchokes() -> None:
+def test_t_end_is_where_the_pressure_falls_below_its_level() -> None:
     """p_c = p_a + 12 bar e^(-t/2) reaches 1.8 p_a at 2 ln(12 bar / 0.8 p_a)."""
     chamber = noisy("p_chamber", AMBIENT + 12e5 * np.exp(-since(0.0) / 2.0) * (TIME > 0.0))
-    found = find_unchoking(chamber, AMBIENT, 0.1)
+    found = find_low_pressure(chamber, AMBIENT, 0.1)
     assert not isinstance(found, str)
     expected = 2.0 * np.log(12e5 / ((CRITICAL_RATIO - 1.0) * AMBIENT))
     assert found[0] == pytest.approx(expected, abs=3.0 * found[1])
     assert 0.005 < found[1] < 0.3
 
 
-def test_a_nozzle_that_never_chokes_has_no_end_of_the_burn() -> None:
+def test_a_pressure_that_never_rises_has_no_end() -> None:
     cold = noisy("p_chamber", AMBIENT + 0.5e5 * (TIME > 0.0), white=1e3)
-    assert find_unchoking(cold, AMBIENT, 0.1) == "the chamber pressure never chokes the nozzle"
+    assert find_low_pressure(cold, AMBIENT, 0.1) == "the chamber pressure never is above 1.8 times ambient"
 
 
-def test_a_log_that_ends_with_the_nozzle_choked_says_so() -> None:
+def test_a_log_that_ends_under_pressure_says_so() -> None:
     hot = noisy("p_chamber", AMBIENT + 12e5 * (TIME > 0.0))
-    assert "still choked (13.0 bar in the chamber)" in str(find_unchoking(hot, AMBIENT, 0.1))
-    assert "the log ends before" in str(find_unchoking(hot.between(-4.0, 0.1), AMBIENT, 0.1))
+    assert "13.0 bar in the chamber, above 1.8 times ambient" in str(find_low_pressure(hot, AMBIENT, 0.1))
+    assert "the log ends before" in str(find_low_pressure(hot.between(-4.0, 0.1), AMBIENT, 0.1))
 
 
 # --- what kind of run it was ------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from tests.segment.stand import AMBIENT, Stand, Trial, channel, definition, fire
 
 from hfanalysis.arrays import Array
 from hfanalysis.record.log import TestLog
-from hfanalysis.segment.end_of_burn import find_unchoking, pulses_after
+from hfanalysis.segment.end_of_burn import find_low_pressure, pulses_after
 from hfanalysis.segment.kind import Known, recognize
 from hfanalysis.segment.opening import find_opening
 from hfanalysis.segment.phases import find_phases
@@ -109,7 +109,7 @@ def test_a_purge_after_the_burn_is_not_counted() -> None:
     pressure = AMBIENT + np.interp(time, [0.0, 0.2, 10.0, 11.0, 11.5], [0.0, 6e5, 6e5, 0.8e5, 0.0])
     pressure += 1.6e5 * ((time > 14.0) & (time < 16.0))
     chamber = signal("p_chamber", time, noisy(pressure, 2e3))
-    found = find_unchoking(chamber, AMBIENT, 0.3)
+    found = find_low_pressure(chamber, AMBIENT, 0.3)
     assert not isinstance(found, str)
     assert found[0] == pytest.approx(11.0, abs=0.05)
     ((start, end),) = pulses_after(chamber, 1.8 * AMBIENT, found[0])

@@ -11,8 +11,9 @@ from tests.engine.stand import engine_on_stand
 
 from hfanalysis.engine.unsteady import Burn, burn
 from hfanalysis.thermo.combustion import equilibrium
+from hfanalysis.validate.closing import balance, closure
+from hfanalysis.validate.efficiency import efficiencies, ideal
 from hfanalysis.validate.flows import HISTORY_STEP, Flows
-from hfanalysis.validate.histories import closure, efficiencies
 from hfanalysis.validate.performance import Fire
 
 AMBIENT = 101_325.0
@@ -43,15 +44,15 @@ def engine():  # type: ignore[no-untyped-def]
 def test_the_models_own_burn_is_whole(engine) -> None:  # type: ignore[no-untyped-def]
     """It burns in equilibrium and has the ideal nozzle."""
     measured, flows = histories()
-    found = efficiencies(measured, flows, engine, AMBIENT, FIRE, None)
+    found = efficiencies(measured, flows, engine, ideal(measured, flows, engine, AMBIENT, FIRE, None))
     steady = (flows.time > 0.5) & (flows.time < 4.3)
-    for name in ("c_star_efficiency", "thrust_coefficient_efficiency"):
+    for name in ("c_star_efficiency_frozen", "thrust_coefficient_efficiency_frozen"):
         assert found[name][steady] == pytest.approx(1.0, abs=0.015), name
 
 
 def test_c_star_is_that_of_the_gas_and_the_thrust_is_its_coefficient_times_p_c_a_t(engine) -> None:  # type: ignore[no-untyped-def]
     measured, flows = histories()
-    found = efficiencies(measured, flows, engine, AMBIENT, FIRE, None)
+    found = efficiencies(measured, flows, engine, ideal(measured, flows, engine, AMBIENT, FIRE, None))
     for i in np.flatnonzero((flows.time > 0.5) & (flows.time < 4.3))[::40]:
         gas = equilibrium(float(measured["p_chamber"][i]), float(flows.of_ratio[i]), engine.oxidizer_enthalpy)
         assert found["c_star"][i] == pytest.approx(gas.characteristic_velocity, rel=0.015)
@@ -77,3 +78,19 @@ def test_a_flow_that_is_not_known_throughout_closes_no_balance(engine) -> None: 
     assert found["fuel_burned"].value is None
     assert "not known throughout" in str(found["fuel_burned"].reason)
     assert found["oxidizer_through_injector"].value is not None
+
+
+@pytest.mark.parametrize(("factor", "purge", "verdict"), [(1.0, None, "closes"), (1.1, None, "does not close"),
+                                                          (1.0, 2.0, "closes")])  # fmt: skip
+def test_masses_close_or_do_not_until_nitrogen_enters(engine, factor: float, purge: float | None, verdict: str) -> None:  # type: ignore[no-untyped-def]
+    """A gauge that reads a tenth too much lets a tenth too much out; what comes after the purge does not count."""
+    measured, flows = histories()
+    later = flows.time > (np.inf if purge is None else purge)
+    read = {**measured, "p_chamber": measured["p_chamber"] * np.where(later, 2.0, factor)}
+    found = ideal(read, flows, engine, AMBIENT, FIRE, purge, "aft")
+    assert found is not None
+    judged = balance(flows, read, engine, AMBIENT, FIRE, purge, found, (0.003, 0.003, 0.01))
+    assert judged.verdict == verdict
+    assert judged.until.value == (FIRE.end if purge is None else purge)
+    assert judged.difference.interval is not None
+    assert (judged.difference.interval[0] <= 0.0 <= judged.difference.interval[1]) == (verdict == "closes")

@@ -14,7 +14,7 @@ from tests.products.filled import filled
 
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.inference.full_run import FullRun
-from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.calibration import Calibration, Joint
 from hfanalysis.quantity import Quantity
 from hfanalysis.validate.performance import modeled
 
@@ -53,8 +53,11 @@ def test_the_table_is_the_sum_of_the_burn() -> None:
     found, burnt = modeled(run(), calibration()), run().burnt
     values = {name: quantity.value for name, quantity in found.items()}
     assert values["total_impulse"] == pytest.approx(impulse_by_hand(burnt), rel=2e-3)
-    expended = float(burnt.state("tank_mass")[0]) + fuel()
+    loaded = float(burnt.state("tank_mass")[0]) + fuel()
+    assert values["specific_impulse_loaded"] == pytest.approx(impulse_by_hand(burnt) / (GRAVITY * loaded), rel=3e-3)
+    expended = loaded - float(burnt.state("tank_mass")[-1])
     assert values["specific_impulse"] == pytest.approx(impulse_by_hand(burnt) / (GRAVITY * expended), rel=3e-3)
+    assert values["specific_impulse_to_purge"] == values["specific_impulse"]
     assert values["average_thrust"] == pytest.approx(impulse_by_hand(burnt) / burnt.time[-1], rel=3e-3)
     assert values["peak_thrust"] == pytest.approx(float(burnt.output("thrust").max()))
     assert values["peak_chamber_pressure"] == pytest.approx(float(burnt.output("chamber_pressure").max()))
@@ -108,7 +111,11 @@ def test_its_deviations_are_those_of_the_constants_carried_through_the_engine(
         ("peak_thrust", lambda b: b.output("thrust").max(), 0.3),
         ("peak_chamber_pressure", lambda b: b.output("chamber_pressure").max(), 100.0),
         ("total_impulse", impulse_by_hand, 2.0),
-        ("specific_impulse", lambda b: impulse_by_hand(b) / (GRAVITY * (b.state("tank_mass")[0] + fuel())), 0.03),
+        (
+            "specific_impulse_loaded",
+            lambda b: impulse_by_hand(b) / (GRAVITY * (b.state("tank_mass")[0] + fuel())),
+            0.03,
+        ),
         ("burn_time", lambda b: b.time[-1], 0.01),
     ):
         assert found[told].std == pytest.approx(drawn([float(of(b)) for b in burns]), rel=0.15, abs=least), told
@@ -118,3 +125,22 @@ def drawn(values: list[float]) -> float:
     """Standard deviation of what has these values at -sqrt(3), 0 and sqrt(3) of a normal constant's deviations."""
     weights = np.array([1.0, 4.0, 1.0]) / 6.0
     return float(np.sqrt(weights @ (np.array(values) - weights @ values) ** 2))
+
+
+def test_constants_that_err_together_are_moved_together() -> None:
+    """More flow and more loss at once, as the balance has them: less is left open than by each alone."""
+    engine = run().engine
+    std = (0.02 * engine.feed.area, 0.1 * engine.feed.loss_factor)
+
+    def told(correlation: float) -> float:
+        rows = ((1.0, correlation), (correlation, 1.0))
+        joint = Joint(names=("flow_area", "K_loss"), std=std, correlation=rows)
+        return modeled(run(), calibration().but(joint=joint))["peak_thrust"].std or 0.0
+
+    moved = [
+        float(burn(one, longest=60.0).output("thrust").max() - run().burnt.output("thrust").max())
+        for one in (with_area(engine, 0.3 * 0.02), with_loss(engine, std[1]))
+    ]
+    for correlation in (0.0, 0.8, -1.0):
+        variance = moved[0] ** 2 + moved[1] ** 2 + 2.0 * correlation * moved[0] * moved[1]
+        assert told(correlation) == pytest.approx(np.sqrt(variance), rel=0.05)

@@ -17,16 +17,10 @@ from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.sections import GrainSection, ObservedSection
 from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
+from hfanalysis.validate.efficiency import efficiencies, ideal
 from hfanalysis.validate.flows import Flows
-from hfanalysis.validate.histories import (
-    ABOUT,
-    Histories,
-    clock,
-    efficiencies,
-    measured_histories,
-    write_histories,
-)
-from hfanalysis.validate.performance import Fire, _impulse, fire_of, measured
+from hfanalysis.validate.histories import ABOUT, Histories, clock, measured_histories, write_histories
+from hfanalysis.validate.performance import HOLES, Fire, fire_of, impulse_inputs, impulse_to, measured
 from hfanalysis.validate.thrust import Thrust
 
 BURN = ObservedSection(burn_time=Value(9.0, 0.1))
@@ -54,7 +48,7 @@ def test_the_impulse_is_that_of_the_burn(burn: Trial) -> None:
     true = float(np.trapezoid(burn.values["thrust"][inside], burn.time[inside]))
     assert found["total_impulse"].value == pytest.approx(true, rel=1e-3)
     assert found["average_thrust"].value == pytest.approx(true / 9.0, rel=1e-3)
-    assert found["specific_impulse"].value == pytest.approx(true / 9.80665 / (burn.stand.mass + 1.6), rel=1e-3)
+    assert found["specific_impulse_loaded"].value == pytest.approx(true / 9.80665 / (burn.stand.mass + 1.6), rel=1e-3)
 
 
 def test_the_raw_files_integral_stands_beside_it(burn: Trial) -> None:
@@ -104,7 +98,7 @@ def test_a_missing_channel_takes_its_numbers_with_it(burn: Trial, without: str, 
 
 def test_a_grain_that_is_not_stated_takes_the_specific_impulse(burn: Trial) -> None:
     found = table(log_of(burn), burn, grain=None)
-    assert found["specific_impulse"].reason == "test.toml does not state [grain] mass"
+    assert found["specific_impulse_loaded"].reason == "test.toml does not state [grain] mass"
     assert found["total_impulse"].value is not None
 
 
@@ -140,7 +134,9 @@ def test_c_star_ends_where_nitrogen_enters_and_the_thrust_coefficient_does_not()
     flows = Flows(time, fed, 0.12 * fed, np.full(time.size, 1e-3), np.full(time.size, 0.03))
     held = {"p_chamber": np.full(time.size, 10e5), "thrust_corrected": np.full(time.size, 2300.0)}
     fire = Fire(9.5, 0.1, "video")
-    blind, told = (efficiencies(held, flows, engine, AMBIENT, fire, purge) for purge in (None, 6.0))
+    blind, told = (
+        efficiencies(held, flows, engine, ideal(held, flows, engine, AMBIENT, fire, purge)) for purge in (None, 6.0)
+    )
     before, after = (time > 0.5) & (time < 5.8), (time > 6.5) & (time < 9.0)
     np.testing.assert_array_equal(told["c_star"][before], blind["c_star"][before])
     assert np.nanmax(blind["c_star"][after]) > 5.0 * blind["c_star"][before].mean()
@@ -155,7 +151,9 @@ def test_an_impulse_whose_burn_ends_in_a_hole_has_a_deviation() -> None:
     channel = Channel(
         "thrust", "N", time[kept], 5000.0 * (time[kept] < 5.0), np.zeros(kept.sum(), np.uint8), 5.0, True, ""
     )
-    found = _impulse(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 0.1, ""))
+    found = impulse_to(
+        TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 0.1, ""), definition()
+    )
     assert found.std is not None
     assert abs((found.value or 0.0) - 25000.0) < 3.0 * found.std
 
@@ -169,7 +167,9 @@ def test_an_impulse_across_a_hole_hangs_on_means_and_is_less_sure() -> None:
         kept = np.ones(time.size, dtype=bool) if hole is None else (time <= hole[0]) | (time >= hole[1])
         read = clean + 300.0 * rng.standard_normal(time.size)
         channel = Channel("thrust", "N", time[kept], read[kept], np.zeros(kept.sum(), np.uint8), 5.0, True, "")
-        found = _impulse(TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 1e-3, ""))
+        found = impulse_to(
+            TestLog({"thrust": channel}), Thrust(Signal.of(channel), 0.0, np.nan), Fire(5.0, 1e-3, ""), definition()
+        )
         assert found.value is not None
         assert found.std is not None
         assert ("bridged" in (found.why or "")) == (hole is not None)
@@ -195,8 +195,10 @@ def test_an_impulse_is_no_surer_than_its_samples_are_close(rate: float) -> None:
         read = np.where((time > 0.0) & (time < out), 4000.0 + 200.0 * rng.standard_normal(time.size), 0.0)
         channel = Channel("thrust", "N", time, read, np.zeros(time.size, np.uint8), 1.0, True, "")
         thrust = Thrust(Signal.of(channel), 0.0, np.nan)
-        one = _impulse(TestLog({"thrust": channel}), thrust, Fire(6.0, 1e-3, ""))
+        log, fire_ = TestLog({"thrust": channel}), Fire(6.0, 1e-3, "")
+        one = impulse_to(log, thrust, fire_, definition())
         assert one.value is not None
-        found.append((one.value - 4000.0 * out, one.std))
+        (between,) = (i.effect for i in impulse_inputs(log, thrust, fire_, definition(), one.value) if i.name == HOLES)
+        found.append((one.value - 4000.0 * out, between))
     off, std = np.array(found, dtype=float).T
     assert np.std(off) == pytest.approx(std.mean(), rel=0.35)

@@ -50,20 +50,29 @@ def _tail(geometry: Geometry, aft: float) -> Tail | None:
 
 
 @dataclass(frozen=True)
-class Masses:
-    """Parts that stay as they are, where the tank is, and the middles of grain and chamber [m from the nose tip].
+class Places:
+    """Where the tank is, and the middles of grain and chamber [m from the nose tip].
 
-    ``front``: the engine's front, from which engine files count; ``length``: of the engine [m]; ``dry``: mass [kg] and
-    center of gravity of the empty engine, None where the structure holds it.
+    ``front``: the engine's front, from which engine files count; ``length``: of the engine [m].
     """
 
-    fixed: tuple[MassPart, ...]
     tank: TankPlace
     grain_center: float
     grain_length: float
     gas_center: float
     front: float
     length: float
+
+
+@dataclass(frozen=True)
+class Masses:
+    """Parts that stay as they are, and where the propellant is.
+
+    ``dry``: mass [kg] and center of gravity of the empty engine, None where the structure holds it.
+    """
+
+    fixed: tuple[MassPart, ...]
+    where: Places
     dry: MassPart | None
     remark: str
 
@@ -75,8 +84,24 @@ def masses(
     geometry = rocket.geometry
     if geometry is None:
         return "no [rocket.geometry] is given"
+    if geometry.structure is None:
+        return "rocket.geometry.structure is not given"
+    where = places(rocket, tank, grain, chamber)
+    if isinstance(where, str):
+        return where
+    engine = _engine(geometry, outside)
+    parts = (MassPart(geometry.structure.mass.value, geometry.structure.center_of_gravity.value, outside.length),)
+    return Masses((*parts, *((engine,) if engine else ())), where, engine, _remark(rocket, geometry, engine))
+
+
+def places(
+    rocket: Rocket | None, tank: Tank | None, grain: GrainSection | None, chamber: Chamber | None
+) -> Places | str:
+    """Where the engine holds its propellant [m from the nose tip], or what is not given of it."""
+    geometry = rocket.geometry if rocket is not None else None
+    if geometry is None:
+        return "no [rocket.geometry] is given"
     needed = {
-        "rocket.geometry.structure": geometry.structure,
         "rocket.geometry.tank_position": geometry.tank_position,
         "rocket.geometry.chamber_position": geometry.chamber_position,
         "tank.volume": tank and tank.volume,
@@ -87,24 +112,18 @@ def masses(
     missing = [name for name, found in needed.items() if not found]
     if missing:
         return f"{missing[0]} is not given"
-    assert geometry.structure is not None
-    engine = _engine(geometry, outside)
-    parts = (MassPart(geometry.structure.mass.value, geometry.structure.center_of_gravity.value, outside.length),)
     place = _tank(geometry, tank)
     pre, length, post = _chamber(grain, chamber)
     assert geometry.chamber_position is not None
     top = geometry.chamber_position.value
     front, end = min(place.top, top), top + pre + length + post
-    return Masses(
-        (*parts, *((engine,) if engine else ())),
+    return Places(
         place,
         top + pre + 0.5 * length,
         length,
         top + 0.5 * (pre + length + post),
         front,
         max(end, place.top + place.length) - front,
-        engine,
-        _remark(rocket, geometry, engine),
     )
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from hfanalysis.arrays import Array
+from hfanalysis.calibrate.choked_vapor import VAPOR_M, Expansion
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.compiled import compiled
 from hfanalysis.engine.blowdown import TankAlone, TankRun, tank_alone
@@ -37,6 +38,9 @@ VAPOR_STEPS = 60
 ROOT = 1e-7
 """To what m [-] is found; its standard deviation is some 1e-2 (docs/calibration.md). Evidence: HF4 and HF5: 0.01 to
 0.02."""
+
+NO_ANSWER = (np.nan, np.nan)
+"""Of a vapor phase that is none."""
 
 SETTLING = 2.0
 """K_loss is taken from this many t_feed on. Evidence: at t_feed itself, where the line has 98 % of its pressure, it
@@ -111,7 +115,10 @@ class Tables:
 
 @dataclass(frozen=True)
 class Reduction:
-    """Result: C_i [-], m [-], Z [-], K_loss [1/m^4], mean losses [Pa], vapor mass at t_v [kg]; NaN: there is none."""
+    """Result: C_i [-], m [-], Z [-], K_loss [1/m^4], mean losses [Pa], vapor mass at t_v [kg]; NaN: there is none.
+
+    Of vapor that chokes: ``m_choked`` at C_d = C_i, ``vapor_C_d`` at an m in the middle of what vapor has.
+    """
 
     C_i: float
     m: float
@@ -122,6 +129,8 @@ class Reduction:
     vapor_mass: float
     vapor_mass_end: float
     temperature_v: float
+    m_choked: float
+    vapor_C_d: float
 
 
 @dataclass(frozen=True)
@@ -207,7 +216,23 @@ def reduce(
     m, end_mass = (phase or VaporPhase.plain(saturation, inputs)).shoot(tables, inputs, shift, area)
     dry = (tables.time >= inputs.t_v) & (tables.time < inputs.t_end)
     loss_vapor = float(tables.loss[dry].mean()) + shift.tank - shift.run if dry.any() and area > 0.0 else np.nan
-    return Reduction(C_i, m, z, factor, loss_mean, loss_vapor, vapor, end_mass, t_v)
+    choked = expansion(tables, saturation, inputs, shift)
+    m_choked, vapor_C_d = (choked.exponent(C_i), choked.coefficient(VAPOR_M)) if choked and C_i > 0.0 else NO_ANSWER
+    return Reduction(C_i, m, z, factor, loss_mean, loss_vapor, vapor, end_mass, t_v, m_choked, vapor_C_d)
+
+
+def expansion(tables: Tables, saturation: Saturation, inputs: Inputs, shift: Shift = Shift()) -> Expansion | None:
+    """The vapor phase as measured, of nitrous oxide alone; None where there is none."""
+    if not inputs.t_end > inputs.t_v:
+        return None
+    pressure, time = inputs.p_v + shift.tank, np.linspace(inputs.t_v, inputs.t_end, VAPOR_STEPS + 1)
+    warm = float(saturation.temperature(pressure))
+    mass, gamma = inputs.volume * float(saturation.vapor_density(warm)), float(saturation.isentropic_exponent(warm))
+    loss, chamber = tables.behind(time)
+    return Expansion(
+        time, loss + shift.tank - shift.run, chamber + shift.chamber, inputs.volume, inputs.area, pressure, mass,
+        inputs.p_end + shift.tank, gamma,
+    )  # fmt: skip
 
 
 @compiled

@@ -10,11 +10,16 @@ from hfanalysis.products.calibration import Calibration, FuelLaw, TankConstants
 
 @dataclass(frozen=True)
 class TankCalibration:
-    """The constants of a tank, and the repetitions that gave their deviations; None where there are no constants."""
+    """The constants of a tank, and the repetitions that gave their deviations; None where there are no constants.
+
+    ``draws`` have what the log and stated deviations leave open, ``whole`` the systematic errors beside it: the first
+    weigh a fit, the second are what its answer may be off by.
+    """
 
     constants: TankConstants
     draws: Draws | None = None
+    whole: Draws | None = None
 
     def with_law(self, law: FuelLaw) -> Calibration:
         """Together with the fuel's regression."""
-        return Calibration(**law.content, **self.constants.content)
+        return Calibration(**{**self.constants.content, **law.content})

@@ -8,6 +8,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.blowdown import Inputs, Reduction
+from hfanalysis.calibrate.course import with_drift
 from hfanalysis.calibrate.loaded_mass import LoadedMass, load_cell_mass
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.calibrate.rest import (
@@ -18,12 +19,13 @@ from hfanalysis.calibrate.rest import (
     liquid_phase_heat,
     state_remarks,
 )
+from hfanalysis.calibrate.systematic import UNIFORM, other_table
 from hfanalysis.engine.injector import mass_flows
 from hfanalysis.engine.tank import along_blowdown, liquid_of
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankHistory
 from hfanalysis.products.model import Numbers
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import Quantity
+from hfanalysis.quantity import DERIVED, Quantity
 from hfanalysis.record.log import TestLog
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 from hfanalysis.thermo.saturation import Saturation
@@ -91,7 +93,7 @@ def coefficient_history(
     if not rows:
         return None
     time, value, std = map(_rounded, np.array(rows).T)
-    return CoefficientHistory(time=time, value=value, std=std)
+    return with_drift(CoefficientHistory(time=time, value=value, std=std))
 
 
 def _slope_weights(time: Array) -> Array:
@@ -132,14 +134,15 @@ def rest_of(
     share, remarks = state_remarks(saturation, inputs.volume, inputs.mass, pressure)
     t_rest = float(saturation.temperature(pressure))
     slope = float(saturation.pressure_slope(t_rest)) if np.isfinite(t_rest) else np.nan
+    by_table = _departure(saturation, pressure)
     liquid = (histories.time > max(inputs.t_feed, 0.1)) & (histories.time < inputs.t_v - 0.01)
     bulk = fit_bulk(left[liquid], histories.tank_temperature(saturation)[liquid])
     hot = Quantity.absent("above the critical pressure")
     own, heat = _masses_and_heat(saturation, inputs, r, bulk.temperature if bulk else None)
     rest = Rest(
         pressure=Quantity(pressure, "Pa", bias),
-        temperature=Quantity(t_rest, "K", bias / slope) if np.isfinite(t_rest) else hot,
-        bulk_temperature=_bulk_quantity(bulk, bias / slope if np.isfinite(slope) else 0.2),
+        temperature=_by_table(t_rest, float(np.hypot(bias / slope, by_table))) if np.isfinite(t_rest) else hot,
+        bulk_temperature=_bulk_quantity(bulk, float(np.hypot(bias / slope if np.isfinite(slope) else 0.2, by_table))),
         liquid_fraction=Quantity(share, "") if share is not None else Quantity.absent("not a saturated tank"),
         blowdown_mass=own,
         liquid_phase_heat=heat,
@@ -149,10 +152,20 @@ def rest_of(
     return rest.but(remarks=tuple(remarks)), remarks
 
 
+def _departure(saturation: Saturation, pressure: float) -> float:
+    """By how much the other table reads another temperature [K] off a pressure [Pa], as a standard deviation."""
+    apart = abs(float(other_table(saturation).temperature(pressure)) - float(saturation.temperature(pressure)))
+    return apart / UNIFORM if np.isfinite(apart) else 0.0
+
+
+def _by_table(temperature: float, std: float) -> Quantity:
+    return Quantity(temperature, "K", std, verdict=DERIVED, why="of saturation at the pressure, by the table")
+
+
 def _bulk_quantity(bulk: Any, error: float) -> Quantity:
     if bulk is None:
         return Quantity.absent("too few samples between t_feed and t_v")
-    return Quantity(bulk.temperature, "K", float(np.hypot(bulk.std, error)))
+    return _by_table(bulk.temperature, float(np.hypot(bulk.std, error)))
 
 
 def _masses_and_heat(

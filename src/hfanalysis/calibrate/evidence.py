@@ -90,9 +90,17 @@ class Evidence:
         lit = replace(self.engine, a=law.a, n=law.n)
         return replace(self, engine=starting_for(lit, *self.anchor))
 
+    def moved(self, off: Array) -> Evidence:
+        """The same with observations that differ by ``off`` (n,) [Pa, s, kg]."""
+        size = self.time.size
+        scalars = iter(off[size:])
+        times, left = (None if s is None else replace(s, value=s.value + float(next(scalars)))
+                       for s in (self.burn_time, self.fuel_left))  # fmt: skip
+        return replace(self, chamber=self.chamber + off[:size], burn_time=times, fuel_left=left)
+
     def predict(self, law: Regression) -> Array | None:
         """The model of ``observed`` (n,) [Pa, s, kg]; None where the engine cannot be run with these constants."""
-        return self._once("predicted", law, lambda: _predicted(self, replace(self.engine, a=law.a, n=law.n)))
+        return self._once("predicted", law, lambda: predicted(self, replace(self.engine, a=law.a, n=law.n)))
 
     def burnt(self, law: Regression) -> Burn:
         """The whole burn with these constants."""
@@ -127,7 +135,7 @@ class Evidence:
         if name == "tank_pressure":
             anchor = (anchor[0], anchor[1] + step)
         try:
-            return _predicted(self, starting_for(_shifted(engine, name, step), *anchor))
+            return predicted(self, starting_for(_shifted(engine, name, step), *anchor))
         except AbsentError:
             return None
 
@@ -143,7 +151,8 @@ def _shifted(engine: Engine, name: str, step: float) -> Engine:
     return engine
 
 
-def _predicted(evidence: Evidence, engine: Engine) -> Array | None:
+def predicted(evidence: Evidence, engine: Engine) -> Array | None:
+    """What an ``engine`` would have shown, as ``evidence.observed`` (n,) [Pa, s, kg]; None where it cannot be run."""
     try:
         burnt = burn(engine, longest=evidence.longest)
     except (ValueError, ArithmeticError):

@@ -11,6 +11,7 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression, engine_of_test, exponent, starting_for
 from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar
+from hfanalysis.calibrate.head_pressure import before_nozzle_of
 from hfanalysis.calibrate.measured_pressures import quiet_noises
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.effect import Active
@@ -21,7 +22,6 @@ from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, line_at
-from hfanalysis.units import Value
 
 BLOCKS = 120
 """Block means of the chamber pressure that are compared; they are no shorter than FINEST_CHAMBER_BLOCK."""
@@ -32,15 +32,8 @@ FINEST_CHAMBER_BLOCK = 0.02
 BESIDE_END = 0.15
 """Seconds left out on either side of the end of the liquid, which model and log do not have at the same instant."""
 
-VIDEO = 0.25
-"""Standard deviation [s] of a burn time that is stated without one. Source: a flame's end is seen to half a second
-(report, 4.3.1, states burn times from video to the second)."""
-
 SLIVER = 0.02
 """Part of the grain below which what is left of it counts as nothing: the fire went out for want of fuel."""
-
-WEIGHED = 0.01
-"""Standard deviation of a fuel mass stated without one, as part of the grain."""
 
 
 def evidence_of(
@@ -55,7 +48,7 @@ def evidence_of(
     t_v = segments.time("t_v")
     if t_v is None:
         raise AbsentError(f"no end of the liquid to fit with: {segments.events['t_v'].reason}")
-    origin = segments.t_open.value or 0.0
+    log, origin = before_nozzle_of(log, definition), segments.t_open.value or 0.0
     tank, chamber = (Signal.of(log[name]).shifted(origin) for name in ("p_tank", "p_chamber"))
     start = segments.time("t_feed") or min(0.1, 0.1 * t_v)
     pressure = line_at(tank, start)
@@ -74,9 +67,10 @@ def evidence_of(
         burn_time = replace(burn_time, std=float(np.hypot(burn_time.std, late)))
     remarks = (
         f"p_chamber from {start:.2f} to {part.time[-1]:.2f} s ({why})",
+        *burning_of(segments, definition)[1],
         *_remarks(definition, calibration, engine.effects),
     )
-    covariance = _covariance(draws, definition, calibration)
+    covariance = covariance_of(draws, calibration, _stated_variances(definition))
     return Evidence(
         definition.test.id, first, part.time, part.value, burn_time, fuel_left, end, (start, pressure), covariance,
         chamber.noise / np.sqrt(max(width / chamber.step, 1.0)), _wander(log, segments, part.time), remarks,
@@ -106,7 +100,7 @@ def _compared(chamber: Signal, start: float, stop: float, gone: tuple[float, flo
 
 def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[Scalar | None, Scalar | None, float]:
     """Burn time and fuel left, as far as they are known, and the end of the fire [s]."""
-    stated, observed = _burn_time(segments, definition), definition.observed
+    stated, observed = burning_of(segments, definition)[0], definition.observed
     end = stated.value if stated is not None else segments.time("t_end") or 2.0 * t_v
     left = observed.fuel_mass_after if observed is not None else None
     assert definition.grain is not None
@@ -114,21 +108,22 @@ def _seen(segments: Segments, definition: TestDefinition, t_v: float) -> tuple[S
     grain = definition.grain.mass.value
     if left is None or left.value < SLIVER * grain:
         return stated, None, end
-    return None, Scalar(left.value, _std(left, WEIGHED * grain), "[observed] fuel_mass_after"), end
+    std = definition.known_std("observed.fuel_mass_after")
+    return None, Scalar(left.value, std, "[observed] fuel_mass_after"), end
 
 
-def _burn_time(segments: Segments, definition: TestDefinition) -> Scalar | None:
-    observed = definition.observed
-    if observed is not None and observed.burn_time is not None:
-        return Scalar(observed.burn_time.value, _std(observed.burn_time, VIDEO), "[observed] burn_time")
+def burning_of(segments: Segments, definition: TestDefinition) -> tuple[Scalar | None, tuple[str, ...]]:
+    """When the fuel is gone [s]; None with a remark where nobody saw it: t_end is no end of the fire."""
+    seen = definition.known("observed.burn_time")
+    if seen is not None:
+        return Scalar(seen.value, seen.std or 0.0, "[observed] burn_time"), ()
     gone = segments.time("t_fuel_gone")
-    if gone is None:
-        return None
-    return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log")
-
-
-def _std(stated: Value, default: float) -> float:
-    return stated.std if stated.std is not None else default
+    if gone is not None:
+        return Scalar(gone, max(segments.std("t_fuel_gone"), 0.01), "t_fuel_gone of the log"), ()
+    low = segments.time("t_end")
+    if low is None:
+        return None, ()
+    return None, (f"compared until t_end, {low:.2f} s, which is no end of the fire: it may burn on, and fuel be left",)
 
 
 def _window_end(
@@ -168,8 +163,11 @@ def _remarks(definition: TestDefinition, calibration: TankConstants, effects: Se
     ]
 
 
-def _covariance(draws: Draws, definition: TestDefinition, calibration: TankConstants) -> Array:
-    """Of NUISANCES, from the repeated calibrations."""
+def covariance_of(draws: Draws, calibration: TankConstants, apart: tuple[float, float]) -> Array:
+    """Of NUISANCES [SI], from the repeated calibrations; ``apart``: variances of grain mass [kg^2] and throat [m^4].
+
+    Raises AbsentError where too few of the repetitions have an answer.
+    """
     v, i = draws.values, draws.inputs
     m, m_std = exponent(calibration)
     drawn_m = v["m"] if calibration.m.value is not None else m + m_std * _standard(v["m"].size)
@@ -180,11 +178,19 @@ def _covariance(draws: Draws, definition: TestDefinition, calibration: TankConst
         raise AbsentError("the repetitions of the calibration do not give the errors of what a and n rest on")
     out = np.zeros((len(NUISANCES), len(NUISANCES)))
     out[: len(columns), : len(columns)] = np.cov(table[good], rowvar=False)
-    return out + np.diag([*[0.0] * len(columns), *_stated_variances(definition)])
+    return out + np.diag([*[0.0] * len(columns), *apart])
+
+
+def whole_covariance(draws: Draws, definition: TestDefinition, calibration: TankConstants) -> Array:
+    """The same with all errors in, ``draws`` and what is stated without a deviation."""
+    radius = definition.known("nozzle.throat_radius")
+    assert radius is not None
+    throat = 2.0 * pi * radius.value * (radius.std or 0.0)
+    return covariance_of(draws, calibration, (definition.known_std("grain.mass") ** 2, throat**2))
 
 
 def _stated_variances(definition: TestDefinition) -> tuple[float, float]:
-    """Of grain mass [kg^2] and throat area [m^4], as far as test.toml states deviations."""
+    """Of grain mass [kg^2] and throat area [m^4], as far as test.toml states deviations: these weigh the fit."""
     grain, nozzle = definition.grain, definition.nozzle
     assert grain is not None
     assert grain.mass is not None

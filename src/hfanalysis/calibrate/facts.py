@@ -8,9 +8,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from hfanalysis.calibrate.evidence_from_log import VIDEO
-from hfanalysis.engine.nozzle import mach_at_area, pressure_ratio
-from hfanalysis.engine.thrust_coefficient import GAMMAS
+from hfanalysis.engine.thrust_coefficient import flows_full
 from hfanalysis.products.calibration import Calibration, TankConstants
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
@@ -35,10 +33,6 @@ flow is a mean over the liquid phase, whose peak is a third above it (HF4, HF5).
 LEAST_LEFT = 0.5
 """p_run over p_tank, above ambient, below which a feed line is none: the oxidizer would flash in it. Evidence: 0.72 to
 0.87 of HF4 and HF5; saturated liquid that loses half of its pressure is more than half vapor by volume."""
-
-SEPARATED = 0.2
-"""Exit over ambient pressure below which a nozzle does not flow full. Source: Summerfield's criterion has 0.4; 0.2
-leaves room for its scatter."""
 
 SIZE = 0.2
 """Part of the chamber's pressure above ambient from which on what its health finds doubts its size, not its zero [-].
@@ -114,19 +108,19 @@ class _Facts:
 
     def _fuel_end(self) -> Doubt | None:
         """A stated burn whose end the log shows at another time."""
-        seen = self.definition.observed.burn_time if self.definition.observed else None
+        seen = self.definition.known("observed.burn_time")
         if seen is None or not self._burning:
             return None
-        choked = self.segments.time("t_end")
-        if choked is None or seen.value + 3.0 * (seen.std or VIDEO) >= choked - 3.0 * self.segments.std("t_end"):
+        above = self.segments.time("t_end")
+        if above is None or seen.value + 3.0 * (seen.std or 0.0) >= above - 3.0 * self.segments.std("t_end"):
             return None
         words = text(
             "[observed] burn_time is {seen:.1f} s, but the chamber burns on: its pressure is above 1.8 times ambient "
-            "until {choked:.1f} s",
+            "until {above:.1f} s",
             seen=seen.value,
-            choked=choked,
+            above=above,
         )
-        return Doubt(words, {"a": seen.value / choked, "n": 1.0, "regression_rate_reference": seen.value / choked})
+        return Doubt(words, {"a": seen.value / above, "n": 1.0, "regression_rate_reference": seen.value / above})
 
     def _run_line(self) -> Doubt | None:
         """A run line so far below the tank that no liquid would come through."""
@@ -180,8 +174,7 @@ class _Facts:
             return None
         ratio = (nozzle.exit_radius.value / nozzle.throat_radius.value) ** 2
         ambient = self.definition.ambient_pressure.value
-        at_exit = means[0] * float(np.mean([pressure_ratio(mach_at_area(ratio, g, True), g) for g in GAMMAS]))
-        if at_exit > SEPARATED * ambient:
+        if ratio < 1.0 or flows_full(means[0], ambient, ratio):
             return None
         words = text(
             "[nozzle] exit_radius is {radius:.1f} mm, an exit of {ratio:.0f} times the throat's area: at a chamber "

@@ -9,10 +9,14 @@ from math import log
 import numpy as np
 
 from hfanalysis.calibrate.calibration import TankCalibration
+from hfanalysis.calibrate.course import Course
+from hfanalysis.calibrate.drifting import drift_std
 from hfanalysis.calibrate.evidence import Evidence
-from hfanalysis.calibrate.evidence_from_log import evidence_of
+from hfanalysis.calibrate.evidence_from_log import evidence_of, whole_covariance
 from hfanalysis.calibrate.facts import nothing_to_regress
-from hfanalysis.calibrate.regression import Joint, fit, fit_together, result
+from hfanalysis.calibrate.law_errors import LawErrors
+from hfanalysis.calibrate.narrow_port import reaching_the_head, with_stated_tap
+from hfanalysis.calibrate.regression import Fitted, Joint, fit, fit_together, result
 from hfanalysis.calibrate.stated import apart, held_law, law_of
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
@@ -62,12 +66,32 @@ def _fitted(
 ) -> FuelLaw:
     """As the log has it."""
     try:
-        found = fit([evidence_for(log, segments, definition, calibration, effects)])
+        found = fit([evidence_for(log, segments, definition, calibration, with_stated_tap(definition, effects))])
+        whole = _with_all_errors(result(found), found, definition, calibration)
+        law = reaching_the_head(whole, found, definition)
     except AbsentError as error:
         return FuelLaw.absent(str(error))
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return FuelLaw.absent(f"the engine's model cannot be fitted with what test.toml states: {error}")
-    return _conditional(result(found), calibration.constants.C_i)
+    return _conditional(law, calibration.constants.C_i)
+
+
+def _with_all_errors(law: FuelLaw, found: Fitted, definition: TestDefinition, calibration: TankCalibration) -> FuelLaw:
+    """The law with what systematic errors do to it; as it is where they cannot be carried through the engine."""
+    if calibration.whole is None:
+        return law
+    try:
+        errors = LawErrors(found, whole_covariance(calibration.whole, definition, calibration.constants))
+        return errors.drifting(errors.told(law), *_drift(found, calibration))
+    except (AbsentError, ArithmeticError):
+        return law
+
+
+def _drift(found: Fitted, calibration: TankCalibration) -> tuple[float, float]:
+    """What C_i may drift by [-] while the liquid lasts, and how long it does [s]."""
+    constants, burnt = calibration.constants, found.evidence[0].burnt(found.law)
+    lasts = float(burnt.liquid_out or burnt.time[-1])
+    return drift_std(Course.of(constants.C_i_history), constants.C_i.value or 0.0, lasts), lasts
 
 
 def _conditional(law: FuelLaw, discharge: Quantity) -> FuelLaw:
@@ -75,7 +99,14 @@ def _conditional(law: FuelLaw, discharge: Quantity) -> FuelLaw:
     if discharge.verdict not in (CONDITIONAL, DOUBTED):
         return law
     found = {n: q for n, q in law.quantities.items() if q.verdict == IDENTIFIED}
-    return law.but(**{n: replace(q, verdict=discharge.verdict, why=discharge.why) for n, q in found.items()})
+    told = {n: replace(q, verdict=discharge.verdict, why=discharge.why) for n, q in found.items()}
+    own = {n: q for n, q in law.quantities.items() if q.verdict == CONDITIONAL}
+    return law.but(**told, **{n: _both(q, discharge) for n, q in own.items()})
+
+
+def _both(own: Quantity, discharge: Quantity) -> Quantity:
+    """On its own condition and on that of C_i, whose verdict is the worse one."""
+    return replace(own, verdict=discharge.verdict, why=f"{discharge.why}; {own.why}")
 
 
 def held(definition: TestDefinition, by_log: FuelLaw) -> FuelLaw:

@@ -19,6 +19,9 @@ from typing import Any
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.beside_report import joint_of
+from hfanalysis.calibrate.conditions import conditioned, conditions
 from hfanalysis.calibrate.evidence import burn_time_of
 from hfanalysis.calibrate.regression import judge_regression, rate_at
 from hfanalysis.calibrate.tank import PEAK_OVER
@@ -33,7 +36,14 @@ from hfanalysis.inference.full_run import LONGEST_BURN
 from hfanalysis.inference.gap import flowing, residuals_of
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.subject import Subject
-from hfanalysis.products.calibration import UNIT_OF_A, UNIT_OF_FLUX, Calibration, RegressionBasis, RegressionTest
+from hfanalysis.products.calibration import (
+    UNIT_OF_A,
+    UNIT_OF_FLUX,
+    Calibration,
+    Joint,
+    RegressionBasis,
+    RegressionTest,
+)
 from hfanalysis.quantity import IDENTIFIED, NORMAL_95, NOT_IDENTIFIABLE, STATED, UNPHYSICAL, Quantity
 
 M_NOT_TOLD = 0.8
@@ -44,6 +54,11 @@ PROBE_STEP = 0.1
 
 DERIVED = {"vapor_mass_at_t_v": "kg", "mass_at_t_feed": "kg", "oxidizer_mass_liquid_phase": "kg",
            "oxidizer_flow_peak": "kg/s"}  # fmt: skip
+
+
+TOGETHER = {"oxidizer_mass": "oxidizer_mass", "area": "flow_area", "loss_factor": "K_loss",
+            "polytropic_exponent": "m", "n": "n", "a": "ln_a"}  # fmt: skip
+"""What is free, as ``joint`` names it."""
 
 
 def fitted_together(subject: Subject, effects: Sequence[Active], one_by_one: Calibration) -> Calibration:
@@ -83,6 +98,7 @@ class _Constants:
             **mine,
             notes=(*self.one_by_one.notes, note),
             regression=self._about(),
+            joint=self._joint(),
             one_by_one={name: before[name] for name in mine if name in before},
         )
 
@@ -112,11 +128,22 @@ class _Constants:
         low, high = (free.value(float(end)) / per for end in ends)
         return Quantity(free.value(x) / per, unit, abs(free.slope(x)) * std / per, (low, high), **judged)
 
+    def _joint(self) -> Joint:
+        """Errors of the fitted constants together, as a model takes them."""
+        fit = self.found.fit
+        places = [i for i, free in enumerate(fit.hypothesis.free) if free.name in TOGETHER]
+        free = [fit.hypothesis.free[i] for i in places]
+        slopes = [
+            f.slope(float(fit.x[i])) / (f.value(float(fit.x[i])) if f.name == "a" else 1.0)
+            for f, i in zip(free, places, strict=True)
+        ]
+        covariance = np.asarray(fit.covariance)[np.ix_(places, places)] * np.outer(slopes, slopes)
+        return joint_of(tuple(TOGETHER[f.name] for f in free), covariance)
+
     def _of_tank(self) -> dict[str, Quantity]:
         definition = self.subject.definition
-        assert definition.injector is not None
-        assert definition.injector.area is not None
-        area = definition.injector.area
+        area = definition.injector_area
+        assert area is not None
         discharge = self._quantity("area", "", area.value, verdict=IDENTIFIED)
         assert discharge.value is not None
         assert discharge.std is not None
@@ -218,7 +245,8 @@ class _Constants:
         assert n.ci95 is not None
         along = np.array([1.0, log(flux)])
         spread = float(np.sqrt(along @ self._covariance_of_law @ along))
-        verdict, why = judge_regression("", n.ci95, n.std or 0.0, flux, spread)
+        on = conditions(Regression(a.value, n.value), flux, [self._fluxes])
+        verdict, why = conditioned(judge_regression("", n.ci95, n.std or 0.0, flux, spread), n.ci95, on)
         rate, around = a.value * flux**n.value, exp(NORMAL_95 * spread)
         return {
             "a": replace(a, verdict=verdict, why=why),

@@ -11,15 +11,16 @@ from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.calibrate.rest import MODEL_MASS_SPREAD, blowdown_mass
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import NORMAL_95
+from hfanalysis.record.default_deviations import OXIDIZER_MASS
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.sections import Tank
 from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.saturation import Saturation
 
-UNSTATED = 0.01
-"""Relative standard deviation of a loaded mass that is stated without one. Evidence: test_rest.py: it counts as known
-to one percent."""
+UNSTATED = OXIDIZER_MASS.share
+"""Relative standard deviation of a loaded mass that is stated without one. Source: record/default_deviations.py.
+Evidence: test_rest.py: it counts as known to one percent."""
 
 ULLAGE_READ = 0.05
 """Standard deviation of a stated ullage without one: vapor over liquid volume [-]. Evidence: a fill that is stopped
@@ -63,9 +64,8 @@ def loaded_mass(
     """
     tank = definition.tank
     if tank is not None and tank.oxidizer_mass is not None:
-        stated = tank.oxidizer_mass
-        std = stated.std if stated.std is not None else UNSTATED * stated.value
-        return LoadedMass(stated.value, std, f"{stated.value:.3f} +/- {std:.3f} kg as stated")
+        mass, std = tank.oxidizer_mass.value, definition.known_std("tank.oxidizer_mass")
+        return LoadedMass(mass, std, f"{mass:.3f} +/- {std:.3f} kg as stated")
     cell = load_cell_mass(log, segments)
     if cell is not None:
         return LoadedMass(*cell, f"{cell[0]:.3f} +/- {cell[1]:.3f} kg from the load cell at rest; none is stated")

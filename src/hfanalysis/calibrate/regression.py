@@ -8,7 +8,7 @@ part of the answer.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import exp, log
 from typing import Any
@@ -19,6 +19,7 @@ from scipy.special import chdtrc
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.conditions import conditioned, conditions, set_by_trickle
 from hfanalysis.calibrate.descent import least
 from hfanalysis.calibrate.evidence import Evidence, burn_time_of
 from hfanalysis.calibrate.likelihood import Surface, Weights, first_guess, surface, weights_from
@@ -145,7 +146,7 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
     for last in (False, True):
         law = law_at(best, flux)
         evidence = [e.with_regression(law) for e in evidence]
-        weights = [_weighed(e, law) for e in evidence]
+        weights = [weighed(e, law) for e in evidence]
         minima = _minima(evidence, weights, flux, best) if last else [_minimum(evidence, weights, flux, best)]
         best, *rivals = _likeliest(evidence, minima, flux)
     found = _surveyed(evidence, weights, flux, best)
@@ -249,7 +250,7 @@ def _likeliest(evidence: Sequence[Evidence], minima: Sequence[Array], flux: floa
     if len(minima) == 1:
         return list(minima)
     laws = [law_at(point, flux) for point in minima]
-    weights = [[_weighed(e, law) for e in evidence] for law in laws]
+    weights = [[weighed(e, law) for e in evidence] for law in laws]
     counts = [min(w.effective for w in of_test) for of_test in zip(*weights, strict=True)]
     deviances = [
         sum(w.deviance(_residual(e, law), count) for e, w, count in zip(evidence, own, counts, strict=True))
@@ -293,7 +294,8 @@ def _residual(evidence: Evidence, law: Regression) -> Array:
     return evidence.observed - predicted
 
 
-def _weighed(evidence: Evidence, law: Regression) -> Weights:
+def weighed(evidence: Evidence, law: Regression) -> Weights:
+    """The weights that follow from what a ``law`` leaves of the evidence."""
     size, residual = evidence.time.size, _residual(evidence, law)
     wander = np.zeros((residual.size, residual.size))
     wander[:size, :size] = evidence.wander
@@ -312,13 +314,18 @@ def _covariance(evidence: Sequence[Evidence], weights: Sequence[Weights], flux: 
     """Of (ln r, n) from the model's slopes; a direction hardly seen is cut at LARGEST_STEP."""
     information = np.zeros((2, 2))
     for e, w in zip(evidence, weights, strict=True):
-        slopes = _slopes(e, flux, best)
-        information += slopes.T @ w.precision @ slopes
+        along = slopes(e, flux, best)
+        information += along.T @ w.precision @ along
     information[0, 0] = max(information[0, 0], LARGEST_RATE_STEP**-2)
     return np.asarray(np.linalg.inv(information + np.diag([0.0, LARGEST_STEP**-2])), dtype=np.float64)
 
 
-def _slopes(evidence: Evidence, flux: float, best: Array, step: float = 0.01) -> Array:
+def slopes(evidence: Evidence, flux: float, best: Array, step: float = 0.01) -> Array:
+    """Change of what is observed [Pa, s, kg] with ln r and n, (observations, 2), about ``best`` (2,) at ``flux``
+    [kg/m^2/s].
+
+    Raises AbsentError where the model cannot be run there.
+    """
     columns = []
     for axis in np.eye(2) * step:
         after, before = (evidence.predict(law_at(best + s * axis, flux)) for s in (1.0, -1.0))
@@ -373,7 +380,8 @@ def result(found: Fitted) -> FuelLaw:
                                                              (0.0, 1.0)))  # fmt: skip
     rivals = [float(r[1]) for r in found.rivals]
     not_told = _not_told(found, ln_rate, ln_a, n)
-    verdict, why = judge_regression(not_told, (n.low, n.high), n.std, flux, ln_rate.std, rivals)
+    judged = judge_regression(not_told, (n.low, n.high), n.std, flux, ln_rate.std, rivals)
+    verdict, why = conditioned(judged, (n.low, n.high), _conditions(found, flux))
     known = ln_rate.std <= WIDEST_RATE and not _at_limit(found)
     return FuelLaw(
         a=Quantity(
@@ -387,6 +395,16 @@ def result(found: Fitted) -> FuelLaw:
         ),
         regression=_about(found, flux),
     )  # fmt: skip
+
+
+def _conditions(found: Fitted, flux: float) -> Iterator[str]:
+    """What a and n hold on, in words."""
+    windows, trickles = [], []
+    for e, w in zip(found.evidence, found.weights, strict=True):
+        burnt = e.burnt(found.law)
+        windows.append(flux_range(e, burnt))
+        trickles.append(set_by_trickle(e, w, burnt, slopes(e, found.flux, found.best), windows[-1]))
+    return conditions(found.law, flux, windows, trickles)
 
 
 def rate_at(flux: float) -> str:

@@ -8,15 +8,20 @@ from dataclasses import replace
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.calibrate.beside_report import beside_report
 from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce
+from hfanalysis.calibrate.budgets import budgets
 from hfanalysis.calibrate.calibration import TankCalibration
+from hfanalysis.calibrate.course import with_course
 from hfanalysis.calibrate.diagnostics import coefficient_history, other_masses, rest_of, tank_history
 from hfanalysis.calibrate.feed_loss import estimated_share
+from hfanalysis.calibrate.head_pressure import before_injector
 from hfanalysis.calibrate.loaded_mass import UNSTATED, LoadedMass, loaded_mass
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures, PressureReading, read_at
 from hfanalysis.calibrate.stated import Held
+from hfanalysis.calibrate.systematic import systematic_errors, with_systematic
 from hfanalysis.calibrate.uncertainty import HELD, Draws, InputSpread, draw
-from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged
+from hfanalysis.calibrate.verdicts import judge_discharge, judge_exponent, judged, looked_up
 from hfanalysis.calibrate.water_flow import calibrate_water, is_water
 from hfanalysis.calibrate.with_effects import acting
 from hfanalysis.engine.effect import Active
@@ -25,6 +30,7 @@ from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.calibration import CoefficientHistory, Rest, TankConstants, TankHistory
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import CONDITIONAL, DERIVED, IDENTIFIED, NOT_IDENTIFIABLE, STATED, Quantity
+from hfanalysis.record.accuracy import left_by_zero
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import live_signals
@@ -35,10 +41,6 @@ from hfanalysis.units import Value
 VAPOR_PRESSURE_SHARE = 0.6
 """Without nitrogen the vapor phase is followed until the tank has this share of its pressure at t_v. Evidence:
 test_deviations.py, test_refusals.py: the m of a tank that lost two fifths is found."""
-
-SPAN_SHARE = 0.25
-"""Part of a sensor's accuracy that a zero at ambient does not take away: its error of span. Evidence:
-test_deviations.py."""
 
 FEWEST = 8
 """Samples on either side of an instant that a pressure there is read from. Evidence: a vapor phase of fewer was read
@@ -78,7 +80,8 @@ def calibrate(
         raise AbsentError(
             f"test {definition.test.id}: no end of the liquid to calibrate with: {segments.events['t_v'].reason}"
         )
-    return _Work(log, segments, definition, t_v, effects).result(samples)
+    read = before_injector(log, segments, definition)
+    return _Work(read, segments, definition, t_v, effects).result(samples)
 
 
 class _Work:
@@ -149,17 +152,23 @@ class _Work:
         inputs = self._inputs(mass.value)
         self._check_fit(inputs)
         tables = Tables.of(self.histories, self.saturation)
-        inputs, vapor = self._acting(tables, inputs)
+        plain = inputs
+        inputs, vapor = self._acting(tables, plain)
         nominal = reduce(tables, self.saturation, inputs, phase=vapor)
         self.notes.append(f"loaded mass: {mass.source}")
         left = self._mass_left(nominal, inputs)
         rest, remarks = rest_of(self.log, self.segments, self.saturation, self.histories, inputs, nominal, left, mass)
         self.warnings.extend(remarks)
         mass = mass.against(other_masses(rest, mass))
-        draws = draw(tables, self.saturation, inputs, self._spread(mass), samples, vapor)
+        draws, spread = draw(tables, self.saturation, inputs, self._spread(mass), samples, vapor), self._spread(mass)
+        self.errors = systematic_errors(self.definition, self.histories, self.saturation, plain)
+        whole = with_systematic(draws, self.errors)
         history = coefficient_history(self.saturation, self.histories, inputs, left)
         content = tank_history(self.saturation, self.histories, inputs, left)
-        quantities = self._quantities(nominal, draws, inputs, left)
+        quantities = self._quantities(nominal, whole, inputs, left)
+        steady = quantities["C_i"].std or 0.0
+        quantities["C_i"] = self._over_time(quantities["C_i"], draws, history, left)
+        course = max((quantities["C_i"].std or 0.0) ** 2 - steady**2, 0.0) ** 0.5
         if self.held.values:
             by_log = self._by_log(tables, inputs, mass, samples, vapor)
             quantities |= {name: self.held.quantity(name, by_log[name]) for name in by_log}
@@ -168,7 +177,24 @@ class _Work:
         quantities["oxidizer_mass"] = Quantity(mass.value, "kg", mass.std, verdict=verdict, why=mass.source)
         for words in mass.doubts:
             quantities |= {name: quantities[name].doubted(words) for name in BY_MASS}
-        return TankCalibration(self._constants(quantities, rest, history, content), draws)
+        alone = nominal if inputs is plain else reduce(tables, self.saturation, plain)
+        beside = beside_report(
+            self.histories, self.saturation, plain, alone, whole, spread, quantities, self.end_reason
+        )
+        constants = self._constants(quantities | beside, rest, history, content)
+        return TankCalibration(constants.but(budget=budgets(whole, constants, course)), draws, whole)
+
+    def _over_time(
+        self, discharge: Quantity, draws: Draws, history: CoefficientHistory | None, left: Array
+    ) -> Quantity:
+        """C_i with what its course over time is worth; one that is held is what it is."""
+        if "C_i" in self.held.values:
+            return discharge
+        wet = self.histories.time < self.t_v
+        time = self.histories.time[wet]
+        return with_course(
+            discharge, abs(discharge.value or 0.0) * draws.by_pressures, history, time, np.gradient(left[wet], time)
+        )
 
     def _by_log(
         self, tables: Tables, inputs: Inputs, mass: LoadedMass, samples: int, vapor: VaporPhase | None
@@ -176,7 +202,8 @@ class _Work:
         """What the log says of what is held."""
         loose = replace(inputs, **dict.fromkeys(HELD, np.nan))
         nominal = reduce(tables, self.saturation, loose, phase=vapor)
-        draws = draw(tables, self.saturation, loose, self._spread(mass), samples, vapor)
+        record = draw(tables, self.saturation, loose, self._spread(mass), samples, vapor)
+        draws = with_systematic(record, systematic_errors(self.definition, self.histories, self.saturation, loose))
         found = {"m": judge_exponent(nominal, draws, loose, self.end_reason, self.saturation)}
         found["K_loss"] = judged("K_loss", nominal.K_loss, "1/m^4", draws)
         found["C_i"] = judge_discharge(nominal, draws, self._excluded_share())
@@ -240,7 +267,7 @@ class _Work:
         discharge = self.held.quantity("C_i") if held else judge_discharge(r, draws, self._excluded_share())
         known = np.isfinite(r.C_i) and 0.0 < r.C_i < 10.0
         out = {"C_i": discharge, "m": judge_exponent(r, draws, inputs, self.end_reason, self.saturation)}
-        out["Z"] = judged("Z", r.Z, "", draws)
+        out["Z"] = looked_up(judged("Z", r.Z, "", draws))
         out["K_loss"] = judged("K_loss", r.K_loss, "1/m^4", draws, unphysical_below=0.0)
         out["p_loss_liquid"] = judged("loss_liquid", r.loss_liquid, "Pa", draws, unphysical_below=0.0)
         out["p_loss_vapor"] = (
@@ -248,13 +275,12 @@ class _Work:
             if np.isfinite(r.loss_vapor)
             else Quantity.absent(self.end_reason or "the vapor phase holds no samples", verdict=NOT_IDENTIFIABLE)
         )
-        out["vapor_mass_at_t_v"] = judged("vapor_mass", r.vapor_mass, "kg", draws)
+        out["vapor_mass_at_t_v"] = looked_up(judged("vapor_mass", r.vapor_mass, "kg", draws))
         flow = self._flow_peak(left) if known else None
         if flow is None:
             out["oxidizer_flow_peak"] = Quantity.absent("no C_i to take it from", verdict=NOT_IDENTIFIABLE)
         else:
-            relative = (discharge.std or 0.0) / r.C_i
-            out["oxidizer_flow_peak"] = Quantity(flow, "kg/s", flow * relative, verdict=_worth(discharge))
+            out["oxidizer_flow_peak"] = Quantity(flow, "kg/s", flow * draws.of_flow, verdict=_worth(discharge))
         at_feed = inputs.mass - float(np.interp(self.t_feed, self.histories.time, left))
         out["mass_at_t_feed"] = _mass(at_feed, self._mass_std, discharge)
         spread = float(np.hypot(draws.std("vapor_mass"), self._mass_std))
@@ -299,7 +325,7 @@ class _Work:
         still = self.histories.signals[name].between(-30.0, -0.02).time
         rest = (float(still[0]), -0.02) if still.size > 1 else (-1.0, -0.02)
         since = self.histories.noises[name].difference_std(rest, (0.0, self.t_v))
-        return float(np.sqrt(channel.zero_std**2 + since**2 + (SPAN_SHARE * channel.accuracy) ** 2))
+        return float(np.hypot(left_by_zero(channel.accuracy, channel.zero_std), since))
 
     def _mass_left(self, r: Reduction, inputs: Inputs) -> Array:
         """Mass that has left through the injector at the histories' times [kg]."""

@@ -21,6 +21,16 @@ SEED = 20230101
 HELD = ("C_i", "K_loss", "m")
 """What may be held: as stated, and within what is stated of it."""
 
+SYSTEMATIC, RANDOM = "systematic ", "random "
+"""What begins the names of errors that are the same in a repeated test, and of those that are not."""
+
+DRAWN = (
+    *(f"{SYSTEMATIC}{name}" for name in ("mass", "volume", "area")),
+    *(f"{RANDOM}{name}" for name in ("t_feed", "t_v", "t_end", "p_v", "p_end")),
+    *(f"{SYSTEMATIC}{name}" for name in ("p_tank", "p_run", "p_chamber")),
+)
+"""The errors that are drawn, in the order of their numbers."""
+
 
 @dataclass(frozen=True)
 class InputSpread:
@@ -46,7 +56,8 @@ class InputSpread:
 class Draws:
     """The repeated reductions: one array per quantity, NaN where a draw has no answer.
 
-    ``inputs`` holds what was drawn for them: loaded mass [kg], volume [m^3], area [m^2], biases of p_tank and p_c [Pa].
+    ``inputs`` holds what was drawn for them: loaded mass [kg], volume [m^3], area [m^2], biases of p_tank, p_run and
+    p_c [Pa]; and, in standard deviations, every error by its name, "systematic ..." or "random ...".
     """
 
     values: dict[str, Array]
@@ -58,6 +69,21 @@ class Draws:
         """
         good = self.good(name)
         return float(good.std(ddof=1)) if good.size >= 10 else float("nan")
+
+    @property
+    def of_flow(self) -> float:
+        """Relative standard deviation [-] of C_i N_i A_i, which an error of the area leaves as it is."""
+        area = self.values["C_i"] * self.inputs["area"]
+        good = area[np.isfinite(area)]
+        return float(good.std(ddof=1) / abs(good.mean())) if good.size >= 10 else float("nan")
+
+    @property
+    def by_pressures(self) -> float:
+        """Relative standard deviation [-] of C_i by pressures and times alone: of the flow's integral."""
+        gone = self.inputs["mass"] - self.values["vapor_mass"]
+        integral = gone / (self.values["C_i"] * self.inputs["area"])
+        good = integral[np.isfinite(integral)]
+        return float(good.std(ddof=1) / abs(good.mean())) if good.size >= 10 else float("nan")
 
     def interval(self, name: str, value: float) -> tuple[float, float]:
         """The 95 % interval [SI]: the draws' quantiles about their median, moved to the ``value`` itself."""
@@ -87,7 +113,7 @@ def draw(
     phase = vapor_phase or VaporPhase.plain(saturation, inputs)
     results = [reduce(tables, saturation, *row, phase) for row in drawn]
     values = {n: np.array([getattr(r, n) for r in results]) for n in Reduction.__dataclass_fields__}
-    return Draws(values, _what_was_drawn(drawn))
+    return Draws(values, _what_was_drawn(drawn) | _deviates(spread, z, own))
 
 
 def _held(inputs: Inputs, spread: InputSpread, z: Array) -> Inputs:
@@ -98,7 +124,14 @@ def _held(inputs: Inputs, spread: InputSpread, z: Array) -> Inputs:
 
 def _what_was_drawn(drawn: list[tuple[Inputs, Shift]]) -> dict[str, Array]:
     found = {n: np.array([getattr(i, n) for i, _ in drawn]) for n in ("mass", "volume", "area")}
-    return found | {f"p_{n}": np.array([getattr(s, n) for _, s in drawn]) for n in ("tank", "chamber")}
+    return found | {f"p_{n}": np.array([getattr(s, n) for _, s in drawn]) for n in ("tank", "run", "chamber")}
+
+
+def _deviates(spread: InputSpread, z: Array, own: Array) -> dict[str, Array]:
+    """What was drawn in standard deviations, of what has one."""
+    known = (spread.mass, spread.volume, spread.area, spread.t_feed, spread.t_v, spread.t_end, 1.0, 1.0, *spread.bias)
+    columns = zip((*DRAWN, *(f"{SYSTEMATIC}{n}" for n in HELD)), (*known, *spread.held), (*z.T, *own.T), strict=True)
+    return {name: column for name, std, column in columns if std > 0.0}
 
 
 def _drawn(inputs: Inputs, spread: InputSpread, z: Array) -> tuple[Inputs, Shift]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from hfanalysis.calibrate.blowdown import EXPONENTS, Inputs, Reduction
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.closure import implied_heat
-from hfanalysis.quantity import DOUBTED, IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
+from hfanalysis.quantity import DERIVED, DOUBTED, IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.saturation import Saturation
 
@@ -41,6 +43,12 @@ def judged(name: str, value: float, unit: str, draws: Draws, unphysical_below: f
         why = "negative: the two pressure sensors disagree in sign"
         return Quantity(value, unit, draws.std(name), interval, verdict=UNPHYSICAL, why=why)
     return Quantity(value, unit, draws.std(name), interval, verdict=IDENTIFIED)
+
+
+def looked_up(found: Quantity) -> Quantity:
+    """What no log tells but a table, at the pressure of t_v: derived, as well as the table is known."""
+    why = "the table of nitrous oxide at the tank's pressure of t_v; its deviation holds what the other table has"
+    return replace(found, verdict=DERIVED, why=why) if found.verdict == IDENTIFIED else found
 
 
 def judge_discharge(r: Reduction, draws: Draws, reversed_share: float) -> Quantity:
@@ -87,7 +95,8 @@ def judge_exponent(
     low, high = draws.interval("m", r.m)
     heat = implied_heat(saturation, r.m, r.vapor_mass, r.vapor_mass_end, r.temperature_v, r.Z)
     t_end = r.temperature_v * (r.vapor_mass_end / r.vapor_mass) ** (r.m - 1.0)
-    implies = f"it implies {heat / duration / 1e3:+.1f} kW into the vapor and {t_end - 273.15:.0f} degC at its end"
+    power = f"{heat / duration / 1e3:+.1f} kW into the vapor"
+    implies = f"if the vapor flows so, it implies {power} and {t_end - 273.15:.0f} degC at its end"
     outside = high < PHYSICAL_M[0] or low > PHYSICAL_M[1]
     verdict = UNPHYSICAL if outside else IDENTIFIED
     lead = f"outside {PHYSICAL_M[0]} to {PHYSICAL_M[1]}, no property of nitrous oxide: " if outside else ""

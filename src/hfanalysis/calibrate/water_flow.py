@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hfanalysis.calibrate.loaded_mass import UNSTATED
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import Rest, TankConstants
 from hfanalysis.products.segments import Segments
@@ -99,16 +98,14 @@ def _flow(log: TestLog, segments: Segments, definition: TestDefinition, span: tu
     part = cell.between(*span) if cell is not None else None
     if part is not None and part.time.size > 16:
         return _slope(part)
-    loaded = definition.tank.oxidizer_mass if definition.tank else None
-    left = definition.observed.oxidizer_mass_after if definition.observed else None
+    loaded, left = definition.known("tank.oxidizer_mass"), definition.known("observed.oxidizer_mass_after")
     if loaded is None or left is None:
         return (
             "no mass flow: the log has no live m_tank, and what was in the tank and what was left of it is not stated "
             "([tank] oxidizer_mass, [observed] oxidizer_mass_after)"
         )
     duration = (span[1] - span[0]) / (1.0 - 2.0 * STEADY)
-    spreads = [m.std if m.std is not None else UNSTATED * loaded.value for m in (loaded, left)]
-    gone, std = loaded.value - left.value, float(np.linalg.norm(spreads))
+    gone, std = loaded.value - left.value, float(np.hypot(loaded.std or 0.0, left.std or 0.0))
     if gone <= 0.0:
         return "no mass flow: as much is stated to be left as was loaded"
     return _Flow(gone / duration, std / duration, f"{gone:.3f} kg in {duration:.2f} s")

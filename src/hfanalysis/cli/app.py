@@ -211,6 +211,15 @@ def _compare(
         exports.compare(Request(test, root, out, as_json, False, quiet), other, pdf)
 
 
+def _budget(request: Request) -> None:
+    from hfanalysis.cli import budget
+
+    budget.budget(request)
+
+
+_stage("budget", "What the standard deviations of a test's quantities are made of.", _budget)
+
+
 @app.command("watch")
 def _watch(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder into which the logger writes.")],

@@ -26,6 +26,7 @@ if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
     from hfanalysis.products.effects import EffectEntry, EffectLibrary
     from hfanalysis.products.engines import Designed, Simulated
     from hfanalysis.products.quick import QuickLook
+    from hfanalysis.products.reconstruction import Reconstruction
     from hfanalysis.products.validation import Validation
 
 _NARROWEST = 140
@@ -211,6 +212,9 @@ def _calibrate(context: Context, console: Console) -> None:
     product, events = context.read(Calibration), context.read(Segments).events
     times = {name: events[name] for name in ("t_feed", "t_v", "t_purge")}
     _print(console, ordered(product.quantities) | times, "calibration", _reasons(context))
+    if product.inlet is not None:
+        reaching = product.inlet.quantities | dict(product.C_d)
+        _print(console, reaching, "what reaches the injector, and its C_d by law", _reasons(context))
     _regression(product.regression, console)
 
 
@@ -271,8 +275,25 @@ def _performance(product: Validation, known: Sequence[Doubt], console: Console) 
     console.print(table)
     if performance.motor_class:
         console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=True)
+    if product.reconstruction is not None:
+        console.print(Text(f"  reconstruction: {_reconstructed(product.reconstruction)}"), soft_wrap=True)
+    if product.stability is not None:
+        console.print(Text(f"  stability: {product.stability.verdict}: {product.stability.why}"), soft_wrap=True)
     for name, reason in product.absent.items():
         console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=True)
+
+
+def _reconstructed(found: Reconstruction) -> str:
+    """Mean O/F, c* efficiency and what the throat did; or why there is none."""
+    if found.variant is None:
+        return f"none: {found.reason}"
+    named = (("O/F", found.of_ratio_mean), ("c* efficiency", found.c_star_efficiency))
+    parts = [f"{name} {q.value:.3g} ({q.interval[0]:.3g} to {q.interval[1]:.3g})" for name, q in named
+             if q is not None and q.value is not None and q.interval is not None]  # fmt: skip
+    change = found.throat_radius_change
+    if change is not None and change.value is not None:
+        parts.append(f"throat wider by {1e3 * change.value:.2f} mm")
+    return f"{', '.join(parts)}; {found.assumption}"
 
 
 def _validate(context: Context, console: Console) -> None:
@@ -294,7 +315,9 @@ def _flight(context: Context, console: Console) -> None:
     from hfanalysis.products.flight import Flight
 
     product = context.read(Flight)
-    _values(console, ordered(product.quantities), f"flight, thrust {product.thrust}", _reasons(context))
+    title = f"flight, thrust {product.thrust_basis}, {product.thrust}"
+    _values(console, ordered(product.flown), title, _reasons(context))
+    console.print(Text(f"  the intervals hold {product.band_covers}"), soft_wrap=True)
     _values(console, ordered(product.stability.quantities), "stability")
     for name, check in product.checks.items():
         style = {"passed": "green", "failed": "red"}.get(check.result, "yellow")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hfanalysis.engine.nozzle import area_ratio, expand, mach_at_pressure
+from hfanalysis.engine.nozzle import area_ratio, expand, mach_at_area, mach_at_pressure, pressure_ratio
 
 GAMMAS = (1.14, 1.35)
 """Heat capacity ratio [-] of burnt nitrous oxide and paraffin, with room on both sides. Evidence: equilibrium, frozen
@@ -11,6 +11,22 @@ in the nozzle, at 20 bar has 1.31 at O/F 3 and 1.24 from 7 on."""
 TOLERANCE = 0.08
 """Relative error of the thrust coefficient that nozzle losses, burning and alignment may make on either side. Evidence:
 MRT-HF3.1 has 0.58 where a nozzle gives 1.16 to 1.34; HF4 and HF5 stay within (docs/validation.md)."""
+
+
+SEPARATED = 0.2
+"""Exit over ambient pressure below which a nozzle does not flow full. Source: Summerfield's criterion has 0.4; 0.2
+leaves room for its scatter."""
+
+
+def flows_full(pressure: float, ambient: float, ratio: float) -> bool:
+    """Whether the flow fills an exit of ``ratio`` times the throat's area [-], at a chamber ``pressure`` [Pa] over
+    ``ambient`` [Pa].
+
+    >>> flows_full(20e5, 1e5, 2.7), flows_full(20e5, 1e5, 270.0)
+    (True, False)
+    """
+    at_exit = [pressure * pressure_ratio(mach_at_area(ratio, g, True), g) for g in GAMMAS]
+    return sum(at_exit) / len(at_exit) > SEPARATED * ambient
 
 
 def possible(pressure: float, ambient: float, throat: float, exit_area: float | None) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
 from hfanalysis.flight.curve import Curve
 from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, Vehicle, drag_coefficient
-from hfanalysis.thermo.air import air
+from hfanalysis.thermo.air import air_of_day
 from hfanalysis.thermo.atmosphere import HIGHEST
 
 COAST_STEP = 0.05
@@ -89,13 +89,14 @@ def ascend(curve: Curve, vehicle: Vehicle, rail_length: float | None = None, row
 
 
 def arguments(curve: Curve, vehicle: Vehicle, rail_length: float | None) -> Arguments:
-    """What :func:`fly` reads of a thrust curve and a vehicle: (n + 1,), (n + 1,), (n + 1, k), (2, m), (9,) [SI].
+    """What :func:`fly` reads of a thrust curve and a vehicle: (n + 1,), (n + 1,), (n + 1, k), (2, m), (11,) [SI].
 
     ``rail_length`` [m] (None: there is no rail to leave).
     """
     fixed = np.array([
         curve.step, vehicle.dry_mass, curve.mass_after, vehicle.frontal_area, vehicle.launch_angle,
         vehicle.launch_altitude, np.inf if rail_length is None else rail_length, *curve.ambients,
+        vehicle.warmer, vehicle.pressure_share,
     ])  # fmt: skip
     return curve.thrust, curve.mass, curve.gain, vehicle.drag_table, fixed
 
@@ -182,7 +183,7 @@ def _felt(
 
     Then Mach number, dynamic pressure [Pa], drag [N], thrust [N] and mass [kg].
     """
-    ambient, rho, sound = air(z)
+    ambient, rho, sound = air_of_day(z, fixed[5], fixed[9], fixed[10])
     force, m = _push(thrust, mass, gain, fixed, row, now, share, ambient)
     mach, pressure = abs(v) / sound, 0.5 * rho * v * v
     resistance = drag_coefficient(mach, table) * fixed[3] * row[DRAG] * pressure

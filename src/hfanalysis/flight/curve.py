@@ -8,7 +8,8 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
-from hfanalysis.engine.nozzle import SUBSONIC, expand
+from hfanalysis.engine.nozzle import SUBSONIC, mach_at_area
+from hfanalysis.engine.separation import LAWS, Law, expand_by
 
 STEPS = 1000
 """Steps of a burn: 17 ms of a long one, 3 ms of a short one. Evidence: impulse is kept whatever their number; the
@@ -27,7 +28,8 @@ class Curve:
     """Thrust [N] and the rocket's mass [kg] every ``step`` [s] from ignition to burn-out, (n + 1) each.
 
     ``mass_after``: what coasts [kg]. ``gain`` (n + 1, k): thrust [N] to add at the k ambient pressures that start at
-    and follow by ``ambients`` [Pa]; one column of zeros where the thrust is what it is at the altitude.
+    and follow by ``ambients`` [Pa]; one column of zeros where the thrust is what it is at the altitude. ``law``: of
+    several that may hold, the number of that by which it was made.
     """
 
     step: float
@@ -36,6 +38,7 @@ class Curve:
     mass_after: float
     gain: Array = field(default_factory=lambda: np.zeros((1, 1)))
     ambients: tuple[float, float] = (0.0, 1.0)
+    law: int = 0
 
     @property
     def time(self) -> Array:
@@ -80,28 +83,42 @@ def accumulated(time: Array, thrust: Array) -> Array:
 
 
 def altitude_gain(
-    gamma: Array, pressure: Array, stand: float, throat_area: float, exit_area: float
+    gamma: Array,
+    pressure: Array,
+    stand: float,
+    throat_area: float,
+    exit_area: float,
+    law: Law = "one-dimensional",
 ) -> tuple[Array, tuple[float, float]]:
     """Thrust [N] gained over the stand's ``stand`` ambient [Pa], (n, ambients), and those pressures: first and step
     [Pa].
 
     From the nozzle model on the chamber's ``pressure`` [Pa] and heat capacity ratio ``gamma`` [-], (n,) each; areas
-    [m^2]. While the nozzle flows full it is (p_stand - p_a) A_e. A throat that does not choke at the stand gains
+    [m^2]; ``law`` of the nozzle, which finds where the flow separates at each of the two pressures. While the nozzle
+    flows full it is (p_stand - p_a) A_e. A throat that does not choke at the stand gains
     nothing: what such a chamber holds at altitude is not what it holds there.
     """
     step = HIGHEST_AMBIENT / (AMBIENTS - 1)
     ambients: Array = step * np.arange(AMBIENTS, dtype=np.float64)
-    return _gain(gamma, pressure, stand, ambients, throat_area, exit_area), (0.0, step)
+    gained = _gain(LAWS.index(law), gamma, pressure, stand, ambients, throat_area, exit_area)
+    return gained, (0.0, step)
 
 
 @compiled
-def _gain(gamma: Array, pressure: Array, stand: float, ambients: Array, throat: float, exit_area: float) -> Array:
+def _gain(
+    law: int, gamma: Array, pressure: Array, stand: float, ambients: Array, throat: float, exit_area: float
+) -> Array:
     gained = np.zeros((pressure.size, ambients.size))
     for i in range(pressure.size):
         # thrust does not depend on the gas temperature: any R T will do
-        _, here, _, _, regime = expand(gamma[i], 1e6, pressure[i], stand, throat, exit_area)
+        _, here, _, _, regime = expand_by(law, gamma[i], 1e6, pressure[i], stand, throat, exit_area)
         if regime == SUBSONIC:
             continue
-        for k in range(ambients.size):
-            gained[i, k] = expand(gamma[i], 1e6, pressure[i], ambients[k], throat, exit_area)[1] - here
+        full = mach_at_area(exit_area / throat, gamma[i], True)
+        for k in range(ambients.size - 1, -1, -1):
+            _, there, mach, _, _ = expand_by(law, gamma[i], 1e6, pressure[i], ambients[k], throat, exit_area)
+            gained[i, k] = there - here
+            if mach == full:  # and it flows full in thinner air, too
+                gained[i, :k] = gained[i, k] + (ambients[k] - ambients[:k]) * exit_area
+                break
     return gained

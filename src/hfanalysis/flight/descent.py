@@ -9,8 +9,7 @@ from scipy.integrate import solve_ivp
 
 from hfanalysis.arrays import Array
 from hfanalysis.rocket.parachute import Parachute
-from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, drag, gravity
-from hfanalysis.thermo.atmosphere import density
+from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, air_about, drag_in, gravity
 
 Rates = Callable[[float, Array], list[float]]
 LONGEST_FALL = 3600.0
@@ -39,8 +38,9 @@ def fall(vehicle: Vehicle, drag_area: float, start: tuple[float, float, float], 
     area, table = vehicle.frontal_area, vehicle.drag_table
 
     def rates(_t: float, y: Array) -> list[float]:
-        canopy = 0.5 * drag_area * density(y[0]) * y[1] * abs(y[1])
-        return [y[1], -gravity(y[0]) - (canopy + drag(y[0], y[1], area, table)) / vehicle.dry_mass]
+        _, rho, sound = air_about(vehicle, y[0])
+        canopy = 0.5 * drag_area * rho * y[1] * abs(y[1])
+        return [y[1], -gravity(y[0]) - (canopy + drag_in(rho, sound, y[1], area, table)) / vehicle.dry_mass]
 
     return _until(rates, start, lambda y: y[0] - floor)
 
@@ -81,8 +81,9 @@ def descend(vehicle: Vehicle, apogee: tuple[float, float, float], drogue: Parach
     first = fall(vehicle, drogue.drag_coefficient * drogue.area, top, deploy)
     second = fall(vehicle, main.drag_coefficient * main.area, first.end, ground)
     ballistic = fall(vehicle, 0.0, top, ground)
-    canopy = 0.5 * main.drag_coefficient * main.area * density(deploy) * first.end[2] ** 2
-    own = drag(deploy, -first.end[2], vehicle.frontal_area, vehicle.drag_table)
+    _, rho, sound = air_about(vehicle, deploy)
+    canopy = 0.5 * main.drag_coefficient * main.area * rho * first.end[2] ** 2
+    own = drag_in(rho, sound, -first.end[2], vehicle.frontal_area, vehicle.drag_table)
     load = (canopy + own) / vehicle.dry_mass - gravity(deploy)
     return Descent(
         time_of_main=first.end[0],

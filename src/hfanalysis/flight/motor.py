@@ -57,6 +57,19 @@ class Points:
         time, thrust = np.concatenate(([0.0], self.time)), np.concatenate(([0.0], self.thrust))
         return float(np.trapezoid(thrust, time))
 
+    def by_share(self, share: float) -> tuple[float, float]:
+        """Time [s] from the first to the last thrust of a ``share`` of the peak, and the mean thrust [N] over it."""
+        level = share * float(self.thrust.max())
+        above = np.flatnonzero(self.thrust >= level)
+        edges = [float(self.time[above[0]]), float(self.time[above[-1]])]
+        for i, (inside, outside) in enumerate(((above[0], above[0] - 1), (above[-1], above[-1] + 1))):
+            if 0 <= outside < self.time.size:  # where the line to the next point crosses the level
+                part = (self.thrust[inside] - level) / (self.thrust[inside] - self.thrust[outside])
+                edges[i] += float(part * (self.time[outside] - self.time[inside]))
+        clock = np.unique(np.concatenate((edges, self.time[(self.time > edges[0]) & (self.time < edges[1])])))
+        burn = edges[1] - edges[0]
+        return burn, float(np.trapezoid(np.interp(clock, self.time, self.thrust), clock)) / burn
+
 
 def word(name: str) -> str:
     """A name that is one word of printable characters."""

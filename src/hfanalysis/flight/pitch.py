@@ -17,7 +17,7 @@ from hfanalysis.compiled import compiled
 from hfanalysis.flight.ascent import Arguments
 from hfanalysis.rocket.aerodynamics import BODY_LIFT, Shape, center_of_pressure, components, planform
 from hfanalysis.rocket.vehicle import EARTH_RADIUS, STANDARD_GRAVITY, drag_coefficient
-from hfanalysis.thermo.air import air
+from hfanalysis.thermo.air import air_of_day
 
 PITCH_STEP = 0.01
 """Step of a flight in wind [s]. Evidence: a rocket of a few calibers' margin swings in a second or so."""
@@ -141,7 +141,7 @@ def _rates(
     center: Array, inertia: Array, table: Array, body: Array, dy: Array, seen: Array,
 ) -> None:  # fmt: skip
     """d/dt of place, altitude, their speeds, attitude and pitch rate; ``seen``: airspeed, margin, angle of attack."""
-    pressure, rho, sound = air(y[1])
+    pressure, rho, sound = air_of_day(y[1], fixed[5], fixed[9], fixed[10])
     force, m, cg, turn = _at(t, pressure, thrust, mass, gain, fixed, center, inertia)
     s, c = np.sin(y[4]), np.cos(y[4])
     through, up = y[2] + wind, y[3]

@@ -42,6 +42,12 @@ class FlightSpread:
     std: float
     ci95: tuple[float, float]
 
+    def about(self, value: float, unit: str) -> Quantity:
+        """A ``value`` [``unit``] with it; an interval that the value does not lie in, since what it may be is drawn
+        around others too, reaches out to it."""
+        low, high = self.ci95
+        return Quantity(value, unit, self.std, (min(low, value), max(high, value)))
+
 
 def quantities(
     vehicle: Vehicle,
@@ -77,7 +83,7 @@ def _of_ascent(flown: Ascent, name: str, spread: FlightSpread | None) -> Quantit
     value = float(flown.results[index])
     if np.isnan(value):
         return Quantity.absent(RAIL_TOO_LONG)
-    return Quantity(value, unit, *((spread.std, spread.ci95) if spread else ()))
+    return Quantity(value, unit) if spread is None else spread.about(value, unit)
 
 
 def _of_descent(down: Descent) -> dict[str, Quantity]:

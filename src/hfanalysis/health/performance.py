@@ -6,7 +6,7 @@ burns.
 
 from __future__ import annotations
 
-from hfanalysis.engine.thrust_coefficient import TOLERANCE, possible
+from hfanalysis.engine.thrust_coefficient import TOLERANCE, flows_full, possible
 
 SEPARATED = 0.15
 """Part of a convergent nozzle's thrust that one whose exit is not known may lose [-]. Source: Sutton, Rocket Propulsion
@@ -31,8 +31,11 @@ Range = tuple[float, float]
 def thrust_coefficients(pressure: float, ambient: float, throat: float = 1.0, exit_area: float | None = None) -> Range:
     """F / (p_c A_t) that a nozzle can have at a chamber ``pressure`` [Pa, absolute], losses included.
 
-    Of this ``throat`` and ``exit_area`` [m^2]; without an exit, from convergent to fully expanded.
+    Of this ``throat`` and ``exit_area`` [m^2]; without an exit, or with one that the flow would not fill, from
+    convergent to fully expanded.
     """
+    if exit_area is not None and not (exit_area > throat and flows_full(pressure, ambient, exit_area / throat)):
+        exit_area = None
     low, high = possible(pressure, ambient, throat, exit_area)
     lost = SEPARATED if exit_area is None else TOLERANCE
     return max(low, 0.0) * (1.0 - lost), high * (1.0 + TOLERANCE)

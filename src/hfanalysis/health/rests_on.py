@@ -22,7 +22,16 @@ SEGMENTS = {
 CALIBRATION = {
     "C_i": PRESSURES,
     "C_d": ("p_run", "m_tank"),
+    "spi": PRESSURES,
+    "hem": PRESSURES,
+    "dyer": PRESSURES,
+    "subcooling": ("p_tank", "p_run"),
+    "quality": ("p_tank", "p_run"),
+    "density": ("p_tank", "p_run"),
+    "drift": PRESSURES,
     "m": PRESSURES,
+    "m_choked": PRESSURES,
+    "vapor_C_d": PRESSURES,
     "Z": ("p_tank",),
     "K_loss": PRESSURES,
     "p_loss_liquid": ("p_tank", "p_run"),
@@ -51,6 +60,9 @@ VALIDATION = {
     "burn_time": FIRE,
     "total_impulse": ("thrust",),
     "specific_impulse": ("thrust",),
+    "specific_impulse_to_purge": ("thrust",),
+    "specific_impulse_loaded": ("thrust",),
+    "largest_chamber_pressure": ("p_chamber",),
     "peak_chamber_pressure": ("p_chamber",),
     "mean_chamber_pressure": ("p_chamber",),
     "peak_thrust": ("thrust",),
@@ -63,13 +75,28 @@ VALIDATION = {
     "propellant_through_nozzle": ("p_chamber",),
     "oxidizer_loaded": (),
     "fuel_loaded": (),
+    "difference": PRESSURES,
+    "c_star": PRESSURES,
+    "c_star_efficiency": PRESSURES,
+    "c_star_efficiency_frozen": PRESSURES,
+    "thrust_coefficient": FIRE,
+    "thrust_coefficient_efficiency": FIRE,
+    "thrust_coefficient_efficiency_frozen": FIRE,
+    "mean_regression_rate": FIRE,
+    "mean_oxidizer_flux": PRESSURES,
+    "vacuum_thrust": ("thrust",),
+    "vacuum_specific_impulse": ("thrust",),
+    "vacuum_thrust_coefficient": FIRE,
+    "sea_level_specific_impulse": ("thrust",),
+    "sea_level_thrust_coefficient": FIRE,
     "liquid_phase_heat": PRESSURES,
 }
 
 FLOWN = (
     "apogee", "time_to_apogee", "rail_departure_velocity", "peak_velocity", "peak_mach", "peak_acceleration",
     "time_to_main", "main_deployment_acceleration", "landing_time", "impact_velocity_ballistic",
-    "pad_thrust_to_weight", "total_impulse", "burn_time", "average_thrust", "margin_at_rail_departure",
+    "pad_thrust_to_weight", "liftoff_thrust_to_weight", "apogee_as_measured", "impulse_flown", "impulse_stand",
+    "total_impulse", "burn_time", "average_thrust", "margin_at_rail_departure",
 )  # fmt: skip
 FLIGHT = dict.fromkeys(FLOWN, ("thrust",))
 
@@ -87,9 +114,12 @@ TOGETHER = " together"
 
 PACED = {
     **dict.fromkeys(("t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end", "burn_time"), 1.0),
-    **dict.fromkeys(("C_i", "oxidizer_flow_peak", "a", "regression_rate_reference"), -1.0),
+    **dict.fromkeys(("C_i", "spi", "hem", "dyer", "vapor_C_d"), -1.0),
+    **dict.fromkeys(("oxidizer_flow_peak", "a", "regression_rate_reference"), -1.0),
     **dict.fromkeys(("total_impulse", "specific_impulse", "total_impulse_of_file", *FLOWN), 1.0),
+    "specific_impulse_loaded": 1.0,
     "K_loss": 2.0,
+    "drift": -2.0,
 }  # fmt: skip
 """With which power of the clock's pace a quantity goes, about: a clock at half its pace makes flows of twice the size.
 Source: the definitions; of a flight's numbers no more than their size."""

@@ -21,6 +21,9 @@ LEVEL = 95.0
 """Percentile of a channel's departure from its median at which a factor that is off counts as an offset. Source:
 definition: about its plateau."""
 
+FIRST_ZERO = "that of the log's first firing is used"
+"""What is said where the rest before the firing taken gives no zero."""
+
 
 def usable(log: TestLog, health: Health, definition: TestDefinition) -> TestLog:
     """The log [SI] without its unusable stretches; a channel that has no other samples is not in it."""
@@ -38,6 +41,37 @@ def marked(log: TestLog, health: Health, definition: TestDefinition) -> TestLog:
     cut = {name: _cut(channel, health.of(name)) for name, channel in log.channels.items()}
     touched = {name for name, channel in cut.items() if channel is not log[name]}
     return replace(log, channels=_zeroed(cut, touched, definition)) if touched else log
+
+
+def of_firing(log: TestLog, start: float | None, end: float | None, definition: TestDefinition) -> TestLog:
+    """The part of a log in which the firing taken lies, from ``start`` up to ``end`` [s, log time]; None: all there is.
+
+    Where the log has several, zero and tare [SI] are those of the rest before this one, as far as there is one.
+    """
+    part = log.between(start, end)
+    if part is log:
+        return log
+    firing = _firing(part.channels, set(), definition)
+    return replace(part, channels={name: _zero_of(c, firing, definition) for name, c in part.channels.items()})
+
+
+def zeros_of_firing(log: TestLog, part: TestLog) -> tuple[str, ...]:
+    """What there is to say of the zeros of a firing's ``part`` of a ``log``."""
+    with_zero = [c for c in part.channels.values() if c.raw is not None]
+    anew = [c.name for c in with_zero if (c.zero, c.drift) != (log[c.name].zero, log[c.name].drift)]
+    kept = [f"{c.name}: {line}" for c in with_zero for line in c.history if line.endswith(FIRST_ZERO)]
+    told = (
+        [f"{', '.join(anew)}: zero from the rest before the firing taken, not before the log's first"] if anew else []
+    )
+    return (*told, *kept)
+
+
+def _zero_of(channel: Channel, firing: FiringSpan | None, definition: TestDefinition) -> Channel:
+    """The channel with its zero taken anew; as it was, and saying so, where the rest before the firing has none."""
+    anew = _with_zero(channel, firing, definition)
+    if channel.raw is None or anew.zero_std is not None:
+        return anew
+    return replace(channel, history=(*channel.history, f"{anew.history[-1]}: {FIRST_ZERO}"))
 
 
 def unusable_findings(health: ChannelHealth) -> list[Finding]:

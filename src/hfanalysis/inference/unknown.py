@@ -94,13 +94,11 @@ def spread_of(slopes: Array, covariance: Array) -> Array:
 class Unknown(ABC):
     """An unknown as it was seen: its place, and the log evidence for it of what showed it.
 
-    ``known_by``: the quantity among its history's sizes that it has words of its own for. ``also_by``: the effect that
-    shows in the samples as it does. ``price``: log of the odds against it.
+    ``also_by``: the effect that shows in the samples as it does. ``price``: log of the odds against it.
     """
 
     place: SourcePlace
     log_evidence: float
-    known_by: ClassVar[str] = ""
     also_by: ClassVar[str] = ""
     price: ClassVar[float] = 0.0
 
@@ -134,13 +132,19 @@ class Unknown(ABC):
     def history(self, fitted: Fit, observed: Observed) -> History:
         """It over time [s] as a fit that has it says, in the unit of its place."""
 
+
+class Described(Unknown):
+    """One that a number beside its size tells: ``known_by`` names that quantity among its history's sizes."""
+
+    known_by: ClassVar[str]
+
     @staticmethod
+    @abstractmethod
     def words(row: diagnosis.Place, known: Quantity, where: str, unit: str) -> str:
         """A sentence of a row of the localisation that has the quantity it is ``known_by``, and is ``where``.
 
         ``unit``: in which people have the row's source.
         """
-        raise NotImplementedError
 
 
 class LinearUnknown(Unknown):

@@ -223,7 +223,7 @@ def _fuel(definition: TestDefinition, calibration: Calibration | None, time: Arr
     assert grain.mass is not None
     rest = observed.fuel_mass_after if observed is not None else None
     end = rest.value if rest is not None else 0.0
-    n, of = _exponent(definition, calibration)
+    n, of = exponent_of(definition, calibration)
     share = accumulated(time, flow**n)
     share = share / share[-1] if share[-1] > 0.0 else time / time[-1]
     words = f"burnt as G^{n:.3g} ({of}), " + (f"{end:.3f} kg left as seen" if rest is not None else "all of it")
@@ -235,7 +235,8 @@ def _fuel(definition: TestDefinition, calibration: Calibration | None, time: Arr
     return np.maximum(body.fuel(radius), 0.0), words
 
 
-def _exponent(definition: TestDefinition, calibration: Calibration | None) -> tuple[float, str]:
+def exponent_of(definition: TestDefinition, calibration: Calibration | None) -> tuple[float, str]:
+    """The exponent [-] of the regression, and where it is from."""
     grain = definition.grain
     if grain is not None and grain.n is not None:
         return grain.n.value, "[grain] n"

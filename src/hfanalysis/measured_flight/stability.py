@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.assembly.shape import Masses, masses, shape
+from hfanalysis.assembly.shape import Masses, Places, masses, places, shape
 from hfanalysis.flight import summary
 from hfanalysis.flight.ascent import arguments
 from hfanalysis.flight.margin import Margin, margin
@@ -31,14 +31,15 @@ SLOW = 0.3
 class StabilityRuns:
     """Center of gravity and inertia on the thrust curve's clock, the shape, the margins by wind, and remarks.
 
-    ``engine_center``: of the engine with its propellant [m from its front], None where it is not weighed apart.
+    ``engine_center``: of the engine with its propellant [m from its front], of the propellant alone where it is not
+    weighed apart.
     """
 
     outside: Shape
     balance: Balance
     place: Masses
     margins: tuple[Margin, ...]
-    engine_center: Array | None
+    engine_center: Array
     notes: tuple[str, ...]
 
 
@@ -73,10 +74,10 @@ def _tank_note(firing: Firing) -> str:
 
 
 def _parts(firing: Firing, place: Masses, definition: TestDefinition) -> list[MassPart]:
-    return [*place.fixed, *_load(firing, place, definition)]
+    return [*place.fixed, *_load(firing, place.where, definition)]
 
 
-def _load(firing: Firing, place: Masses, definition: TestDefinition) -> list[MassPart]:
+def _load(firing: Firing, place: Places, definition: TestDefinition) -> list[MassPart]:
     """Oxidizer, fuel and chamber gas on the thrust curve's clock."""
     time, load = firing.curve.time, firing.propellant
     histories = (load.oxidizer, load.liquid, load.fuel, load.temperature)
@@ -92,10 +93,24 @@ def _liquid_volume(temperature: Array, definition: TestDefinition) -> Array:
     return np.asarray(source.liquid_volume(np.where(np.isfinite(temperature), temperature, 293.15))[0])
 
 
-def _engine_center(firing: Firing, place: Masses, definition: TestDefinition) -> Array | None:
-    if place.dry is None:
-        return None
-    return np.asarray(balance([place.dry, *_load(firing, place, definition)]).center - place.front)
+def _engine_center(firing: Firing, place: Masses, definition: TestDefinition) -> Array:
+    return _center([*([] if place.dry is None else [place.dry]), *_load(firing, place.where, definition)], place.where)
+
+
+def propellant_center(firing: Firing, definition: TestDefinition) -> Array | str:
+    """Center of gravity [m from the engine's front] of what tank, grain and chamber hold, on the thrust curve's clock;
+    or what is not given of where they are."""
+    where = places(definition.rocket, definition.tank, definition.grain, definition.chamber)
+    return where if isinstance(where, str) else _center(_load(firing, where, definition), where)
+
+
+def _center(parts: list[MassPart], where: Places) -> Array:
+    """From the engine's front [m]; of an empty engine the last that it had."""
+    held = np.asarray(sum((np.asarray(part.mass) for part in parts), np.zeros(1)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        center = np.asarray(balance(parts).center - where.front)
+    there = held > 0.0
+    return center if there.all() else np.interp(np.arange(held.size), np.flatnonzero(there), center[there])
 
 
 def product(stable: StabilityRuns | str) -> flight.Stability:

@@ -13,30 +13,20 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
-from hfanalysis.validate.thrust import FIRST, Thrust, burnt_out, thrust_of
-
-SPAN_SHARE = 0.25
-"""Part of the cell's accuracy that a tare does not take away [-]: its error of span, as for the pressures."""
+from hfanalysis.validate.load_cell import left_in
+from hfanalysis.validate.performance import cell_error_of
+from hfanalysis.validate.thrust import Thrust, burnt_out, thrust_of
 
 EARLY = 0.5
 """[s] before the burn's end at which the thrust may end and still be flown: the model of a fire that goes out."""
-
-UNSEEN_DRIFT = 0.01
-"""Standard deviation of a drift that no settled level after the burn shows, of the peak thrust [-]."""
-
-SHAPE_OF_DRIFT = 12.0**-0.5
-"""Standard deviation of how far along its drift a cell is at a moment [-]. Source: that of a uniform distribution, for
-all courses are as likely."""
-
-UNSTATED_GAIN = 0.01
-"""Relative standard deviation of a load cell's gain [-] where nothing is said of its calibration."""
 
 
 @dataclass(frozen=True)
 class MeasuredThrust:
     """Thrust [N] at increasing times [s after opening] over the burn, which starts at 0.
 
-    ``bias_std``, ``drift_std`` [N]: of its zero and of its zero's change over the burn; ``gain_std``: relative.
+    ``bias_std`` [N]: of its zero and of the course of its drift; ``drift_std`` [N]: of what of its drift is left in at
+    the burn's end; ``gain_std``: relative.
     """
 
     time: Array
@@ -70,7 +60,9 @@ def measured_thrust(log: TestLog, segments: Segments | None, definition: TestDef
         raise AbsentError(f"test {definition.test.id}: the log has {burn.time.size} samples of thrust over the burn")
     time = np.unique(np.concatenate(([0.0], burn.time, [end])))
     notes = (f"burn from the opening to {end:.2f} s: {of}", *_drift_taken(found))
-    return MeasuredThrust(time, found.signal.at(time), *_spreads(channel, found, burn), notes)
+    off = cell_error_of(log, found, definition, end)
+    bias = float(np.hypot(off.zero, off.course))
+    return MeasuredThrust(time, found.signal.at(time), bias, off.left, off.gain, notes)
 
 
 def _check_whole(channel: Channel, segments: Segments, definition: TestDefinition, last: float) -> None:
@@ -85,13 +77,8 @@ def _check_whole(channel: Channel, segments: Segments, definition: TestDefinitio
         )
 
 
-def _left(thrust: Thrust) -> float:
-    """What the corrected cell reads [N] with the chamber at ambient pressure; 0 where the log does not show it."""
-    return 0.0 if np.isnan(thrust.since) else thrust.signal.mean(thrust.since, thrust.since + FIRST)
-
-
 def _drift_taken(thrust: Thrust) -> tuple[str, ...]:
-    taken = thrust.error - _left(thrust)
+    taken = thrust.error - left_in(thrust)
     if abs(taken) < 0.5:
         return ()
     return (text("{taken} of the load cell's drift taken off over the burn", taken=said(taken, "N", ".0f")),)
@@ -118,13 +105,3 @@ def _told_end(segments: Segments, definition: TestDefinition, last: float) -> tu
     times = {name: time for name, time in found.items() if time is not None and 0.0 < time <= last}
     name = max(times, key=lambda key: times[key], default=None)
     return None if name is None else (times[name], name)
-
-
-def _spreads(channel: Channel, thrust: Thrust, burn: Signal) -> tuple[float, float, float]:
-    """Standard deviations of zero, drift [N] and gain; a drift that is seen but not taken off counts in full."""
-    peak = float(np.max(np.abs(burn.value)))
-    zero = channel.accuracy if channel.zero_std is None else channel.zero_std
-    seen = float(np.hypot(SHAPE_OF_DRIFT * thrust.error, _left(thrust)))
-    drift = UNSEEN_DRIFT * peak if seen == 0.0 else seen
-    gain = SPAN_SHARE * channel.accuracy / peak if channel.accuracy_stated else UNSTATED_GAIN
-    return float(zero), drift, max(float(gain), 1e-4)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
+from hfanalysis.products.budget import MADE_OF, Budget
 from hfanalysis.products.model import Adopted, Is, Notes, Numbers, Part, Product, Warnings, Words
 from hfanalysis.quantity import NOT_IDENTIFIABLE, Quantity
 
 UNIT_OF_A = "m/s (kg/m^2/s)^-n"
 UNIT_OF_FLUX = "kg/(m^2 s)"
+NOT_SOUGHT = Quantity.absent("this calibration did not look for it", verdict=NOT_IDENTIFIABLE)
 
 
 class Rest(Part):
@@ -31,6 +33,15 @@ class CoefficientHistory(Part):
     time: Annotated[Numbers, Is("after the opening", "s")]
     value: Annotated[Numbers, Is("C_i", "")]
     std: Annotated[Numbers, Is("its standard deviation", "")]
+    drift: Annotated[Quantity | None, Is("slope of a straight line through it", "1/s")] = None
+
+
+class Inlet(Part):
+    """What reaches the injector: means over the liquid phase once the line is full."""
+
+    subcooling: Annotated[Quantity, Is("of saturation at p_run less that of the tank; negative: it flashes", "K")]
+    quality: Annotated[Quantity, Is("vapor by mass, isenthalpic from the tank's liquid", "")]
+    density: Annotated[Quantity, Is("of the mixture", "kg/m^3")]
 
 
 class TankHistory(Part):
@@ -68,6 +79,14 @@ class RegressionBasis(Part):
     tests: Annotated[tuple[RegressionTest, ...], Is("that it was fitted to")] = ()
 
 
+class Joint(Part):
+    """Correlated errors of the constants that a model takes together."""
+
+    names: Annotated[tuple[str, ...], Is("of the constants")]
+    std: Annotated[Numbers, Is("their standard deviations", "SI")]
+    correlation: Annotated[tuple[Numbers, ...], Is("of these with each other", "")]
+
+
 class FuelLaw(Part):
     """The fuel's regression, r = a G^n."""
 
@@ -75,6 +94,7 @@ class FuelLaw(Part):
     n: Annotated[Quantity, Is("regression exponent", "")]
     regression_rate_reference: Annotated[Quantity, Is("rate at the reference flux, where it is known best", "m/s")]
     regression: Annotated[RegressionBasis, Is("what these rest on")]
+    joint: Annotated[Joint | None, Is("errors of all constants together: flow_area is C_i N_i A_i", "")] = None
 
     @classmethod
     def absent(cls, reason: str) -> FuelLaw:
@@ -86,21 +106,30 @@ class FuelLaw(Part):
 class TankConstants(Part):
     """The constants of tank, feed line and injector, and the tank at rest."""
 
-    C_i: Annotated[Quantity, Is("injector coefficient", "")]
-    m: Annotated[Quantity, Is("polytropic exponent of the vapor", "")]
+    C_i: Annotated[Quantity, Is("injector coefficient, effective: on the density of the tank's liquid", "")]
+    m: Annotated[Quantity, Is("polytropic exponent of the vapor by the report's law, an incompressible flow", "")]
+    m_choked: Annotated[Quantity, Is("the same where the vapor chokes in the injector, with C_d = C_i", "")] = (
+        NOT_SOUGHT
+    )
+    vapor_C_d: Annotated[Quantity, Is("discharge coefficient of choked vapor that an m of 1.0 to 1.3 needs", "")] = (
+        NOT_SOUGHT
+    )
     Z: Annotated[Quantity, Is("compressibility of the vapor at t_v", "")]
     K_loss: Annotated[Quantity, Is("feed loss = K_loss mdot^2 / rho", "1/m^4")]
     p_loss_liquid: Annotated[Quantity, Is("mean feed loss over [t_feed, t_v)", "Pa")]
     p_loss_vapor: Annotated[Quantity, Is("mean feed loss over [t_v, t_purge)", "Pa")]
     vapor_mass_at_t_v: Annotated[Quantity, Is("vapor left when the liquid is gone", "kg")]
     oxidizer_flow_peak: Annotated[Quantity, Is("peak of the injector's flow", "kg/s")]
-    mass_at_t_feed: Annotated[Quantity, Is("in the tank when the line is full", "kg")]
+    mass_at_t_feed: Annotated[Quantity, Is("in tank and line when the line is full", "kg")]
     oxidizer_mass_liquid_phase: Annotated[Quantity, Is("used as liquid", "kg")]
     oxidizer_mass: Annotated[Quantity, Is("loaded", "kg")]
     rest: Annotated[Rest | None, Is("the tank before the valve opens")]
     C_i_history: Annotated[CoefficientHistory | None, Is("C_i over the liquid phase")]
     tank_history: Annotated[TankHistory | None, Is("content of the tank over the liquid phase")]
-    C_d: Annotated[Mapping[str, Quantity], Is("discharge coefficient by law; spi: incompressible liquid")] = {}
+    inlet: Annotated[Inlet | None, Is("what reaches the injector")] = None
+    C_d: Annotated[Mapping[str, Quantity], Is("discharge coefficient by law: spi, hem, dyer")] = {}
+    joint: Annotated[Joint | None, Is("errors of the constants together: flow_area is C_i N_i A_i", "")] = None
+    budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     notes: Notes
     warnings: Warnings
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from hfanalysis.products.budget import MADE_OF, Budget
 from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings
 from hfanalysis.quantity import Quantity
 
@@ -97,6 +99,10 @@ class Stability(Part):
     notes: Notes = ()
 
 
+OF_STAND = ("total_impulse", "average_thrust")
+"""What is of the stand's thrust and stands in no table of the flight's; its impulse does under its own name."""
+
+
 class Flight(FlightNumbers, Product):
     """The flight with its bands, checks and stability."""
 
@@ -104,15 +110,31 @@ class Flight(FlightNumbers, Product):
 
     wet_mass: Annotated[Quantity, Is("of the rocket on its pad", "kg")]
     pad_thrust_to_weight: Annotated[Quantity, Is("peak thrust over wet weight", "")]
-    total_impulse: Annotated[Quantity, Is("that is flown", "N s")]
-    burn_time: Annotated[Quantity, Is("of the thrust", "s")]
-    average_thrust: Annotated[Quantity, Is("total impulse over burn time", "N")]
+    liftoff_thrust_to_weight: Annotated[
+        Quantity, Is("mean thrust from lift-off to the rail's end (half a second without one) over wet weight", "")
+    ]
+    apogee_as_measured: Annotated[Quantity, Is("above ground, on the thrust with the stand's purge gas in it", "m")]
+    impulse_flown: Annotated[Quantity, Is("of the thrust that flies, at its altitudes", "N s")]
+    impulse_stand: Annotated[Quantity, Is("of the thrust that the stand measured", "N s")]
+    total_impulse: Annotated[Quantity, Is("of the thrust that the stand measured", "N s")]
+    burn_time: Annotated[
+        Quantity, Is("of the thrust that flies; without purge gas, until the chamber is at ambient pressure", "s")
+    ]
+    average_thrust: Annotated[Quantity, Is("of the stand: its impulse over its burn time", "N")]
     checks: Annotated[dict[str, Check], Is("limits that are kept or not, by name")]
     thrust: Annotated[str, Is("what was done to the measured thrust")]
+    thrust_basis: Annotated[str, Is("what flies: without purge gas, or as measured")]
+    band_covers: Annotated[str, Is("what the intervals hold, in words")]
     drag: Annotated[str, Is("where the drag is from")]
     masses: Annotated[dict[str, str], Is("how the masses over time were found, by propellant")]
     dispersion: Annotated[Dispersion, Is("what the bands come from")]
     stability: Annotated[Stability, Is("static margin")]
+    budget: Annotated[Mapping[str, Budget], MADE_OF] = {}
     notes: Notes
     effects: Adopted = ()
     warnings: Warnings = ()
+
+    @property
+    def flown(self) -> dict[str, Quantity]:
+        """Its quantities by name, but OF_STAND: all of one thrust, beside the stand's impulse."""
+        return {name: value for name, value in self.quantities.items() if name not in OF_STAND}

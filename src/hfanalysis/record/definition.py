@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,10 +12,11 @@ from pydantic import AfterValidator, BeforeValidator
 
 from hfanalysis.errors import InputError
 from hfanalysis.record.channels import CANONICAL
+from hfanalysis.record.default_deviations import Deviations, Stated
 from hfanalysis.record.document import place, read_toml, validate
 from hfanalysis.record.logspec import Channels, ChannelSpec, Exclusion, FileSpec, LogSpec, TimeSpec
 from hfanalysis.record.rocket import Rocket
-from hfanalysis.record.schema import Instant, ListOf, Name, Refused, Section, Text, section, unknown_key, unsafe
+from hfanalysis.record.schema import Date, Instant, ListOf, Name, Refused, Section, Text, section, unknown_key, unsafe
 from hfanalysis.record.sections import (
     Chamber,
     Feed,
@@ -27,6 +27,7 @@ from hfanalysis.record.sections import (
     ObservedSection,
     Purge,
     Site,
+    StandSection,
     Tank,
 )
 from hfanalysis.record.unused import OF_TESTS, SPREADS_OF_TESTS, unused
@@ -52,23 +53,13 @@ def check_version(found: Any) -> int:
     return SCHEMA
 
 
-def _date(found: Any) -> datetime.date:
-    try:
-        found = datetime.date.fromisoformat(found) if isinstance(found, str) else found
-    except ValueError:
-        found = None
-    if not isinstance(found, datetime.date):
-        raise ValueError("a date such as 2022-04-03")
-    return found.date() if isinstance(found, datetime.datetime) else found
-
-
 @section
 class Test(Section):
     """[test]: which test this is."""
 
     id: Name
     kind: Literal["hot_fire", "cold_flow", "water_flow"]
-    date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
+    date: Date | None = None
     source: Literal["measured", "replica", "synthetic"] = "measured"
     description: Text = ""
     stand: Name | None = None
@@ -109,7 +100,9 @@ class Statements(Section):
     chamber: Chamber | None = None
     nozzle: NozzleSection | None = None
     site: Site | None = None
+    stand: StandSection | None = None
     observed: ObservedSection | None = None
+    deviations: Deviations = Deviations()
     rocket: Rocket | None = None
     segments: Segments = field(default_factory=dict)
     exclude: ListOf[Exclusion] = ()
@@ -142,7 +135,7 @@ class Statements(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TestDefinition(Statements):
+class TestDefinition(Statements, Stated):
     """A validated test.toml and where it is; every number in SI."""
 
     path: Path

@@ -11,14 +11,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, SkipValidation
 
+from hfanalysis.record.accuracy import read_accuracy
 from hfanalysis.record.channels import CANONICAL
 from hfanalysis.record.formats import FORMATS
 from hfanalysis.record.schema import (
     ANY,
     DERIVED,
-    NOT_NEGATIVE,
     POSITIVE,
     Column,
+    Date,
     Instant,
     ListOf,
     Number,
@@ -159,9 +160,11 @@ class LogSpec(ReadingOptions):
 class ChannelSpec(Section):
     """[channels.NAME]: SI = unit(scale * reading + offset).
 
-    ``accuracy`` [SI], one standard deviation of the sensor's bias; None takes the class default. ``missing``: readings
-    that stand for none (999 of an open thermocouple), as logged. ``gauge``: the ambient pressure is still to be added,
-    as stated or as the unit says. ``trust``: why the channel is to be believed, whatever its health seems.
+    ``accuracy`` [SI], one standard deviation of the sensor's bias; None takes the class default. ``calibrated``: the
+    day on which it was calibrated in place, with known loads on the stand itself. ``missing``: readings that stand for
+    none (999 of an open thermocouple), as logged. ``gauge``: the ambient pressure is still to be added, as stated or as
+    the unit says. ``trust``: why the channel is to be believed, whatever its health seems. ``tap``: where the chamber's
+    gauge sits, at its head or aft of the grain.
     """
 
     column: Column
@@ -172,10 +175,12 @@ class ChannelSpec(Section):
     offset: Number = 0.0
     gauge: YesOrNo | None = None
     accuracy: Annotated[Value | None, SkipValidation] = None
+    calibrated: Date | None = None
     zero: Literal["ambient", "none"] | None = None
     tare: Literal["auto", "before", "before_after", "none"] = "none"
     missing: ListOf[Number] = ()
     trust: Text | None = None
+    tap: Literal["head", "aft"] | None = None
     name: str = field(default="", metadata=DERIVED)
 
     @cached_property
@@ -195,10 +200,11 @@ class ChannelSpec(Section):
         self._unit_fits()
         self._corrections_fit()
         self._gauge_fits()
+        self._tap_fits()
         if self.accuracy is not None:
             differs = self.dimension in ("pressure", "temperature")
             dimension = f"{self.dimension}_difference" if differs else self.dimension
-            object.__setattr__(self, "accuracy", read_quantity(self.accuracy, dimension, NOT_NEGATIVE, "accuracy"))
+            object.__setattr__(self, "accuracy", read_accuracy(self.accuracy, dimension))
         object.__setattr__(self, "gauge", self.dimension == "pressure" and (is_gauge(self.unit) or bool(self.gauge)))
 
     def _unit_fits(self) -> None:
@@ -215,6 +221,10 @@ class ChannelSpec(Section):
                     raise Refused(f"found on a {self.dimension} channel; expected on pressures only", key)
         if self.tare != "none" and self.dimension not in ("force", "mass", "voltage", "dimensionless"):
             raise Refused(f"found on a {self.dimension} channel; expected on forces and masses only", "tare")
+
+    def _tap_fits(self) -> None:
+        if self.tap is not None and self.name != "p_chamber":
+            raise Refused("found on another channel; expected on p_chamber only", "tap")
 
     def _gauge_fits(self) -> None:
         """What is stated must not contradict the unit."""

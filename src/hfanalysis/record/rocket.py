@@ -16,6 +16,7 @@ from hfanalysis.record.schema import (
     Mass,
     Place,
     Positive,
+    Refused,
     Section,
     Text,
     between,
@@ -108,17 +109,24 @@ class MainParachute(ParachuteSection):
 class Rocket(Section):
     """[rocket]: dry mass [kg], drag, diameter [m] or frontal area [m^2], rail and launch site.
 
-    ``drag_uncertainty``: relative standard deviation of the drag; ``wind_speed`` [m/s] at the launch.
+    ``drag_uncertainty``, ``shot_to_shot``: relative standard deviation of the drag, and of the thrust from one firing
+    to the next; ``wind_speed`` [m/s] at the launch;
+    ``effective_rail_length`` [m]: until the first guide leaves the rail; ``casing_diameter``, ``casing_length`` [m]: of
+    the engine, for engine files.
     """
 
     dry_mass: Mass
     drag_coefficient: Factor | None = None
     drag_table: Text | None = None
     drag_uncertainty: Annotated[Positive, Field(lt=1.0)] | None = None
+    shot_to_shot: Annotated[Positive, Field(lt=1.0)] | None = None
     diameter: Length | None = None
     frontal_area: Area | None = None
     launch_angle: Annotated[Value, quantity("angle", _UPRIGHT)] | None = None
     rail_length: Length | None = None
+    effective_rail_length: Length | None = None
+    casing_diameter: Length | None = None
+    casing_length: Length | None = None
     launch_altitude: Altitude | None = None
     wind_speed: Annotated[Value, quantity("velocity", _WIND)] | None = None
     geometry: Geometry | None = None
@@ -128,3 +136,16 @@ class Rocket(Section):
     def check(self) -> None:
         self._not_both("drag_coefficient", "drag_table")
         self._not_both("diameter", "frontal_area")
+        guided, rail = self.effective_rail_length, self.rail_length
+        if guided is not None and rail is not None and guided.value > rail.value:
+            raise Refused(
+                f"found {guided.value:g} m; expected no more than the rail_length, {rail.value:g} m",
+                "effective_rail_length",
+            )
+
+    @property
+    def guided_length(self) -> float | None:
+        """Over which the rail guides the rocket [m]: the effective length, else the rail's; None where neither is
+        known."""
+        length = self.effective_rail_length or self.rail_length
+        return None if length is None else length.value

@@ -7,6 +7,7 @@ expected, or :class:`Refused` with the whole sentence; :mod:`hfanalysis.record.d
 from __future__ import annotations
 
 import copy
+import datetime
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
@@ -164,7 +165,18 @@ def _name(found: str) -> str:
     return found
 
 
+def _date(found: Any) -> datetime.date:
+    try:
+        found = datetime.date.fromisoformat(found) if isinstance(found, str) else found
+    except ValueError:
+        found = None
+    if not isinstance(found, datetime.date):
+        raise ValueError("a date such as 2022-04-03")
+    return found.date() if isinstance(found, datetime.datetime) else found
+
+
 Text = Annotated[str, Field(pattern=r"\S")]
+Date = Annotated[datetime.date, BeforeValidator(_date)]
 Name = Annotated[Text, AfterValidator(_name)]
 YesOrNo = Annotated[bool, Field(strict=True)]
 Count = Annotated[int, Field(strict=True, ge=1)]

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import PlainValidator
 
 from hfanalysis.record.schema import (
+    ANY,
     NOT_NEGATIVE,
     POSITIVE,
     Altitude,
@@ -40,15 +41,18 @@ LIQUID_DENSITY_LIMIT = 1250.0
 
 _DENSITY = between(100.0, 20e3, "between 100 and 20000 kg/m^3")
 _AMBIENT = between(20e3, 120e3, "an absolute ambient pressure, between 0.2 and 1.2 bar")
+_LAUNCH = between(220.0, 330.0, "a temperature of the air, 220 to 330 K")
 _LOADABLE = between(182.0, 350.0, "a temperature at which nitrous oxide can be in a tank, 182 to 350 K")
 
 
 @section
 class Model(Section):
-    """[model]: what the physics assumes."""
+    """[model]: what the physics assumes; ``nozzle``: by which law a flight's thrust is taken to altitude, where the log
+    is not to be asked."""
 
     conventions: Literal["corrected", "report"] = "corrected"
     properties: Literal["coolprop", "report"] = "coolprop"
+    nozzle: Literal["one-dimensional", "separated"] | None = None
 
 
 @section
@@ -187,10 +191,21 @@ class NozzleSection(Section):
 
 @section
 class Site(Section):
-    """[site]: altitude [m] or ambient pressure [Pa, absolute]."""
+    """[site]: altitude [m] or ambient pressure [Pa, absolute] of the stand; air temperature [K] and pressure [Pa,
+    absolute] at the launch site on the day of the launch."""
 
     altitude: Altitude | None = None
     ambient_pressure: Annotated[Value, quantity("pressure", _AMBIENT)] | None = None
+    launch_temperature: Annotated[Value, quantity("temperature", _LAUNCH)] | None = None
+    launch_pressure: Annotated[Value, quantity("pressure", _AMBIENT)] | None = None
+
+
+@section
+class StandSection(Section):
+    """[stand]: how the engine stands, and the force [N] with which a full feed line pushes on the thrust cell."""
+
+    orientation: Literal["horizontal", "vertical", "nozzle up", "nozzle down"] = "horizontal"
+    feed_line_tare: Annotated[Value, quantity("force", ANY)] | None = None
 
 
 @section

@@ -10,7 +10,9 @@ from hfanalysis.record.schema import Section
 from hfanalysis.units import Value
 
 OF_ENGINES = frozenset({
-    "purge.cracking_pressure", "rocket.drag_uncertainty", "rocket.wind_speed", "rocket.geometry.structure.mass",
+    "model.nozzle", "purge.cracking_pressure", "site.launch_temperature", "site.launch_pressure",
+    "rocket.drag_uncertainty", "rocket.shot_to_shot", "rocket.wind_speed", "rocket.casing_diameter",
+    "rocket.casing_length", "rocket.geometry.structure.mass",
     "rocket.geometry.structure.center_of_gravity",
     "rocket.geometry.tank_position", "rocket.geometry.chamber_position", "rocket.geometry.engine_mass",
     "rocket.geometry.engine_center_of_gravity",

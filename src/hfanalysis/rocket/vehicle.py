@@ -8,7 +8,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.compiled import compiled
-from hfanalysis.thermo.air import air
+from hfanalysis.thermo.air import air, air_of_day
 
 EARTH_RADIUS = 6_371_000.0
 """Mean radius of the Earth [m]. Source: IUGG, 6371.0 km."""
@@ -22,7 +22,8 @@ class Vehicle:
     """Mass without propellant [kg], drag coefficient on the frontal area [m^2], angle from vertical [rad], site [m].
 
     ``drag_mach`` and ``drag_values``: the coefficient against Mach number, where one number for all is not enough; it
-    then takes the place of ``drag_coefficient``.
+    then takes the place of ``drag_coefficient``. The day of the launch: how much ``warmer`` [K] the air is than the
+    standard one, and its pressure at the site over the standard's [-].
     """
 
     dry_mass: float
@@ -32,6 +33,8 @@ class Vehicle:
     launch_altitude: float
     drag_mach: tuple[float, ...] | None = None
     drag_values: tuple[float, ...] | None = None
+    warmer: float = 0.0
+    pressure_share: float = 1.0
 
     @property
     def drag_table(self) -> Array:
@@ -60,13 +63,27 @@ def drag_coefficient(mach: float, table: Array) -> float:
 
 
 @compiled
-def drag(altitude: float, speed: float, area: float, table: Array) -> float:
+def drag_in(rho: float, sound: float, speed: float, area: float, table: Array) -> float:
     """D = 1/2 C_d A rho v |v| [N] (report, eq. 2.19), against the ``speed`` [m/s].
 
-    ``altitude`` above sea level [m], frontal ``area`` [m^2], ``table`` (2, n) of :func:`drag_coefficient`.
+    ``rho`` of the air [kg/m^3] and its speed of ``sound`` [m/s], frontal ``area`` [m^2], ``table`` (2, n) of
+    :func:`drag_coefficient`.
     """
-    _, rho, sound = air(altitude)
     return 0.5 * drag_coefficient(abs(speed) / sound, table) * area * rho * speed * abs(speed)
+
+
+@compiled
+def drag(altitude: float, speed: float, area: float, table: Array) -> float:
+    """D [N] of :func:`drag_in` the standard air at an ``altitude`` above sea level [m]."""
+    _, rho, sound = air(altitude)
+    return drag_in(rho, sound, speed, area, table)
+
+
+def air_about(vehicle: Vehicle, altitude: float) -> tuple[float, float, float]:
+    """Pressure [Pa], density [kg/m^3] and speed of sound [m/s] at an altitude above sea level [m] on the launch's
+    day."""
+    found = air_of_day(altitude, vehicle.launch_altitude, vehicle.warmer, vehicle.pressure_share)
+    return float(found[0]), float(found[1]), float(found[2])
 
 
 def gravity(altitude: float) -> float:

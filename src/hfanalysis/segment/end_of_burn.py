@@ -1,4 +1,8 @@
-"""t_end: the chamber's pressure is below 1.8 times ambient for good."""
+"""t_end: the chamber's pressure is below 1.8 times ambient for good.
+
+That is a level, no more: a nozzle with a diverging part stays choked down to 1.03 times ambient in one dimension, 1.05
+to 1.3 with losses, and what burns may burn on.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +18,8 @@ from hfanalysis.segment.crossing import NODES, crossing, usual_noise
 from hfanalysis.sentences import said, text
 
 CRITICAL_RATIO = 1.80
-"""p_c / p_a [-] at which a nozzle unchokes: 1.77 to 1.83 for gamma of 1.2 to 1.3. Source: ((gamma + 1)/2)^(gamma/(gamma
-- 1)), the isentropic flow of a convergent throat."""
+"""p_c / p_a [-] of t_end. Source: ((gamma + 1)/2)^(gamma/(gamma - 1)), 1.77 to 1.83 for gamma of 1.2 to 1.3: where a
+nozzle without a diverging part would unchoke."""
 
 SMOOTH = 0.1
 """Seconds over which the chamber's pressure is smoothed for a first look."""
@@ -36,7 +40,7 @@ QUIET = (-3.0, -0.05)
 """Seconds before the opening from which the chamber's zero is known."""
 
 
-def find_unchoking(
+def find_low_pressure(
     chamber: Signal, ambient: float, t_feed: float, offset: float = 0.0, bias: float = 0.0, noise: Noise | None = None
 ) -> tuple[float, float] | str:
     """t_end [s] and its standard deviation [s] from the chamber pressure with time from the opening; else the reason.
@@ -46,15 +50,15 @@ def find_unchoking(
     """
     part = chamber.between(max(t_feed, 0.0), np.inf)
     if part.time.size < 8:
-        return "the log ends before the chamber can unchoke"
+        return "the log ends before the chamber's pressure can fall"
     smooth = part.smooth(max(SMOOTH, 4.0 * chamber.step))
     limit = CRITICAL_RATIO * ambient + offset
     if not (smooth > limit).any():
-        return "the chamber pressure never chokes the nozzle"
+        return "the chamber pressure never is above 1.8 times ambient"
     last = _last_of_burn(part.time, smooth - limit)
     if last >= smooth.size - 2:
         left = said(float(smooth[-1]) - offset, "bar", ".1f")
-        return text("the log ends with the nozzle still choked ({left} in the chamber)", left=left)
+        return text("the log ends with {left} in the chamber, above 1.8 times ambient", left=left)
     rough = float(part.time[last])
     if (at_once := _at_once(part, rough, limit, bias)) is not None:
         return at_once

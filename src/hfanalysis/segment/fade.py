@@ -57,6 +57,12 @@ SHORTEST = 0.25
 BRIEFEST = 0.02
 """Least length [s] that a fade is dated with, once it is found."""
 
+LASTS = 3.0
+"""Time constants after which an exponential fall is over."""
+
+FLUSHES = np.geomspace(0.6, 1.7, 11)
+"""Factors on a fall's time constant that are tried for the flush of a chamber."""
+
 BEYOND = (0.0, 0.5, 1.5)
 """Parts of what is seen of a fade that goes on for which it may do so beyond the phase."""
 
@@ -119,20 +125,29 @@ def find_fade(time: Array, response: Array) -> Fade | None:
     return None if found is None else _fine(phase, *found)
 
 
-def date_fall(time: Array, value: Array, rough: float, lasts: float) -> Fade | None:
-    """A fall of a signal (n,), in any unit, that is over ``lasts`` [s] or so after ``rough`` [s]: its two bends; None
-    where there are too few samples."""
+def date_fall(time: Array, value: Array, onset: tuple[float, float], relaxes: float, flush: float) -> Fade | None:
+    """The bends of a fall of a signal (n,), in any unit, that begins at an ``onset`` (instant and deviation [s]) and
+    ``relaxes`` with a time constant [s]; None where there are too few samples.
+
+    What stops at once and what fades count by their likelihood. After either the chamber flushes: of what fades the end
+    shows ``flush`` [s] late.
+    """
     t, y = _reduced(time, value / max(float(np.ptp(value)), 1e-9))
     if t.size < 8:
         return None
-    step = float(np.median(np.diff(t)))
-    lasts = max(lasts, step)
-    begins = rough + max(lasts, 3.0 * step) * np.linspace(-0.7, 0.7, FINE)
-    ends = rough + lasts * np.linspace(0.1, 2.5, FINE)
+    rough, step = onset[0], float(np.median(np.diff(t)))
+    lasts = max(LASTS * relaxes, 2.0 * step)
     samples = _Samples(t, y, np.stack([np.ones_like(t), t - t[0]], axis=1))
-    trials = samples.fitted(*_grid(begins, ends, SHAPES, 0.1 * min(step, lasts)))
-    weight = np.exp(-0.5 * (trials.left - trials.left.min()) / samples.variance(trials))
-    return Fade(*_mean(weight, trials.begin), *_mean(weight, trials.end))
+    begins, ends = rough + lasts * np.linspace(-0.7, 0.7, FINE), rough + lasts * np.linspace(0.1, 2.5, FINE)
+    coarse = samples.fitted(*_grid(begins, ends, SHAPES, 0.1 * step))
+    begins, ends = (_looked_at(x, coarse, samples.variance(coarse), 0.1 * lasts) for x in (coarse.begin, coarse.end))
+    fades = samples.fitted(*_grid(begins, ends, SHAPES, 0.1 * step))
+    stops = rough + max(4.0 * onset[1], 0.5 * step) * np.linspace(-1.0, 1.0, FINE)
+    at_once, left = samples.flushed(stops, max(relaxes, 0.2 * step) * FLUSHES)
+    least = min(float(fades.left.min()), float(left.min()))
+    weights = [np.exp(-0.5 * (x - least) / samples.variance(fades)) / x.size for x in (fades.left, left)]
+    weight, begin = np.concatenate(weights), np.concatenate([fades.begin, at_once])
+    return Fade(*_mean(weight, begin), *_mean(weight, np.concatenate([fades.end - flush, at_once])))
 
 
 def _coarse(phase: _Samples) -> tuple[_Trials, bool, float] | None:
@@ -234,6 +249,16 @@ class _Samples:
         by_after = np.where(has, (after @ rest) ** 2 / np.where(has, of_after, 1.0), 0.0)
         left = rest @ rest - fall**2 * size - by_after
         return _Trials(begin, end, shape, np.where(fall > 0.0, left, rest @ rest), fall, 1.0 / np.sqrt(size))
+
+    def flushed(self, stops: Array, constants: Array) -> tuple[Array, Array]:
+        """When a fire stops at once (k,) [s] and its chamber flushes with a time constant [s], and what that leaves."""
+        stop, constant = (x.ravel() for x in np.meshgrid(stops, constants))
+        basis = np.linalg.qr(self.columns)[0]
+        rest = self.y - basis @ (basis.T @ self.y)
+        fallen = np.exp(-np.maximum(self.t - stop[:, None], 0.0) / constant[:, None])
+        own = fallen - (fallen @ basis) @ basis.T
+        size = np.maximum(np.einsum("kn,kn->k", own, own), 1e-12)
+        return np.asarray(stop), np.asarray(rest @ rest - np.maximum(own @ rest, 0.0) ** 2 / size)
 
     @property
     def left_by_whole(self) -> float:

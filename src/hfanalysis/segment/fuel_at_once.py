@@ -256,14 +256,12 @@ def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> Su
 
 
 def _bends(part: Signal, found: Break) -> Sudden:
-    """Both bends of a sudden fall: what ends it is the fuel, or the chamber that flushes, which takes as long."""
+    """Both bends of a sudden fall, as well as a chamber that has to flush shows them."""
     lasts = max(3.0 * found.relaxation, 2.0 * part.step)
     near = part.between(found.time - 2.0 * lasts - GAP, found.time + 3.0 * lasts + GAP)
-    fall = date_fall(near.time, near.value, found.time, lasts)
+    fall = date_fall(near.time, near.value, (found.time, found.std), found.relaxation, RESIDENCE)
     if fall is None or fall.gone is None:
-        return Sudden(
-            found.time, float(np.hypot(found.std, RESIDENCE)), found.time, float(np.hypot(found.std, RESIDENCE))
-        )
-    length = max(fall.gone - fall.begin, 0.0)
-    gone_std = float(np.linalg.norm([fall.gone_std, length / np.sqrt(12.0), RESIDENCE]))
-    return Sudden(fall.begin, float(np.hypot(fall.begin_std, RESIDENCE)), fall.gone - 0.5 * length, gone_std)
+        std = float(np.hypot(found.std, RESIDENCE))
+        return Sudden(found.time, std, found.time, std)
+    begin_std, gone_std = (float(np.hypot(std, RESIDENCE)) for std in (fall.begin_std, fall.gone_std))
+    return Sudden(fall.begin, begin_std, max(fall.gone, fall.begin), gone_std)

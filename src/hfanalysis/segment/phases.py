@@ -14,7 +14,7 @@ from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal, live_signals
 from hfanalysis.segment import chamber_gauge
 from hfanalysis.segment.dry_tank import liquid_end
-from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_unchoking, pulses_after
+from hfanalysis.segment.end_of_burn import CRITICAL_RATIO, find_low_pressure, pulses_after
 from hfanalysis.segment.feed import find_line_full
 from hfanalysis.segment.fuel import FuelEnd, find_fuel_end
 from hfanalysis.segment.fuel_at_once import BLURRED
@@ -124,7 +124,7 @@ class _Search:
         self._take("t_purge", self._nitrogen())
         kind = self._kind()
         self._note_supercharge()
-        self._take("t_end", self._unchoking(kind))
+        self._take("t_end", self._low_pressure(kind))
         self._take_fuel(kind)
         self._check_order()
         return kind
@@ -185,7 +185,7 @@ class _Search:
             return find_nitrogen_by_tank(self.signals["p_tank"], self._time("t_v"))
         return find_nitrogen(self.signals["p_purge"], self.last, self.signals.get("p_tank"), self._sharp("t_v"))
 
-    def _unchoking(self, kind: Kind) -> tuple[float, float] | str:
+    def _low_pressure(self, kind: Kind) -> tuple[float, float] | str:
         if "p_chamber" not in self.signals:
             return "the log has no p_chamber"
         if kind.name != "hot_fire":
@@ -193,7 +193,7 @@ class _Search:
         chamber, offset = self.signals["p_chamber"], self.offset
         bias = chamber_gauge.limit_std(self.definition, self.zeros.get("p_chamber", 0.0))
         noise = chamber_gauge.noise(self.signals)
-        found = find_unchoking(chamber, self.ambient, self._time("t_feed") or 0.3, offset, bias, noise)
+        found = find_low_pressure(chamber, self.ambient, self._time("t_feed") or 0.3, offset, bias, noise)
         if not isinstance(found, str):
             for start, end in pulses_after(chamber, CRITICAL_RATIO * self.ambient + offset, found[0]):
                 self.notes.append(

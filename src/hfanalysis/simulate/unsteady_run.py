@@ -133,8 +133,8 @@ def _flight(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity
     if not isinstance(vehicle, Vehicle):
         found = summary.absent(vehicle)
     else:
-        rail = file.rocket.rail_length if file.rocket else None
-        found = flown.flight(engine, burnt, rail.value if rail else None, build.parachutes(file))
+        rail = file.rocket.guided_length if file.rocket else None
+        found = flown.flight(engine, burnt, rail, build.parachutes(file))
     return found | _loaded(file, engine, burnt)
 
 

@@ -165,13 +165,14 @@ class Context:
         return usable.widened(used, health) if widened else used
 
     def _of_firing(self, log: TestLog) -> TestLog:
-        """The part of the log in which the phases were looked for."""
+        """The part of the log in which the phases were looked for, its zeros from the rest before that firing."""
+        from hfanalysis.health.usable import of_firing
         from hfanalysis.products.segments import Segments
 
         if self.stage is None or SEGMENT not in self.stage.upstream:
             return log
         taken = self.read(Segments).taken
-        return log if taken is None else log.between(taken.start, taken.end)
+        return log if taken is None else of_firing(log, taken.start, taken.end, self.definition)
 
     def marked(self) -> TestLog:
         """The log of ingest with all that it has, for people to look at; what is unusable is flagged."""

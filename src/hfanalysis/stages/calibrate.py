@@ -32,6 +32,7 @@ def run(context: Context) -> None:
 def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]) -> Calibration:
     """The same with adopted effects; where one acts on the engine, its constants are fitted together."""
     from hfanalysis.calibrate.joint_fit import fitted_together
+    from hfanalysis.calibrate.narrow_port import with_stated_tap
     from hfanalysis.inference.subject import Subject
     from hfanalysis.products.segments import Segments
 
@@ -43,7 +44,7 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
     log, definition = context.believed()
     subject = Subject(log, segments, base, definition)
     try:
-        return fitted_together(subject, effects, found)
+        return fitted_together(subject, with_stated_tap(definition, effects), found)
     except AbsentError as missing:
         alone = f"constants were found one by one, not together with the adopted effects: {missing}"
         return found.but(warnings=(*found.warnings, alone))

@@ -28,10 +28,10 @@ def run(context: Context) -> None:
     # physics that was adopted is in the measured thrust; what sensors add to it is taken off
     log = corrected(context.log(), segments.t_open.value or 0.0, adopted.acting)
     calibration = None if "calibrate" in context.absent else context.read(Calibration)
-    flown = firing(log, segments, calibration, definition, bool(context.parameter("raw_thrust")))
-    found = fly_measured(
-        flown, definition.rocket, int(context.parameter("flights")), int(context.parameter("seed")), context.progress
-    )
+    seed, shots = int(context.parameter("seed")), bool(context.parameter("shot_to_shot"))
+    flown = firing(log, segments, calibration, definition, bool(context.parameter("raw_thrust")), seed)
+    flights = int(context.parameter("flights"))
+    found = fly_measured(flown, definition.rocket, flights, seed, context.progress, shots)
     winds, seeds = context.parameter("winds"), int(context.parameter("gust_seeds"))
     stable = stability(flown, definition, winds, seeds, found.ascent.end[0] + 5.0, context.progress)
     files = export(found, definition, stable)
@@ -39,7 +39,7 @@ def run(context: Context) -> None:
     context.scratch("{test}.rse").write_text(files.rse, encoding="utf-8")
     context.scratch("{test}_rocketpy.py").write_text(rocketpy(found, definition, stable, files), encoding="utf-8")
     write_histories(context.scratch("flight.h5"), found, stable, context.provenance())
-    context.write(product(found, definition.rocket, stable).but(effects=adopted.product(), warnings=()))
+    context.write(product(found, definition.rocket, stable).but(effects=adopted.product(), warnings=flown.warnings))
 
 
 STAGE = Stage(
@@ -48,6 +48,13 @@ STAGE = Stage(
     wants=("calibrate",),
     products=("flight.json", "flight.h5", "{test}.eng", "{test}.rse", "{test}_rocketpy.py"),
     run=run,
-    parameters={"flights": 4000, "seed": 1, "raw_thrust": False, "winds": [2.235, 4.47, 6.706], "gust_seeds": 20},
+    parameters={
+        "flights": 4000,
+        "seed": 1,
+        "raw_thrust": False,
+        "winds": [2.235, 4.47, 6.706],
+        "gust_seeds": 20,
+        "shot_to_shot": False,
+    },
     least={"flights": 10, "seed": 0, "winds": 0.0, "gust_seeds": 1},
 )

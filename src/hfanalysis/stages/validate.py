@@ -6,6 +6,8 @@ Reads ``ingest.h5``, ``health.json``, ``segments.json`` and, where there is one,
 
 from __future__ import annotations
 
+from functools import partial
+
 from hfanalysis.stages.base import Context, Stage
 
 
@@ -15,6 +17,7 @@ def run(context: Context) -> None:
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.products.segments import Segments
     from hfanalysis.validate.histories import write_histories
+    from hfanalysis.validate.reconstruction.reconstruct import write_reconstructed
     from hfanalysis.validate.residuals import write_residuals
     from hfanalysis.validate.validation import validate
 
@@ -25,7 +28,8 @@ def run(context: Context) -> None:
     adopted = read_adopted(context.root, context.definition)
     found = validate(log, segments, definition, calibration, absent, adopted.acting)
     write_residuals(context.scratch("residuals.h5"), found.residuals, context.provenance())
-    write_histories(context.scratch("performance.h5"), found.histories, context.provenance())
+    again = partial(write_reconstructed, found=found.reconstructed)
+    write_histories(context.scratch("performance.h5"), found.histories, context.provenance(), again)
     context.write(found.product.but(effects=adopted.product()))
 
 

@@ -31,3 +31,30 @@ def air(altitude: float) -> tuple[float, float, float]:
         p = 2488.0 * (t / 216.6) ** -11.388
     specific = GAS_CONSTANT / AIR_MOLAR_MASS * t
     return p, p / specific, np.sqrt(AIR_GAMMA * specific)
+
+
+TROPOPAUSE, LAPSE, AT_SEA, POWER = 11_000.0, 0.00649, 288.19, 5.256
+"""Height [m], lapse rate [K/m], temperature at sea level [K] and the pressure's power [-] of the lowest layer. Source:
+the atmosphere's own."""
+
+
+@compiled
+def air_of_day(altitude: float, ground: float, warmer: float, share: float) -> tuple[float, float, float]:
+    """As :func:`air`, on a day that is ``warmer`` [K] at all altitudes, with ``share`` [-] of the usual pressure at the
+    ``ground`` [m above sea level].
+
+    Warm air is thinner and loses its pressure more slowly with height: in the lowest layer p goes with T^5.256.
+
+    >>> air_of_day(3000.0, 1402.0, 0.0, 1.0) == air(3000.0)
+    True
+    >>> round(air_of_day(1402.0, 1402.0, 15.0, 1.0)[1] / air(1402.0)[1], 4) == round(279.09 / 294.09, 4)
+    True
+    """
+    p, rho, sound = air(altitude)
+    if warmer == 0.0 and share == 1.0:
+        return p, rho, sound
+    here, there = AT_SEA - LAPSE * min(altitude, TROPOPAUSE), AT_SEA - LAPSE * min(ground, TROPOPAUSE)
+    factor = share * ((here + warmer) / here * there / (there + warmer)) ** POWER
+    usual = sound * sound * AIR_MOLAR_MASS / (AIR_GAMMA * GAS_CONSTANT)
+    heat = (usual + warmer) / usual
+    return p * factor, rho * factor / heat, sound * np.sqrt(heat)

@@ -8,6 +8,7 @@ at 6.34). Condensed carbon counts: it takes part in the mass and not in the gas 
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import sqrt
@@ -132,17 +133,62 @@ class _Solver:
         """One equilibrium; the nitrogen enters at 298.15 K, where its enthalpy is zero on the formation scale."""
         weights = np.array([1.0, of_ratio * (1.0 - nitrogen_share), of_ratio * nitrogen_share])
         weights /= weights.sum()
+        self._weights = weights
         enthalpy = float(weights[0] * FUEL_ENTHALPY + weights[1] * oxidizer_enthalpy)
-        # CEA takes h/R with R in J/(kg K) on a kilogram of mixture, and the pressure in bar
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what does not converge is refused below
-            self._solver.solve(self._solution, self._cea.HP, enthalpy / self._cea.R, pressure / 1e5, weights)
-        s = self._solution
-        if not s.converged or not s.T > 0.0:
+        if not self._settled(self._cea.HP, enthalpy, pressure):
             raise ArithmeticError(f"no equilibrium at {pressure / 1e5:.3g} bar and O/F {of_ratio:.3g}")
+        s = self._solution
         cp = 1e3 * float(s.cp_fr)
         molar_mass = float(s.M)
         return Gas(float(s.T), molar_mass, cp / (cp - GAS_CONSTANT / molar_mass))
+
+    def _settled(self, kind: Any, given: float, pressure: float) -> bool:
+        """Whether the last mixture has an equilibrium of ``given`` enthalpy [J/kg] or entropy [J/(kg K)]."""
+        # CEA takes either over R, R in J/(kg K), on a kilogram of mixture, and the pressure in bar
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what does not converge is refused by who asks
+            self._solver.solve(self._solution, kind, given / self._cea.R, pressure / 1e5, self._weights)
+        return bool(self._solution.converged and self._solution.T > 0.0)
+
+    @property
+    def entropy(self) -> float:
+        """Of the last solution [J/(kg K)]."""
+        return 1e3 * float(self._solution.entropy)
+
+    def at_entropy(self, entropy: float, pressure: float) -> State:
+        """The last mixture at another pressure [Pa] and an ``entropy`` [J/(kg K)]."""
+        if not self._settled(self._cea.SP, entropy, pressure):
+            raise ArithmeticError(f"no equilibrium of this entropy at {pressure / 1e5:.3g} bar")
+        return self.state(pressure)
+
+    def state(self, pressure: float) -> State:
+        """The last solution, at its ``pressure`` [Pa]."""
+        s = self._solution
+        return State(pressure, 1e3 * float(s.enthalpy), float(s.density), float(s.gamma_s))
+
+
+@dataclass(frozen=True)
+class State:
+    """Gas in equilibrium: pressure [Pa], enthalpy [J/kg], density [kg/m^3], isentropic exponent [-]."""
+
+    pressure: float
+    enthalpy: float
+    density: float
+    exponent: float
+
+
+def isentrope(
+    pressure: float, of_ratio: float, oxidizer_enthalpy: float = PROPEP_OXIDIZER_ENTHALPY
+) -> tuple[Gas, State, Callable[[float], State]]:
+    """The chamber's gas, its state, and the state at any other pressure [Pa] of the same entropy and elements.
+
+    The composition shifts with the pressure. Arguments and errors are those of :func:`equilibrium`; the states' errors
+    are, too. They hold until the next equilibrium is asked for elsewhere.
+    """
+    gas = equilibrium(pressure, of_ratio, oxidizer_enthalpy)
+    solver = _solver()
+    entropy = solver.entropy
+    return gas, solver.state(pressure), lambda there: solver.at_entropy(entropy, there)
 
 
 @lru_cache(maxsize=1)

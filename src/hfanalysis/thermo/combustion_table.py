@@ -121,13 +121,17 @@ def build(nodes: Nodes = Nodes()) -> CombustionTable:
 
 
 def _name(nodes: Nodes) -> str:
+    return f"combustion-cea-{made_by()}-{nodes.pressures}-{nodes.mixtures}-{nodes.shares}"
+
+
+def made_by() -> str:
+    """The version of CEA's package. Raises AbsentError where it is not installed."""
     try:
-        made_by = version("cea")
+        return version("cea")
     except PackageNotFoundError:
         raise AbsentError(
             "the chamber's gas is NASA's CEA's: its package (cea) is not installed, for Linux on ARM there is none"
         ) from None
-    return f"combustion-cea-{made_by}-{nodes.pressures}-{nodes.mixtures}-{nodes.shares}"
 
 
 def sample(nodes: Nodes) -> Array:
@@ -137,7 +141,7 @@ def sample(nodes: Nodes) -> Array:
     CEA's own messages about that are kept from the terminal.
     """
     combustion.restart()
-    with _silence():
+    with quietly():
         out = _sampled(nodes)
     combustion.restart()
     return out
@@ -156,7 +160,7 @@ def _sampled(nodes: Nodes) -> Array:
 
 
 @contextmanager
-def _silence() -> Iterator[None]:
+def quietly() -> Iterator[None]:
     """Send what compiled code prints to nowhere; where there is no terminal to speak of, do nothing."""
     sys.stdout.flush()
     try:

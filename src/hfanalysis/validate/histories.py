@@ -1,35 +1,29 @@
-"""Histories of a hot fire: mixture, regression, flows, efficiencies, thrust; and how mass and energy close."""
+"""Histories of a hot fire: mixture, regression, flows, thrust; and their file, with the efficiencies."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
-from hfanalysis.engine.nozzle import characteristic_velocity
-from hfanalysis.engine.unsteady import Engine
 from hfanalysis.products.segments import Segments
-from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.segment.end_of_burn import CRITICAL_RATIO
-from hfanalysis.validate.flows import HISTORY_STEP, Flows, nozzle_along
-from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.flows import HISTORY_STEP, Flows
 from hfanalysis.validate.residuals import FORMAT
 from hfanalysis.validate.thrust import thrust_of
 
+if TYPE_CHECKING:
+    import h5py
+
 BEFORE, AFTER = 2.0, 3.0
 """[s] shown before the opening and after the burn."""
-
-EFFICIENCY_WIDTH = 0.2
-"""[s] of the running mean from which efficiencies are taken: a ratio of noisy values is noisier than either."""
 
 ABOUT = {
     "time": ("s", "time after the valve opening"),
@@ -39,9 +33,11 @@ ABOUT = {
     "oxidizer_flow": ("kg/s", "oxidizer mass flow"),
     "fuel_flow": ("kg/s", "fuel mass flow"),
     "c_star": ("m/s", "characteristic velocity: p_c A_t over mass flow, until nitrogen enters"),
-    "c_star_efficiency": ("1", "characteristic velocity over that of the equilibrium gas, until nitrogen enters"),
+    "c_star_efficiency": ("1", "characteristic velocity over that of shifting equilibrium, until nitrogen enters"),
+    "c_star_efficiency_frozen": ("1", "characteristic velocity over that of frozen flow, until nitrogen enters"),
     "thrust_coefficient": ("1", "thrust coefficient: thrust over p_c A_t"),
-    "thrust_coefficient_efficiency": ("1", "thrust coefficient over that of the ideal nozzle"),
+    "thrust_coefficient_efficiency": ("1", "thrust coefficient over that of shifting equilibrium, nozzle full"),
+    "thrust_coefficient_efficiency_frozen": ("1", "thrust coefficient over that of frozen flow"),
     "thrust_raw": ("N", "thrust as logged"),
     "thrust_corrected": ("N", "thrust without the cell's zero and drift"),
     "p_chamber": ("Pa", "chamber pressure"),
@@ -59,7 +55,6 @@ class Histories:
     time: Array
     values: dict[str, Array]
     absent: dict[str, str] = field(default_factory=dict)
-    closure: dict[str, Quantity] = field(default_factory=dict)
 
 
 def clock(log: TestLog, segments: Segments, end: float) -> Array:
@@ -107,72 +102,10 @@ def flow_histories(flows: Flows) -> dict[str, Array]:
     return {name: np.where(lit, value, np.nan) for name, value in found.items()}
 
 
-def efficiencies(
-    measured: Mapping[str, Array], flows: Flows, engine: Engine, ambient: float, fire: Fire, purge: float | None
-) -> dict[str, Array]:
-    """c* [m/s] and thrust coefficient [-] with their efficiencies [-], where the nozzle is choked and both propellants
-    flow.
-
-    All (n,) at the times of ``flows``. c* = p_c A_t / mdot ends when nitrogen enters, at ``purge`` [s]: it passes the
-    throat and is in none of the flows, so that p_c A_t over them would rise without bound. ``ambient`` [Pa] is the
-    air's.
-    """
-    if "p_chamber" not in measured:
-        return {}
-    width = round(EFFICIENCY_WIDTH / HISTORY_STEP)
-    pressure, oxidizer, fuel = (_smooth(x, width) for x in (measured["p_chamber"], flows.oxidizer, flows.fuel))
-    burning = (flows.time > 0.0) & (flows.time < fire.end) & (pressure > CRITICAL_RATIO * ambient) & (fuel > 1e-4)
-    ratio = np.where(burning & (oxidizer > 1e-4), oxidizer / np.where(fuel > 1e-4, fuel, 1.0), np.nan)
-    ideal = nozzle_along(engine, pressure, ratio, ambient)
-    counted = burning if purge is None else burning & (flows.time < purge)
-    c_star = np.where(counted, pressure * engine.throat_area / np.where(counted, oxidizer + fuel, 1.0), np.nan)
-    out = {"c_star": c_star, "c_star_efficiency": c_star / characteristic_velocity(ideal.heat, ideal.gamma)}
-    if "thrust_corrected" in measured:
-        thrust = _smooth(measured["thrust_corrected"], width)
-        force = np.where(burning, pressure * engine.throat_area, np.nan)
-        out["thrust_coefficient"] = thrust / force
-        out["thrust_coefficient_efficiency"] = thrust / ideal.thrust
-    return out
-
-
-def _smooth(value: Array, width: int) -> Array:
-    """Running mean over ``width`` samples, narrower at the ends."""
-    kernel = np.ones(width)
-    return np.asarray(np.convolve(value, kernel, "same") / np.convolve(np.ones(value.size), kernel, "same"))
-
-
-def closure(
-    flows: Flows, measured: Mapping[str, Array], engine: Engine, ambient: float, fire: Fire, purge: float | None
-) -> dict[str, Quantity]:
-    """How the masses close over the burn, and the heat that the calibrated tank takes.
-
-    ``oxidizer_through_injector`` and ``fuel_burned`` [kg] are the flows' integrals; ``propellant_through_nozzle`` [kg]
-    what the measured chamber pressure passes at the equilibrium gas's c*, nitrogen from ``purge`` [s] on included.
-    """
-    part = (flows.time >= 0.0) & (flows.time <= fire.end)
-    out = {
-        "oxidizer_through_injector": _integral(flows.time, flows.oxidizer, part, "without nitrogen"),
-        "fuel_burned": _integral(flows.time, flows.fuel, part, "by a and n"),
-    }
-    if "p_chamber" in measured:
-        nozzle = nozzle_along(engine, measured["p_chamber"], flows.of_ratio, ambient).flow
-        why = "p_chamber over the equilibrium gas's c*; what lacks is combustion that is not complete, or cold gas"
-        why += "" if purge is None else "; from t_purge on nitrogen counts as propellant"
-        out["propellant_through_nozzle"] = _integral(flows.time, np.nan_to_num(nozzle), part, why)
-    out["oxidizer_loaded"] = Quantity(engine.oxidizer_mass, "kg")
-    out["fuel_loaded"] = Quantity(engine.fuel_mass, "kg")
-    return out
-
-
-def _integral(time: Array, value: Array, part: NDArray[np.bool_], why: str) -> Quantity:
-    total = float(np.trapezoid(value[part], time[part]))
-    if not np.isfinite(total):
-        return Quantity.absent(f"the flow ({why}) is not known throughout the burn")
-    return Quantity(total, "kg", why=why)
-
-
-def write_histories(path: Path, histories: Histories, provenance: Mapping[str, Any]) -> None:
-    """Write performance.h5: one time axis, a data set per history; byte-identical each time."""
+def write_histories(
+    path: Path, histories: Histories, provenance: Mapping[str, Any], also: Callable[[h5py.File], None] | None = None
+) -> None:
+    """Write performance.h5: one time axis, a data set per history, and what ``also`` adds; byte-identical each time."""
     from hfanalysis.products.hdf5 import created
 
     with created(path, libver=FORMAT, track_order=False) as file:
@@ -188,3 +121,5 @@ def write_histories(path: Path, histories: Histories, provenance: Mapping[str, A
                 data = file.create_dataset(name, data=histories.values[name], track_times=False)
                 data.dims[0].attach_scale(time)
                 data.attrs.update(units=ABOUT[name][0], long_name=ABOUT[name][1])
+        if also is not None:
+            also(file)

@@ -24,10 +24,10 @@ from hfanalysis.sentences import joined
 from hfanalysis.validate.performance import measured
 
 SHOWN = ("burn_time", "total_impulse", "average_thrust", "peak_thrust", "peak_chamber_pressure",
-         "mean_chamber_pressure", "oxidizer_mass", "fuel_mass", "specific_impulse")  # fmt: skip
+         "mean_chamber_pressure", "oxidizer_mass", "fuel_mass", "specific_impulse_loaded")  # fmt: skip
 """Of the table of performance, in order."""
 
-BY_LOAD = ("C_i", "oxidizer_mass", "fuel_mass", "specific_impulse")
+BY_LOAD = ("C_i", "oxidizer_mass", "fuel_mass", "specific_impulse_loaded")
 """What rests on the masses that test.toml states."""
 
 

@@ -17,6 +17,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import rounded
+from hfanalysis.validate.stand import without_stand
 
 AT_AMBIENT = 0.04
 """Chamber pressure above ambient, relative, below which the thrust is nothing. Source: a nozzle that is not choked
@@ -61,7 +62,16 @@ class Thrust:
 
 
 def thrust_of(log: TestLog, segments: Segments, definition: TestDefinition) -> Thrust:
-    """The thrust [N] without the cell's drift. Raises AbsentError where the log has none."""
+    """The thrust [N] without the cell's drift, and without what the stand puts on the cell beside it.
+
+    Raises AbsentError where the log has none.
+    """
+    found = _without_drift(log, segments, definition)
+    removed = bool(log["thrust"].drift) or bool(np.isfinite(found.since))
+    return replace(found, signal=without_stand(found.signal, log, segments, definition, removed))
+
+
+def _without_drift(log: TestLog, segments: Segments, definition: TestDefinition) -> Thrust:
     channel, origin = log["thrust"], segments.t_open.value or 0.0
     signal = Signal.of(channel).shifted(origin)
     since = _at_ambient(log, segments, definition)

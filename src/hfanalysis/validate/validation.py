@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
+from hfanalysis.arrays import Array
 from hfanalysis.assembly.calibrated import Regression
+from hfanalysis.calibrate.head_pressure import before_injector, before_nozzle_of
+from hfanalysis.calibrate.narrow_port import with_stated_tap
 from hfanalysis.calibrate.water_flow import is_water
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun, run_full
+from hfanalysis.products.budget import Budget
 from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.reconstruction import Reconstruction
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Closure, Column, Performance, Validation
 from hfanalysis.quantity import Quantity
@@ -22,19 +27,27 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.validate import histories as histories_of
 from hfanalysis.validate import performance
+from hfanalysis.validate.budgets import budgets
 from hfanalysis.validate.chamber_forced import run_chamber_forced
+from hfanalysis.validate.efficiency import BASIS
 from hfanalysis.validate.flows import Flows, burn_fuel, oxidizer_flow
 from hfanalysis.validate.full import compare_full
 from hfanalysis.validate.histories import Histories
 from hfanalysis.validate.performance import Fire
+from hfanalysis.validate.reconstruction.reconstruct import Reconstructed, reconstruct
+from hfanalysis.validate.reduction import Reduced, Test, reduced
 from hfanalysis.validate.residuals import Residual, gaps
+from hfanalysis.validate.stability.modes import Mode, chamber_between
+from hfanalysis.validate.stability.stability import stability
 from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
-from hfanalysis.validate.thrust import motor_class
+from hfanalysis.validate.thrust import motor_class, thrust_of
+from hfanalysis.validate.transients import transients
 
 Result = TypeVar("Result")
 MODES = ("tank_free", "chamber_forced", "full")
 FLOW_NAMES = ("oxidizer_flow", "fuel_flow", "regression_rate", "port_radius", "of_ratio")
-RATIO_NAMES = ("c_star", "c_star_efficiency", "thrust_coefficient", "thrust_coefficient_efficiency")
+RATIO_NAMES = ("c_star", "c_star_efficiency", "c_star_efficiency_frozen", "thrust_coefficient",
+               "thrust_coefficient_efficiency", "thrust_coefficient_efficiency_frozen")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -44,6 +57,7 @@ class Validated:
     product: Validation
     residuals: dict[str, list[Residual]]
     histories: Histories
+    reconstructed: Reconstructed
 
 
 def validate(
@@ -81,6 +95,7 @@ class _Work:
         self.log, self.segments, self.definition = log, segments, definition
         self.effects = effects
         self.true = corrected(log, segments.t_open.value or 0.0, effects)
+        self.before_nozzle = before_nozzle_of(log, definition)
         water = is_water(segments, definition)
         self._calibration = None if water else calibration
         self.uncalibrated = "water flows: there is no tank of nitrous oxide to run" if water else uncalibrated
@@ -95,28 +110,43 @@ class _Work:
         residuals = {
             "tank_free": self._try("tank_free", self._tank_free),
             "chamber_forced": self._try("chamber_forced", lambda: self._chamber_forced(full, flows)),
-            "full": compare_full(self.log, self.segments, full) if full else None,
+            "full": compare_full(self.before_nozzle, self.segments, full) if full else None,
         }
         measured = performance.measured(self.true, self.segments, self.definition, self._calibration)
         if full is not None:
-            model = performance.modeled(full, self.calibration)
+            model = performance.modeled(full, self.calibration, self.segments.time("t_purge"))
         else:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
-        kept = {mode: found for mode, found in residuals.items() if found}
-        histories = self._histories(full, flows)
-        notes = [note for found in kept.values() for r in found for note in r.notes]
+        histories, found, again = self._histories(full, flows)
+        measured |= found.impulses
+        if not isinstance(self.fire, str):
+            measured |= transients(self.true, self.segments, self.definition, self.fire)
+        kept = {mode: compared for mode, compared in residuals.items() if compared}
+        notes = [note for of_mode in kept.values() for r in of_mode for note in r.notes]
         impulse = measured["total_impulse"].value
         about = {"motor_class": motor_class(impulse)} if impulse is not None and impulse > 0.0 else {}
         product = Validation(
             performance=Performance(measured=Column.from_json(measured), model=Column.from_json(model), **about),
-            gap={mode: gaps(found) for mode, found in kept.items()},
-            closure=Closure.from_json(histories.closure),
-            sensors=(),
+            gap={mode: gaps(compared) for mode, compared in kept.items()},
+            closure=self._closure(found),
+            efficiency_basis=BASIS,
+            **found.content,
+            budget=self._budgets(measured) | found.budget,
+            sensors=found.findings,
             absent=self.absent,
+            reconstruction=again.product,
+            **self._stability(full, flows[0] if flows else None, histories),
             notes=tuple(dict.fromkeys(notes)),
-            warnings=(),
+            warnings=(*(finding.text for finding in found.findings), *found.warnings),
         )
-        return Validated(product, kept, histories)
+        return Validated(product, kept, histories, again)
+
+    def _budgets(self, measured: dict[str, Quantity]) -> dict[str, Budget]:
+        impulse = measured["total_impulse"].value
+        if impulse is None or isinstance(self.fire, str):
+            return {}
+        thrust = thrust_of(self.true, self.segments, self.definition)
+        return budgets(measured, performance.impulse_inputs(self.true, thrust, self.fire, self.definition, impulse))
 
     @property
     def calibration(self) -> Calibration:
@@ -134,45 +164,70 @@ class _Work:
             return None
 
     def _tank_free(self) -> list[Residual]:
-        return run_tank_free(self.log, self.segments, self.calibration, self.definition, self.effects)
+        read = before_injector(self.log, self.segments, self.definition)
+        return run_tank_free(read, self.segments, self.calibration, self.definition, self.effects)
 
     def _full(self) -> FullRun:
         if isinstance(self.fire, str):
             raise AbsentError(self.fire)
-        return run_full(self.true, self.segments, self.calibration, self.definition, self.effects)
+        acting = with_stated_tap(self.definition, self.effects)
+        return run_full(self.true, self.segments, self.calibration, self.definition, acting)
 
-    def _flows(self, full: FullRun | None) -> Flows:
+    def _flows(self, full: FullRun | None) -> tuple[Flows, Array]:
+        """The flows, and the nitrogen [kg/s] that passes the injector beside the oxidizer, where a purge is adopted."""
         if full is None or isinstance(self.fire, str):
             raise AbsentError(self.absent["full"])
+        read = before_injector(self.true, self.segments, self.definition)
         alone = run_tank_alone(
-            self.true, self.segments, self.calibration, self.definition, constant=False, effects=self.effects
+            read, self.segments, self.calibration, self.definition, constant=False, effects=self.effects
         )
         time = histories_of.clock(self.log, self.segments, self.fire.end)
-        flow = oxidizer_flow(self.true, self.segments, self.calibration, self.definition, alone, time)
+        flow = oxidizer_flow(read, self.segments, self.calibration, self.definition, alone, time)
         factor = full.factor("regression_factor", time)
         burnt = burn_fuel(full.engine, Regression.of(self.calibration), time, flow, factor)
         # all that flows drives the regression, as in the engine; what of it is nitrogen is no oxidizer
-        nitrogen = np.interp(time, alone.measured.time, alone.nitrogen, left=0.0)
-        return replace(burnt, oxidizer=flow * (1.0 - nitrogen))
+        nitrogen = flow * np.interp(time, alone.measured.time, alone.nitrogen, left=0.0)
+        return replace(burnt, oxidizer=flow - nitrogen), nitrogen
 
-    def _chamber_forced(self, full: FullRun | None, flows: Flows | None) -> list[Residual]:
+    def _chamber_forced(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> list[Residual]:
         if full is None or flows is None or isinstance(self.fire, str):
             raise AbsentError(self.absent.get("full") or self.absent["histories"])
-        return run_chamber_forced(self.log, self.segments, full, flows, self.ambient, self.fire.end)
+        return run_chamber_forced(self.before_nozzle, self.segments, full, flows[0], self.ambient, self.fire.end)
 
-    def _histories(self, full: FullRun | None, flows: Flows | None) -> Histories:
+    def _histories(
+        self, full: FullRun | None, flows: tuple[Flows, Array] | None
+    ) -> tuple[Histories, Reduced, Reconstructed]:
         end = self.fire.end if isinstance(self.fire, Fire) else 10.0
         time = histories_of.clock(self.log, self.segments, end)
         values = histories_of.measured_histories(self.true, self.segments, self.definition, time)
         if full is None or flows is None or isinstance(self.fire, str):
             reason = self.absent.get("histories", "")
-            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason))
-        purge = self.segments.time("t_purge")
-        ratios = histories_of.efficiencies(values, flows, full.engine, self.ambient, self.fire, purge)
-        closed = histories_of.closure(flows, values, full.engine, self.ambient, self.fire, purge)
-        return Histories(time, values | histories_of.flow_histories(flows) | ratios, {}, closed | self._heat())
+            without = Reconstructed(Reconstruction(variant=None, reason=reason))
+            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced(), without
+        test = Test(self.true, self.segments, self.definition, self.calibration, self.fire, full.engine, *flows, values)
+        found = reduced(test)
+        values |= histories_of.flow_histories(flows[0]) | found.ratios
+        return Histories(time, values), found, reconstruct(test)
 
-    def _heat(self) -> dict[str, Quantity]:
-        """Heat that the calibrated tank takes in the liquid phase, where it can be told."""
-        rest = self.calibration.rest
-        return {"liquid_phase_heat": rest.liquid_phase_heat} if rest else {}
+    def _stability(self, full: FullRun | None, flows: Flows | None, histories: Histories) -> dict[str, Any]:
+        """How a hot fire burnt."""
+        if isinstance(self.fire, str):
+            return {}
+
+        def modes(start: float, end: float) -> Iterable[Mode] | None:
+            chamber = self.definition.chamber
+            pressure = histories.values.get("p_chamber")
+            if full is None or flows is None or pressure is None or chamber is None:
+                return None
+            volumes = [v.value if v is not None else 0.0 for v in (chamber.pre_volume, chamber.post_volume)]
+            state = chamber_between(full.engine, (volumes[0], volumes[1]), flows, pressure, start, end)
+            return state.modes() if state is not None else None
+
+        return {"stability": stability(self.log, self.segments, self.fire.end, modes)}
+
+    def _closure(self, found: Reduced) -> Closure:
+        """How the masses close, and the heat that the calibrated tank takes in the liquid phase, where it is told."""
+        rest = self._calibration.rest if self._calibration is not None and found.closure else None
+        heat = {"liquid_phase_heat": rest.liquid_phase_heat} if rest else {}
+        judged = {"to_purge": found.balance, "verdict": found.balance.verdict} if found.balance else {}
+        return Closure.model_validate({**found.closure, **heat, **judged})

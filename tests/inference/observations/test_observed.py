@@ -12,7 +12,7 @@ from tests.inference.made import covariance_of
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.observations.blocks import MERGED, NEAR
-from hfanalysis.inference.observations.channel import FORM_ERROR, SHARE, ObservedChannel
+from hfanalysis.inference.observations.channel import FORM_ERROR, ObservedChannel
 from hfanalysis.inference.observations.covariance import coherence_of
 from hfanalysis.inference.observations.frame import (
     AROUND_CHANGE,
@@ -26,6 +26,7 @@ from hfanalysis.inference.observations.frame import (
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER, as_read
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.accuracy import SPAN_SHARE
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.sections import ObservedSection as Seen
 from hfanalysis.units import Value
@@ -213,7 +214,7 @@ def test_a_sensor_that_was_zeroed_errs_by_its_gain() -> None:
     rest, loaded = np.flatnonzero(after.resting), np.flatnonzero(~after.resting)
     inside, across = after.covariance[np.ix_(rest, rest)], after.covariance[np.ix_(rest, loaded)]
     left = after.covariance[np.ix_(loaded, loaded)] - across.T @ np.linalg.solve(inside, across)
-    zero = (SHARE * plain.accuracy) ** 2
+    zero = (SPAN_SHARE * plain.accuracy) ** 2
     assert plain.covariance - left == pytest.approx(np.full_like(left, zero), rel=0.02)
     gain = after.value[loaded] / after.value.max()
     assert (left > zero * np.outer(gain, gain)).mean() > 0.99
@@ -266,7 +267,7 @@ def test_as_if_noise_were_white() -> None:
     for c in test.channels:
         burning = np.where(c.resting, 0.0, 1.0)
         gain = c.value * burning / np.abs(c.value).max()
-        shared = (SHARE * c.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
+        shared = (SPAN_SHARE * c.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
         assert c.covariance - shared == pytest.approx(np.diag(c.noise_std**2), abs=1e-6 * c.accuracy**2)
 
 

@@ -13,11 +13,12 @@ from tests.segment.stand import channel
 from hfanalysis.effects import effect
 from hfanalysis.inference.fitting.hypothesis import Block, Hypothesis
 from hfanalysis.inference.fitting.predict import predict, readings
-from hfanalysis.inference.observations.channel import FORM_ERROR, SHARE
+from hfanalysis.inference.observations.channel import FORM_ERROR
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.purge_line import SETTLED, purge_line
 from hfanalysis.inference.splines import Splines
 from hfanalysis.quantity import Quantity
+from hfanalysis.record.accuracy import SPAN_SHARE
 from hfanalysis.record.log import TestLog
 
 Array = NDArray[np.float64]
@@ -84,8 +85,8 @@ def test_its_errors_are_those_of_two_sensors_one_of_which_reads_the_tank() -> No
     largest = float(logged.clean()[1]["p_tank"].max())
     rng, drawn = np.random.default_rng(4), []
     for _ in range(20000):
-        zero, span = SHARE * ACCURACY * rng.standard_normal(2)
-        own = SHARE * NOT_STATED * rng.standard_normal()
+        zero, span = SPAN_SHARE * ACCURACY * rng.standard_normal(2)
+        own = SPAN_SHARE * NOT_STATED * rng.standard_normal()
         read = found.read_std * rng.standard_normal()
         of_tank = zero + span * value / largest
         of_line = zero + span * found.at_first / largest + read + own * (value - found.at_first)

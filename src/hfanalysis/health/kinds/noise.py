@@ -76,7 +76,7 @@ def _finding(seen: Seen, blocks: list[Trace], noise: Array, at: int) -> Finding 
     levels = np.array([np.median(block.values) for block in blocks])
     start, end = float(blocks[at].time[0]), float(blocks[-1].time[-1])
     drowned = size > max(OF_RANGE * np.ptp(levels), 3.0 * seen.channel.accuracy)
-    if not (drowned or (seen.name in MOVED and not _shaken(seen, start) and _flat(blocks[at:], size))):
+    if not (drowned or (seen.name in MOVED and _within(seen, start) and _flat(blocks[at:], size))):
         return None
     evidence = text(
         "from {start:.2f} s to the end of the log its samples scatter by {size}, before by {usual}, and nothing else "
@@ -101,8 +101,10 @@ def _flat(blocks: list[Trace], size: float) -> bool:
     return bool(np.std(means) < 4.0 * alone + 0.1 * size)
 
 
-def _shaken(seen: Seen, start: float) -> bool:
-    """Whether it begins with the firing, as a stand's shaking does."""
+def _within(seen: Seen, start: float) -> bool:
+    """Whether it begins within the firing: not with it, as a stand's shaking does, nor after it, where nothing is to
+    be seen anyway."""
     if seen.fire is None:
-        return False
-    return bool(abs(start - seen.fire[0]) < 0.1 * (seen.fire[1] - seen.fire[0]) + 0.3)
+        return True
+    first, last = seen.fire
+    return bool(first + 0.1 * (last - first) + 0.3 < start < last or start < first - 0.1 * (last - first) - 0.3)

@@ -9,16 +9,13 @@ from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array, Integers
 from hfanalysis.inference.observations.recorded import TOGETHER
+from hfanalysis.record.accuracy import SPAN_SHARE
 
 FORM_ERROR, FORM_TIME = 7e-5, 1.0
 """The finest model-form error: part of a channel's range [-], and the time over which it is coherent [s]."""
 
 CHAMBER_FORM = 4.0
 """How much larger the model-form error of chamber and thrust is: chemistry and nozzle are idealized further."""
-
-SHARE = 0.7071
-"""Part of a stated accuracy that is the zero's error; as much is the span's. Source: 1/sqrt(2), for squares add up to
-the whole."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +59,7 @@ class ObservedChannel:
         """The same with independent noise of the same size, beside offset and gain."""
         burning = np.where(self.resting, 0.0, 1.0)
         gain = self.value * burning / float(np.abs(self.value).max())
-        shared = (SHARE * self.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
+        shared = (SPAN_SHARE * self.accuracy) ** 2 * (np.outer(burning, burning) + np.outer(gain, gain))
         return replace(self, covariance=shared + np.diag(self.noise_std**2), coherence=1.0, slow=None)
 
     def form_covariance(self, errors: tuple[float, float]) -> Array:

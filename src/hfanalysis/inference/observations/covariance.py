@@ -15,12 +15,13 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array
 from hfanalysis.inference.observations.alignment import share
 from hfanalysis.inference.observations.blocks import TANK_AT_REST, Blocks
-from hfanalysis.inference.observations.channel import SHARE, ObservedChannel, averaged, range_of
+from hfanalysis.inference.observations.channel import ObservedChannel, averaged, range_of
 from hfanalysis.inference.observations.flow_end import WITHOUT_FIRE
 from hfanalysis.inference.observations.frame import BLOCK, Frame
 from hfanalysis.inference.observations.oscillation import oscillation
 from hfanalysis.inference.observations.recorded import LONGEST_RECORD, TOGETHER, accuracy_of
 from hfanalysis.inference.observations.wander import Wander, roughness, wander_of
+from hfanalysis.record.accuracy import SPAN_SHARE
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.signals import sample_noise
 
@@ -112,9 +113,9 @@ def zero_and_span(blocks: Blocks, definition: TestDefinition, frame: Frame, zero
     resting, accuracy = frame.resting[blocks.first], accuracy_of(definition, blocks.signal.name, blocks.value)
     at_rest = resting if blocks.signal.name not in TANK_AT_REST else np.zeros_like(resting)
     loaded = np.where(at_rest, 0.0, 1.0)
-    gain = SHARE * accuracy * loaded * blocks.value / float(np.abs(blocks.value).max())
+    gain = SPAN_SHARE * accuracy * loaded * blocks.value / float(np.abs(blocks.value).max())
     compared = bool((at_rest & (blocks.time < 0.0)).any())
-    offset = zero_std if zero_std is not None and not compared else SHARE * accuracy
+    offset = zero_std if zero_std is not None and not compared else SPAN_SHARE * accuracy
     unsteady = 0.0 if zero_std is None else UNSTEADY_ZERO * accuracy
     return np.asarray(offset**2 + unsteady**2 * np.outer(loaded, loaded) + np.outer(gain, gain))
 

@@ -27,7 +27,7 @@ FIRST = 0.03
 """Seconds after the opening before which nothing is compared: the chamber fills, the igniter is not modeled."""
 
 TANK_SIDE = ("p_tank", "p_run", "m_tank", "p_purge")
-"""Channels that go on telling when the nozzle has unchoked."""
+"""Channels that go on telling when the chamber's pressure is gone."""
 
 EVENT_STD = 0.005
 """Least standard deviation of the instant of a phase change [s]. It is found better than that, but that a model's
@@ -140,7 +140,7 @@ def _before(log: TestLog, origin: float) -> Array:
 def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | None:
     """A stretch after the flow [s] in which the chamber is at rest; None where the log does not show one.
 
-    The nozzle unchokes long before the last gas has left, so that the chamber's pressure has to stand still as well.
+    The pressure is below 1.8 times ambient long before the last gas has left, so that it has to stand still as well.
     """
     if "p_chamber" not in log:
         return None
@@ -160,7 +160,7 @@ def _rest(log: TestLog, origin: float, over: float) -> tuple[float, float] | Non
 
 
 def _tank_end(segments: Segments, definition: TestDefinition, end: float) -> float:
-    """The tank goes on emptying after the nozzle has unchoked, until the end of the flow that was seen at the stand."""
+    """The tank goes on emptying after the chamber's pressure is gone, until the end of the flow that was seen."""
     if segments.time("t_fuel_gone") is not None:
         return end
     return min(max(noted_flow_end(definition, end) - AROUND_END, end), LONGEST_RECORD)

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.inference.observations.channel import SHARE
 from hfanalysis.inference.observations.frame import BLOCK
 from hfanalysis.inference.observations.recorded import ALIKE, accuracy_of, signal_of
 from hfanalysis.inference.observations.wander import wander_of
 from hfanalysis.products.segments import Segments
+from hfanalysis.record.accuracy import SPAN_SHARE
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
@@ -106,9 +106,9 @@ def purge_line(
         t_purge,
         float(level),
         float(np.hypot(late, noise)),
-        SHARE * accuracy,
-        SHARE * accuracy / float(np.abs(tank.value).max()),
-        SHARE * accuracy_of(definition, ALIKE[1], line.value) / stood,
+        SPAN_SHARE * accuracy,
+        SPAN_SHARE * accuracy / float(np.abs(tank.value).max()),
+        SPAN_SHARE * accuracy_of(definition, ALIKE[1], line.value) / stood,
     )
 
 

@@ -12,7 +12,7 @@ from pkgutil import iter_modules
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.linear import Linearized
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.unknown import LinearUnknown, Samples, Unknown
+from hfanalysis.inference.unknown import Described, LinearUnknown, Samples, Unknown
 from hfanalysis.products.diagnosis import Place
 
 
@@ -37,6 +37,7 @@ def in_slopes(fitted: Fit, observed: Observed) -> list[LinearUnknown]:
     return sorted((unknown for kind in kinds() for unknown in kind.in_slopes(about)), key=lambda u: -u.log_evidence)
 
 
-def kind_of(row: Place) -> type[Unknown] | None:
+def kind_of(row: Place) -> type[Described] | None:
     """The kind that has words of its own for a row of the localisation."""
-    return next((kind for kind in kinds() if row.known_by(kind.known_by) is not None), None)
+    described = (kind for kind in kinds() if issubclass(kind, Described))
+    return next((kind for kind in described if row.known_by(kind.known_by) is not None), None)

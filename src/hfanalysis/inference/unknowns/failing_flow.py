@@ -20,7 +20,7 @@ from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
 from hfanalysis.inference.places import SourcePlace
-from hfanalysis.inference.unknown import POINTS, SHAPE, History, Samples, Unknown, nameless_effect
+from hfanalysis.inference.unknown import POINTS, SHAPE, Described, History, Samples, nameless_effect
 from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
@@ -93,7 +93,7 @@ SHARE_OF_FLOW, LIQUID_LEFT = (f"{EFFECT.name}.{p.name}" for p in EFFECT.paramete
 
 
 @dataclass(frozen=True)
-class FailingFlow(Unknown):
+class FailingFlow(Described):
     """The flow begins to fail ``seconds`` [s] before the end of the liquid at ``t_v`` [s after the opening], when
     chamber pressure and thrust have lost a ``share`` [-] of themselves."""
 

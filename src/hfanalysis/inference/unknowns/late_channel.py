@@ -19,7 +19,7 @@ from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.fitting.predict import misread
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import SourcePlace
-from hfanalysis.inference.unknown import SHAPE, History, Samples, Unknown, nameless_effect
+from hfanalysis.inference.unknown import SHAPE, Described, History, Samples, nameless_effect
 from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.channels import unit_of
@@ -73,7 +73,7 @@ DELAY = f"{EFFECT.name}.delay"
 
 
 @dataclass(frozen=True)
-class LateChannel(Unknown):
+class LateChannel(Described):
     """``seconds`` [s] by which a channel is read later than another."""
 
     seconds: float

@@ -19,7 +19,7 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import SourcePlace
-from hfanalysis.inference.unknown import POINTS, SHAPE, History, Samples, Unknown, nameless_effect
+from hfanalysis.inference.unknown import POINTS, SHAPE, Described, History, Samples, nameless_effect
 from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
 from hfanalysis.sentences import text
@@ -90,7 +90,7 @@ PARAMETER = f"{EFFECT.name}.seconds"
 
 
 @dataclass(frozen=True)
-class SlowValve(Unknown):
+class SlowValve(Described):
     """``seconds`` [s] from the first rise of the run line's pressure until the valve is open."""
 
     seconds: float

@@ -22,7 +22,7 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import SourcePlace
-from hfanalysis.inference.unknown import POINTS, History, Samples, Unknown, nameless_effect
+from hfanalysis.inference.unknown import POINTS, Described, History, Samples, nameless_effect
 from hfanalysis.products import diagnosis
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.signals import Signal
@@ -117,7 +117,7 @@ SHARE_OF_SWING, PHASE_OF_SWING = (f"{EFFECT.name}.{p.name}" for p in EFFECT.para
 
 
 @dataclass(frozen=True)
-class Swing(Unknown):
+class Swing(Described):
     """An injector that passes more and less by ``share`` at ``frequency`` [Hz], as sin(2 pi f t + ``phase``), from
     ``start`` to ``end`` [s after the opening]."""
 

@@ -12,7 +12,10 @@ from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.wording.numbers import ordered
 
-_CAPTION = "One standard deviation and the 95 % interval: noise, stated accuracies, masses and phase times together."
+_CAPTION = (
+    "One standard deviation and the 95 % interval: noise, stated accuracies, masses and phase times together, and what "
+    "is off in every repetition alike: volume, holes, the table of nitrous oxide, the line's content."
+)
 
 
 def render(material: Material) -> Iterator[Block]:

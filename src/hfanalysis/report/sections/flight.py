@@ -31,9 +31,12 @@ _GEOMETRY = (
 def render(material: Material) -> Iterator[Block]:
     """The numbers with their bands, the checks, the way up, and the margin."""
     product = material.need(Flight)
-    caption = "One standard deviation and 95 % interval from flights that differ in what is uncertain."
+    caption = (
+        f"Thrust {product.thrust_basis}, {product.thrust}. One standard deviation and 95 % interval from flights that "
+        f"differ in what is uncertain: {product.band_covers}."
+    )
     columns = ("quantity", ">value", ">95 % interval", "remark")
-    found = ordered(product.quantities) | ordered(product.stability.quantities)
+    found = ordered(product.flown) | ordered(product.stability.quantities)
     yield html.table("Flight", caption, columns, (_row(*item, material) for item in found.items()))
     yield html.bullets((_check(*item) for item in product.checks.items()), "plain")
     for name, (title, unit) in _CURVES.items():

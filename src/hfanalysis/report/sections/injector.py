@@ -22,9 +22,10 @@ _FIRST = 0.1
 
 
 def render(material: Material) -> Iterator[Block]:
-    """Both charts, where there is what they need."""
+    """Both charts, where there is what they need, and what reaches the injector."""
     yield _drop(material)
     yield _coefficient(material)
+    yield _inlet(material)
 
 
 def _drop(material: Material) -> Chart | None:
@@ -61,6 +62,24 @@ def _coefficient(material: Material) -> Chart | None:
         height=260.0,
         value_span=_range(time, value),
     )
+
+
+def _inlet(material: Material) -> Markup | None:
+    """The state before the injector, and its discharge coefficient by laws that know of it."""
+    calibration = material.get(Calibration)
+    if calibration is None or calibration.inlet is None:
+        return None
+    rows = [
+        (html.symbol_and_words(name), html.value(q, name), html.interval(q, name), html.judged(q, material.reasons))
+        for name, q in (calibration.inlet.quantities | dict(calibration.C_d)).items()
+    ]
+    return html.table("What reaches the injector", _INLET, ("quantity", ">value", ">95 % interval", "how"), rows)
+
+
+_INLET = (
+    "The liquid boils on its way through the line. C_i is on the density of the tank's liquid, an effective "
+    "coefficient: a small one does not say that the injector is poor."
+)
 
 
 def _series(time: Array, value: Array, std: Array, quantity: Quantity) -> Iterator[Series]:

@@ -7,7 +7,8 @@ from typing import Any
 
 from markupsafe import Markup
 
-from hfanalysis.products.validation import Validation
+from hfanalysis.health.reasons import Doubt
+from hfanalysis.products.validation import Closure, Validation
 from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
@@ -28,13 +29,32 @@ def render(material: Material) -> Iterator[Block]:
         yield html.paragraph(Markup("Motor class {}.").format(validation.performance.motor_class))
     for reason in dict.fromkeys(quantity.reason for quantity in ordered(model).values() if quantity.reason):
         yield html.paragraph(Markup("No model: {}.").format(html.switchable(reason)))
-    yield _closure(ordered(validation.closure.quantities), material)
+    reasons = material.reasons
+    if validation.efficiencies is not None:
+        yield _table("Efficiencies", _BASIS, validation.efficiencies.quantities, reasons)
+    if validation.standard is not None:
+        yield _table("Standard quantities", "By which engines are compared.", validation.standard.quantities, reasons)
+    yield from _closure(validation.closure, reasons)
 
 
-def _closure(found: Mapping[str, Quantity], material: Material) -> Markup | None:
-    rows = [(in_words(name), html.value(q, name), html.judged(q, material.reasons)) for name, q in found.items()]
-    caption = "Whether masses and energy close."
-    return html.table("Closure", caption, ("quantity", ">value", "remark"), rows) if rows else None
+_BASIS = (
+    "Of shifting equilibrium, the most that the gas can give; beside it of frozen flow, which is the model's nozzle "
+    "and the report's. Means over the liquid phase."
+)
+
+
+def _closure(closure: Closure, reasons: list[Doubt]) -> Iterator[Markup | None]:
+    judged = closure.to_purge
+    if judged is not None:
+        told = {"closes": "They close: ", "does not close": "They do not close: "}.get(judged.verdict or "", "")
+        words = "what passes the nozzle, by p_c and c*, against what came by injector and grain."
+        yield _table("Masses until nitrogen enters", told + words, judged.quantities, reasons)
+    yield _table("Closure", "Masses over the burn, and energy; not judged.", ordered(closure.quantities), reasons)
+
+
+def _table(title: str, caption: str, found: Mapping[str, Quantity], reasons: list[Doubt]) -> Markup | None:
+    rows = [(in_words(n), html.value(q, n), html.interval(q, n), html.judged(q, reasons)) for n, q in found.items()]
+    return html.table(title, caption, ("quantity", ">value", "95 % interval", "remark"), rows) if rows else None
 
 
 def _row(name: str, measured: Quantity, model: Quantity | None, material: Material) -> tuple[Any, ...]:

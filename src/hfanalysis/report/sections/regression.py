@@ -83,13 +83,16 @@ def _fitted_with(regression: RegressionBasis) -> Markup:
 def _efficiencies(material: Material) -> Chart | None:
     table = material.table("performance")
     lines = [
-        *_line(table, "c_star_efficiency", "c* efficiency", "p_chamber"),
-        *_line(table, "thrust_coefficient_efficiency", "C_F efficiency", "thrust"),
+        *_line(table, "c_star_efficiency", "c* efficiency, shifting", "p_chamber"),
+        *_line(table, "thrust_coefficient_efficiency", "C_F efficiency, shifting", "thrust"),
+        *_line(table, "c_star_efficiency_frozen", "c* efficiency, frozen", "p_run"),
+        *_line(table, "thrust_coefficient_efficiency_frozen", "C_F efficiency, frozen", "p_tank"),
     ]
     caption = (
-        "C_F = F/(p_c A_t) over that of the ideal nozzle judges the nozzle; it needs no flow. c* over that of the "
-        "equilibrium gas judges the combustion by its course. Its level is close to 1 while liquid flows, because a "
-        "and n were fitted to this chamber pressure, as said above; after t_v it judges the calibrated tank's "
+        "Of shifting equilibrium, the field's reference and the most that the gas can give, and of frozen flow, the "
+        "model's. C_F = F/(p_c A_t) judges the nozzle, while it flows full; it needs no flow. c* judges the combustion "
+        "by its course. Its level of frozen flow is close to 1 while liquid flows, because a and n were fitted to this "
+        "chamber pressure with that gas, as said above; after t_v it judges the calibrated tank's "
         f"flow of vapor as much as the combustion.{_until_nitrogen(material)}"
     )
     return _drawn(material, "efficiencies", "Efficiencies", ("efficiency", ""), lines, caption, with_zero=False)
