@@ -90,6 +90,13 @@ VALIDATION = {
     "sea_level_specific_impulse": ("thrust",),
     "sea_level_thrust_coefficient": FIRE,
     "liquid_phase_heat": PRESSURES,
+    **dict.fromkeys(("ignition_delay", "rise_time", "ignition_overshoot"), ("p_chamber",)),
+    **dict.fromkeys(("action_time", "burn_time_5_percent", "tail_impulse"), ("thrust",)),
+    **dict.fromkeys(("impulse_liquid", "impulse_vapor", "impulse_nitrogen"), ("thrust",)),
+    **dict.fromkeys(("injector_drop_liquid", "injector_drop_vapor"), ("p_run", "p_chamber")),
+    **dict.fromkeys(("of_ratio_mean", "a", "n", "throat_radius_change", "nozzle_efficiency"), PRESSURES),
+    **dict.fromkeys(("roughness_rms", "roughness_peak_to_peak", "rms", "peak_to_peak"), ("p_chamber",)),
+    **dict.fromkeys(("frequency", "amplitude", "bandwidth", "detection_limit"), ("p_chamber",)),
 }
 
 FLOWN = (
@@ -118,6 +125,8 @@ PACED = {
     **dict.fromkeys(("oxidizer_flow_peak", "a", "regression_rate_reference"), -1.0),
     **dict.fromkeys(("total_impulse", "specific_impulse", "total_impulse_of_file", *FLOWN), 1.0),
     "specific_impulse_loaded": 1.0,
+    **dict.fromkeys(("ignition_delay", "rise_time", "action_time", "burn_time_5_percent"), 1.0),
+    **dict.fromkeys(("impulse_liquid", "impulse_vapor", "impulse_nitrogen", "tail_impulse"), 1.0),
     "K_loss": 2.0,
     "drift": -2.0,
 }  # fmt: skip

@@ -144,6 +144,8 @@ def _apart(seen: Seen) -> Iterator[Finding]:
         if off is None or not off[firing].any():
             continue
         rest = values[~off]
+        if _rests_there(seen, values, off):
+            continue
         if np.mean(off[firing]) > MAJORITY if sign < 0.0 else not _stands_out(seen, values, off, firing):
             continue
         for a, b in list(stretches(off))[:TOLD]:
@@ -155,6 +157,15 @@ def _apart(seen: Seen) -> Iterator[Finding]:
                     low=level(float(rest.min()), seen.dimension), high=level(float(rest.max()), seen.dimension),
                 )  # fmt: skip
                 yield _none(seen, start, end, evidence, LOST)
+
+
+def _rests_there(seen: Seen, values: Array, off: Mask) -> bool:
+    """Whether what is far from all else is where the channel rests: a firing that begins and ends at once."""
+    rest = seen.coarse.rest
+    if rest is None:
+        return False
+    gap = float(np.abs(np.median(values[~off]) - np.median(values[off])))
+    return abs(float(np.median(values[off])) - rest.value) < AWAY * gap
 
 
 def _far(seen: Seen, values: Array) -> Mask | None:
