@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
+from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from benchmarks.fuzz import __main__ as study
 from benchmarks.fuzz import cases, document, formats
 from benchmarks.fuzz.explained import REASONS, reason
 from benchmarks.fuzz.judge import judge
@@ -110,3 +113,21 @@ def test_what_no_log_can_tell_has_its_reason(number: int, mutators: list[str], h
     """By the size of what was done: these clocks and gauges are off by less than an engine's own efficiencies."""
     row = {"number": number, "mutators": mutators, "hit": hit}
     assert reason(row, 4) == (REASONS[why] if why else "")
+
+
+def test_each_case_stands_beside_the_unspoilt_test_of_the_code_that_ran_it(tmp_path: Path) -> None:
+    """By the new code the unspoilt number is another; what the old code left wrong is run anew first."""
+    about = {"stand": "HF5", "format": "csv", "mutators": ["values: scale"]}
+    old, new = {"code": "old"}, {"code": study.code()}
+    moved = {**BASE, "found": {"C_i": {"value": 0.31, "std": 0.001, "verdict": "identified"}, "health": []}}
+    rows: list[dict[str, Any]] = [
+        {"number": -1, "base": "HF5.csv", **BASE, **old}, {"number": -1, "base": "HF5.csv", **moved, **new},
+        {"number": 0, **about, **spoilt(0.29), **old}, {"number": 1, **about, **spoilt(0.31), **old},
+        {"number": 2, **about, **spoilt(0.31), **new},
+    ]  # fmt: skip
+    (tmp_path / "9-0-of-1.jsonl").write_text("\n".join(map(json.dumps, rows)) + '\n{"number": 3, "sta')
+    options = Namespace(out=tmp_path, seed=9, n=5, jobs=1, number=0, again=True)
+    assert [bool(judged.moved) for _, judged in study._judged(options)] == [False, True, False]
+    assert study._to_run(options, study.code()) == [1, 3, 4, 0]
+    options.again = False
+    assert study._to_run(options, study.code()) == [3, 4]
