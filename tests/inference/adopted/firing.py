@@ -32,11 +32,11 @@ p_run = { column = "p_run", unit = "Pa", accuracy = "5 kPa" }
 p_chamber = { column = "p_chamber", unit = "Pa", accuracy = "5 kPa" }
 thrust = { column = "thrust", unit = "N", accuracy = "5 N", tare = "none" }
 [tank]
-volume = "16.5 L"
+volume = "16.5 +/- 0 L"
 oxidizer_mass = "8.35 +/- 0.01 kg"
 [injector]
 holes = 22
-hole_area = "3.142 mm^2"
+hole_area = "3.142 +/- 0 mm^2"
 [grain]
 mass = "1594 g"
 length = "610 mm"

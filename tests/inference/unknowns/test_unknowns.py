@@ -20,7 +20,7 @@ from hfanalysis.inference import unknowns
 from hfanalysis.inference.candidate import Bench, candidate
 from hfanalysis.inference.fitting.fit import fit
 from hfanalysis.inference.fitting.form import FINEST
-from hfanalysis.inference.unknown import LinearUnknown, has_name
+from hfanalysis.inference.unknown import Described, LinearUnknown, has_name
 
 WORN = '''
 """A throat that is wider than stated, as a made-up channel would tell."""
@@ -33,7 +33,7 @@ from hfanalysis.engine.effect import Parameter
 from hfanalysis.engine.sites import RATES, THROAT_FACTOR, term
 from hfanalysis.inference.fitting.hypothesis import Free
 from hfanalysis.inference.places import SourcePlace
-from hfanalysis.inference.unknown import History, Unknown, nameless_effect
+from hfanalysis.inference.unknown import Described, History, nameless_effect
 from hfanalysis.quantity import Quantity
 
 
@@ -47,7 +47,7 @@ EFFECT = nameless_effect("worn", "nozzle", "a worn throat", (Parameter("part", "
 
 
 @dataclass(frozen=True)
-class WornThroat(Unknown):
+class WornThroat(Described):
     part: float
     log_evidence: float
     place = SourcePlace("worn throat", "nozzle", "1", 0.05)
@@ -91,7 +91,7 @@ def test_there_are_six_and_no_two_have_words_for_the_same() -> None:
     assert [kind.__module__.rpartition(".")[2] for kind in unknowns.kinds()] == [
         "failing_flow", "late_channel", "pulse", "slow_valve", "smooth_source", "swing",
     ]  # fmt: skip
-    known_by = [kind.known_by for kind in unknowns.kinds() if kind.known_by]
+    known_by = [kind.known_by for kind in unknowns.kinds() if issubclass(kind, Described)]
     assert len(set(known_by)) == len(known_by) == 4
     for kind in unknowns.kinds():
         assert issubclass(kind, LinearUnknown) or kind.place.equation in EQUATIONS
