@@ -119,8 +119,9 @@ class _Work:
             model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
         histories, found, again = self._histories(full, flows)
         measured |= found.impulses
-        if not isinstance(self.fire, str):
-            measured |= transients(self.true, self.segments, self.definition, self.fire)
+        if isinstance(fire := self.fire, Fire):
+            starts = self._attempt("transients", lambda: transients(self.true, self.segments, self.definition, fire))
+            measured |= starts or {}
         kept = {mode: compared for mode, compared in residuals.items() if compared}
         notes = [note for of_mode in kept.values() for r in of_mode for note in r.notes]
         impulse = measured["total_impulse"].value
@@ -156,8 +157,16 @@ class _Work:
         return self._calibration
 
     def _try(self, name: str, work: Callable[[], Result]) -> Result | None:
-        try:
+        """What needs a calibration."""
+
+        def calibrated() -> Result:
             _ = self.calibration
+            return work()
+
+        return self._attempt(name, calibrated)
+
+    def _attempt(self, name: str, work: Callable[[], Result]) -> Result | None:
+        try:
             return work()
         except (AbsentError, ArithmeticError, ValueError) as error:
             self.absent[name] = str(error)
@@ -211,7 +220,7 @@ class _Work:
 
     def _stability(self, full: FullRun | None, flows: Flows | None, histories: Histories) -> dict[str, Any]:
         """How a hot fire burnt."""
-        if isinstance(self.fire, str):
+        if not isinstance(fire := self.fire, Fire):
             return {}
 
         def modes(start: float, end: float) -> Iterable[Mode] | None:
@@ -223,7 +232,8 @@ class _Work:
             state = chamber_between(full.engine, (volumes[0], volumes[1]), flows, pressure, start, end)
             return state.modes() if state is not None else None
 
-        return {"stability": stability(self.log, self.segments, self.fire.end, modes)}
+        found = self._attempt("stability", lambda: stability(self.log, self.segments, fire.end, modes))
+        return {} if found is None else {"stability": found}
 
     def _closure(self, found: Reduced) -> Closure:
         """How the masses close, and the heat that the calibrated tank takes in the liquid phase, where it is told."""

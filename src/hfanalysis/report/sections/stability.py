@@ -39,9 +39,10 @@ _CAPTION = "Oscillations that stand out of the broadband noise; amplitude as sha
 
 def render(material: Material) -> Iterator[Block]:
     """The verdict with its reason, the lines, and the spectrogram."""
-    found = material.need(Validation).stability
+    validation = material.need(Validation)
+    found = validation.stability
     if found is None:
-        raise AbsentError("nothing burns in this test")
+        raise AbsentError(validation.absent.get("stability", "nothing burns in this test"))
     yield html.paragraph(_verdict(found), "said")
     if found.lines:
         yield html.table("Oscillations", _CAPTION, _COLUMNS, map(_row, found.lines))

@@ -65,7 +65,7 @@ def reconstruct(test: Test) -> Reconstructed:
         closed = close(gathered.inputs, theory, ASSUMED[0])
         if isinstance(closed, str):
             raise AbsentError(closed)
-    except AbsentError as missing:
+    except (AbsentError, ArithmeticError, ValueError) as missing:
         return Reconstructed(Reconstruction(variant=None, reason=str(missing)))
     return _told(test, gathered, closed)
 
