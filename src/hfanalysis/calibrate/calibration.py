@@ -12,8 +12,8 @@ from hfanalysis.products.calibration import Calibration, FuelLaw, TankConstants
 class TankCalibration:
     """The constants of a tank, and the repetitions that gave their deviations; None where there are no constants.
 
-    ``draws`` have what the log and stated deviations leave open, ``whole`` the systematic errors beside it: the first
-    weigh a fit, the second are what its answer may be off by.
+    ``draws`` have what the log and stated deviations leave open, ``whole`` the systematic errors beside it (of the
+    sensors' spans, too): the first weigh a fit, the second are what its answer may be off by.
     """
 
     constants: TankConstants

@@ -61,6 +61,8 @@ LARGEST_STEP = 0.2
 LARGEST_RATE_STEP = 1.0
 """The same of the logarithm of the rate [-], which is let grow to this where nothing tells it."""
 
+ROUNDS = 2
+"""Times that the weights follow from what a fit leaves, and the fit from the weights."""
 RESURVEYS = 3
 """Times the surface is followed from a lower point that it has shown. Evidence: without it values lay outside their own
 intervals."""
@@ -143,12 +145,11 @@ def fit(tests: Sequence[Evidence]) -> Fitted:
     evidence = list(tests)
     weights = [first_guess(e.time.size, float(e.chamber.mean()), e.scales) for e in evidence]
     best = _minimum(evidence, weights, flux, _scan(evidence, weights, flux))
-    for last in (False, True):
+    for _ in range(ROUNDS):
         law = law_at(best, flux)
         evidence = [e.with_regression(law) for e in evidence]
         weights = [weighed(e, law) for e in evidence]
-        minima = _minima(evidence, weights, flux, best) if last else [_minimum(evidence, weights, flux, best)]
-        best, *rivals = _likeliest(evidence, minima, flux)
+        best, *rivals = _likeliest(evidence, _minima(evidence, weights, flux, best), flux)
     found = _surveyed(evidence, weights, flux, best)
     return replace(found, rivals=tuple(r for r in rivals if abs(r[1] - found.best[1]) > SAME))
 

@@ -62,14 +62,15 @@ def _deviations(meaning: str, found: str) -> float:
     return number
 
 
-def left_by_zero(accuracy: float, zero_std: float | None) -> float:
+def left_by_zero(accuracy: float, zero_std: float | None, span: float = SPAN_SHARE) -> float:
     """Standard deviation [SI] of what a sensor is off by under load.
 
     Args:
         accuracy: of the sensor [SI].
         zero_std: of the zero that was taken [SI]; None where none was, so that all of the accuracy is left.
+        span: part of the accuracy that is no zero's [-].
     """
-    return accuracy if zero_std is None else sqrt(zero_std**2 + (SPAN_SHARE * accuracy) ** 2)
+    return accuracy if zero_std is None else sqrt(zero_std**2 + (span * accuracy) ** 2)
 
 
 def in_place(calibrated: datetime.date | None, test: datetime.date | None) -> bool:
