@@ -17,8 +17,8 @@ import numpy as np
 from simulated.engine import possible
 from simulated.stand import AMBIENT, HOLE_AREA, PSI, Array, Truth, noise
 
-from hfanalysis.engine.effect import Active, Believable, Effect, Parameter
-from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, term
+from hfanalysis.calibrate.drifting import DRIFT as INJECTOR_DRIFT
+from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.flight.ascent import ANGLE, CROSSWIND, DRAG, MASS, NOMINAL, PROPELLANT, WIND
 
@@ -29,29 +29,6 @@ CELL_DRIFT = 0.02
 ACCURACY = 2.0 * PSI
 SPAN = sqrt(0.5)
 CHANNELS = ("p_tank", "p_run", "p_chamber", "thrust", "m_tank")
-
-
-@term
-def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
-    if hook == AT_FLOW:
-        site[INJECTOR_FACTOR] *= 1.0 + p[0] * (min(max(t, 0.0), p[1]) / p[1] - 0.5)
-
-
-DRIFTING = Effect(
-    name="drifting_injector",
-    plain_name="injector that drifts",
-    equation="injector",
-    meaning="the injector passes more or less the longer the liquid flows",
-    reference="a straight line",
-    formula="mdot = mdot_0 (1 + d (t / T - 1/2))",
-    sites=("injector_factor",),
-    parameters=(Parameter("drift", "-", "over the time", 0.05, high=0.5), Parameter("time", "s", "of the liquid", 5.0)),
-    phases=("liquid", "vapor"),
-    term=_term,
-    twins=(),
-    decisive="cold flow",
-    believable=Believable("drift", 0.2, "edges of holes round off"),
-)
 
 
 @dataclass(frozen=True)
@@ -118,7 +95,7 @@ def _ran(stand: Truth, engine: Engine, done: Burn, generator: np.random.Generato
     if wet is None:
         raise ValueError("the liquid does not run out")
     drift = DRIFT * generator.standard_normal()
-    drifting = replace(engine, effects=(Active(DRIFTING, (drift, wet)),))
+    drifting = replace(engine, effects=(Active(INJECTOR_DRIFT, (drift, wet)),))
     burnt = burn(drifting, longest=max(done.burn_time, wet) * 1.2 + 4.0, run_on=True)
     if burnt.liquid_out is None or not burnt.fuel_out:
         raise ValueError("the log does not hold both ends")

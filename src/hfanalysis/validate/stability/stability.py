@@ -72,8 +72,8 @@ class Stretch:
         return spectra(self.found)
 
     @property
-    def gauge_mean(self) -> float:
-        """What shares are of [SI]: the mean of a channel."""
+    def level(self) -> float:
+        """What shares are of [SI]: the mean of the channel, as it reads."""
         return abs(self.found.mean)
 
 
@@ -142,12 +142,12 @@ def _roughness(stretch: Stretch, rest: Stretch | None) -> Roughness:
     """As shares of the mean, without what the sensor's own noise at rest explains."""
     of, noise = stretch.found, rest.found.variance if rest is not None else 0.0
     left = max(of.variance - noise, 0.0)
-    rms = np.sqrt(left) / stretch.gauge_mean
+    rms = np.sqrt(left) / stretch.level
     part = np.sqrt(left / of.variance) if of.variance > 0.0 else 0.0
-    range_of_it = part * of.peak_to_peak / stretch.gauge_mean
+    range_of_it = part * of.peak_to_peak / stretch.level
     # variances of so many independent samples, of both
     spread = np.hypot(of.variance, noise) * np.sqrt(2.0 / of.value.size)
-    std = min(0.5 * spread / max(np.sqrt(left), 1e-300), np.sqrt(spread)) / stretch.gauge_mean
+    std = min(0.5 * spread / max(np.sqrt(left), 1e-300), np.sqrt(spread)) / stretch.level
     return Roughness(
         rms=Quantity(float(rms), "", float(std)),
         peak_to_peak=Quantity(float(range_of_it), "", float(std * of.peak_to_peak / max(np.sqrt(of.variance), 1e-300))),
@@ -156,7 +156,7 @@ def _roughness(stretch: Stretch, rest: Stretch | None) -> Roughness:
 
 def _lines(phase: str, stretches: Mapping[str, Stretch], rest: Mapping[str, Stretch], modes: Modes) -> list[Line]:
     """The lines of a phase, those at one frequency in several channels as one."""
-    seen = [Seen(name, track, track.rms / s.gauge_mean) for name, s in stretches.items() for track in s.lines]
+    seen = [Seen(name, track, track.rms / s.level) for name, s in stretches.items() for track in s.lines]
     out = []
     while seen:
         first = seen[0]
@@ -178,14 +178,14 @@ def _line(
     first = seen[0]
     track = first.track
     shown = Shown(
-        limits={c: detectable(s.spectra, track.frequency) / s.gauge_mean for c, s in stretches.items()},
+        limits={c: detectable(s.spectra, track.frequency) / s.level for c, s in stretches.items()},
         rest={c: s.lines for c, s in rest.items()},
         rest_limits={c: detectable(s.spectra, track.frequency) for c, s in rest.items()},
         run_line=_run_line(stretches, track),
         sampling=2.0 * stretches[first.channel].found.nyquist,
     )
     low, high = track.frequency - track.reach, track.frequency + track.reach
-    share_std = track.rms_std / stretches[first.channel].gauge_mean
+    share_std = track.rms_std / stretches[first.channel].level
     return Line(
         frequency=Quantity(track.frequency, "Hz", 0.5 * track.reach, (low, high)),
         width=track.width,
@@ -235,7 +235,7 @@ def _limit(stretch: Stretch) -> Quantity:
     if not seen:
         return Quantity.absent("too few samples for a spectrum")
     worst = max(detectable(stretch.spectra, float(f)) for f in seen)
-    return Quantity(worst / stretch.gauge_mean, "", why="a line that lasts through the liquid phase")
+    return Quantity(worst / stretch.level, "", why="a line that lasts through the liquid phase")
 
 
 def _judged(liquid: Stretch, rough: Roughness, found: list[Line]) -> tuple[str, str]:
