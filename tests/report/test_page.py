@@ -29,6 +29,8 @@ from tests.report.sample import (
 from hfanalysis.charts.colors import COLORS, STYLES
 from hfanalysis.charts.style import sheet
 from hfanalysis.charts.svg import Event, events, new_plot, value_range
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.quantity import CONDITIONAL, DERIVED, STATED, Quantity
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.summary import summary
 from hfanalysis.report.index import write_index
@@ -176,6 +178,17 @@ def test_the_verdict_names_what_is_known_and_what_is_not(tmp_path: Path) -> None
     )
     assert "Outside its physical range: polytropic exponent." in said
     assert "Not identifiable from this test: vapor compressibility, vapor-phase feed loss, regression" in said
+
+
+def test_what_is_derived_stated_or_conditional_is_not_called_unidentifiable(tmp_path: Path) -> None:
+    made = material(tmp_path)
+    found = made.need(Calibration)
+    judged = {"Z": DERIVED, "K_loss": STATED, "C_i": CONDITIONAL}
+    quantities = {name: Quantity(0.5, "", 0.01, verdict=verdict) for name, verdict in judged.items()}
+    said = sentence(replace(made, products={**made.products, "calibration": found.but(**quantities)}))
+    assert "Conditional, for the reasons below: effective injector coefficient." in said
+    assert "Derived from others, or stated: vapor compressibility and feed loss coefficient." in said
+    assert "vapor compressibility" not in said.partition("Not identifiable")[2]
 
 
 def test_the_verdict_names_the_sensors_that_look_wrong(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
@@ -13,7 +13,16 @@ from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.health import KINDS, TRUSTED, Health
 from hfanalysis.products.ingest import Ingest
 from hfanalysis.products.validation import Validation
-from hfanalysis.quantity import DOUBTED, Quantity
+from hfanalysis.quantity import (
+    CONDITIONAL,
+    DERIVED,
+    DOUBTED,
+    IDENTIFIED,
+    NOT_IDENTIFIABLE,
+    STATED,
+    UNPHYSICAL,
+    Quantity,
+)
 from hfanalysis.record.flag_notes import of_one, with_flag
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
@@ -26,8 +35,28 @@ KEY_NUMBERS = ("burn_time", "total_impulse", "specific_impulse", "peak_thrust", 
 """What is asked for first, where the validation has it."""
 
 
+class Group(NamedTuple):
+    """Quantities of some verdicts: how their sentence begins, their head in the list, and their mark."""
+
+    verdicts: tuple[str, ...]
+    lead: str
+    head: str
+    mark: str
+
+
+GROUPS = {
+    "identified": Group((IDENTIFIED,), "Identified", "Identified", "good"),
+    "doubted": Group((DOUBTED,), "Doubted, for what a sensor shows", "Doubted", "doubt"),
+    "conditional": Group((CONDITIONAL,), "Conditional, for the reasons below", "Conditional", "doubt"),
+    "known": Group((DERIVED, STATED), "Derived from others, or stated", "Derived or stated", "good"),
+    "bad": Group((UNPHYSICAL,), "Outside its physical range", "Outside its physical range", "bad"),
+    "open": Group((NOT_IDENTIFIABLE,), "Not identifiable from this test", "Not identified", "open"),
+}
+"""What the verdict sorts by; a quantity without a verdict is open."""
+
+
 def render(material: Material) -> Iterator[Block]:
-    """A sentence, the key numbers, and four lists."""
+    """A sentence, the key numbers, and a list for each of GROUPS."""
     yield html.paragraph(sentence(material), "lead")
     yield _diagnosed(material)
     if material.adopted:
@@ -92,16 +121,10 @@ def sentence(material: Material) -> str:
         return "No firing was found in this log, so there is nothing to calibrate."
     if not material.has("calibration"):
         return " ".join(["This test could not be calibrated; the reason is given below.", *_sensor_sentence(material)])
-    names = {kind: [in_words(name) for name in found] for kind, found in by_mark(material).items()}
-    parts = [
-        f"Identified: {listed(names['good'])}."
-        if names["good"]
-        else ("" if names["doubt"] else "Nothing could be identified."),
-        f"Doubted, for what a sensor shows: {listed(names['doubt'])}." if names["doubt"] else "",
-        f"Outside its physical range: {listed(names['bad'])}." if names["bad"] else "",
-        f"Not identifiable from this test: {listed(names['open'])}." if names["open"] else "",
-    ]
-    return " ".join([*filter(None, parts), *_sensor_sentence(material)])
+    groups = by_group(material)
+    parts = [f"{GROUPS[group].lead}: {listed(list(map(in_words, found)))}." for group, found in groups.items() if found]
+    nothing = [] if groups["identified"] or groups["doubted"] else ["Nothing could be identified."]
+    return " ".join([*nothing, *parts, *_sensor_sentence(material)])
 
 
 def _sensor_sentence(material: Material) -> list[str]:
@@ -110,21 +133,23 @@ def _sensor_sentence(material: Material) -> list[str]:
     return [f"Sensors: {'; '.join(dict.fromkeys(found))}."] if found else []
 
 
-def by_mark(material: Material) -> dict[str, dict[str, Quantity]]:
-    """What a calibration is asked for first [SI], by how far it can be trusted."""
+def by_group(material: Material) -> dict[str, dict[str, Quantity]]:
+    """What a calibration is asked for first [SI], by how far it can be trusted: one of GROUPS each."""
     calibration = material.get(Calibration)
-    out: dict[str, dict[str, Quantity]] = {"good": {}, "doubt": {}, "bad": {}, "open": {}}
+    out: dict[str, dict[str, Quantity]] = {group: {} for group in GROUPS}
     found = calibration.quantities if calibration is not None else {}
     for name, quantity in ((name, found[name]) for name in wording.MASTHEAD if name in found):
-        out[html.mark(quantity.verdict or "")][name] = quantity
+        groups = (group for group, kind in GROUPS.items() if quantity.verdict in kind.verdicts)
+        out[next(groups, "open")][name] = quantity
     return out
 
 
 def _findings(material: Material) -> Iterator[Markup]:
-    heads = {"good": "Identified", "doubt": "Doubted", "bad": "Outside its physical range", "open": "Not identified"}
-    for kind, found in by_mark(material).items():
+    for group, found in by_group(material).items():
         if found:
-            yield _finding(kind, heads[kind], map(_judged, *zip(*_by_reason(found, kind, material), strict=True)))
+            kind = GROUPS[group]
+            items = (_judged(*one) for one in _by_reason(found, group, material))
+            yield _finding(kind.mark, kind.head, items)
     reasons = [_reason(number, doubt.sentence) for number, doubt in enumerate(material.reasons, 1)]
     logged, others = warnings(material)
     if reasons or logged:
@@ -147,10 +172,10 @@ def _reason(number: int, sentence: str) -> Markup:
 
 
 def _by_reason(
-    found: Mapping[str, Quantity], kind: str, material: Material
+    found: Mapping[str, Quantity], group: str, material: Material
 ) -> list[tuple[Markup, dict[str, Quantity]]]:
     """The quantities with their reason, those together that have the same one."""
-    if kind == "good":
+    if group == "identified":
         return [(Markup(), {name: quantity}) for name, quantity in found.items()]
     groups: dict[Markup, dict[str, Quantity]] = {}
     for name, quantity in found.items():
