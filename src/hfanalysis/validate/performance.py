@@ -22,7 +22,7 @@ from hfanalysis.record.log import Channel, TestLog
 from hfanalysis.record.signals import Signal, sample_noise
 from hfanalysis.sentences import said, text
 from hfanalysis.units import Value
-from hfanalysis.validate.load_cell import CellError, cell_error
+from hfanalysis.validate.load_cell import UNSEEN_DRIFT, CellError, cell_error, drift_unseen
 from hfanalysis.validate.model_errors import changes
 from hfanalysis.validate.stand import unknown_weight
 from hfanalysis.validate.thrust import AT_AMBIENT, OUT, Thrust, burnt_out, thrust_of
@@ -176,13 +176,20 @@ def impulse_to(log: TestLog, thrust: Thrust | None, fire: Fire, definition: Test
     time = np.concatenate((edges[:1], inner.time, edges[1:]))
     value = float(np.trapezoid(whole.at(time), time))
     inputs = impulse_inputs(log, thrust, fire, definition, value)
-    drift = (
-        text("; {error} of the cell's drift taken off", error=said(thrust.error, "N", ".0f")) if thrust.error else ""
-    )
+    drift = _of_drift(thrust)
     lacking = sum(min(end, fire.end) - max(start, 0.0) for start, end in unseen)
     holes = f"; {lacking:.2f} s without samples bridged by straight lines" if lacking else ""
     why = text("over the burn{drift}{holes}", drift=drift, holes=holes)
     return Quantity(value, "N s", total(inputs), why=why)
+
+
+def _of_drift(thrust: Thrust) -> str:
+    if thrust.error:
+        return text("; {error} of the cell's drift taken off", error=said(thrust.error, "N", ".0f"))
+    if not drift_unseen(thrust):
+        return ""
+    allowed = f"a drift of {UNSEEN_DRIFT:.0%} of its peak is allowed for"
+    return f"; no rest after the burn shows whether the cell's zero held: {allowed}"
 
 
 def impulse_inputs(log: TestLog, thrust: Thrust, fire: Fire, definition: TestDefinition, impulse: float) -> list[Input]:
