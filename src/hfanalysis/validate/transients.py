@@ -17,7 +17,7 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.crossing import usual_noise
-from hfanalysis.validate.performance import Fire, bias
+from hfanalysis.validate.performance import EARLY, Fire, bias
 from hfanalysis.validate.thrust import OUT, Thrust, thrust_of
 
 PLATEAU_TIME = 1.0
@@ -271,6 +271,8 @@ def _impulse(signal: Signal, start: float, end: float, std: float, zero: float) 
     """Integral of the thrust [N s] between two instants [s], one of them known to ``std`` [s]."""
     if not end > start:
         return Quantity(0.0, "N s", 0.0)
+    if signal.time[-1] < end - EARLY:
+        return Quantity.absent(f"the good samples of thrust end at {signal.time[-1]:.1f} s, before {end:.1f} s")
     whole = signal.bridged()
     time = np.concatenate(([start], whole.between(start, end).time[1:], [end]))
     value: Array = whole.at(time)
