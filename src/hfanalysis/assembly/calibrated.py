@@ -14,7 +14,7 @@ from math import pi
 
 import numpy as np
 
-from hfanalysis.assembly.engine import combustion_of
+from hfanalysis.assembly.burnt_gas import combustion_of
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn

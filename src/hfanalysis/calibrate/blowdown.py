@@ -91,7 +91,7 @@ class Tables:
         """Feed loss and chamber pressure [Pa], each (k,), at increasing times (k,) [s]: means over the cells about
         them.
         """
-        return [means(self.time, total, at) for total in (self.record.loss_total, self.record.chamber_total)]
+        return [means(self.time, total, at, 0.0) for total in (self.record.loss_total, self.record.chamber_total)]
 
 
 @dataclass(frozen=True)

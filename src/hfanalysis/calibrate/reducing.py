@@ -115,8 +115,10 @@ def reduced(record: Record, fluid: Fluid, vapor: Vapor, inputs: Array, shifts: A
 
     m is looked for about that of the first, and then anywhere.
     """
-    out = np.full((inputs.shape[0], VAPOR_C_D + 1), np.nan)
+    out = np.empty((inputs.shape[0], VAPOR_C_D + 1))
     for k in range(inputs.shape[0]):
+        for i in range(out.shape[1]):
+            out[k, i] = np.nan
         _reduce(record, fluid, vapor, inputs[k], shifts[k], out[0], out[k])
     return out
 
@@ -141,9 +143,11 @@ def _reduce(
     if not x[I_T_END] > x[I_T_V]:
         return
     out[LOSS_VAPOR] = _loss_vapor(record, x, shift) if area > 0.0 else np.nan
-    time = np.linspace(x[I_T_V], x[I_T_END], VAPOR_STEPS + 1)
-    loss = means(record.time, record.loss_total, time) + (shift[S_TANK] - shift[S_RUN])
-    chamber = means(record.time, record.chamber_total, time) + shift[S_CHAMBER]
+    time = np.empty(VAPOR_STEPS + 1)
+    for i in range(time.size):
+        time[i] = x[I_T_V] + i * (x[I_T_END] - x[I_T_V]) / VAPOR_STEPS
+    loss = means(record.time, record.loss_total, time, shift[S_TANK] - shift[S_RUN])
+    chamber = means(record.time, record.chamber_total, time, shift[S_CHAMBER])
     if area > 0.0:
         out[M], out[VAPOR_MASS_END] = vapor_exponent(fluid, vapor, x, shift[S_TANK], area, time, loss, chamber, guess)
     if C_i > 0.0:
@@ -214,14 +218,23 @@ def isentropic_exponent(fluid: Fluid, temperature: float) -> float:
 
 
 @compiled
-def means(time: Array, total: Array, at: Array) -> Array:
+def means(time: Array, total: Array, at: Array, more: float) -> Array:
     """Means over the cells about increasing times ``at`` (k,) [s] of what has the integral ``total`` (n,) over ``time``
-    (n,) [s]."""
-    edges = np.empty(at.size + 1)
-    edges[0], edges[-1] = at[0], at[-1]
-    edges[1:-1] = 0.5 * (at[1:] + at[:-1])
-    whole = np.interp(edges, time, total)
-    return (whole[1:] - whole[:-1]) / (edges[1:] - edges[:-1])
+    (n,) [s], each and ``more``.
+
+    By plain loops: what of numpy numba brings along for them loads a library of linear algebra besides.
+    """
+    out, k, edge, before = np.empty(at.size), 0, at[0], 0.0
+    for i in range(at.size + 1):
+        end = at[0] if i == 0 else at[-1] if i == at.size else 0.5 * (at[i - 1] + at[i])
+        while k < time.size - 2 and time[k + 1] <= end:
+            k += 1
+        part = min(max((end - time[k]) / (time[k + 1] - time[k]), 0.0), 1.0)
+        whole = total[k] + part * (total[k + 1] - total[k])
+        if i > 0:
+            out[i - 1] = (whole - before) / (end - edge) + more
+        edge, before = end, whole
+    return out
 
 
 @inner

@@ -18,8 +18,8 @@ import numpy as np
 from scipy.special import ndtri
 
 from hfanalysis.arrays import Array
+from hfanalysis.assembly.burnt_gas import combustion_of
 from hfanalysis.assembly.calibrated import ASSUMED_EXPONENT
-from hfanalysis.assembly.engine import combustion_of
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
 from hfanalysis.calibrate.reducing import EXPONENTS
 from hfanalysis.effects.injector_choked_vapor import expanding_flow
