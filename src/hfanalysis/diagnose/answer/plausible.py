@@ -11,6 +11,7 @@ from math import log
 
 from hfanalysis.engine.effect import Active
 from hfanalysis.products.diagnosis import Plausibility
+from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.sentences import text
 
 STEEPNESS = 3.0
@@ -48,6 +49,6 @@ def judged(active: Active) -> Plausibility:
     chosen = _parameter(active)
     size, most = limit.text(active.strengths[chosen]), limit.text(limit.most)
     possible = excess(active) <= 1.0
-    judgment = "{chosen} of {size} is below {most}" if possible else "{chosen} of {size} is beyond {most}: {why}"
-    why = text(judgment, chosen=chosen, size=size, most=most, why=limit.why)
+    judgment = "{chosen} {size} (limit {most})" if possible else "{chosen} {size} is beyond {most}, for {why}"
+    why = text(judgment, chosen=LONG_NAMES.get(chosen, chosen.replace("_", " ")), size=size, most=most, why=limit.why)
     return Plausibility(size=size, plausible=possible, why=why)
