@@ -65,6 +65,8 @@ class Chart:
     """Charts of one clock are zoomed together."""
     weight: float = 1.0
     """The share of a page's detail that its lines ask for, beside the others."""
+    repeats: bool = False
+    """Whether another chart of the page shows its lines as well, so that files and comparisons go without it."""
     difference: bool = False
     """Whether the values are differences, which the zero point of a unit does not concern."""
 

@@ -17,7 +17,8 @@ from hfanalysis.wording.scales import SYSTEMS, Scale
 def static(chart: Chart) -> Markup:
     """The chart in SI."""
     scale = chart.scale()
-    plot = svg.new_plot(chart.span, value_span(chart, scale), chart.height)
+    names = [one.label for one in chart.lines]
+    plot = svg.new_plot(chart.span, value_span(chart, scale), chart.height, names)
     svg.phases(plot, chart.phases)
     svg.axes(plot, chart.x_label, axis_label(chart, scale))
     svg.events(plot, chart.events)

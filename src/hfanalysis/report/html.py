@@ -10,6 +10,7 @@ from markupsafe import Markup, escape
 
 from hfanalysis.health.reasons import Doubt, marked
 from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
+from hfanalysis.report.names import plain
 from hfanalysis.sentences import Quoted, Text
 from hfanalysis.wording.numbers import MINUS, Shown, decimals_for, fixed, in_words, shown, tidy
 from hfanalysis.wording.scales import scale, superscript
@@ -43,6 +44,7 @@ def amount(value: float | None, unit: str, digits: int = 4, difference: bool = F
 
 def switchable(words: str) -> Markup:
     """A sentence of a product as pages are set, the quantities that it knows ready for the other system of units."""
+    words = plain(words)
     known = words.quoted if isinstance(words, Text) else {}
     pieces = {_set(piece): (piece, quantity) for piece, quantity in known.items() if _converts(piece, quantity)}
     if not pieces:

@@ -23,7 +23,7 @@ from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.products.validation import Validation
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
-from hfanalysis.wording.numbers import adopted_in_words
+from hfanalysis.wording.numbers import EVENT_LABELS, adopted_in_words
 
 P = TypeVar("P", bound=Product)
 _BEFORE, _AFTER = 2.0, 3.0
@@ -128,10 +128,10 @@ def event_list(material: Material) -> list[Event]:
     segments = material.get(Segments)
     if segments is None or not material.fired:
         return []
-    found = [Event(0.0, segments.t_open.std or 0.0, "t_open")]
+    found = [Event(0.0, segments.t_open.std or 0.0, EVENT_LABELS["t_open"])]
     for name, event in segments.events.items():
         if event.value is not None:
-            found.append(Event(event.value, event.std or 0.0, name))
+            found.append(Event(event.value, event.std or 0.0, EVENT_LABELS.get(name, name)))
     return found
 
 

@@ -26,6 +26,7 @@ def over_time(
     value_span: tuple[float, float] | None = None,
     difference: bool = False,
     weight: float = 1.0,
+    repeats: bool = False,
 ) -> Chart | None:
     """A chart over the test's phases and events; None where no series has anything to draw.
 
@@ -42,6 +43,7 @@ def over_time(
         value_span: of the value axis, where the data should not set it.
         difference: whether the values are differences.
         weight: of the chart's lines where the page's detail is shared out.
+        repeats: whether another chart of the page shows its lines as well.
     """
     kept = tuple(one for one in series if one.finite)
     if not any(one.kind == "line" for one in kept):
@@ -61,6 +63,7 @@ def over_time(
         value_span,
         difference=difference,
         weight=weight,
+        repeats=repeats,
     )
 
 

@@ -95,6 +95,17 @@ NAMES: dict[str, str] = {
 """The quantities of the products, in the order in which they are shown."""
 
 EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
+EVENT_LABELS: dict[str, str] = {
+    "t_open": "opens",
+    "t_feed": "line full",
+    "t_v": "liquid gone",
+    "t_purge": "N₂ enters",
+    "t_fuel_out": "fuel ends",
+    "t_fuel_gone": "fuel gone",
+    "t_end": "p_c low",
+}
+"""What a chart calls the events."""
+
 MASTHEAD = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "a", "n", "regression_rate_reference")
 """What a calibration is asked for first."""
 

@@ -7,8 +7,8 @@ from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.inference.unknowns import kind_of
 from hfanalysis.products.diagnosis import Compared, Diagnosis, Gap, NamedEffect, Place
 from hfanalysis.record.channels import LONG_NAMES, unit_of
-from hfanalysis.sentences import capitalised, joined, said, text
-from hfanalysis.wording.numbers import listed
+from hfanalysis.sentences import Text, capitalised, joined, said, text
+from hfanalysis.wording.numbers import decimals_for, listed
 
 EQUATIONS = {
     "tank_energy": "the tank's energy",
@@ -205,10 +205,17 @@ def place_sentence(row: Place, last: float | None = None) -> str:
         return joined("", [kind.words(row, known, where, unit), left])
     swing = row.rms.value or 0.0 if row.rms is not None else 0.0
     uneven = abs(value) < UNEVEN * swing
-    size = said(swing, unit) if uneven else said(abs(value), unit, ".3g", row.source.std or 0.0)
+    size = said(swing, unit) if uneven else _sized(abs(value), row.source.std or 0.0, unit)
     mostly = "" if row.phase in ("", "purge") and not uneven else f", mostly in the {row.phase} phase"
     what = f"{_where(row)} goes up and down by {{size}} (rms)" if uneven else _lacking(row)
     return text("{span} " + what + "{mostly}.{left}", span=_span(row, last), size=size, mostly=mostly, left=left)
+
+
+def _sized(value: float, std: float, unit: str) -> Text:
+    """A size [SI] with its deviation, in a ``unit``, to two digits of the deviation."""
+    of_one = float(said(1.0, unit, ".17g").split()[0])
+    form = f".{min(8, decimals_for(of_one * value, of_one * std))}f"
+    return said(value, unit, form, std, form)
 
 
 def _where(row: Place) -> str:

@@ -10,8 +10,11 @@ function element(parent, name, attributes, text) {
   return made;
 }
 
-function margins(width) {
-  return width < WIDE ? { left: 46, right: 10, top: 56, bottom: 46 } : { left: 58, right: 116, top: 56, bottom: 46 };
+// The names at the lines' ends take what they need, as in the static chart.
+function margins(width, chart) {
+  if (width < WIDE) return { left: 46, right: 10, top: 56, bottom: 46 };
+  const names = chart.series.filter((one) => one.kind === "line").map((one) => 30 + 6.6 * one.label.length);
+  return { left: 58, right: clamp(Math.max(...names), 116, 250), top: 56, bottom: 46 };
 }
 
 function shownUnit(chart) {
@@ -37,7 +40,7 @@ function valueSpan(chart, start, end) {
 }
 
 function draw(chart, width, start, end) {
-  const m = margins(width), height = chart.height, unit = shownUnit(chart);
+  const m = margins(width, chart), height = chart.height, unit = shownUnit(chart);
   const [bottom, top] = valueSpan(chart, start, end).map(unit.of);
   const x = linear(start, end, m.left, width - m.right);
   const y = linear(bottom, top, height - m.bottom, m.top);
@@ -228,7 +231,7 @@ function nameEnds(chart, svg) {
   }
   for (const { at, one } of ends) {
     element(svg, "path", { class: `line ${one.style}${one.dashed ? " dashed" : ""}`, d: `M${x.to + 8} ${at}h12` });
-    const name = one.label.length > 13 ? one.label.slice(0, 12) + "\u2026" : one.label;
+    const name = one.label.length > 33 ? one.label.slice(0, 32) + "\u2026" : one.label;
     element(svg, "text", { class: "end-name", x: x.to + 25, y: at + 4, "text-anchor": "start" }, name);
   }
 }

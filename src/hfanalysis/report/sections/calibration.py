@@ -34,4 +34,4 @@ def _row(name: str, quantity: Quantity, material: Material) -> tuple[Any, ...]:
     return html.symbol_and_words(name), *number, html.verdict(quantity.verdict or ""), remark
 
 
-SECTION = Section("Calibration", 70, ("calibration",), render)
+SECTION = Section("Calibration", 70, ("calibration",), render, folded=True)

@@ -168,4 +168,4 @@ def _without_margin(stability: Stability) -> Markup | None:
     return html.paragraph(f"No static margin is drawn: {reason}{f'; {add}' if add else ''}.")
 
 
-SECTION = Section("Flight", 78, ("flight",), render)
+SECTION = Section("Flight", 78, ("flight",), render, folded=True)

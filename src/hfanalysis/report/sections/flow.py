@@ -80,4 +80,4 @@ def _content(material: Material) -> Chart | None:
     return over_time(material, "tank-content", "Oxidizer in the tank", axis, series, caption, span=span, height=240.0)
 
 
-SECTION = Section("Flow", 50, (), render)
+SECTION = Section("Flow", 50, (), render, folded=True)

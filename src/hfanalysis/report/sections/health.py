@@ -72,4 +72,4 @@ def _when(finding: Finding) -> str:
     return f"{' … '.join(ends)} s".strip()
 
 
-SECTION = Section("Health of the channels", 12, ("health",), render)
+SECTION = Section("Health of the channels", 12, ("health",), render, folded=True)

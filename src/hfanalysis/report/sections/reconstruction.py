@@ -97,4 +97,4 @@ def _overlap(one: Quantity, other: Quantity) -> bool:
     return one.interval[0] <= other.interval[1] and other.interval[0] <= one.interval[1]
 
 
-SECTION = Section("Reconstruction", 32, ("validation", "performance"), render)
+SECTION = Section("Reconstruction", 32, ("validation", "performance"), render, folded=True)

@@ -117,4 +117,4 @@ def _until_nitrogen(material: Material) -> str:
     )
 
 
-SECTION = Section("Regression and efficiencies", 55, (), render)
+SECTION = Section("Regression and efficiencies", 55, (), render, folded=True)

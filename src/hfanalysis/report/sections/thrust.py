@@ -61,4 +61,4 @@ def beyond(material: Material, channel: Channel) -> Markup:
     return Markup(" A few readings lie outside the chart, as far as {}.").format(ends) if wild else Markup()
 
 
-SECTION = Section("Thrust", 40, (), render)
+SECTION = Section("Thrust", 40, (), render, folded=True)
