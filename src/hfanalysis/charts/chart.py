@@ -32,6 +32,13 @@ class Series:
     kind: str = "line"
     upper: Array | None = None
     dashed: bool = False
+    faint: bool = False
+    """Drawn thin, and no part of what sets the value axis: what a sensor reads that nobody believes."""
+
+    @property
+    def css(self) -> str:
+        """The classes that draw it."""
+        return " ".join([self.style, *["dashed"] * self.dashed, *["faint"] * self.faint])
 
     def reduced(self, start: float, end: float, bins: int) -> Envelope:
         """The line from ``start`` to ``end`` [s] with at most ``bins`` points, in the chart's unit [SI]."""

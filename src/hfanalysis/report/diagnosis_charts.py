@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 from markupsafe import Markup
 
-from hfanalysis.charts.chart import Chart, Series, around
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.charts.colors import style_of
 from hfanalysis.charts.svg import value_range
 from hfanalysis.diagnose.answer.words import EQUATIONS, place_sentence
@@ -16,8 +16,8 @@ from hfanalysis.products.diagnosis import Diagnosis, Lacking, Place
 from hfanalysis.products.validation import Validation
 from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.report import html
-from hfanalysis.report.material import Material, required, window
-from hfanalysis.report.time_charts import lines_of, over_time
+from hfanalysis.report.material import Material, required
+from hfanalysis.report.time_charts import broken, lines_of, over_time
 from hfanalysis.sentences import capitalised
 from hfanalysis.wording.numbers import fixed, listed, tidy
 
@@ -76,6 +76,7 @@ def sources(material: Material, product: Diagnosis) -> Iterator[Chart | None]:
             Series("90 % band", style, time, factor * low, "band", factor * high),
             Series(name, style, time, factor * mean),
         ]
+        lines = [broken(material, line) for line in lines]
         said = place_sentence(row, product.compared.end)
         yield over_time(
             material,
@@ -84,7 +85,6 @@ def sources(material: Material, product: Diagnosis) -> Iterator[Chart | None]:
             (name, unit),
             lines,
             f"{said} Fitted together with all constants.",
-            span=window(material),
             height=220.0,
             value_span=value_range([factor * low, factor * high]),
             difference=True,
@@ -108,7 +108,7 @@ def channels(material: Material, product: Diagnosis) -> Iterator[Chart | None]:
         read = np.interp(time, lines[0].time, lines[0].values) if lines[0].time.size else measured
         # a purge line is compared less what its valve takes: the line is drawn on what the sensor reads
         model = measured - after + np.nanmedian(read - measured)
-        lines.append(Series("model with the effects", "model", time, model))
+        lines.append(Series("model with the effects", "model", time, model, dashed=True))
         key = f"diagnosis-channel-{_slug(channel)}"
         axis = (words, better["measured"].unit)
         yield over_time(
@@ -155,8 +155,8 @@ def residuals(material: Material, product: Diagnosis) -> Iterator[Chart | None]:
         words = LONG_NAMES.get(channel, channel)
         title, key = f"{words.capitalize()}: what is left", f"diagnosis-left-{_slug(channel)}"
         axis = ("measured − model", table["before"].unit)
-        caption = f"Dashed: the model refitted alone; solid: {better}." if better else ""
-        yield over_time(material, key, title, axis, lines, caption, span=around([time]), height=220.0, difference=True)
+        caption = "Dashed: the model refitted alone; solid: with what is missing." if better else ""
+        yield over_time(material, key, title, axis, lines, caption, height=220.0, difference=True)
 
 
 def weak_form(material: Material, product: Diagnosis) -> Iterator[Chart | None]:
@@ -183,7 +183,6 @@ def weak_form(material: Material, product: Diagnosis) -> Iterator[Chart | None]:
             (place(equation), unit),
             lines,
             _weak_words(found),
-            span=around([time]),
             height=200.0,
             value_span=value_range([factor * (value - usual), factor * (value + usual)]),
             difference=True,

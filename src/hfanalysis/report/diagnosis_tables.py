@@ -47,7 +47,8 @@ def probabilities(product: Diagnosis) -> Markup | None:
     rows = [_candidate(name, product) for name in names]
     rest = sum(name not in names for name in product.posterior if name not in product.partners)
     others = f" {rest} other names are below {SHOWN:g} each." if rest else ""
-    caption = f"What may be missing, and how probable it is.{others} {_trust(product)}"
+    held = listed([product.plain(name) for name in product.set90])
+    caption = f"What may be missing. 90 % of the probability of the first holds {held}.{others} {_trust(product)}"
     columns = ("name", ">probability", "", ">size", "can it be so large?", "what would decide")
     return html.table("Probabilities", caption, columns, rows)
 

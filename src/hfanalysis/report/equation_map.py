@@ -9,7 +9,7 @@ from markupsafe import Markup, escape
 
 from hfanalysis.arrays import Array
 from hfanalysis.charts import svg
-from hfanalysis.charts.chart import TIME
+from hfanalysis.charts.chart import TIME, around
 from hfanalysis.diagnose.answer.words import EQUATIONS
 from hfanalysis.products.diagnosis import Diagnosis, Lacking
 from hfanalysis.report import html
@@ -45,8 +45,10 @@ def equation_map(material: Material, product: Diagnosis) -> Markup | None:
 
 def _picture(material: Material, asked: list[tuple[str, Lacking]]) -> Markup:
     height = svg.TOP + _ROW * len(asked) + svg.BOTTOM
-    plot = svg.new_plot(window(material), (0.0, 1.0), height)
-    plot.x = svg.Axis(*window(material), _LEFT, svg.WIDTH - 10.0)
+    start, end = window(material)
+    span = (start, end) if end > start else around([np.asarray(found.time) for _, found in asked])
+    plot = svg.new_plot(span, (0.0, 1.0), height)
+    plot.x = svg.Axis(*span, _LEFT, svg.WIDTH - 10.0)
     for row, (name, found) in enumerate(asked):
         top = svg.TOP + _ROW * row
         plot.parts.append(svg.lettering(_LEFT - 8.0, top + 0.68 * _ROW, EQUATIONS[name], "label", "end"))

@@ -16,7 +16,7 @@ from hfanalysis.quantity import DOUBTED, Quantity
 from hfanalysis.report.material import Material
 from hfanalysis.report.names import called, plain
 from hfanalysis.sentences import capitalised
-from hfanalysis.wording.numbers import adopted_in_words, fixed, listed
+from hfanalysis.wording.numbers import effect_in_words, fixed, listed
 
 KEY_NUMBERS = ("total_impulse", "burn_time", "peak_thrust", "peak_chamber_pressure", "specific_impulse")
 """What is asked for first, where the validation has it; the apogee comes after them."""
@@ -150,12 +150,11 @@ def model(material: Material) -> str:
 
 def included(material: Material) -> str:
     """The adopted effects in a sentence; empty where there are none."""
-    product = material.get(Validation) or material.get(Calibration)
-    effects = product.effects if product is not None else ()
+    effects = material.included
     if not effects:
         return ""
-    words = adopted_in_words(effects[:1]).partition(" adopted")[0].removeprefix("With ")
-    more = len(effects) - 1
+    first = effects[0].but(parameters=dict(list(effects[0].parameters.items())[:1]))
+    words, more = effect_in_words(first, called), len(effects) - 1
     return f"Included in the model: {words}{f', and {_count(more)} more' if more else ''}; the numbers hold with it."
 
 

@@ -17,6 +17,9 @@ from hfanalysis.wording.scales import scale, superscript
 
 _NEGATIVE, _POWER = re.compile(r"(?<![\w.)])-(?=\d)"), re.compile(r"(?<=[A-Za-z)])\^(-?\d)(?![\d.])")
 
+_KEY = re.compile(r"\[[a-z]+(?:[._][a-z_]+)*\](?: [a-z]+(?:_[a-z]+)+)?")
+"""A section of test.toml in a sentence, with a key of it."""
+
 
 def both(si: str, team: str, style: str = "", value: float | None = None, unit: str = "") -> Markup:
     """Text in both systems of units: SI's shows, the page's script changes it. ``value`` is the number in ``unit``
@@ -44,7 +47,15 @@ def amount(value: float | None, unit: str, digits: int = 4, difference: bool = F
 
 def switchable(words: str) -> Markup:
     """A sentence of a product as pages are set, the quantities that it knows ready for the other system of units."""
-    words = plain(words)
+    return _with_keys(_switchable(plain(words)))
+
+
+def _with_keys(words: Markup) -> Markup:
+    """The text with keys of test.toml set as code; it is escaped already."""
+    return Markup(_KEY.sub(r"<code>\g<0></code>", str(words)))
+
+
+def _switchable(words: str) -> Markup:
     known = words.quoted if isinstance(words, Text) else {}
     pieces = {_set(piece): (piece, quantity) for piece, quantity in known.items() if _converts(piece, quantity)}
     if not pieces:

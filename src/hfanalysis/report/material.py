@@ -18,11 +18,12 @@ from hfanalysis.health.reasons import Doubt, reasons
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.flight import Flight
 from hfanalysis.products.health import Health
-from hfanalysis.products.model import Product
+from hfanalysis.products.model import AdoptedEffect, Product
 from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.products.validation import Validation
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.report.names import called
 from hfanalysis.wording.numbers import EVENT_LABELS, adopted_in_words
 
 P = TypeVar("P", bound=Product)
@@ -89,10 +90,15 @@ class Material:
         return [] if health is None else reasons(health.channels)
 
     @property
-    def adopted(self) -> str:
-        """The adopted effects of the model in a sentence; empty where there are none."""
+    def included(self) -> tuple[AdoptedEffect, ...]:
+        """The adopted effects of the model; empty where there are none."""
         products = (self.get(Validation), self.get(Calibration), self.get(Flight))
-        return adopted_in_words(next((product.effects for product in products if product and product.effects), ()))
+        return next((product.effects for product in products if product and product.effects), ())
+
+    @property
+    def adopted(self) -> str:
+        """The same in a sentence; empty where there are none."""
+        return adopted_in_words(self.included, called)
 
     @property
     def fired(self) -> bool:

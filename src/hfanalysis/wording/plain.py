@@ -8,17 +8,21 @@ from collections.abc import Mapping
 from hfanalysis.sentences import Text, quoted_in
 
 MOST_WORDS = 25
-"""Words of a sentence beyond which it is cut where a semicolon stands. Source: what plain English asks for (GOV.UK
+"""Words of a sentence beyond which it is cut into parts. Source: what plain English asks for (GOV.UK
 content design: sentences of up to 25 words)."""
 
 _KEPT = r"(?<![\w.\[\]/\"'`-]){}(?![\w\"'`]|\.\w|\s*=)"
 """A name that stands in a sentence, and is not part of a key, a path or a quotation."""
 
-_END = re.compile(r"(?<=[.!?])\s+(?=[A-Z0-9])")
+_END = re.compile(r"(?<=[.!?])\s+(?=[A-Z0-9+−\[]|[a-z][*_ ])")
+"""Where a sentence ends; the next may begin with a symbol in small letters."""
+
+_CUTS = ("; ", ": ", ", and ", ", but ")
+"""Where a long sentence is cut, the first first."""
 
 
 def in_plain(words: str, names: Mapping[str, str]) -> Text:
-    """The text with every code name of ``names`` in words, and long sentences cut at their semicolons.
+    """The text with every code name of ``names`` in words, and long sentences cut where they may be.
 
     Keys of test.toml and what stands in quotation marks stay as they are.
 
@@ -41,9 +45,33 @@ def sentences_of(words: str) -> list[str]:
     return _END.split(str.__str__(words))
 
 
-def _cut(sentence: str) -> str:
-    """A sentence of too many words in as many as it has parts between semicolons."""
-    if len(sentence.split()) <= MOST_WORDS or "; " not in sentence:
+def _cut(sentence: str, cuts: tuple[str, ...] = _CUTS) -> str:
+    """A sentence of too many words in as many as it has parts; what stands in brackets stays whole.
+
+    >>> _cut("one " * 20 + "(a; b); p_c " + "two " * 10)[-60:]
+    'one one one (a; b). p_c two two two two two two two two two two '
+    """
+    if len(sentence.split()) <= MOST_WORDS or not cuts:
         return sentence
-    first, *rest = sentence.split("; ")
-    return ". ".join([first, *(part[:1].upper() + part[1:] for part in rest)])
+    parts = _split(sentence, cuts[0])
+    told = [parts[0], *(_begun(part, cuts[0]) for part in parts[1:])]
+    return ". ".join(_cut(part, cuts[1:]) for part in told)
+
+
+def _split(sentence: str, cut: str) -> list[str]:
+    """The parts between cuts that stand outside of brackets."""
+    out = [""]
+    for piece in re.split(f"({re.escape(cut)})", sentence):
+        inside = out[-1].count("(") + out[-1].count("[") > out[-1].count(")") + out[-1].count("]")
+        if piece == cut and not inside:
+            out.append("")
+        else:
+            out[-1] += piece
+    return out
+
+
+def _begun(part: str, cut: str) -> str:
+    """A part as a sentence begins; symbols keep their small letters."""
+    word = part.split(" ", 1)[0]
+    said = part[:1].upper() + part[1:] if len(word) > 1 and word.isalpha() else part
+    return f"But {part}" if cut == ", but " else said

@@ -98,9 +98,9 @@ def test_sentences_give_sizes_in_the_units_of_engineers() -> None:
     row = places(verdict_of(eroded()), eroded())[0]
     assert " N more thrust" in place_sentence(row) or " N less thrust" in place_sentence(row)
     heat = row.but(equation="tank_energy", source=Quantity(900.0, "W", 150.0))
-    assert "0.9 ± 0.15 kW of heat enters the tank that the model does not have" in place_sentence(heat)
+    assert "0.90 ± 0.15 kW of heat enters the tank that the model does not have" in place_sentence(heat)
     colder = heat.but(source=Quantity(-900.0, "W", 150.0))
-    assert "0.9 ± 0.15 kW of heat leaves the tank" in place_sentence(colder)
+    assert "0.90 ± 0.15 kW of heat leaves the tank" in place_sentence(colder)
     assert "thrust reads" in place_sentence(row.but(channel="thrust"))
     ends = row.t_end.value or 0.0
     assert place_sentence(row, ends).startswith(f"From {row.t_start.value:.1f} s on")

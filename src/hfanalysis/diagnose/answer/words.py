@@ -56,6 +56,9 @@ _NAMED_PLACES: dict[str, tuple[str, str]] = {
 }
 """The same of places whose unit does not tell what they are."""
 
+SIZE = "{size}"
+"""Where a size comes in what a source says."""
+
 LASTING = 0.05
 """Part of what was compared, from its end, within which what ends there is said to go on."""
 
@@ -64,6 +67,9 @@ LIKELY = 0.1
 
 MUCH = 1.3
 """Chi-square per observation from which on more is left than noise that was estimated a little too small."""
+
+PAIR = 2
+"""Names with their probabilities in a sentence."""
 
 AT_A_TIME = 3
 """Names in a sentence of what it is not."""
@@ -131,10 +137,11 @@ def headlines(product: Diagnosis) -> list[str]:
             *doubt,
         ]
     named = [row.name for row in product.effects]
-    names = listed([f"{product.plain(row.name)} ({row.probability:.2f})" for row in product.effects])
+    names = [f"{product.plain(row.name)} ({row.probability:.2f})" for row in product.effects]
+    further = [f"Beside that: {listed(names[i : i + PAIR])}." for i in range(PAIR, len(names), PAIR)]
     beside = [f"{product.plain(n)} ({p:.2f})" for n, p in product.partners.items() if n not in named and p >= LIKELY]
     either = [f"In place of what stands beside it may be {' or '.join(beside)}."] if beside else []
-    return [f"Missing from the model, with probability: {names}.", *doubt, *either]
+    return [f"Missing from the model, with probability: {listed(names[:PAIR])}.", *further, *doubt, *either]
 
 
 def _nothing(product: Diagnosis) -> list[str]:
@@ -206,9 +213,10 @@ def place_sentence(row: Place, last: float | None = None) -> str:
     swing = row.rms.value or 0.0 if row.rms is not None else 0.0
     uneven = abs(value) < UNEVEN * swing
     size = said(swing, unit) if uneven else _sized(abs(value), row.source.std or 0.0, unit)
-    mostly = "" if row.phase in ("", "purge") and not uneven else f", mostly in the {row.phase} phase"
-    what = f"{_where(row)} goes up and down by {{size}} (rms)" if uneven else _lacking(row)
-    return text("{span} " + what + "{mostly}.{left}", span=_span(row, last), size=size, mostly=mostly, left=left)
+    mostly = "" if row.phase in ("", "purge") and not uneven else f" Most of it is in the {row.phase} phase."
+    what = f"{_where(row)} goes up and down by {SIZE} (rms)" if uneven else _lacking(row)
+    before, _, after = what.partition(SIZE)
+    return joined("", [f"{_span(row, last)} {before}", size, f"{after}.{mostly}{left}"])
 
 
 def _sized(value: float, std: float, unit: str) -> Text:
@@ -219,18 +227,18 @@ def _sized(value: float, std: float, unit: str) -> Text:
 
 
 def _where(row: Place) -> str:
-    return called(row.channel) if row.channel else EQUATIONS[row.equation]
+    return called(row.channel) if row.channel else EQUATIONS.get(row.equation, row.equation)
 
 
 def _lacking(row: Place) -> str:
     """What a source says, with a place for its size."""
     below = (row.source.value or 0.0) < 0.0
     if row.channel:
-        return f"{called(row.channel)} reads {{size}} too {'little' if below else 'much'}"
+        return f"{called(row.channel)} reads {SIZE} too {'little' if below else 'much'}"
     known = _NAMED_PLACES.get(row.site) or _LACKING.get((row.equation, row.source.unit))
-    return (
-        known[below] if known else f"{EQUATIONS[row.equation]} is {{size}} {'below' if below else 'above'} the model's"
-    )
+    if known:
+        return known[below]
+    return f"{EQUATIONS.get(row.equation, row.equation)} is {SIZE} {'below' if below else 'above'} the model's"
 
 
 def _span(row: Place, last: float | None) -> str:

@@ -27,8 +27,9 @@ function valueSpan(chart, start, end) {
   const whole = start <= chart.span[0] && end >= chart.span[1];
   if (whole && chart.series.every((one) => one.shown)) return chart.values;
   let low = Infinity, high = -Infinity;
+  const believed = chart.series.some((one) => one.shown && one.kind === "line" && !one.faint);
   for (const one of chart.series) {
-    if (!one.shown || one.kind === "level") continue;
+    if (!one.shown || one.kind === "level" || (one.faint && believed)) continue;
     const [bottom, top] = extent(one, start, end);
     low = Math.min(low, bottom);
     high = Math.max(high, top);
@@ -124,7 +125,7 @@ function drawEvents(chart, svg) {
 }
 
 function drawSeries(chart, svg, one) {
-  const { x, y, unit } = chart.place, style = one.style + (one.dashed ? " dashed" : "");
+  const { x, y, unit } = chart.place, style = one.css;
   if (one.kind === "level") {
     const at = y(unit.of(one.level));
     if (at >= y.to && at <= y.from) element(svg, "path", { class: "level " + style, d: `M${x.from} ${at}H${x.to}` });
@@ -230,7 +231,7 @@ function nameEnds(chart, svg) {
     ends[i].at = Math.min(ends[i].at, i === ends.length - 1 ? height - m.bottom : ends[i + 1].at - 15);
   }
   for (const { at, one } of ends) {
-    element(svg, "path", { class: `line ${one.style}${one.dashed ? " dashed" : ""}`, d: `M${x.to + 8} ${at}h12` });
+    element(svg, "path", { class: `line ${one.css}`, d: `M${x.to + 8} ${at}h12` });
     const name = one.label.length > 33 ? one.label.slice(0, 32) + "\u2026" : one.label;
     element(svg, "text", { class: "end-name", x: x.to + 25, y: at + 4, "text-anchor": "start" }, name);
   }

@@ -8,7 +8,7 @@ import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.arrays import Array
-from hfanalysis.charts.chart import Chart, Series, around
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.reconstruction import Reconstruction
@@ -17,15 +17,15 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
 from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.time_charts import over_time
+from hfanalysis.report.time_charts import broken, over_time
 from hfanalysis.wording.numbers import tidy
 from hfanalysis.wording.scales import SLOW
 
 _CHARTS = (
-    ("of_ratio", "Oxidizer to fuel ratio", ("ratio", ""), "p_chamber"),
-    ("regression_rate", "Regression rate", ("rate", SLOW), "p_run"),
-    ("c_star_efficiency", "c* efficiency", ("efficiency", ""), "thrust"),
-    ("throat_radius", "Throat radius", ("radius", "m"), "p_tank"),
+    ("of_ratio", "Oxidizer to fuel ratio", ("O/F by mass", ""), "p_chamber"),
+    ("regression_rate", "Regression rate", ("regression rate", SLOW), "p_run"),
+    ("c_star_efficiency", "c* efficiency", ("c* efficiency", ""), "thrust"),
+    ("throat_radius", "Throat radius", ("throat radius", "m"), "p_tank"),
 )
 """History, title, axis, color."""
 
@@ -41,8 +41,9 @@ def render(material: Material) -> Iterator[Block]:
         yield html.paragraph(f"It is not the only course: {found.other}.")
     if found.told is not None and found.told < 1.0:
         yield html.paragraph(
-            f"In {tidy(100.0 * (1.0 - found.told), 2)} % of the window O/F is not told, and not drawn: a per cent of "
-            "chamber pressure is ten per cent of O/F or more, two courses fit, or the band is wider than 1.5 times."
+            f"In {tidy(100.0 * (1.0 - found.told), 2)} % of the window O/F is not told, and not drawn. There a per "
+            "cent of chamber pressure is ten per cent of O/F or more, or two courses fit. Or the band is wider than "
+            "1.5 times."
         )
     table = material.table("performance", "reconstructed")
     # an efficiency that was assumed, and a throat that nobody measured, are no findings to draw
@@ -68,7 +69,8 @@ def _chart(material: Material, table: Table, name: str, title: str, axis: tuple[
     if not lines[1].finite:
         return None
     key = f"reconstructed-{name.replace('_', '-')}"
-    return over_time(material, key, title, axis, lines, "", span=around([time]), height=240.0, with_zero=False)
+    drawn = [broken(material, line) for line in lines]
+    return over_time(material, key, title, axis, drawn, "", height=240.0, with_zero=False)
 
 
 def _law(found: Reconstruction, calibration: Calibration | None) -> Markup | None:
