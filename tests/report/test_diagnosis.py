@@ -141,7 +141,7 @@ def test_the_residual_is_drawn_without_and_with_beside_the_noise(tmp_path: Path)
     assert abs(by_label["with the effects"].values).max() == pytest.approx(9e3, rel=0.01)
     assert by_label["noise, 95 %"].upper is not None
     assert by_label["noise, 95 %"].upper[0] == pytest.approx(1.96 * 9e3)
-    assert "with heat into the tank" in chart.caption
+    assert "solid: with what is missing" in chart.caption
 
 
 def test_the_gap_closes_in_figures_by_channel_and_phase(tmp_path: Path) -> None:

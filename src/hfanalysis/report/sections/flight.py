@@ -28,7 +28,10 @@ _WAYS_DOWN = (
 _SIGNS = {"passed": "good", "failed": "bad"}
 _TIME = "time of flight [s]"
 
-_GEOMETRY = "add it to test.toml (docs/flight.md), with the sizes of tank and grain"
+_GEOMETRY = Markup(
+    " Add it to test.toml with <code>nose, body, fins, structure, tank_position, chamber_position</code>. Tank and grain "
+    "need their sizes, too."
+)
 
 
 def render(material: Material) -> Iterator[Block]:
@@ -177,8 +180,9 @@ def _without_margin(stability: Stability) -> Markup | None:
     reason = stability.margin_at_rail_departure.reason
     if not reason:
         return None
-    add = _GEOMETRY if "[rocket.geometry]" in reason else "state it in test.toml" if "not given" in reason else ""
-    return html.paragraph(html.switchable(f"No static margin is drawn: {reason}{f'; {add}' if add else ''}."))
+    stated = Markup(" State it in test.toml.") if "not given" in reason else Markup()
+    add = _GEOMETRY if "[rocket.geometry]" in reason else stated
+    return html.paragraph(html.switchable(f"No static margin is drawn: {reason}.") + add)
 
 
 SECTION = Section("Flight", 78, ("flight",), render, folded=True)
