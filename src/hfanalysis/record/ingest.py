@@ -35,8 +35,8 @@ from hfanalysis.version import __version__
 Progress = Callable[[str, float], None]
 """Called now and then with the file's name and the share of it that has been read."""
 OF_A_CLOCK = (1e-5, 1e11)
-"""[s] from the first stamp to the last outside of which they are of no clock, in whatever unit. Source: half a minute in
-days, taken for seconds, is 3e-4, and in nanoseconds 3e10."""
+"""[s] from the first stamp to the last outside of which they are of no clock, in whatever unit. Source: half a minute
+in days, taken for seconds, is 3e-4, and in nanoseconds 3e10."""
 SHORTEST_LOG = 0.5
 """[s] of a log below which no firing fits into it."""
 WORKERS = 2
