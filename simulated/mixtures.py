@@ -15,12 +15,12 @@ from typing import cast
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.performance.flows import Flows
+from hfanalysis.performance.reconstruction.theory import Theory
+from hfanalysis.performance.reduction import Test
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import Channel
 from hfanalysis.units import Value
-from hfanalysis.validate.flows import Flows
-from hfanalysis.validate.reconstruction.theory import Theory
-from hfanalysis.validate.reduction import Test
 
 AMBIENT, ENTHALPY, DENSITY, STEP = 1.0e5, 1.6e6, 920.0, 0.02
 """[Pa], [J/kg] of liquid nitrous oxide at 20 degC, [kg/m^3] of paraffin, [s]."""

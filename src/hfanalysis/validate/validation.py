@@ -17,6 +17,20 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun, run_full
+from hfanalysis.performance import histories as histories_of
+from hfanalysis.performance.budgets import budgets
+from hfanalysis.performance.efficiency import BASIS
+from hfanalysis.performance.flows import Flows, burn_fuel, oxidizer_flow
+from hfanalysis.performance.histories import Histories
+from hfanalysis.performance.measured import NAMES, Fire, fire_of, impulse_inputs
+from hfanalysis.performance.measured import measured as measured_column
+from hfanalysis.performance.reconstruction.reconstruct import Reconstructed, reconstruct
+from hfanalysis.performance.reduction import Reduced, Test, reduced
+from hfanalysis.performance.stability.modes import Mode, chamber_between
+from hfanalysis.performance.stability.stability import stability
+from hfanalysis.performance.tank_alone import run_tank_alone
+from hfanalysis.performance.thrust import motor_class, thrust_of
+from hfanalysis.performance.transients import transients
 from hfanalysis.products.budget import Budget
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.reconstruction import Reconstruction
@@ -25,23 +39,11 @@ from hfanalysis.products.validation import Closure, Column, Performance, Validat
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
-from hfanalysis.validate import histories as histories_of
-from hfanalysis.validate import performance
-from hfanalysis.validate.budgets import budgets
 from hfanalysis.validate.chamber_forced import run_chamber_forced
-from hfanalysis.validate.efficiency import BASIS
-from hfanalysis.validate.flows import Flows, burn_fuel, oxidizer_flow
 from hfanalysis.validate.full import compare_full
-from hfanalysis.validate.histories import Histories
-from hfanalysis.validate.performance import Fire
-from hfanalysis.validate.reconstruction.reconstruct import Reconstructed, reconstruct
-from hfanalysis.validate.reduction import Reduced, Test, reduced
+from hfanalysis.validate.modeled import modeled
 from hfanalysis.validate.residuals import Residual, gaps
-from hfanalysis.validate.stability.modes import Mode, chamber_between
-from hfanalysis.validate.stability.stability import stability
-from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
-from hfanalysis.validate.thrust import motor_class, thrust_of
-from hfanalysis.validate.transients import transients
+from hfanalysis.validate.tank_free import run_tank_free
 
 Result = TypeVar("Result")
 MODES = ("tank_free", "chamber_forced", "full")
@@ -100,7 +102,7 @@ class _Work:
         self._calibration = None if water else calibration
         self.uncalibrated = "water flows: there is no tank of nitrous oxide to run" if water else uncalibrated
         self.ambient = definition.ambient_pressure.value
-        self.fire = performance.fire_of(segments, definition, self.true)
+        self.fire = fire_of(segments, definition, self.true)
         self.absent: dict[str, str] = {}
 
     def result(self) -> Validated:
@@ -112,11 +114,11 @@ class _Work:
             "chamber_forced": self._try("chamber_forced", lambda: self._chamber_forced(full, flows)),
             "full": compare_full(self.before_nozzle, self.segments, full) if full else None,
         }
-        measured = performance.measured(self.true, self.segments, self.definition, self._calibration)
+        measured = measured_column(self.true, self.segments, self.definition, self._calibration)
         if full is not None:
-            model = performance.modeled(full, self.calibration, self.segments.time("t_purge"))
+            model = modeled(full, self.calibration, self.segments.time("t_purge"))
         else:
-            model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
+            model = {name: Quantity.absent(self.absent["full"]) for name in NAMES}
         histories, found, again = self._histories(full, flows)
         measured |= found.impulses
         if isinstance(fire := self.fire, Fire):
@@ -147,7 +149,7 @@ class _Work:
         if impulse is None or isinstance(self.fire, str):
             return {}
         thrust = thrust_of(self.true, self.segments, self.definition)
-        return budgets(measured, performance.impulse_inputs(self.true, thrust, self.fire, self.definition, impulse))
+        return budgets(measured, impulse_inputs(self.true, thrust, self.fire, self.definition, impulse))
 
     @property
     def calibration(self) -> Calibration:
