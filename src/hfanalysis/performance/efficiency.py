@@ -21,7 +21,7 @@ from hfanalysis.performance.flows import HISTORY_STEP, Flows, nozzle_along
 from hfanalysis.performance.load_cell import CellError
 from hfanalysis.performance.measured import Fire, bias
 from hfanalysis.performance.tap import Before, before_nozzle
-from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.calibration import Calibration, TankConstants
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Efficiencies, Finding
 from hfanalysis.quantity import Quantity
@@ -174,7 +174,7 @@ class Spread:
         )
 
 
-def oxidizer_spread(calibration: Calibration) -> float:
+def oxidizer_spread(calibration: TankConstants) -> float:
     """Relative standard deviation [-] of the flow of liquid: that of the mass that it adds up to, for an error of the
     holes' area is in C_i and not in their product."""
     return _relative(calibration.oxidizer_mass_liquid_phase)

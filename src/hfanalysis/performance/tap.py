@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,18 @@ SMOOTH, MIDDLE, MIXED = 1.0, 0.5, 0.0
 """How the flow widens behind the grain (``recovery`` of :mod:`hfanalysis.engine.port`)."""
 
 
+class Chamber(Protocol):
+    """An engine, as far as what lies before its nozzle goes."""
+
+    @property
+    def throat_area(self) -> float:
+        """[m^2]."""
+
+    @property
+    def outer_radius(self) -> float:
+        """Of the grain [m]."""
+
+
 def tap_of(definition: TestDefinition) -> str | None:
     """``head`` or ``aft``, as [channels.p_chamber] states; None where it does not."""
     channel = definition.channels.get("p_chamber")
@@ -58,7 +71,7 @@ class Before:
         return float(np.mean((self.low / self.factor)[part])), float(np.mean((self.high / self.factor)[part]))
 
 
-def before_nozzle(tap: str | None, port: Array, gamma: Array, engine: Engine) -> Before:
+def before_nozzle(tap: str | None, port: Array, gamma: Array, engine: Chamber) -> Before:
     """By the place of the ``tap``, for a ``port`` [m] and gas of ``gamma`` [-], (n,) each.
 
     Where gamma is not known nothing is corrected.

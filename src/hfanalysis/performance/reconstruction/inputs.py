@@ -1,58 +1,93 @@
-"""What a reconstruction starts from, each with its error: one lane of numbers for each error that is moved."""
+"""What a reconstruction starts from: a burn in its window, and all that it may be off by."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-
-import numpy as np
-from numpy.typing import NDArray
+from math import pi
 
 from hfanalysis.arrays import Array
+from hfanalysis.performance.measured import Fire
+from hfanalysis.products.calibration import TankConstants
+from hfanalysis.products.segments import Segments
+from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.log import TestLog
+
+SIGNS = {"pressure": 1.0, "throat": 1.0, "oxidizer": -1.0, "efficiency": -1.0}
+"""Sense in which each moves p A_t / (efficiency * oxidizer flow). Source: that expression."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Areas [m^2], radii and length [m], volume before and behind the grain [m^3], density [kg/m^3], and the enthalpy
+    of the oxidizer [J/kg]; no regression law."""
+
+    throat_area: float
+    exit_area: float
+    port_radius: float
+    outer_radius: float
+    grain_length: float
+    dead_volume: float
+    fuel_density: float
+    oxidizer_enthalpy: float
+
+    @property
+    def fuel_mass(self) -> float:
+        """Of the whole grain [kg]."""
+        return self.fuel_density * pi * self.grain_length * (self.outer_radius**2 - self.port_radius**2)
+
+
+@dataclass(frozen=True)
+class Firing:
+    """A test as it was measured: ``oxidizer`` flow [kg/s] and the ``measured`` histories [SI], (n,) each at ``time``
+    [s after the opening]."""
+
+    log: TestLog
+    segments: Segments
+    definition: TestDefinition
+    calibration: TankConstants
+    fire: Fire
+    shape: Shape
+    time: Array
+    oxidizer: Array
+    measured: Mapping[str, Array]
+
+    @property
+    def ambient(self) -> float:
+        """[Pa]."""
+        return self.definition.ambient_pressure.value
+
+
+@dataclass(frozen=True)
+class Error:
+    """Of the logarithm of one of SIGNS: ``shape`` (n,) is what one standard deviation does; ``mean`` in those."""
+
+    of: str
+    shape: Array
+    mean: float = 0.0
 
 
 @dataclass(frozen=True)
 class Inputs:
     """A burn in its window, (n,) at ``time`` [s after the opening].
 
-    ``pressure`` before the nozzle [Pa], ``oxidizer`` flow [kg/s], ``throat`` area [m^2]; ``fuel`` burnt in the window
-    [kg], None where nobody says; ``white``: standard deviation of each sample of the pressure, as share of it [-].
-
-    ``moved``: two for each error, what these are at two standard deviations of it up and down; those that stay are not
-    named.
-    ``drift`` (n,): of the efficiency, relative [-].
+    ``pressure`` before the nozzle [Pa], ``oxidizer`` flow [kg/s], ``throat`` area [m^2], ``stored``: what fills the
+    chamber [kg/s]; ``white``: standard deviation of each sample of the pressure, as share of it [-]. ``fuel`` burnt in
+    the window and its standard deviation [kg], None where nobody says. ``efficiency``: of c*, as taken beforehand, and
+    the standard deviation of its logarithm [-].
     """
 
     time: Array
     pressure: Array
     oxidizer: Array
     throat: Array
-    fuel: float | None
+    stored: Array
     white: Array
-    drift: Array
-    moved: Mapping[str, Mapping[str, Array | float]] = field(default_factory=dict)
+    fuel: tuple[float, float] | None
+    efficiency: tuple[float, float]
+    errors: Mapping[str, Error] = field(default_factory=dict)
 
     @property
-    def step(self) -> float:
-        """[s]."""
-        return float(self.time[1] - self.time[0])
-
-    @property
-    def lanes(self) -> tuple[str, ...]:
-        """The burn as it is, then each error."""
-        return ("", *self.moved)
-
-    def lane(self, name: str) -> tuple[Array, float | None]:
-        """p A_t / (1 + drift) over the oxidizer flow (n,) [m/s], and the fuel [kg], with an error moved."""
-        now = self.moved.get(name, {})
-        pressure, oxidizer = now.get("pressure", self.pressure), now.get("oxidizer", self.oxidizer)
-        throat, drift = now.get("throat", self.throat), now.get("drift", self.drift)
-        fuel = now.get("fuel", self.fuel)
-        right = np.asarray(pressure) * throat / ((1.0 + np.asarray(drift)) * oxidizer)
-        return np.asarray(right), None if fuel is None else float(np.asarray(fuel))
-
-    def along(self, what: str, lanes: Sequence[int] | NDArray[np.int64] | None = None) -> Array:
-        """One of pressure, oxidizer, throat and drift in some of the lanes, or all, (n, lanes)."""
-        names = self.lanes if lanes is None else [self.lanes[i] for i in lanes]
-        usual = getattr(self, what)
-        return np.column_stack([np.asarray(self.moved.get(name, {}).get(what, usual)) for name in names])
+    def share(self) -> Array:
+        """Of the window that has passed [-], (n,)."""
+        return (self.time - self.time[0]) / (self.time[-1] - self.time[0])

@@ -4,42 +4,43 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import pi
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
 from hfanalysis.engine.grain import oxidizer_flux
 from hfanalysis.errors import AbsentError
-from hfanalysis.performance.efficiency import ideal
-from hfanalysis.performance.reconstruction.closing import EITHER_WAY, Closed, band, close
-from hfanalysis.performance.reconstruction.gathered import ASSUMED, Gathered, gather
-from hfanalysis.performance.reconstruction.theory import Theory
-from hfanalysis.performance.reduction import Test
-from hfanalysis.performance.tap import tap_of
+from hfanalysis.performance.reconstruction.gathered import Gathered, gather
+from hfanalysis.performance.reconstruction.inputs import Firing
+from hfanalysis.performance.reconstruction.law import exponent_and_factor
+from hfanalysis.performance.reconstruction.posterior import Courses, courses
+from hfanalysis.performance.reconstruction.theory import MIXTURES, Theory
 from hfanalysis.products.reconstruction import Reconstruction
-from hfanalysis.quantity import CONDITIONAL, NORMAL_95, Quantity
+from hfanalysis.quantity import CONDITIONAL, Quantity
 
-if TYPE_CHECKING:
-    import h5py
+FAINT = 10.0
+"""Per cent of OF that go with one of p_c, from which on a mixture is not told. Source: the technique's own measure: at
+ten a sensor of 1 % tells OF no better than by 10 %."""
 
-UNITS = {
-    "of_ratio": ("1", "oxidizer to fuel flow ratio"),
-    "fuel_flow": ("kg/s", "fuel mass flow"),
-    "regression_rate": ("m/s", "regression rate of the fuel"),
-    "port_radius": ("m", "radius of the port"),
-    "oxidizer_flux": ("kg m-2 s-1", "oxidizer mass flux in the port"),
-    "c_star": ("m/s", "characteristic velocity"),
-    "c_star_efficiency": ("1", "characteristic velocity over that of shifting equilibrium"),
-    "throat_radius": ("m", "radius of the throat"),
-}
-"""Unit and long name of each history."""
+WITHIN = 1.5
+"""Factor within which OF is told. Source: by choice; c* moves by some per cent over it."""
 
-PARTS = "", ", lower end of its 95 % interval", ", upper end of its 95 % interval"
-"""Of a history."""
+APART = 0.15
+"""Difference of the mean logarithm of OF from which two groups of courses are two. Source: by choice: a group is denser
+than that where the gauge tells anything."""
 
-SPREAD = 1.25
-"""Largest over smallest flux from which a and n are told. Source: over less, n is the slope of a point."""
+SEVERAL = 0.05
+"""Part of all courses that counts as another answer. Source: the part outside of a 95 % band."""
+
+OFF = 5.0
+"""Standard deviations of an input from which on it is wrong and not off. Source: one in a million."""
+
+REACH = (0.6, 1.1)
+"""Of a c* efficiency [-]. Source: below 0.6 the fire is out, above 1 by more than errors nothing burns."""
+
+ENDS = (0.025, 0.975)
+"""Parts of all courses below the ends of a band."""
 
 
 @dataclass(frozen=True)
@@ -52,135 +53,129 @@ class Reconstructed:
     told: Array = field(default_factory=lambda: np.zeros(0))
 
 
-def reconstruct(test: Test) -> Reconstructed:
+def reconstruct(firing: Firing) -> Reconstructed:
     """Of a test with its chamber's pressure; where it cannot be had the product says why."""
-    found = ideal(test.measured, test.flows, test.engine, test.ambient, test.fire, test.purge, tap_of(test.definition))
     try:
-        if found is None:
-            raise AbsentError(test.log.lacks("p_chamber"))
-        if test.engine.oxidizer_enthalpy is None:
-            raise AbsentError("the enthalpy of the oxidizer is not known")
-        theory = Theory.of(test.engine.oxidizer_enthalpy, test.engine.throat_area, test.engine.exit_area)
-        gathered = gather(test, found, theory)
-        closed = close(gathered.inputs, theory, ASSUMED[0])
-        if isinstance(closed, str):
-            raise AbsentError(closed)
+        if "p_chamber" not in firing.measured:
+            raise AbsentError(firing.log.lacks("p_chamber"))
+        shape = firing.shape
+        theory = Theory.of(shape.oxidizer_enthalpy, shape.throat_area, shape.exit_area)
+        gathered = gather(firing, theory)
+        found = courses(gathered.inputs, theory)
+        _fits(gathered, found)
     except (AbsentError, ArithmeticError, ValueError) as missing:
         return Reconstructed(Reconstruction(variant=None, reason=str(missing)))
-    return _told(test, gathered, closed)
+    return _told(firing, gathered, found, theory)
 
 
-def write_reconstructed(file: h5py.File, found: Reconstructed) -> None:
-    """The group ``reconstructed`` of performance.h5; nothing where there is no reconstruction."""
-    if not found.histories:
+def _fits(gathered: Gathered, found: Courses) -> None:
+    """Raises AbsentError where the inputs contradict each other."""
+    inputs = gathered.inputs
+    burnt = float(np.median(np.trapezoid(inputs.oxidizer[:, None] / found.of_ratio, inputs.time, axis=0)))
+    efficiency = float(np.median(found.efficiency))
+    missed = abs(burnt - inputs.fuel[0]) / inputs.fuel[1] if inputs.fuel is not None else 0.0
+    if REACH[0] < efficiency < REACH[1] and max(missed, float(np.abs(found.pulls).max())) < OFF:
         return
-    group = file.create_group("reconstructed")
-    group.attrs["variant"] = str(found.product.variant)
-    group.attrs["assumption"] = str(found.product.assumption)
-    time = group.create_dataset("time", data=found.time, track_times=False)
-    time.make_scale("time")
-    time.attrs.update(units="s", long_name="time after the valve opening")
-    for name, parts in found.histories.items():
-        unit, words = UNITS[name]
-        for suffix, said, values in zip(("", "_low95", "_high95"), PARTS, parts, strict=True):
-            data = group.create_dataset(name + suffix, data=values, track_times=False)
-            data.dims[0].attach_scale(time)
-            data.attrs.update(units=unit, long_name=f"{words}{said}")
-    told = group.create_dataset("told", data=found.told, track_times=False)
-    told.dims[0].attach_scale(time)
-    told.attrs.update(units="1", long_name="1 where O/F does not hang on the last per cent of the pressure")
+    fuel = "" if inputs.fuel is None else f" makes {inputs.fuel[0]:.3g} kg of fuel burn; {burnt:.3g} kg are nearest. It"
+    raise AbsentError(
+        f"no c* efficiency from {REACH[0]:.1f} to {REACH[1]:.1f}{fuel} fits: pressure, throat, oxidizer flow or the "
+        "fuel's mass is off"
+    )
 
 
-def _told(test: Test, gathered: Gathered, closed: Closed) -> Reconstructed:
-    inputs, histories = gathered.inputs, _histories(test, gathered, closed)
-    noise = {"of_ratio": inputs.white * closed.stiffness, "fuel_flow": inputs.white * closed.stiffness}
-    bands = {name: (lanes[:, 0], *band(lanes, noise.get(name, 0.0))) for name, lanes in histories.items()}
-    mean = _total(closed, gathered)
-    a, n = _law(histories, closed)
-    change = histories["throat_radius"][-1] - histories["throat_radius"][0]
-    nozzle = gathered.nozzle_efficiency
+def _told(firing: Firing, gathered: Gathered, found: Courses, theory: Theory) -> Reconstructed:
+    inputs = gathered.inputs
+    groups = _groups(found.of_ratio)
+    histories = _histories(firing, gathered, found)
+    bands = {name: _band(history, groups[0]) for name, history in histories.items()}
+    center, low, high = bands["of_ratio"]
+    steep = _stiffness(theory, inputs.pressure, center) < FAINT
+    told = steep & (high < WITHIN * center) & (low > center / WITHIN)
+    factor, exponent = exponent_and_factor(histories["oxidizer_flux"], histories["regression_rate"], told, groups[0])
     product = Reconstruction(
         variant=gathered.variant,
         assumption=gathered.assumption,
         window=(float(inputs.time[0]), float(inputs.time[-1])),
-        told=float(closed.told.mean()),
-        of_ratio_mean=_quantity(mean, "", gathered),
-        c_star_efficiency=_quantity(histories["c_star_efficiency"].mean(axis=0), "", gathered),
-        throat_radius_change=_change(change, gathered),
-        a=a,
-        n=n,
-        nozzle_efficiency=None if nozzle is None else Quantity(nozzle, ""),
-        other=None if closed.other is None else _other(*closed.other),
+        told=float(told.mean()),
+        of_ratio_mean=_quantity(_total(inputs.time, found), groups[0], gathered),
+        c_star_efficiency=_quantity(histories["c_star_efficiency"].mean(axis=0), groups[0], gathered),
+        throat_radius_change=_change(histories["throat_radius"], gathered),
+        a=factor,
+        n=exponent,
+        nozzle_efficiency=None if gathered.nozzle_efficiency is None else Quantity(gathered.nozzle_efficiency, ""),
+        other=None if len(groups) == 1 else _other(found, groups[1]),
     )
-    return Reconstructed(product, inputs.time, bands, closed.told.astype(float))
+    return Reconstructed(product, inputs.time, bands, told.astype(float))
 
 
-def _histories(test: Test, gathered: Gathered, closed: Closed) -> dict[str, Array]:
-    """By name, (n, paths)."""
-    inputs, engine = gathered.inputs, test.engine
-    pressure, oxidizer, area, drift = (
-        inputs.along(what, closed.lane) for what in ("pressure", "oxidizer", "throat", "drift")
-    )
+def _groups(of_ratio: Array) -> list[NDArray[np.int64]]:
+    """The courses (n, draws) by groups that lie apart, the largest first; those of less than SEVERAL are left out."""
+    mean = np.log(of_ratio).mean(axis=0)
+    order = np.argsort(mean)
+    parts = np.split(order, np.flatnonzero(np.diff(mean[order]) > APART) + 1)
+    large = sorted((part for part in parts if part.size >= SEVERAL * mean.size), key=lambda part: -part.size)
+    return large or [order]
+
+
+def _histories(firing: Firing, gathered: Gathered, found: Courses) -> dict[str, Array]:
+    """By name, (n, draws)."""
+    inputs, shape = gathered.inputs, firing.shape
+    fuel = found.oxidizer / found.of_ratio
     steps = np.diff(inputs.time, prepend=inputs.time[0])[:, None]
-    before = closed.fuel[:1] * inputs.time[0] * 0.5  # the ignition: the flow rises from nothing
-    burnt = before + np.cumsum(steps * closed.fuel, axis=0)
-    port = np.sqrt(engine.port_radius**2 + burnt / (engine.fuel_density * pi * engine.grain_length))
+    before = fuel[:1] * inputs.time[0] * 0.5  # the ignition: the flow rises from nothing
+    burnt = before + np.cumsum(steps * fuel, axis=0)
+    port = np.sqrt(shape.port_radius**2 + burnt / (shape.fuel_density * pi * shape.grain_length))
     return {
-        "of_ratio": closed.of_ratio,
-        "fuel_flow": closed.fuel,
-        "regression_rate": closed.fuel / (2.0 * pi * port * engine.grain_length * engine.fuel_density),
+        "of_ratio": found.of_ratio,
+        "fuel_flow": fuel,
+        "regression_rate": fuel / (2.0 * pi * port * shape.grain_length * shape.fuel_density),
         "port_radius": port,
-        "oxidizer_flux": np.asarray(oxidizer_flux(oxidizer, port)),
-        "c_star": pressure * area / (oxidizer + closed.fuel),
-        "c_star_efficiency": closed.efficiency[None] * (1.0 + drift),
-        "throat_radius": np.sqrt(area / pi),
+        "oxidizer_flux": np.asarray(oxidizer_flux(found.oxidizer, port)),
+        "c_star": found.pressure * found.throat / (found.oxidizer + fuel - inputs.stored[:, None]),
+        "c_star_efficiency": found.efficiency,
+        "throat_radius": np.sqrt(found.throat / pi),
     }
 
 
-def _total(closed: Closed, gathered: Gathered) -> Array:
-    """O/F of all that passes in the window (paths,)."""
-    inputs = gathered.inputs
-    oxidizer = inputs.along("oxidizer", closed.lane)
-    return np.asarray(np.trapezoid(oxidizer, inputs.time, axis=0) / np.trapezoid(closed.fuel, inputs.time, axis=0))
+def _band(history: Array, group: NDArray[np.int64]) -> tuple[Array, Array, Array]:
+    """The middle of the largest group (n,), and the ends of the 95 % interval of all."""
+    center = np.median(history[:, group], axis=1)
+    low, high = np.quantile(history, ENDS, axis=1)
+    return center, np.minimum(low, center), np.maximum(high, center)
 
 
-def _quantity(lanes: Array, unit: str, gathered: Gathered) -> Quantity:
-    """A positive number and what its errors make of it."""
-    value, (low, high) = float(lanes[0]), (float(end[0]) for end in band(lanes[None]))
+def _total(time: Array, found: Courses) -> Array:
+    """O/F of all that passes in the window (draws,)."""
+    oxidizer, fuel = (np.trapezoid(x, time, axis=0) for x in (found.oxidizer, found.oxidizer / found.of_ratio))
+    return np.asarray(oxidizer / fuel)
+
+
+def _quantity(draws: Array, group: NDArray[np.int64], gathered: Gathered) -> Quantity:
+    center, low, high = (float(x[0]) for x in _band(draws[None], group))
     verdict = CONDITIONAL if gathered.variant == "a" else None
-    std = 0.5 * (high - low) / NORMAL_95
-    return Quantity(value, unit, std, (low, high), verdict=verdict, why=gathered.assumption)
+    return Quantity(center, "", float(np.std(draws)), (low, high), verdict=verdict, why=gathered.assumption)
 
 
-def _change(lanes: Array, gathered: Gathered) -> Quantity:
-    if "erosion+" in gathered.inputs.moved:
-        return Quantity.absent("nobody measured the throat afterwards: taken as it was, or wider by what throats erode")
-    std = _std(lanes)
-    why = "by both measured radii, and thrust between" if gathered.variant == "d" else "evenly between measured radii"
-    return Quantity(float(lanes[0]), "m", std, why=why)
+def _change(radius: Array, gathered: Gathered) -> Quantity:
+    if gathered.grows is None:
+        return Quantity.absent("nobody measured the throat afterwards, and there is no thrust to tell it")
+    change = radius[-1] - radius[0]
+    return Quantity(float(np.median(change)), "m", float(np.std(change)), why=f"by {gathered.grows}")
 
 
-def _law(histories: dict[str, Array], closed: Closed) -> tuple[Quantity, Quantity]:
-    """a and n of r = a G^n along the path where O/F is told, with the errors that the whole path has in common."""
-    part = closed.told
-    flux, rate = histories["oxidizer_flux"][part], histories["regression_rate"][part]
-    if part.sum() < 5 or flux[:, 0].max() < SPREAD * flux[:, 0].min():
-        reason = "the flux hardly moves where O/F is told: one point has no slope"
-        return Quantity.absent(reason), Quantity.absent(reason)
-    fits = np.array([np.polyfit(np.log(flux[:, i]), np.log(rate[:, i]), 1) for i in range(flux.shape[1])])
-    n, log_a = fits[:, 0], fits[:, 1]
-    std_n, std_a = _std(n), _std(log_a)
-    why = "along the path of one firing, its errors in common"
-    a = float(np.exp(log_a[0]))
-    unit = "m/s (kg/m^2/s)^-n"
-    ends = a * float(np.exp(-NORMAL_95 * std_a)), a * float(np.exp(NORMAL_95 * std_a))
-    return Quantity(a, unit, a * std_a, ends, why=why), Quantity(float(n[0]), "", std_n, why=why)
+def _stiffness(theory: Theory, pressure: Array, of_ratio: Array) -> Array:
+    """|d ln OF / d ln p| (n,)."""
+    left = np.log((1.0 + 1.0 / MIXTURES) * theory.rows(pressure))
+    x = np.log(MIXTURES)
+    slope = np.gradient(left, x, axis=1)
+    at = np.array([np.interp(m, x, row) for m, row in zip(np.log(of_ratio), slope, strict=True)])
+    return np.asarray(1.0 / np.maximum(np.abs(at), 1e-6))
 
 
-def _std(lanes: Array) -> float:
-    """Standard deviation of a number with its errors moved by two deviations either way (paths,)."""
-    return 0.5 * float(np.linalg.norm(np.abs(lanes[1:] - lanes[0]).reshape(-1, EITHER_WAY).max(axis=1)))
-
-
-def _other(path: Array, efficiency: float) -> str:
-    return f"O/F from {path[0]:.2g} to {path[-1]:.2g} at a c* efficiency of {efficiency:.3f} fits as well"
+def _other(found: Courses, group: NDArray[np.int64]) -> str:
+    path = np.median(found.of_ratio[:, group], axis=1)
+    efficiency, share = float(np.median(found.efficiency[:, group])), group.size / found.of_ratio.shape[1]
+    return (
+        f"O/F from {path[0]:.2g} to {path[-1]:.2g} at a c* efficiency of {efficiency:.3f} fits as well, with "
+        f"{100.0 * share:.0f} % of the probability"
+    )

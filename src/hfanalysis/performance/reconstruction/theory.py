@@ -20,10 +20,11 @@ PRESSURES = np.geomspace(1e5, 100e5, 7)
 
 @dataclass(frozen=True)
 class Theory:
-    """Of shifting equilibrium, (pressures, mixtures) each: c* [m/s], R T [J/kg], C_F into vacuum [-]."""
+    """Of shifting equilibrium, (pressures, mixtures) each: c* [m/s], R T [J/kg], gamma and C_F into vacuum [-]."""
 
     c_star: Array
     heat: Array
+    gamma: Array
     vacuum: Array
 
     @classmethod
@@ -37,7 +38,7 @@ class Theory:
         gain, vacuum = shifting(pressure, mixture, enthalpy, exit_area / throat_area)
         shape = (PRESSURES.size, MIXTURES.size)
         c_star = gain * characteristic_velocity(frozen[2], frozen[3])
-        return cls(c_star.reshape(shape), frozen[2].reshape(shape), vacuum.reshape(shape))
+        return cls(c_star.reshape(shape), frozen[2].reshape(shape), frozen[3].reshape(shape), vacuum.reshape(shape))
 
     def at(self, values: Array, pressure: Array, mixture: Array) -> Array:
         """One of its tables at ``pressure`` [Pa] and ``mixture`` [-], of one shape."""
