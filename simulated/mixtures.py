@@ -100,9 +100,7 @@ def burn(of: World, seed: int) -> Burn:
     mass = DENSITY * pi * length * (outer**2 - port0**2)
     gamma = float(np.mean(theory.at(theory.gamma, pressure, mixture)))
     static = pressure / stagnation_over_static(gamma, pi * outer**2 / area)
-    test = _measured(
-        r, of, time, static, thrust, oxidizer, burnt, mass, (port0, outer, length, area, exit_area), port
-    )
+    test = _measured(r, of, time, static, thrust, oxidizer, burnt, mass, (port0, outer, length, area, exit_area), port)
     return Burn(time, mixture, efficiency, throat, of.exponent, test)
 
 

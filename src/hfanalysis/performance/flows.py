@@ -57,6 +57,20 @@ class Flows:
         return self.oxidizer + self.fuel
 
 
+@dataclass(frozen=True)
+class Oxidizer:
+    """All that passes the injector, and the nitrogen in it [kg/s], (n,) each at ``time`` [s after the opening]."""
+
+    time: Array
+    flow: Array
+    nitrogen: Array
+
+    @property
+    def oxidizer(self) -> Array:
+        """[kg/s], (n,)."""
+        return self.flow - self.nitrogen
+
+
 def oxidizer_flow(
     log: TestLog, segments: Segments, calibration: TankConstants, definition: TestDefinition, alone: TankRun,
     time: Array,

@@ -15,7 +15,7 @@ def run(context: Context) -> None:
     """Compare what can be compared; what cannot says why."""
     from hfanalysis.inference.adopted.effects import read_adopted
     from hfanalysis.performance.histories import write_histories
-    from hfanalysis.performance.reconstruction.reconstruct import write_reconstructed
+    from hfanalysis.performance.reconstruction.written import write_reconstructed
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.products.segments import Segments
     from hfanalysis.validate.residuals import write_residuals

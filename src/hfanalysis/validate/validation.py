@@ -20,11 +20,12 @@ from hfanalysis.inference.full_run import FullRun, run_full
 from hfanalysis.performance import histories as histories_of
 from hfanalysis.performance.budgets import budgets
 from hfanalysis.performance.efficiency import BASIS
-from hfanalysis.performance.flows import Flows, burn_fuel, oxidizer_flow
+from hfanalysis.performance.flows import Flows, Oxidizer, burn_fuel, oxidizer_flow
 from hfanalysis.performance.histories import Histories
 from hfanalysis.performance.measured import NAMES, Fire, fire_of, impulse_inputs
 from hfanalysis.performance.measured import measured as measured_column
-from hfanalysis.performance.reconstruction.reconstruct import Reconstructed, reconstruct
+from hfanalysis.performance.reconstruction.of_test import reconstructed
+from hfanalysis.performance.reconstruction.reconstruct import Reconstructed
 from hfanalysis.performance.reduction import Reduced, Test, reduced
 from hfanalysis.performance.stability.modes import Mode, chamber_between
 from hfanalysis.performance.stability.stability import stability
@@ -108,7 +109,8 @@ class _Work:
     def result(self) -> Validated:
         """All modes, tables and histories."""
         full = self._try("full", self._full)
-        flows = self._try("histories", lambda: self._flows(full))
+        oxidizer = self._try("oxidizer_flow", self._oxidizer)
+        flows = self._try("histories", lambda: self._flows(full, oxidizer))
         residuals = {
             "tank_free": self._try("tank_free", self._tank_free),
             "chamber_forced": self._try("chamber_forced", lambda: self._chamber_forced(full, flows)),
@@ -119,7 +121,8 @@ class _Work:
             model = modeled(full, self.calibration, self.segments.time("t_purge"))
         else:
             model = {name: Quantity.absent(self.absent["full"]) for name in NAMES}
-        histories, found, again = self._histories(full, flows)
+        histories, found = self._histories(full, flows)
+        again = self._reconstructed(full, oxidizer, histories)
         measured |= found.impulses
         if isinstance(fire := self.fire, Fire):
             starts = self._attempt("transients", lambda: transients(self.true, self.segments, self.definition, fire))
@@ -184,41 +187,52 @@ class _Work:
         acting = with_stated_tap(self.definition, self.effects)
         return run_full(self.true, self.segments, self.calibration, self.definition, acting)
 
-    def _flows(self, full: FullRun | None) -> tuple[Flows, Array]:
-        """The flows, and the nitrogen [kg/s] that passes the injector beside the oxidizer, where a purge is adopted."""
-        if full is None or isinstance(self.fire, str):
-            raise AbsentError(self.absent["full"])
+    def _oxidizer(self) -> Oxidizer:
+        """What passes the injector; no regression law is needed."""
+        if isinstance(self.fire, str):
+            raise AbsentError(self.fire)
         read = before_injector(self.true, self.segments, self.definition)
         alone = run_tank_alone(
             read, self.segments, self.calibration, self.definition, constant=False, effects=self.effects
         )
         time = histories_of.clock(self.log, self.segments, self.fire.end)
         flow = oxidizer_flow(read, self.segments, self.calibration, self.definition, alone, time)
-        factor = full.factor("regression_factor", time)
-        burnt = burn_fuel(full.engine, Regression.of(self.calibration), time, flow, factor)
-        # all that flows drives the regression, as in the engine; what of it is nitrogen is no oxidizer
         nitrogen = flow * np.interp(time, alone.measured.time, alone.nitrogen, left=0.0)
-        return replace(burnt, oxidizer=flow - nitrogen), nitrogen
+        return Oxidizer(time, flow, nitrogen)
+
+    def _flows(self, full: FullRun | None, oxidizer: Oxidizer | None) -> tuple[Flows, Array]:
+        """The flows, and the nitrogen [kg/s] that passes the injector beside the oxidizer, where a purge is adopted."""
+        if full is None or oxidizer is None:
+            raise AbsentError(self.absent.get("full") or self.absent["oxidizer_flow"])
+        factor = full.factor("regression_factor", oxidizer.time)
+        # all that flows drives the regression, as in the engine; what of it is nitrogen is no oxidizer
+        burnt = burn_fuel(full.engine, Regression.of(self.calibration), oxidizer.time, oxidizer.flow, factor)
+        return replace(burnt, oxidizer=oxidizer.oxidizer), oxidizer.nitrogen
+
+    def _reconstructed(self, full: FullRun | None, oxidizer: Oxidizer | None, histories: Histories) -> Reconstructed:
+        """With or without an engine that can be run."""
+        if oxidizer is None or isinstance(self.fire, str):
+            return Reconstructed(Reconstruction(variant=None, reason=self.absent["oxidizer_flow"]))
+        test = self.true, self.segments, self.definition, self.calibration, self.fire
+        engine = None if full is None else full.engine
+        return reconstructed(*test, oxidizer, histories.values, engine)
 
     def _chamber_forced(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> list[Residual]:
         if full is None or flows is None or isinstance(self.fire, str):
             raise AbsentError(self.absent.get("full") or self.absent["histories"])
         return run_chamber_forced(self.before_nozzle, self.segments, full, flows[0], self.ambient, self.fire.end)
 
-    def _histories(
-        self, full: FullRun | None, flows: tuple[Flows, Array] | None
-    ) -> tuple[Histories, Reduced, Reconstructed]:
+    def _histories(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> tuple[Histories, Reduced]:
         end = self.fire.end if isinstance(self.fire, Fire) else 10.0
         time = histories_of.clock(self.log, self.segments, end)
         values = histories_of.measured_histories(self.true, self.segments, self.definition, time)
         if full is None or flows is None or isinstance(self.fire, str):
             reason = self.absent.get("histories", "")
-            without = Reconstructed(Reconstruction(variant=None, reason=reason))
-            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced(), without
+            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced()
         test = Test(self.true, self.segments, self.definition, self.calibration, self.fire, full.engine, *flows, values)
         found = reduced(test)
         values |= histories_of.flow_histories(flows[0]) | found.ratios
-        return Histories(time, values), found, reconstruct(test)
+        return Histories(time, values), found
 
     def _stability(self, full: FullRun | None, flows: Flows | None, histories: Histories) -> dict[str, Any]:
         """How a hot fire burnt."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import h5py
@@ -11,24 +10,10 @@ import numpy as np
 import pytest
 from simulated.mixtures import Burn, World, burn
 
-from hfanalysis.performance.efficiency import smooth
-from hfanalysis.performance.reconstruction import reconstruct as module
-from hfanalysis.performance.reconstruction.reconstruct import Reconstructed, reconstruct, write_reconstructed
+from hfanalysis.performance.reconstruction.reconstruct import Reconstructed, reconstruct
+from hfanalysis.performance.reconstruction.written import write_reconstructed
 from hfanalysis.quantity import CONDITIONAL
 from hfanalysis.units import Value
-
-
-@pytest.fixture(autouse=True)
-def aft(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The gauge reads the nozzle's pressure."""
-
-    def plain(measured: Any, flows: Any, *_: object) -> SimpleNamespace:
-        ones, pressure = np.ones(flows.time.size), smooth(measured["p_chamber"])
-        before = SimpleNamespace(low=ones, factor=ones, high=ones)
-        return SimpleNamespace(pressure=pressure, burning=pressure > 1.8e5, before=before)
-
-    monkeypatch.setattr(module, "ideal", plain)
-
 
 LEAN = World(mixture=8.0, erodes=2e-4, noise=0.002)
 

@@ -50,7 +50,9 @@ def fuel_burnt(firing: Firing, start: float, end: float) -> Burnt:
     weighed = (left.std or 0.0) if left is not None else UNWEIGHED * grain.value
     most = _later(firing, end, total)
     if most > LATER * total:
-        said = f"up to {most:.2g} kg of the {total:.3g} kg of fuel may have burnt after {end:.1f} s, when nitrogen entered"
+        said = (
+            f"up to {most:.2g} kg of the {total:.3g} kg of fuel may have burnt after {end:.1f} s, when nitrogen entered"
+        )
         return Burnt(None, total, said)
     first = 0.5 * total * start / max(firing.fire.end, start)
     width = 1.0 / np.sqrt(12.0)

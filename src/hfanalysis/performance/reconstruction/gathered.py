@@ -9,6 +9,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.engine.chamber import chamber_volume
+from hfanalysis.engine.grain import USUAL_N
 from hfanalysis.errors import AbsentError
 from hfanalysis.performance.efficiency import oxidizer_spread, smooth, throat_spread
 from hfanalysis.performance.flows import HISTORY_STEP
@@ -47,6 +48,9 @@ port's length over its radius sets, and that halves in a burn; measured ones mov
 
 NOMINAL = 7.0
 """OF [-] for what hardly hangs on it: the gas's R T and gamma. Source: stoichiometry is at 9, best c* at 7."""
+
+UNIFORM = 1.0 / np.sqrt(12.0)
+"""Standard deviation of what lies anywhere in a range, over its width. Source: the uniform distribution."""
 
 
 @dataclass(frozen=True)
@@ -93,14 +97,10 @@ def gather(firing: Firing, theory: Theory) -> Gathered:
     spread = ASSUMED[1] / ASSUMED[0] * (1.0 if fuel.mass is None else OPEN)
     inputs = Inputs(
         time, pressure, oxidizer, pi * throat.radius**2, stored, _noise(firing) / pressure, fuel.mass,
-        (ASSUMED[0], spread), errors,
+        (ASSUMED[0], spread), _change(oxidizer, port), errors,
     )  # fmt: skip
     variant = "a" if fuel.mass is None else ("d" if throat.by_thrust else "b")
     return Gathered(inputs, variant, f"{said}; {throat.said}", throat.nozzle_efficiency, throat.grows)
-
-
-UNIFORM = 1.0 / np.sqrt(12.0)
-"""Standard deviation of what lies anywhere in a range, over its width. Source: the uniform distribution."""
 
 
 def _noise(firing: Firing) -> float:
@@ -131,6 +131,12 @@ def _port(firing: Firing, time: Array, burnt: float) -> Array:
     shape = firing.shape
     passed = burnt * np.clip(time / firing.fire.end, 0.0, 1.0)
     return np.asarray(np.sqrt(shape.port_radius**2 + passed / (shape.fuel_density * pi * shape.grain_length)))
+
+
+def _change(oxidizer: Array, port: Array) -> float:
+    """Of the logarithm of OF through the window, where r goes as G^n with the usual n."""
+    flow, radius = (float(np.log(x[-1] / x[0])) for x in (oxidizer, port))
+    return (1.0 - USUAL_N[0]) * flow + (2.0 * USUAL_N[0] - 1.0) * radius
 
 
 def _tap(firing: Firing, theory: Theory, port: Array, gauge: Array) -> tuple[Array, Array]:

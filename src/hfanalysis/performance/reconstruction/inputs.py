@@ -6,12 +6,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import pi
 
+import numpy as np
+
 from hfanalysis.arrays import Array
+from hfanalysis.assembly.calibrated import Regression, engine_of_test
+from hfanalysis.engine.grain import USUAL_N
+from hfanalysis.engine.unsteady import Engine
+from hfanalysis.errors import AbsentError
 from hfanalysis.performance.measured import Fire
 from hfanalysis.products.calibration import TankConstants
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
+from hfanalysis.thermo.nitrous import saturation
 
 SIGNS = {"pressure": 1.0, "throat": 1.0, "oxidizer": -1.0, "efficiency": -1.0}
 """Sense in which each moves p A_t / (efficiency * oxidizer flow). Source: that expression."""
@@ -30,6 +37,26 @@ class Shape:
     dead_volume: float
     fuel_density: float
     oxidizer_enthalpy: float
+
+    @classmethod
+    def of(cls, engine: Engine) -> Shape:
+        """That of an engine whose oxidizer enters with a known enthalpy."""
+        if engine.oxidizer_enthalpy is None:
+            raise AbsentError("the enthalpy of the oxidizer is not known")
+        return cls(
+            engine.throat_area, engine.exit_area, engine.port_radius, engine.outer_radius, engine.grain_length,
+            engine.dead_volume, engine.fuel_density, engine.oxidizer_enthalpy,
+        )  # fmt: skip
+
+    @classmethod
+    def of_test(cls, definition: TestDefinition, calibration: TankConstants, tank_pressure: float) -> Shape:
+        """As test.toml states it, with the tank at ``tank_pressure`` [Pa] at the opening; no law is needed.
+
+        Raises AbsentError naming all that it does not state.
+        """
+        source = saturation(definition.model.properties)
+        temperature = float(source.temperature(min(tank_pressure, 0.999 * source.pressure_range[1])))
+        return cls.of(engine_of_test(definition, calibration, temperature, Regression(1.0, USUAL_N[0])))
 
     @property
     def fuel_mass(self) -> float:
@@ -74,7 +101,7 @@ class Inputs:
     ``pressure`` before the nozzle [Pa], ``oxidizer`` flow [kg/s], ``throat`` area [m^2], ``stored``: what fills the
     chamber [kg/s]; ``white``: standard deviation of each sample of the pressure, as share of it [-]. ``fuel`` burnt in
     the window and its standard deviation [kg], None where nobody says. ``efficiency``: of c*, as taken beforehand, and
-    the standard deviation of its logarithm [-].
+    the standard deviation of its logarithm [-]; ``change``: of the logarithm of OF, that is usual for such a flow [-].
     """
 
     time: Array
@@ -85,9 +112,10 @@ class Inputs:
     white: Array
     fuel: tuple[float, float] | None
     efficiency: tuple[float, float]
+    change: float
     errors: Mapping[str, Error] = field(default_factory=dict)
 
     @property
     def share(self) -> Array:
         """Of the window that has passed [-], (n,)."""
-        return (self.time - self.time[0]) / (self.time[-1] - self.time[0])
+        return np.asarray((self.time - self.time[0]) / (self.time[-1] - self.time[0]))

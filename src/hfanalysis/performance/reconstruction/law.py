@@ -31,6 +31,8 @@ def exponent_and_factor(
     why = "along the path of one firing, its errors in common"
     factors = np.exp(offset)
     ends = tuple(float(x) for x in np.quantile(factors, (0.025, 0.975)))
-    a = Quantity(float(np.median(factors[group])), "m/s (kg/m^2/s)^-n", float(np.std(factors)), (ends[0], ends[1]), why=why)
+    a = Quantity(
+        float(np.median(factors[group])), "m/s (kg/m^2/s)^-n", float(np.std(factors)), (ends[0], ends[1]), why=why
+    )
     low, high = (float(x) for x in np.quantile(slope, (0.025, 0.975)))
     return a, Quantity(float(np.median(slope[group])), "", float(np.std(slope)), (low, high), why=why)

@@ -9,8 +9,8 @@ lean side; from its peak to its valley on the rich side it rises: up to three mi
 of efficiency is ten per cent of OF and more, and a course that fits each sample exactly is none of the engine's.
 
 So the logarithm of OF is a line between two ends with a few slow waves about it, and the errors of all inputs are
-unknowns beside it. For every pair of ends the rest is linear: how likely the pair is, and what the rest is, has a closed
-form (Bayesian linear regression; Bishop, Pattern Recognition and Machine Learning, 3.3). All branches are in it.
+unknowns beside it. For every pair of ends the rest is linear: how likely the pair is, and what the rest is, has a
+closed form (Bayesian linear regression; Bishop, Pattern Recognition and Machine Learning, 3.3). All branches are in it.
 """
 
 from __future__ import annotations
@@ -26,17 +26,21 @@ from hfanalysis.performance.reconstruction.theory import MIXTURES, Theory
 ENDS = np.linspace(np.log(1.0), np.log(40.0), 48)
 """Logarithms of OF [-] from which and to which courses lead. Source: no hybrid burns beyond them."""
 
-CHANGE = 0.35
-"""Standard deviation of the change of the logarithm of OF through a burn. Source: of r = a G^n follows OF as
-mdot^(1 - n) r^(2 n - 1); with n of 0.3 to 0.8, a flow that falls by a third and a port that doubles, that is -0.5 to
-0.4."""
+USUAL = (float(np.log(6.5)), 0.5)
+"""Logarithm of OF in the middle of a burn and its standard deviation, before anything is measured. Source: c* of
+nitrous oxide and hydrocarbons is best at 6 to 8, and tests lie from 3 to 12."""
 
-BEND = 0.1
+CHANGE = 0.3
+"""Standard deviation of the change of the logarithm of OF through a burn, about ``inputs.change``. Source: there
+r goes as G^n with the usual n of :data:`hfanalysis.engine.grain.USUAL_N`; its spread makes 0.3 of a flow that falls by
+a third and a port that nearly doubles."""
+
+BEND = 0.04
 """Standard deviation of the first wave of the logarithm of OF about its line; those of the next fall with the square of
-their number. Source: a third of CHANGE: what drives OF, port and flow, moves one way."""
+their number. Source: of r = a G^n with a flow that falls and a port that opens evenly OF bends by 0.01 to 0.03."""
 
-WAVES = 4
-"""Of them. Source: by choice; the fourth has a standard deviation of 0.6 %."""
+WAVES = 3
+"""Of them. Source: by choice; the third has a standard deviation of 0.4 %."""
 
 ROUGH = 0.004
 """Part of the pressure [-] by which a sample may miss beside its noise. Source: a table of c* read linearly, and flow
@@ -130,8 +134,9 @@ class _Problem:
         steps = _steps(self.inputs.time)
         burnt = flow @ steps
         weight = flow * steps / burnt[:, None]
-        oxidizer = [e.shape if e.of == "oxidizer" else np.zeros(x.shape[1]) for e in self.inputs.errors.values()]
-        row = np.concatenate([-weight @ self.waves, weight @ np.column_stack([*oxidizer, np.zeros(x.shape[1])])], axis=1)
+        none = np.zeros(x.shape[1])
+        oxidizer = [e.shape if e.of == "oxidizer" else none for e in self.inputs.errors.values()]
+        row = np.concatenate([-weight @ self.waves, weight @ np.column_stack([*oxidizer, none])], axis=1)
         miss = np.log(fuel / burnt) + np.einsum("ck,ck->c", row[:, : waves.shape[1]], waves)
         return row * fuel / std, miss * fuel / std
 
@@ -155,36 +160,43 @@ def _solved(design: Array, left: Array, prior: Array) -> _Linear:
     pulled = np.einsum("ckn,cn->ck", square, left)
     moved = np.einsum("ckl,cl->ck", covariance, pulled)
     cost = np.sum(left**2, axis=1) - np.sum(pulled * moved, axis=1)
-    return _Linear(-0.5 * cost - 0.5 * np.linalg.slogdet(precision)[1], prior + moved, covariance)
+    return _Linear(
+        -0.5 * cost - 0.5 * np.linalg.slogdet(precision)[1], prior + moved, np.asarray(covariance, dtype=np.float64)
+    )
 
 
 def courses(inputs: Inputs, theory: Theory) -> Courses:
     """As likely as the inputs have them."""
     first, last = (end.ravel() for end in np.meshgrid(ENDS, ENDS, indexing="ij"))
-    near = np.abs(last - first) < 3.0 * CHANGE
+    near = np.abs(last - first - inputs.change) < 3.0 * CHANGE
     first, last = first[near], last[near]
     lines = first[:, None] * (1.0 - inputs.share) + last[:, None] * inputs.share
-    before = -0.5 * ((last - first) / CHANGE) ** 2
     problem = _Problem(inputs, theory)
-    lines, found, probability = _likely(problem, lines, before)
+    lines, found, probability = _likely(problem, lines)
     best = int(probability.argmax())
     miss = problem.missed(lines[best] + problem.waves @ found.mean[best, : WAVES + 2], found.mean[best])
     if miss > 1.0:  # what is slow and no error of an input has to be noise
         problem = _Problem(inputs, theory, miss)
-        before = -0.5 * ((lines[:, -1] - lines[:, 0]) / CHANGE) ** 2
-        lines, found, probability = _likely(problem, lines, before)
+        lines, found, probability = _likely(problem, lines)
     return _drawn(problem, lines, found, probability)
 
 
-def _likely(problem: _Problem, lines: Array, before: Array) -> tuple[Array, _Linear, Array]:
+def _likely(problem: _Problem, lines: Array) -> tuple[Array, _Linear, Array]:
     """The lines that are not UNLIKELY, and what is known of each."""
     found = problem.solve(lines)
     for _ in range(ROUNDS):
-        probability = found.probability + before
+        probability = found.probability + _before(problem.inputs, lines)
         kept = probability > probability.max() - UNLIKELY
-        lines, before = lines[kept], before[kept]
+        lines = lines[kept]
         found = problem.solve(lines, found.mean[kept])
-    return lines, found, found.probability + before
+    return lines, found, found.probability + _before(problem.inputs, lines)
+
+
+def _before(inputs: Inputs, lines: Array) -> Array:
+    """Logarithm of the probability of lines (pairs, n) before anything is measured."""
+    first, last = lines[:, 0], lines[:, -1]
+    middle, change = (0.5 * (first + last) - USUAL[0]) / USUAL[1], (last - first - inputs.change) / CHANGE
+    return np.asarray(-0.5 * (middle**2 + change**2))
 
 
 def _drawn(problem: _Problem, lines: Array, found: _Linear, probability: Array) -> Courses:

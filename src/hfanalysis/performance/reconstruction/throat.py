@@ -58,7 +58,8 @@ def throat_course(firing: Firing, theory: Theory, time: Array, pressure: Array) 
 
     Raises AbsentError where the throat is said to have shrunk.
     """
-    before, after = float(np.sqrt(firing.shape.throat_area / pi)), firing.definition.known("observed.throat_radius_after")
+    before = float(np.sqrt(firing.shape.throat_area / pi))
+    after = firing.definition.known("observed.throat_radius_after")
     if after is not None:
         slack = 3.0 * float(np.hypot(after.std or 0.0, 0.5 * throat_spread(firing.definition) * before))
         if after.value < before - slack:
