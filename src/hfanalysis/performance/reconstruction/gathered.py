@@ -11,7 +11,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.engine.chamber import chamber_volume
 from hfanalysis.engine.grain import USUAL_N
 from hfanalysis.errors import AbsentError
-from hfanalysis.performance.efficiency import oxidizer_spread, smooth, throat_spread
+from hfanalysis.performance.efficiency import EFFICIENCY_WIDTH, oxidizer_spread, smooth, throat_spread
 from hfanalysis.performance.flows import HISTORY_STEP
 from hfanalysis.performance.measured import bias
 from hfanalysis.performance.reconstruction.fuel import fuel_burnt
@@ -45,6 +45,9 @@ does."""
 DRIFT = 0.04
 """Standard deviation [-] of what the efficiency changes by through a window. Source: it goes with the mixing, which the
 port's length over its radius sets, and that halves in a burn; measured ones move by some per cent."""
+
+BREAKS = "t_v", "t_purge"
+"""Events at which the flow breaks, and before which a window ends."""
 
 NOMINAL = 7.0
 """OF [-] for what hardly hangs on it: the gas's R T and gamma. Source: stoichiometry is at 9, best c* at 7."""
@@ -92,14 +95,14 @@ def gather(firing: Firing, theory: Theory) -> Gathered:
     volume = chamber_volume(firing.shape.dead_volume, port, firing.shape.grain_length)
     stored = np.gradient(pressure * volume, time) / theory.at(theory.heat, pressure, np.full(time.size, NOMINAL))
     said = fuel.said
-    if fuel.mass is None:
+    if not fuel.closes:
         said = f"c* efficiency of {ASSUMED[0]:.2f} +/- {ASSUMED[1]:.2f} assumed: {said}"
-    spread = ASSUMED[1] / ASSUMED[0] * (1.0 if fuel.mass is None else OPEN)
+    spread = ASSUMED[1] / ASSUMED[0] * (OPEN if fuel.closes else 1.0)
     inputs = Inputs(
         time, pressure, oxidizer, pi * throat.radius**2, stored, _noise(firing) / pressure, fuel.mass,
-        (ASSUMED[0], spread), _change(oxidizer, port), errors,
+        (ASSUMED[0], spread), _usual(oxidizer, port), errors,
     )  # fmt: skip
-    variant = "a" if fuel.mass is None else ("d" if throat.by_thrust else "b")
+    variant = "a" if not fuel.closes else ("d" if throat.by_thrust else "b")
     return Gathered(inputs, variant, f"{said}; {throat.said}", throat.nozzle_efficiency, throat.grows)
 
 
@@ -110,19 +113,21 @@ def _noise(firing: Firing) -> float:
 
 
 def _window(firing: Firing, read: Array) -> tuple[float, float]:
-    """From the plateau on until nitrogen enters, the fuel is gone or the fire out [s]."""
-    ends = [t for name in ("t_purge", "t_fuel_gone", "t_end") if (t := firing.segments.time(name)) is not None]
+    """From the plateau on until the liquid is gone (the vapor's flow is a model's), nitrogen enters, or the fire or its
+    fuel is out [s]."""
+    ends = [t - EFFICIENCY_WIDTH for name in BREAKS if (t := firing.segments.time(name)) is not None]
+    ends += [t for name in ("t_fuel_gone", "t_end") if (t := firing.segments.time(name)) is not None]
     end = min([*ends, firing.fire.end])
     first = max(firing.segments.time("t_feed") or 0.0, 0.2)
     burning = (read > CRITICAL_RATIO * firing.ambient) & (firing.oxidizer > 0.0)
     inside = (firing.time > first) & (firing.time < end) & burning
     if not inside.any():
-        raise AbsentError("the chamber has no pressure to speak of before nitrogen enters")
+        raise AbsentError("the chamber has no pressure to speak of in the liquid phase")
     risen = inside & (read > PLATEAU * np.median(read[inside]))
     start = float(firing.time[risen][0])
     last = float(firing.time[inside][-1])
     if last - start < LEAST:
-        raise AbsentError(f"only {last - start:.1f} s lie between the plateau's begin and nitrogen or the fire's end")
+        raise AbsentError(f"only {last - start:.1f} s lie between the plateau's begin and the end of liquid or fire")
     return start, last - HISTORY_STEP
 
 
@@ -133,10 +138,10 @@ def _port(firing: Firing, time: Array, burnt: float) -> Array:
     return np.asarray(np.sqrt(shape.port_radius**2 + passed / (shape.fuel_density * pi * shape.grain_length)))
 
 
-def _change(oxidizer: Array, port: Array) -> float:
-    """Of the logarithm of OF through the window, where r goes as G^n with the usual n."""
-    flow, radius = (float(np.log(x[-1] / x[0])) for x in (oxidizer, port))
-    return (1.0 - USUAL_N[0]) * flow + (2.0 * USUAL_N[0] - 1.0) * radius
+def _usual(oxidizer: Array, port: Array) -> Array:
+    """Course of the logarithm of OF (n,), where r goes as G^n with the usual n."""
+    flow, radius = (np.log(x / x[0]) for x in (oxidizer, port))
+    return np.asarray((1.0 - USUAL_N[0]) * flow + (2.0 * USUAL_N[0] - 1.0) * radius)
 
 
 def _tap(firing: Firing, theory: Theory, port: Array, gauge: Array) -> tuple[Array, Array]:

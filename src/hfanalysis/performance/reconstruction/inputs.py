@@ -101,7 +101,8 @@ class Inputs:
     ``pressure`` before the nozzle [Pa], ``oxidizer`` flow [kg/s], ``throat`` area [m^2], ``stored``: what fills the
     chamber [kg/s]; ``white``: standard deviation of each sample of the pressure, as share of it [-]. ``fuel`` burnt in
     the window and its standard deviation [kg], None where nobody says. ``efficiency``: of c*, as taken beforehand, and
-    the standard deviation of its logarithm [-]; ``change``: of the logarithm of OF, that is usual for such a flow [-].
+    the standard deviation of its logarithm [-]. ``usual``: course of the logarithm of OF, from 0 on, that is usual for
+    such a flow [-], (n,).
     """
 
     time: Array
@@ -112,8 +113,12 @@ class Inputs:
     white: Array
     fuel: tuple[float, float] | None
     efficiency: tuple[float, float]
-    change: float
+    usual: Array
     errors: Mapping[str, Error] = field(default_factory=dict)
+
+    def bent(self, course: Array) -> Array:
+        """What a ``course`` (n,) has beside the line between its ends."""
+        return np.asarray(course - course[0] - (course[-1] - course[0]) * self.share)
 
     @property
     def share(self) -> Array:

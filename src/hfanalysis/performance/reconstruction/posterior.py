@@ -8,9 +8,10 @@ holds at every moment, and the integral of oxidizer flow over OF is the fuel bur
 lean side; from its peak to its valley on the rich side it rises: up to three mixtures fit. Where it is flat, a per cent
 of efficiency is ten per cent of OF and more, and a course that fits each sample exactly is none of the engine's.
 
-So the logarithm of OF is a line between two ends with a few slow waves about it, and the errors of all inputs are
-unknowns beside it. For every pair of ends the rest is linear: how likely the pair is, and what the rest is, has a
-closed form (Bayesian linear regression; Bishop, Pattern Recognition and Machine Learning, 3.3). All branches are in it.
+So the logarithm of OF leads from one end to another as the flow usually has it, with a few slow waves about that; the
+errors of all inputs are unknowns beside it. For every pair of ends the rest is linear: how likely the pair is, and what
+the rest is, has a closed form (Bayesian linear regression; Bishop, Pattern Recognition and Machine Learning, 3.3). All
+branches are in it.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.engine.grain import USUAL_N
 from hfanalysis.performance.reconstruction.inputs import SIGNS, Inputs
 from hfanalysis.performance.reconstruction.theory import MIXTURES, Theory
 
@@ -31,7 +33,7 @@ USUAL = (float(np.log(6.5)), 0.5)
 nitrous oxide and hydrocarbons is best at 6 to 8, and tests lie from 3 to 12."""
 
 CHANGE = 0.3
-"""Standard deviation of the change of the logarithm of OF through a burn, about ``inputs.change``. Source: there
+"""Standard deviation of the change of the logarithm of OF through a burn, about ``inputs.usual``. Source: there
 r goes as G^n with the usual n of :data:`hfanalysis.engine.grain.USUAL_N`; its spread makes 0.3 of a flow that falls by
 a third and a port that nearly doubles."""
 
@@ -42,12 +44,18 @@ their number. Source: of r = a G^n with a flow that falls and a port that opens 
 WAVES = 3
 """Of them. Source: by choice; the third has a standard deviation of 0.4 %."""
 
+PATHS = WAVES + 3
+"""Unknowns of a course: what lies between two ENDS, how far OF follows the flow, and the waves."""
+
 ROUGH = 0.004
 """Part of the pressure [-] by which a sample may miss beside its noise. Source: a table of c* read linearly, and flow
 that fluctuates."""
 
 UNLIKELY = 14.0
 """Difference of the logarithm of a probability from which a pair of ends is left out. Source: one in a million."""
+
+TAILS = 4.0
+"""Degrees of freedom of a sample's error. Source: by choice, of robust fits (Lange et al., JASA 84, 881 (1989))."""
 
 DRAWS = 500
 """Courses that stand for all."""
@@ -83,24 +91,27 @@ class _Linear:
 
 
 class _Problem:
-    """Unknowns: the waves of ln OF (WAVES + 2, with what lies between two of ENDS), errors, ln efficiency."""
+    """Unknowns: the waves of ln OF (PATHS, with what lies between two of ENDS), errors, ln efficiency."""
 
-    def __init__(self, inputs: Inputs, theory: Theory, scale: float = 1.0) -> None:
+    def __init__(self, inputs: Inputs, theory: Theory, left: Array | None = None) -> None:
         self.inputs, share = inputs, inputs.share
         width = (ENDS[1] - ENDS[0]) / np.sqrt(12.0)
         k = np.arange(1, WAVES + 1)
         waves = BEND / k**2 * np.sin(np.pi * k * share[:, None])
-        self.waves = np.column_stack([width * (1.0 - share), width * share, waves])
+        flow = USUAL_N[1] * inputs.bent(np.log(inputs.oxidizer))
+        self.waves = np.column_stack([width * (1.0 - share), width * share, flow, waves])
         errors = inputs.errors.values()
         shapes = [-SIGNS[error.of] * error.shape for error in errors]
         self.fixed = np.column_stack([*shapes, np.full(share.size, inputs.efficiency[1])])
-        self.prior = np.array([*np.zeros(WAVES + 2), *(error.mean for error in errors), 0.0])
+        self.prior = np.array([*np.zeros(PATHS), *(error.mean for error in errors), 0.0])
         self.table = np.log((1.0 + 1.0 / MIXTURES) * theory.rows(inputs.pressure))
         self.slopes = np.gradient(self.table, np.log(MIXTURES), axis=1)
         usual = inputs.efficiency[0] * theory.at(theory.c_star, inputs.pressure, np.full(share.size, 7.0))
         passed = (inputs.pressure * inputs.throat + usual * inputs.stored) / inputs.oxidizer
         self.right = np.log(passed / inputs.efficiency[0])
-        self.noise = scale * np.hypot(inputs.white, ROUGH)
+        self.noise = np.hypot(inputs.white, ROUGH)
+        if left is not None:  # what is slow and no error of an input has to be noise, some samples' more than others'
+            self.noise = self.noise * max(1.0, float(np.sqrt(np.mean(left**2)))) * np.sqrt(1.0 + left**2 / TAILS)
 
     def solve(self, line: Array, unknown: Array | None = None) -> _Linear:
         """About the courses ``line`` (pairs, n), with the waves of ``unknown`` (pairs, k) where they are known."""
@@ -140,10 +151,10 @@ class _Problem:
         miss = np.log(fuel / burnt) + np.einsum("ck,ck->c", row[:, : waves.shape[1]], waves)
         return row * fuel / std, miss * fuel / std
 
-    def missed(self, x: Array, unknown: Array) -> float:
-        """Root mean square of what one course ``x`` (n,) leaves of the pressure, over its noise."""
+    def missed(self, x: Array, unknown: Array) -> Array:
+        """What one course ``x`` (n,) leaves of the pressure, over its noise (n,)."""
         rest = self.right - self._left(x[None])[0][0] - self.fixed @ unknown[self.waves.shape[1] :]
-        return float(np.sqrt(np.mean((rest / self.noise) ** 2)))
+        return np.asarray(rest / self.noise)
 
 
 def _steps(time: Array) -> Array:
@@ -168,17 +179,15 @@ def _solved(design: Array, left: Array, prior: Array) -> _Linear:
 def courses(inputs: Inputs, theory: Theory) -> Courses:
     """As likely as the inputs have them."""
     first, last = (end.ravel() for end in np.meshgrid(ENDS, ENDS, indexing="ij"))
-    near = np.abs(last - first - inputs.change) < 3.0 * CHANGE
+    near = np.abs(last - first - inputs.usual[-1]) < 3.0 * CHANGE
     first, last = first[near], last[near]
-    lines = first[:, None] * (1.0 - inputs.share) + last[:, None] * inputs.share
+    lines = first[:, None] * (1.0 - inputs.share) + last[:, None] * inputs.share + inputs.bent(inputs.usual)
     problem = _Problem(inputs, theory)
     lines, found, probability = _likely(problem, lines)
     best = int(probability.argmax())
-    miss = problem.missed(lines[best] + problem.waves @ found.mean[best, : WAVES + 2], found.mean[best])
-    if miss > 1.0:  # what is slow and no error of an input has to be noise
-        problem = _Problem(inputs, theory, miss)
-        lines, found, probability = _likely(problem, lines)
-    return _drawn(problem, lines, found, probability)
+    miss = problem.missed(lines[best] + problem.waves @ found.mean[best, :PATHS], found.mean[best])
+    problem = _Problem(inputs, theory, miss)
+    return _drawn(problem, *_likely(problem, lines))
 
 
 def _likely(problem: _Problem, lines: Array) -> tuple[Array, _Linear, Array]:
@@ -195,7 +204,7 @@ def _likely(problem: _Problem, lines: Array) -> tuple[Array, _Linear, Array]:
 def _before(inputs: Inputs, lines: Array) -> Array:
     """Logarithm of the probability of lines (pairs, n) before anything is measured."""
     first, last = lines[:, 0], lines[:, -1]
-    middle, change = (0.5 * (first + last) - USUAL[0]) / USUAL[1], (last - first - inputs.change) / CHANGE
+    middle, change = (0.5 * (first + last) - USUAL[0]) / USUAL[1], (last - first - inputs.usual[-1]) / CHANGE
     return np.asarray(-0.5 * (middle**2 + change**2))
 
 
@@ -208,10 +217,10 @@ def _drawn(problem: _Problem, lines: Array, found: _Linear, probability: Array) 
     root = np.linalg.cholesky(found.covariance[which])
     normal = r.standard_normal((DRAWS, problem.prior.size))
     unknown = found.mean[which] + np.einsum("dkl,dl->dk", root, normal)
-    mixture = lines[which] + unknown[:, : WAVES + 2] @ problem.waves.T
+    mixture = lines[which] + unknown[:, :PATHS] @ problem.waves.T
     moved = dict.fromkeys(SIGNS, np.zeros((inputs.time.size, DRAWS)))
     for i, error in enumerate(inputs.errors.values()):
-        moved[error.of] = moved[error.of] + error.shape[:, None] * unknown[:, WAVES + 2 + i]
+        moved[error.of] = moved[error.of] + error.shape[:, None] * unknown[:, PATHS + i]
     efficiency = inputs.efficiency[0] * np.exp(inputs.efficiency[1] * unknown[:, -1])
     best = found.mean[int(probability.argmax())]
     return Courses(
@@ -220,5 +229,5 @@ def _drawn(problem: _Problem, lines: Array, found: _Linear, probability: Array) 
         inputs.pressure[:, None] * np.exp(moved["pressure"]),
         inputs.oxidizer[:, None] * np.exp(moved["oxidizer"]),
         inputs.throat[:, None] * np.exp(moved["throat"]),
-        best[WAVES + 2 :],
+        best[PATHS:],
     )
