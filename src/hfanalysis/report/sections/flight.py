@@ -29,8 +29,8 @@ _SIGNS = {"passed": "good", "failed": "bad"}
 _TIME = "time of flight [s]"
 
 _GEOMETRY = Markup(
-    " Add it to test.toml with <code>nose, body, fins, structure, tank_position, chamber_position</code>. Tank and grain "
-    "need their sizes, too."
+    " Add it to test.toml with <code>nose, body, fins, structure, tank_position, chamber_position</code>. Tank and "
+    "grain need their sizes, too."
 )
 
 
