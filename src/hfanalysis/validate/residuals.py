@@ -116,5 +116,5 @@ def _write_channel(group: Any, residual: Residual) -> None:
     netcdf.axis(group, "time", residual.time)
     for name, words in LONG_NAMES.items():
         netcdf.variable(group, name, getattr(residual, name), (residual.unit, f"{residual.channel}: {words}"))
-    flags = {"flag_values": np.arange(len(PHASES), dtype=np.int8), "flag_meanings": " ".join(PHASES)}
-    netcdf.variable(group, "phase", residual.phase, ("1", "phase of the test"), **flags)
+    phase = netcdf.variable(group, "phase", residual.phase, ("1", "phase of the test"))
+    phase.attrs.update(flag_values=np.arange(len(PHASES), dtype=np.int8), flag_meanings=" ".join(PHASES))
