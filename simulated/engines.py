@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 from math import pi, radians
 
-from hfanalysis.design.sizing import DipTube, size_for_ullage
+from hfanalysis.steady_design.sizing import DipTube, size_for_ullage
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.rocket.vehicle import Vehicle
