@@ -11,7 +11,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.reconstruction import Reconstruction
+from hfanalysis.products.reconstruction import AXIS, Reconstruction
 from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
@@ -55,7 +55,7 @@ def render(material: Material) -> Iterator[Block]:
 def _chart(material: Material, table: Table, name: str, title: str, axis: tuple[str, str], style: str) -> Chart | None:
     if name not in table:
         return None
-    time = table["time"].values
+    time = table[AXIS].values
     told = table["told"].values > 0.5 if name in ("of_ratio", "regression_rate") else np.ones(time.size, dtype=bool)
 
     def where(values: Array) -> Array:
