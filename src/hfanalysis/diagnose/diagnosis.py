@@ -24,6 +24,7 @@ from hfanalysis.diagnose.answer.words import story
 from hfanalysis.diagnose.model_free import shown
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
+from hfanalysis.diagnose.naming.polish import DEEPER
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
@@ -96,6 +97,8 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
     left = {*verdict.set90, *verdict.added}
     residuals = weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))
     unsure = () if chosen.fit.converged else ("the last fit did not converge: sizes and intervals are rough",)
+    if found.risen > DEEPER:
+        unsure = (*unsure, UNSETTLED.format(found.risen))
     return Diagnosis(
         verdict=verdict.label,
         effects=effects_product(verdict),
@@ -195,6 +198,11 @@ def _plausibility(found: Naming, chosen: Candidate) -> dict[str, Plausibility]:
         out.setdefault(name, judged(acting_in(candidate.fit)[name]))
     return out | {name: judged(active) for name, active in acting_in(chosen.fit).items()}
 
+
+UNSETTLED = (
+    "the search did not converge: the base model came to lie {:.1f} deeper in log evidence after all had been compared "
+    "with it; take names with care"
+)
 
 LIKELY = 0.02
 """Probability below which a listed effect is said not to be it."""

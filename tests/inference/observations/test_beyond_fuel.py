@@ -105,7 +105,7 @@ def test_the_tank_is_compared_until_shortly_before_the_valve_closes(late: bool) 
     test = reduced(late)
     assert test.fuel_out == fuel_out(late)
     for name in test.names:
-        if name in TANK_SIDE:
+        if name in TANK_SIDE and name != "p_run":  # its pressure goes by that of a chamber without a flame
             assert CLOSING - AROUND_END - 0.2 < last(test, name) <= CLOSING - AROUND_END + 0.06
         else:
             assert last(test, name) < fuel_out(late)

@@ -24,7 +24,7 @@ OPENING, LIQUID_END = 0, 1
 def _blocks(name: str, time: NDArray[np.float64], value: NDArray[np.float64]) -> Blocks:
     """Blocks of one point each, all of them good."""
     ones = np.ones(time.size, dtype=np.int64)
-    return Blocks(signal(name, time, value), time, value, np.arange(time.size), ones, value, ones > 0)
+    return Blocks(signal(name, time, value), time, value, np.arange(time.size), ones, value, ones > 0, 0.0 * time)
 
 
 def _frame(time: NDArray[np.float64], liquid_end: float, opening: float) -> Frame:
