@@ -36,11 +36,19 @@ def as_it_burns(log: TestLog, segments: Segments, definition: TestDefinition, or
     if begins is not None and gone is not None and gone - begins > FADES:
         std = max(segments.std("t_fuel_out"), (gone - begins) / 12.0**0.5)
         segments = _ended(segments, begins, std)
-    found = _flame_out(log, segments, definition, origin)
     gone = segments.time("t_fuel_gone")
+    if gone is None and _left(definition):
+        return segments
+    found = _flame_out(log, segments, definition, origin)
     if found is None or (gone is not None and gone < found.begins + LATE):
         return segments
     return _ended(segments, found.begins, found.std)
+
+
+def _left(definition: TestDefinition) -> bool:
+    """Whether fuel was weighed after the test: then none ended, whatever became of the flame."""
+    weighed = definition.observed.fuel_mass_after if definition.observed is not None else None
+    return weighed is not None and weighed.value > 0.0
 
 
 def _ended(segments: Segments, at: float, std: float) -> Segments:

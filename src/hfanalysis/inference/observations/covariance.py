@@ -191,7 +191,8 @@ def _passed(blocks: Blocks, frame: Frame, within: tuple[float, float], pinned: b
     part = ~frame.resting[blocks.first] & (blocks.time > start) & (blocks.time < end)
     knots = np.linspace(start, end, max(int(np.ceil((end - start) / STRETCH)), 1) + 1)
     fine = np.linspace(start, end, 20 * knots.size + 1)
-    mores = [*np.eye(knots.size), *([] if pinned else [np.ones(knots.size)])]
+    unsure = np.maximum(np.exp(-(knots - (frame.fuel_out or 0.0)) / STRETCH), SETTLED)
+    mores = [*np.diag(unsure), *([] if pinned else [np.ones(knots.size)])]
     columns = [np.zeros(blocks.time.size) for _ in mores]
     if part.sum() <= SPEED_ORDER + 2:
         return columns
@@ -205,8 +206,10 @@ def _passed(blocks: Blocks, frame: Frame, within: tuple[float, float], pinned: b
     return columns
 
 
-STRETCH = 1.0
-"""Seconds over which the flow without fire is off by as much: a chamber turns cold within up to that."""
+STRETCH, SETTLED = 1.0, 0.2
+"""Seconds over which the flow without fire is off by as much, for a chamber turns cold within up to that; and the part
+of it that is left when it has. Source: a cold chamber has less than a fifth of the injector's pressure, whose flow goes
+by the root of the difference."""
 
 
 def oscillations(blocks: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, str], Array]:

@@ -19,8 +19,9 @@ from hfanalysis.thermo.saturation import Saturation
 LOOK, SETTLED = 0.04, 0.3
 """Seconds between the instants that are looked at, and after the opening from which on it burns as it will."""
 
-COLD = 0.36
-"""Chamber pressure over flow, relative to what it was, below which there is no flame [-]. Source: c* is 340 m/s for
+COLD, COLD_IN_LIQUID = 0.36, 0.55
+"""Chamber pressure over flow, relative to what it was, below which there is no flame [-]; and while liquid flows, which
+chokes no injector so suddenly. Source: c* is 340 m/s for
 nitrous oxide at 270 K (sqrt(R T) / Gamma, gamma 1.3), 1300 to 1600 m/s in a flame, whose fuel adds a tenth to the
 flow: 0.18 to 0.24 without a flame. A vapor that chokes in the injector, whose flow is then 0.53 of the incompressible
 orifice's, leaves 0.5 of a flame's."""
@@ -72,9 +73,10 @@ def flame_out(
     if times.size < 4 * FALLS:
         return None
     p_t, p_r, p_c = (_means(s, times) for s in (tank, run, chamber))
-    ratio = _over_flow(p_t, p_r, p_c, saturation, times < (np.inf if t_v is None else t_v))
+    wet = times < (np.inf if t_v is None else t_v)
+    ratio = _over_flow(p_t, p_r, p_c, saturation, wet)
     usual = float(np.nanmedian(ratio[times < min(times[-1], t_v or np.inf, times[0] + 1.5)]))
-    cold = np.nan_to_num(ratio, nan=np.inf) < COLD * usual
+    cold = np.nan_to_num(ratio, nan=np.inf) < np.where(wet, COLD_IN_LIQUID, COLD) * usual
     run_of = np.convolve(cold, np.ones(FALLS), mode="valid") == FALLS
     if not np.isfinite(usual) or not run_of.any():
         return None
