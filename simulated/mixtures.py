@@ -15,12 +15,12 @@ from typing import cast
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.engine.port import stagnation_over_static
+from hfanalysis.performance.reconstruction.inputs import Firing, Shape
+from hfanalysis.performance.reconstruction.theory import Theory
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import Channel
 from hfanalysis.units import Value
-from hfanalysis.validate.flows import Flows
-from hfanalysis.validate.reconstruction.theory import Theory
-from hfanalysis.validate.reduction import Test
 
 AMBIENT, ENTHALPY, DENSITY, STEP = 1.0e5, 1.6e6, 920.0, 0.02
 """[Pa], [J/kg] of liquid nitrous oxide at 20 degC, [kg/m^3] of paraffin, [s]."""
@@ -35,7 +35,7 @@ class Burn:
     efficiency: Array
     throat: Array
     exponent: float
-    test: Test
+    test: Firing
 
 
 @dataclass(frozen=True)
@@ -98,9 +98,9 @@ def burn(of: World, seed: int) -> Burn:
     burnt = float(np.trapezoid(fuel, time))
     outer = float(np.sqrt(port[-1] ** 2 + 1e-5))
     mass = DENSITY * pi * length * (outer**2 - port0**2)
-    test = _measured(
-        r, of, time, pressure, thrust, oxidizer, burnt, mass, (port0, outer, length, area, exit_area), port
-    )
+    gamma = float(np.mean(theory.at(theory.gamma, pressure, mixture)))
+    static = pressure / stagnation_over_static(gamma, pi * outer**2 / area)
+    test = _measured(r, of, time, static, thrust, oxidizer, burnt, mass, (port0, outer, length, area, exit_area), port)
     return Burn(time, mixture, efficiency, throat, of.exponent, test)
 
 
@@ -135,7 +135,7 @@ def _run(
 def _measured(
     r: np.random.Generator, of: World, time: Array, pressure: Array, thrust: Array, oxidizer: Array, burnt: float,
     mass: float, shape: tuple[float, float, float, float, float], port: Array,
-) -> Test:  # fmt: skip
+) -> Firing:  # fmt: skip
     """What a team would have of it."""
     port0, outer, length, area, exit_area = shape
     e = {name: std * r.standard_normal() for name, std in ERRORS.items()}
@@ -159,15 +159,15 @@ def _measured(
     )  # fmt: skip
     definition.known = _known(definition)
     flow = oxidizer * (1.0 + e["flow"])
-    engine = SimpleNamespace(
+    shape = Shape(
         throat_area=area, exit_area=exit_area, port_radius=port0, outer_radius=outer, grain_length=length,
-        fuel_density=DENSITY, oxidizer_enthalpy=ENTHALPY, ambient_pressure=AMBIENT,
+        dead_volume=0.0, fuel_density=DENSITY, oxidizer_enthalpy=ENTHALPY,
     )  # fmt: skip
-    rough = Flows(time, flow, flow / 7.0, np.zeros(time.size), port)
-    return cast("Test", SimpleNamespace(
+    passed = Quantity(float(np.trapezoid(flow, time)), "kg", ERRORS["flow"] * float(np.trapezoid(flow, time)))
+    return cast("Firing", SimpleNamespace(
         log=log, segments=SimpleNamespace(time=lambda name: 0.1 if name == "t_feed" else None),
-        definition=definition, calibration=SimpleNamespace(C_i=Quantity(0.3, "", 0.3 * ERRORS["flow"])),
-        fire=SimpleNamespace(end=float(time[-1])), engine=engine, flows=rough, ambient=AMBIENT, purge=None,
+        definition=definition, calibration=SimpleNamespace(oxidizer_mass_liquid_phase=passed),
+        fire=SimpleNamespace(end=float(time[-1])), shape=shape, time=time, oxidizer=flow, ambient=AMBIENT,
         measured={"p_chamber": read, **({"thrust_corrected": force} if of.thrust else {})},
     ))  # fmt: skip
 

@@ -10,11 +10,11 @@ from hfanalysis.diagnose.model_free import SHIFTS, ShownByChannels, Sign, shown
 from hfanalysis.effects import effect
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.subject import Subject
+from hfanalysis.performance.thrust import thrust_of
 from hfanalysis.products.diagnosis import NO_TIME, ClosedFraction, Compared, Diagnosis, Gap, NamedEffect, Place
 from hfanalysis.products.health import KINDS, Finding
 from hfanalysis.quantity import Quantity
 from hfanalysis.sentences import text
-from hfanalysis.validate.thrust import thrust_of
 
 DRIFT = "load_cell_drift"
 

@@ -27,7 +27,7 @@ from hfanalysis.wording.numbers import adopted_in_words
 
 P = TypeVar("P", bound=Product)
 _BEFORE, _AFTER = 2.0, 3.0
-"""[s] shown before the opening and after the last event; as :mod:`hfanalysis.validate.histories` has them."""
+"""[s] shown before the opening and after the last event; as :mod:`hfanalysis.performance.histories` has them."""
 
 
 @dataclass(frozen=True)

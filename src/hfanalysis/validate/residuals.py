@@ -17,9 +17,6 @@ from hfanalysis.products.validation import PhaseGap
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
 
-FORMAT = ("v108", "v110")
-"""HDF5 versions that MATLAB and older tools read."""
-
 PHASES = ("before", "filling", "liquid", "vapor", "nitrogen")
 """Phases by their number in ``residuals.h5``: before the opening, line filling, liquid, pure vapor, with nitrogen."""
 
@@ -107,7 +104,7 @@ def gaps(residuals: Sequence[Residual]) -> dict[str, dict[str, PhaseGap]]:
 
 def write_residuals(path: Path, modes: Mapping[str, Sequence[Residual]], provenance: Mapping[str, Any]) -> None:
     """Write residuals.h5: a group per mode and channel, for h5py, xarray and MATLAB; byte-identical each time."""
-    from hfanalysis.products.hdf5 import created
+    from hfanalysis.products.hdf5 import FORMAT, created
 
     with created(path, libver=FORMAT, track_order=False) as file:
         file.attrs["Conventions"] = "CF-1.11"
