@@ -25,6 +25,7 @@ from hfanalysis.diagnose.model_free import shown
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.polish import DEEPER
+from hfanalysis.diagnose.naming.slack import course_error
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
@@ -122,7 +123,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         weak_form=weak_product(residuals),
         compared=_compared(found, chosen, observed),
         probabilities_from="probabilities.json" if scale().temperature != 1.0 else "raw evidences",
-        notes=proof.notes,
+        notes=(*proof.notes, *_course(verdict, found)),
         warnings=unsure,
         runtime_s=NO_TIME,
         seed=0,
@@ -203,6 +204,17 @@ UNSETTLED = (
     "the search did not converge: the base model came to lie {:.1f} deeper in log evidence after all had been compared "
     "with it; take names with care"
 )
+
+
+def _course(verdict: Verdict, found: Naming) -> list[str]:
+    """That the course of what is named differs from the library's, where it does."""
+    if verdict.label not in ("named", "ambiguous") or verdict.chosen.unknown:
+        return []
+    off = course_error(verdict.chosen, found.bench)
+    return [COURSE.format(" and ".join(verdict.chosen.names), 100.0 * off)] if off > 0.0 else []
+
+
+COURSE = "{}: the course differs from the library's by about {:.0f} % of itself"
 
 LIKELY = 0.02
 """Probability below which a listed effect is said not to be it."""

@@ -29,7 +29,7 @@ from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
 from hfanalysis.diagnose.naming.singles import _first_children, _promising, singles_of
-from hfanalysis.diagnose.naming.slack import slack_gain
+from hfanalysis.diagnose.naming.slack import course_error, slack_gain
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Engine
@@ -385,7 +385,10 @@ def test_slack_takes_what_a_closure_gets_wrong() -> None:
     bench = Bench(uneven)
     again = attempted(chosen.fit.hypothesis, uneven, chosen.fit.x)
     assert again is not None
-    assert slack_gain(candidate(("tank_heat",), again, FINEST), bench) > 10.0
+    told = candidate(("tank_heat",), again, FINEST)
+    assert slack_gain(told, bench) > 10.0
+    assert course_error(chosen, found.bench) == 0.0
+    assert 0.05 < course_error(told, bench) < 0.6
 
 
 def heat_by_turns() -> Active:
