@@ -152,7 +152,23 @@ def figures(cases: Sequence[Scored]) -> list[str]:
     seconds = [c.seconds for c in cases if not c.failure]
     if seconds:
         lines += ["", f"A diagnosis takes {median(seconds):.0f} s (median), {max(seconds):.0f} s at most."]
-    return lines
+    return [*lines, *forms(cases), *unsettled(cases)]
+
+
+def forms(cases: Sequence[Scored]) -> list[str]:
+    """The model-form error that the model asks for where nothing is hidden and nothing was claimed."""
+    asked = [c.product["compared"]["model_form_error"] for c in cases if not c.hidden and c.product and not c.claims]
+    if not asked:
+        return []
+    sides = (f"{side} {median(a[side] for a in asked):.2g} ({max(a[side] for a in asked):.2g})" for side in asked[0])
+    said = ", ".join(sides)
+    return ["", f"Model-form error where nothing is hidden, as parts of ranges, the median (the largest): {said}."]
+
+
+def unsettled(cases: Sequence[Scored]) -> list[str]:
+    """Tests in which the base model was found deeper after all had been compared with it: there should be none."""
+    ids = [c.answer["id"] for c in cases if any("search did not converge" in w for w in c.product.get("warnings", ()))]
+    return ["", f"The search did not converge in {', '.join(ids)}."] if ids else []
 
 
 def listing(cases: Sequence[Scored]) -> list[str]:

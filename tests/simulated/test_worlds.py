@@ -131,4 +131,13 @@ def test_what_is_stated_surely_beside_the_right_name_is_wrong_all_the_same() -> 
     assert [c.wrong for c in (right, more, strange, outside, alarm)] == [[], ["n2_purge"], ["unknown"], [], []]
     assert [c.exact for c in (right, more, strange, outside, alarm)] == [True, False, False, True, False]
     rows = figures([right, more, strange, outside, alarm])
+    quiet = case("none", (), "none", {})
+    quiet.product["compared"] = {"model_form_error": {"tank": 2e-4, "chamber": 1e-3}}
+    quiet.product["warnings"] = ["the search did not converge: the base model came to lie 3.0 deeper"]
+    assert figures([quiet])[-3:] == [
+        "Model-form error where nothing is hidden, as parts of ranges, the median (the largest): "
+        "tank 0.0002 (0.0002), chamber 0.001 (0.001).",
+        "",
+        "The search did not converge in Q.",
+    ]
     assert rows[2] == "| all | 5 | 1 of 1 | 2 of 5 | 1 of 3 | 1 of 1 | 0 of 0 | 0 |"
