@@ -24,6 +24,8 @@ from hfanalysis.diagnose.answer.words import story
 from hfanalysis.diagnose.model_free import shown
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
+from hfanalysis.diagnose.naming.polish import DEEPER
+from hfanalysis.diagnose.naming.slack import course_error
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
@@ -101,6 +103,8 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
     left = {*verdict.set90, *verdict.added}
     residuals = weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))
     unsure = () if chosen.fit.converged else ("the last fit did not converge: sizes and intervals are rough",)
+    if found.risen > DEEPER:
+        unsure = (*unsure, UNSETTLED.format(found.risen))
     return Diagnosis(
         verdict=verdict.label,
         effects=effects_product(verdict),
@@ -124,7 +128,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         weak_form=weak_product(residuals),
         compared=_compared(found, chosen, observed),
         probabilities_from="probabilities.json" if scale().temperature != 1.0 else "raw evidences",
-        notes=proof.notes,
+        notes=(*proof.notes, *_course(verdict, found)),
         warnings=unsure,
         runtime_s=NO_TIME,
         seed=0,
@@ -200,6 +204,22 @@ def _plausibility(found: Naming, chosen: Candidate) -> dict[str, Plausibility]:
         out.setdefault(name, judged(acting_in(candidate.fit)[name]))
     return out | {name: judged(active) for name, active in acting_in(chosen.fit).items()}
 
+
+UNSETTLED = (
+    "the search did not converge: the base model came to lie {:.1f} deeper in log evidence after all had been compared "
+    "with it; take names with care"
+)
+
+
+def _course(verdict: Verdict, found: Naming) -> list[str]:
+    """That the course of what is named differs from the library's, where it does."""
+    if verdict.label not in ("named", "ambiguous") or verdict.chosen.unknown:
+        return []
+    off = course_error(verdict.chosen, found.bench)
+    return [COURSE.format(" and ".join(verdict.chosen.names), 100.0 * off)] if off > 0.0 else []
+
+
+COURSE = "{}: the course differs from the library's by about {:.0f} % of itself"
 
 LIKELY = 0.02
 """Probability below which a listed effect is said not to be it."""
