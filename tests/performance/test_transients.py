@@ -98,6 +98,9 @@ def test_what_a_log_does_not_have_says_so() -> None:
     time = np.arange(-2.0, 5.5, 2e-3)
     short = log_of(time, burn(time, 0.1, 0.02, 0.0), 2e-3, 1)
     assert "the log ends" in str(told(short, segments())["action_time"].reason)
+    ended = told(short, segments(t_purge=5.0))
+    assert [name for name in ended if name.startswith("impulse_") and ended[name].value is None] == ["impulse_nitrogen"]
+    assert "end at 5.5 s" in str(ended["impulse_nitrogen"].reason)
     del short.channels["thrust"]
     assert told(short, segments())["tail_impulse"].value is None
     del short.channels["p_chamber"]

@@ -120,7 +120,7 @@ TOGETHER = " together"
 """How the name of a product ends here whose constants were fitted together, with the thrust."""
 
 PACED = {
-    **dict.fromkeys(("t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end", "burn_time"), 1.0),
+    "burn_time": 1.0,
     **dict.fromkeys(("C_i", "spi", "hem", "dyer", "vapor_C_d"), -1.0),
     **dict.fromkeys(("oxidizer_flow_peak", "a", "regression_rate_reference"), -1.0),
     **dict.fromkeys(("total_impulse", "specific_impulse", "total_impulse_of_file", *FLOWN), 1.0),
@@ -131,7 +131,8 @@ PACED = {
     "drift": -2.0,
 }  # fmt: skip
 """With which power of the clock's pace a quantity goes, about: a clock at half its pace makes flows of twice the size.
-Source: the definitions; of a flight's numbers no more than their size."""
+Source: the definitions; of a flight's numbers no more than their size. Events are not in it: they are dated on the
+log's own clock, which is where every later stage looks for them."""
 
 OUTSIDE = ("[observed]", "set by the engineer", "as stated", "held as")
 """How the reason of a quantity begins that comes from test.toml, not from the log."""

@@ -83,10 +83,14 @@ def cell_error(
     floor = GAIN_IN_PLACE if in_place(calibrated, test) else GAIN
     own = SPAN_SHARE * _undoubted(channel.accuracy, channel) / peak if peak > 0.0 else 0.0
     zero = _undoubted(channel.accuracy if channel.zero_std is None else channel.zero_std, channel)
-    left = left_in(thrust)
-    unseen = thrust.error == 0.0 and left == 0.0
     course = max(ANY_COURSE * abs(thrust.error), channel.doubt)
-    return CellError(max(floor, own), zero, course, UNSEEN_DRIFT * peak if unseen else abs(left))
+    left = UNSEEN_DRIFT * peak if drift_unseen(thrust) else abs(left_in(thrust))
+    return CellError(max(floor, own), zero, course, left)
+
+
+def drift_unseen(thrust: Thrust) -> bool:
+    """Whether no settled level after the burn shows where the cell's zero had gone."""
+    return thrust.error == 0.0 and left_in(thrust) == 0.0
 
 
 def _undoubted(std: float, channel: Channel) -> float:

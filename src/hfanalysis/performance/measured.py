@@ -11,7 +11,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
 from hfanalysis.inference.budget import Input, total
-from hfanalysis.performance.load_cell import CellError, cell_error
+from hfanalysis.performance.load_cell import UNSEEN_DRIFT, CellError, cell_error, drift_unseen
 from hfanalysis.performance.stand import unknown_weight
 from hfanalysis.performance.thrust import AT_AMBIENT, OUT, Thrust, burnt_out, thrust_of
 from hfanalysis.products.calibration import Calibration
@@ -173,13 +173,20 @@ def impulse_to(log: TestLog, thrust: Thrust | None, fire: Fire, definition: Test
     time = np.concatenate((edges[:1], inner.time, edges[1:]))
     value = float(np.trapezoid(whole.at(time), time))
     inputs = impulse_inputs(log, thrust, fire, definition, value)
-    drift = (
-        text("; {error} of the cell's drift taken off", error=said(thrust.error, "N", ".0f")) if thrust.error else ""
-    )
+    drift = _of_drift(thrust)
     lacking = sum(min(end, fire.end) - max(start, 0.0) for start, end in unseen)
     holes = f"; {lacking:.2f} s without samples bridged by straight lines" if lacking else ""
     why = text("over the burn{drift}{holes}", drift=drift, holes=holes)
     return Quantity(value, "N s", total(inputs), why=why)
+
+
+def _of_drift(thrust: Thrust) -> str:
+    if thrust.error:
+        return text("; {error} of the cell's drift taken off", error=said(thrust.error, "N", ".0f"))
+    if not drift_unseen(thrust):
+        return ""
+    allowed = f"a drift of {UNSEEN_DRIFT:.0%} of its peak is allowed for"
+    return f"; no rest after the burn shows whether the cell's zero held: {allowed}"
 
 
 def impulse_inputs(log: TestLog, thrust: Thrust, fire: Fire, definition: TestDefinition, impulse: float) -> list[Input]:

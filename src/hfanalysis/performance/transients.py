@@ -11,7 +11,7 @@ import numpy as np
 from scipy.signal import medfilt
 
 from hfanalysis.arrays import Array
-from hfanalysis.performance.measured import Fire, bias
+from hfanalysis.performance.measured import EARLY, Fire, bias
 from hfanalysis.performance.thrust import OUT, Thrust, thrust_of
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import NORMAL_95, Quantity
@@ -271,6 +271,8 @@ def _impulse(signal: Signal, start: float, end: float, std: float, zero: float) 
     """Integral of the thrust [N s] between two instants [s], one of them known to ``std`` [s]."""
     if not end > start:
         return Quantity(0.0, "N s", 0.0)
+    if signal.time[-1] < end - EARLY:
+        return Quantity.absent(f"the good samples of thrust end at {signal.time[-1]:.1f} s, before {end:.1f} s")
     whole = signal.bridged()
     time = np.concatenate(([start], whole.between(start, end).time[1:], [end]))
     value: Array = whole.at(time)
