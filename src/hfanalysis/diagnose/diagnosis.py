@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hfanalysis.diagnose.answer.at_limit import at_limit
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import poor_fit, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
+from hfanalysis.diagnose.answer.standing import acting_in
 from hfanalysis.diagnose.answer.verdict import (
     Verdict,
-    acting_in,
     effects_product,
     likeliest_place,
     places,
@@ -24,6 +25,7 @@ from hfanalysis.diagnose.answer.words import story
 from hfanalysis.diagnose.model_free import shown
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
+from hfanalysis.diagnose.naming.shortfall import on_firm_ground
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
@@ -32,7 +34,7 @@ from hfanalysis.engine.effect import Effect
 from hfanalysis.inference import gap
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fade import abrupt
-from hfanalysis.inference.fitting.hypothesis import TABLE
+from hfanalysis.inference.fitting.hypothesis import TABLE, Hypothesis
 from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.subject import Subject
 from hfanalysis.products.diagnosis import (
@@ -74,15 +76,31 @@ def diagnose(
     hypothesis, observed = subject.compared()
     catalogue = Catalogue(_visible(effects, observed), subject.stated())
     found = name_effects(hypothesis, observed, catalogue, progress, settings)
-    verdict = verdict_of(found)
+    found, why = on_firm_ground(found)
+    verdict = verdict_of(found, {name: effect.twins for name, effect in catalogue.effects.items()})
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
     product = _product(found, verdict, proof, catalogue)
+    three = product.gap.but(calibrated=_calibrated(hypothesis, subject, observed))
+    product = product.but(gap=three, not_converged=why)
     sentences = story(product)
     if poor_fit(found.named.leftover):
         sentences += shown(subject).sentences
     notes = (*subject.notes, *product.notes)
     return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
+
+
+def _calibrated(hypothesis: Hypothesis, subject: Subject, observed: Observed) -> dict[str, float] | None:
+    """The gap of the model with the constants as they are calibrated, m among them, by channel [SI]."""
+    m = None if subject.calibration is None else subject.calibration.m.value
+    free = tuple(
+        replace(f, center=m, least=-np.inf, most=np.inf) if f.name == "polytropic_exponent" and m is not None else f
+        for f in hypothesis.free
+    )
+    try:
+        return gap.root_mean_square(gap.as_calibrated(replace(hypothesis, free=free), observed), observed)
+    except (ValueError, ArithmeticError):
+        return None
 
 
 def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Effect]:
@@ -105,12 +123,15 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         by_equation=equations,
         evidences=verdict.evidences,
         unknown_elsewhere=verdict.elsewhere,
-        tried=tuple(_tried(c, found) for c in (*found.singles, *found.sets, *found.unknown)),
+        tried=tuple(_tried(c, found, verdict.held_out) for c in (*found.singles, *found.sets, *found.unknown)),
         leftover=found.named.leftover,
         localisation=places(verdict, found),
         likeliest_place=likeliest_place(verdict, found, equations),
         gap=_gap(found.base, chosen, proof, observed),
         upper_limits=upper_limits(verdict, found, catalogue),
+        doubts=verdict.doubts,
+        unknown_beside=verdict.added if verdict.doubts else (),
+        at_limit=at_limit(verdict),
         twins=_twins(verdict, catalogue),
         not_it=() if poor_fit(found.named.leftover) else _not_it(verdict),
         decisive_measurements=_decisive(verdict, catalogue),
@@ -158,13 +179,14 @@ def _gap(base: Candidate, chosen: Candidate, proof: Proof, observed: Observed) -
     )
 
 
-def _tried(candidate: Candidate, found: Naming) -> Tried:
+def _tried(candidate: Candidate, found: Naming, held_out: Mapping[tuple[str, ...], float | None]) -> Tried:
     """A row of what was tried: its names, the log evidence beyond the base model's, and the form it was judged at."""
     return Tried(
         names=tuple(candidate.names),
         unknown=candidate.unknown,
         log_evidence=candidate.log_evidence - found.base.log_evidence,
         model_form_error=_errors(candidate),
+        held_out=held_out.get(candidate.key),
     )
 
 

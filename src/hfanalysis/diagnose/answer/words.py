@@ -58,7 +58,7 @@ _UNITS = {"Pa": "bar", "W": "kW", "kg/s": "g/s", "1": "%"}
 
 def story(product: Diagnosis) -> list[str]:
     """The whole verdict, sentence by sentence."""
-    out = [headline(product), *poor_fit_sentence(product), *equation_sentence(product)]
+    out = [headline(product), *doubts_sentences(product), *poor_fit_sentence(product), *equation_sentence(product)]
     out += [place_sentence(row) for row in product.localisation]
     out += [effect_sentence(row) for row in product.effects]
     out += fade_sentence(product.compared)
@@ -88,6 +88,12 @@ def headline(product: Diagnosis) -> str:
             f"({posterior['none']:.2f}), but too little in the data speaks for it."
         )
     doubt = f"; {listed(others)} cannot be excluded" if others else ""
+    if product.unknown_beside:
+        names = listed(product.unknown_beside)
+        return (
+            f"Something is missing that is not in the library (unknown {posterior['unknown']:.2f}), beside {names}"
+            f"{doubt}."
+        )
     if product.verdict == "unknown":
         return f"Something is missing that is not in the library (unknown {posterior['unknown']:.2f}){doubt}."
     named = [row.name for row in product.effects]
@@ -95,6 +101,19 @@ def headline(product: Diagnosis) -> str:
     beside = [f"{n} ({p:.2f})" for n, p in product.partners.items() if n not in named and p >= LIKELY]
     either = f"; in place of what is beside it: {', '.join(beside)}" if beside else ""
     return f"The model lacks {names}{doubt}{either}."
+
+
+def doubts_sentences(product: Diagnosis) -> list[str]:
+    """Why a name does not stand by itself, that the verdict is at a limit, and that the search did not converge."""
+    out: list[str] = []
+    if product.doubts:
+        names = listed(product.unknown_beside)
+        out.append(joined("", [f"{names} alone is not the whole story: ", joined("; ", product.doubts), "."]))
+    if product.at_limit:
+        out.append(f"This verdict is at a limit, where the last digits decide: {product.at_limit}.")
+    if product.not_converged:
+        out.append(joined("", ["The search did not converge: ", product.not_converged, "."]))
+    return out
 
 
 def poor_fit_sentence(product: Diagnosis) -> list[str]:

@@ -27,6 +27,8 @@ class Naming:
     """The base model, every single effect, sets of effects, and unknown sources; each the best first.
 
     ``equations``: of all effects that were thought of; those that a score test saw nothing of have no candidate.
+    ``held_out``: log probability of data that were held out beyond the base model's [natural log], by the key of a
+    candidate; None where the rest of the data cannot foretell it.
     """
 
     base: Candidate
@@ -35,6 +37,7 @@ class Naming:
     unknown: tuple[Candidate, ...]
     bench: Bench
     equations: Mapping[str, str] = field(default_factory=dict)
+    held_out: Mapping[tuple[str, ...], float | None] = field(default_factory=dict)
 
     @property
     def named(self) -> Candidate:
