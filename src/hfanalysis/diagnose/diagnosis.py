@@ -12,6 +12,7 @@ from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import poor_fit, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.standing import acting_in
+from hfanalysis.diagnose.answer.too_small import without_the_small
 from hfanalysis.diagnose.answer.verdict import (
     Verdict,
     effects_product,
@@ -78,11 +79,16 @@ def diagnose(
     found = name_effects(hypothesis, observed, catalogue, progress, settings)
     found, why = on_firm_ground(found)
     verdict = verdict_of(found, {name: effect.twins for name, effect in catalogue.effects.items()})
+    verdict, small = without_the_small(verdict, places(verdict, found), found)
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
     product = _product(found, verdict, proof, catalogue)
-    three = product.gap.but(calibrated=_calibrated(hypothesis, subject, observed))
-    product = product.but(gap=three, not_converged=why)
+    product = product.but(
+        gap=_with_calibrated(product.gap, found, hypothesis, subject),
+        constants=None if product.constants is None else product.constants.but(calibrated=_calibrated(subject)),
+        not_converged=why,
+        too_small=small,
+    )
     sentences = story(product)
     if poor_fit(found.named.leftover):
         sentences += shown(subject).sentences
@@ -90,17 +96,34 @@ def diagnose(
     return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
 
 
-def _calibrated(hypothesis: Hypothesis, subject: Subject, observed: Observed) -> dict[str, float] | None:
-    """The gap of the model with the constants as they are calibrated, m among them, by channel [SI]."""
-    m = None if subject.calibration is None else subject.calibration.m.value
+def _with_calibrated(found: Gap, naming: Naming, hypothesis: Hypothesis, subject: Subject) -> Gap:
+    """The gap with that of the model as it is calibrated, m among its constants, and what refitting the base closes of
+    it."""
+    m, observed = None if subject.calibration is None else subject.calibration.m.value, naming.bench.observed
     free = tuple(
         replace(f, center=m, least=-np.inf, most=np.inf) if f.name == "polytropic_exponent" and m is not None else f
         for f in hypothesis.free
     )
     try:
-        return gap.root_mean_square(gap.as_calibrated(replace(hypothesis, free=free), observed), observed)
+        ran = gap.as_calibrated(replace(hypothesis, free=free), observed)
+        gaps = [gap.total_gap(one, observed) for one in (ran, naming.base.fit)]
+        calibrated = gap.root_mean_square(ran, observed)
     except (ValueError, ArithmeticError):
-        return None
+        return found
+    return found.but(calibrated=calibrated, closed_by_refitting=gap.closed(gaps[0], gaps[1]))
+
+
+def _calibrated(subject: Subject) -> dict[str, Quantity]:
+    """The constants that the base model has in calibration, by the names that its fits have."""
+    product, definition = subject.calibration, subject.definition
+    if product is None:
+        return {}
+    known = {"loss_factor": product.K_loss, "m": product.m, "a": product.a, "n": product.n}
+    known["oxidizer_mass"] = product.oxidizer_mass
+    if definition.injector_area is not None and product.C_i.value is not None:
+        holes = definition.injector_area.value
+        known["area"] = Quantity(product.C_i.value * holes, "m^2", (product.C_i.std or 0.0) * holes)
+    return {name: q for name, q in known.items() if q.value is not None}
 
 
 def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Effect]:

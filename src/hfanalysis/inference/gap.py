@@ -118,7 +118,7 @@ def by_phase(found: Fit, observed: Observed) -> dict[str, dict[str, float]]:
     return out
 
 
-def total_gap(found: Fit, observed: Observed, where: dict[str, NDArray[np.bool_]] | None = None) -> float:
+def total_gap(found: Ran, observed: Observed, where: dict[str, NDArray[np.bool_]] | None = None) -> float:
     """The gap of all channels together [-], each in units of its noise, as far as it is no chance.
 
     ``where``: by channel, the blocks (blocks,) that count; all by default.

@@ -120,6 +120,9 @@ class Gap(Part):
     before: Annotated[Sizes, Is("rms without, the base model's constants refitted, by channel", "of the channel")]
     after: Annotated[Sizes, Is("rms with it, by channel", "of the channel")]
     noise: Annotated[Sizes, Is("of the means that are compared", "of the channel")]
+    closed_by_refitting: Annotated[float | None, Is(
+        "part of the calibrated gap that refitting the base alone closes; it is counted for no effect", ""
+    )] = None  # fmt: skip
     by_phase: Annotated[GapByPhase | None, Is("what of it is beyond the noise")] = None
     closed_fraction: Annotated[ClosedFraction, Is("of all channels together, each in units of its noise")]
     closed_by_free_form: Annotated[float | None, Is("by a spline of equal freedom", "")] = None
@@ -127,10 +130,11 @@ class Gap(Part):
 
 
 class Constants(Part):
-    """The base model's constants."""
+    """The base model's constants, by the fit that they are from."""
 
-    without: Annotated[dict[str, Quantity], Is("fitted without the effects")]
-    better: Annotated[dict[str, Quantity], Is("fitted with them"), Field(alias="with")]
+    calibrated: Annotated[Mapping[str, Quantity], Is("as calibration.json has them without adopted effects")] = {}
+    without: Annotated[dict[str, Quantity], Is("of the refitted base: to all channels together, without the effects")]
+    better: Annotated[dict[str, Quantity], Is("to all channels together, with them"), Field(alias="with")]
 
 
 class ChiSquare(Part):
@@ -201,6 +205,9 @@ class Diagnosis(Product):
         "of every effect that is not in the model: it stays below that with 95 % probability; without a value where "
         "the channels would not show it at any size"
     )]  # fmt: skip
+    too_small: Annotated[Mapping[str, float], Is(
+        "what is there but too small to matter, by effect or site: its part of what goes through its equation", ""
+    )] = {}  # fmt: skip
     doubts: Annotated[tuple[Words, ...], Is(
         "why the name that is likeliest is not the whole story, where the verdict is unknown beside it"
     )] = ()  # fmt: skip

@@ -79,6 +79,13 @@ def headline(product: Diagnosis) -> str:
     posterior = product.posterior
     label = product.effects[0].name if product.effects else product.verdict
     others = [f"{n} ({posterior[n]:.2f})" for n in product.set90 if n != label]
+    if product.verdict == "none" and product.too_small:
+        parts = [
+            f"{name}{f' ({posterior[name]:.2f})' if name in posterior else ''}, {_percent(part)} of what goes through "
+            "its equation"
+            for name, part in product.too_small.items()
+        ]
+        return f"Something is there, but too small to matter: {listed(parts)}."
     if product.verdict == "none":
         likeliest = max(posterior, key=lambda name: (posterior[name], name))
         if likeliest == "none" or posterior[likeliest] < LIKELIER * posterior["none"]:
@@ -103,6 +110,10 @@ def headline(product: Diagnosis) -> str:
     return f"The model lacks {names}{doubt}{either}."
 
 
+def _percent(part: float) -> str:
+    return f"{100.0 * part:.2g} %"
+
+
 def doubts_sentences(product: Diagnosis) -> list[str]:
     """Why a name does not stand by itself, that the verdict is at a limit, and that the search did not converge."""
     out: list[str] = []
@@ -111,6 +122,11 @@ def doubts_sentences(product: Diagnosis) -> list[str]:
         out.append(joined("", [f"{names} alone is not the whole story: ", joined("; ", product.doubts), "."]))
     if product.at_limit:
         out.append(f"This verdict is at a limit, where the last digits decide: {product.at_limit}.")
+    if product.verdict != "none":
+        out += [
+            f"{name} is there, but too small to matter: {_percent(part)} of what goes through its equation."
+            for name, part in product.too_small.items()
+        ]
     if product.not_converged:
         out.append(joined("", ["The search did not converge: ", product.not_converged, "."]))
     return out
