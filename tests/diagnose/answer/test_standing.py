@@ -46,12 +46,9 @@ def test_within_what_tables_know_a_sign_is_no_matter() -> None:
     assert (lost(active), believed_share(active)) == (0.0, 1.0)
 
 
-def test_what_is_hard_to_believe_has_at_most_half_of_its_probability() -> None:
-    shares = [believed_share(effect("tank_heat").at(power=power)) for power in (2900.0, 3001.0, 4500.0, 12e3)]
-    assert shares[0] == 1.0
-    assert shares[1] == pytest.approx(0.5, abs=0.01)
-    assert shares[1] > shares[2] > shares[3]
-    assert shares[3] < 0.01
+def test_what_is_hard_to_believe_keeps_less_the_larger_it_is() -> None:
+    shares = [believed_share(effect("tank_heat").at(power=power)) for power in (2900.0, 3300.0, 6000.0, 12e3)]
+    assert shares == pytest.approx([1.0, 1.0 / 1.21, 0.25, 1.0 / 16.0])
 
 
 def too_large() -> Candidate:

@@ -10,7 +10,7 @@ from math import exp
 
 import numpy as np
 
-from hfanalysis.diagnose.answer.plausible import IMPOSSIBLE, lost
+from hfanalysis.diagnose.answer.plausible import IMPOSSIBLE, excess, impossible
 from hfanalysis.diagnose.answer.posterior import kind
 from hfanalysis.engine.effect import Active
 from hfanalysis.inference.candidate import Candidate
@@ -66,10 +66,11 @@ def missed(found: Fit, observed: Observed) -> tuple[str, ...]:
 
 
 def believed_share(active: Active) -> float:
-    """Part [-] of its probability that a name keeps by its size: a half where that is as large as can be believed, and
-    less beyond; next to nothing where it is impossible."""
-    cost = lost(active)
-    return 1.0 if cost <= 0.0 else 1.0 / (1.0 + exp(min(cost, IMPOSSIBLE) - 1.0))
+    """Part [-] of its probability that a name keeps by its size: all that can be believed, less beyond as the square
+    of how far; next to nothing where it is impossible."""
+    if impossible(active):
+        return exp(-IMPOSSIBLE)
+    return 1.0 / max(excess(active), 1.0) ** 2
 
 
 def share_of(found: Candidate, observed: Observed) -> float:
