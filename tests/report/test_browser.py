@@ -410,7 +410,7 @@ def test_without_script_the_charts_are_there_and_the_controls_are_not(tab: Page,
     count = "[...document.querySelectorAll('{}')].filter((e) => e.checkVisibility()).length"
     with tab.without_script():
         tab.open(path, width=1200)
-        assert tab.ask(count.format("figure svg.chart .line")) > 20
+        assert tab.ask(count.format("figure svg.chart .line")) > 10
         assert tab.ask(count.format(".bar, .key, .save-csv")) == 0
 
 

@@ -143,10 +143,19 @@ Pdf = Annotated[bool, typer.Option("--pdf", help="Also print the page to PDF; ne
 Plots = Annotated[bool, typer.Option("--plots", help="Also write every chart as PNG and CSV to TEST/plots/.")]
 
 
-def _report(request: Request, pdf: Pdf = False, plots: Plots = False) -> None:
+Summary = Annotated[bool, typer.Option("--summary", help="Also write the first screen as one page: summary.pdf (A4).")]
+Letter = Annotated[bool, typer.Option("--letter", help="With --summary: on Letter paper.")]
+
+
+def _report(
+    request: Request, pdf: Pdf = False, plots: Plots = False, summary: Summary = False, letter: Letter = False
+) -> None:
     from hfanalysis.cli import exports
 
-    exports.report(request, pdf, plots)
+    if letter and not summary:
+        raise InputError("found --letter alone; expected it with --summary")
+    size = ("letter" if letter else "a4") if summary else None
+    exports.report(request, pdf, plots, size)
 
 
 Cure = Annotated[bool, typer.Option("--apply", help="Write the cures of what is found into test.toml, after asking.")]

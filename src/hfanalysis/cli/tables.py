@@ -156,10 +156,11 @@ def new_table(*columns: str, title: str) -> Table:
 def _quantities(found: Mapping[str, Quantity], title: str, console: Console, known: Sequence[Doubt]) -> Table:
     """The quantities in as many columns as the terminal has room for: columns go before digits do."""
     kept = ["value", "± std", *["95 % interval"] * (console.width >= _ROOMY), "unit", "verdict"]
-    table = _of_columns(found, title, console.width >= _WIDE, kept, known)
-    for name in ("verdict", "± std"):
-        if _too_wide(table, console):
-            kept.remove(name)
+    wide = console.width >= _WIDE
+    table = _of_columns(found, title, wide, kept, known)
+    for name in ("", "95 % interval", "verdict", "± std"):
+        if _too_wide(table, console) and (name in kept or (not name and wide)):
+            kept = [column for column in kept if column != name]
             table = _of_columns(found, title, False, kept, known)
     if _too_wide(table, console):
         table.columns[0].no_wrap = False
