@@ -28,7 +28,7 @@ RESIDUAL = {
 
 def write_histories(path: Path, found: Diagnosed, provenance: Mapping[str, Any]) -> None:
     """Groups ``sources/SITE`` {time [s after the opening], mean, low90, high90 [the source's unit]},
-    ``residuals/CHANNEL`` {time [s], before, after, noise_std [SI]}; all (n,).
+    ``residuals/CHANNEL`` {time [s], measured, before, after, noise_std [SI]}; all (n,).
 
     A second source at a site is ``sources/SITE 2``.
     """
@@ -49,6 +49,7 @@ def write_histories(path: Path, found: Diagnosed, provenance: Mapping[str, Any])
             burning = ~channel.resting
             columns = {
                 "time": channel.time[burning],
+                "measured": channel.value[burning],
                 "before": before[channel.name][burning],
                 "after": after[channel.name][burning],
                 "noise_std": channel.noise_std[burning],

@@ -14,10 +14,10 @@ from hfanalysis.flight.motor import Motor, Points, points_of
 from hfanalysis.flight.rocketpy_script import Scripted, script
 from hfanalysis.measured_flight.product import MeasuredFlight
 from hfanalysis.measured_flight.stability import StabilityRuns, propellant_center
+from hfanalysis.performance.thrust import OUT, motor_class
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.rocket.aerodynamics import Shape
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.validate.thrust import OUT, motor_class
 
 SLENDER = 25.0
 """Length over diameter [-] of a rocket whose geometry is not known; only RocketPy's inertia follows it."""

@@ -16,6 +16,9 @@ from typing import Any
 
 import h5py
 
+FORMAT = ("v108", "v110")
+"""HDF5 versions that MATLAB and older tools read."""
+
 
 class _Deferring(io.RawIOBase):
     """A file for HDF5 to write to; after the first failure all goes nowhere, and ``failure`` says what it was."""

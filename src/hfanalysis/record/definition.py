@@ -63,6 +63,7 @@ class Test(Section):
     source: Literal["measured", "replica", "synthetic"] = "measured"
     description: Text = ""
     stand: Name | None = None
+    engine: Text = ""
 
 
 _EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
