@@ -139,6 +139,14 @@ def test_a_cell_that_stands_at_its_rest_while_the_chamber_still_pushes_is_at_its
     assert 8.0 < told[1].span[0] < 9.5
 
 
+def test_a_cell_half_of_whose_noise_at_rest_is_missing_is_at_its_lower_end(tmp_path: Path) -> None:
+    columns = changed("thrust", lambda t, v: np.maximum(v, 14.0))
+    told = [f for f in found(tmp_path, columns) if f.kind == "railed"]
+    assert [(f.channels, f.verdict) for f in told] == [(("thrust",), "unusable")] * 2
+    assert told[0].span[1] < 0.02
+    assert told[1].span[0] > 7.9
+
+
 def test_a_cell_that_is_quiet_at_rest_is_at_no_end(tmp_path: Path) -> None:
     assert "railed" not in {f.kind for f in found(tmp_path, with_a_tail())}
 

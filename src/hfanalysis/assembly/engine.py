@@ -7,7 +7,6 @@ from math import isfinite, pi
 
 from hfanalysis.assembly import rocket
 from hfanalysis.assembly.burnt_gas import combustion_of
-from hfanalysis.design import sizing, steady
 from hfanalysis.engine import unsteady
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.grain import Grain
@@ -16,6 +15,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
+from hfanalysis.steady_design import sizing, steady
 from hfanalysis.thermo import atmosphere, combustion
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
