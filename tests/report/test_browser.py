@@ -185,7 +185,7 @@ def test_the_diagnosis_is_read_and_drawn_without_a_complaint(opened: Page) -> No
     unfold(opened)
     said = opened.ask(f"{SECTION}.innerText")
     assert "Missing from the model, with probability: heat into the tank (0.83)." in said
-    assert "m 0.75 without, 1.08 with the effects." in said
+    assert "m 0.75 refitted, 1.08 with the effects." in said
     assert opened.ask(f"{SECTION}.querySelectorAll('figure .line.p_tank').length") > 0
     bars = opened.ask(
         f"[...{SECTION}.querySelectorAll('.share')].map((b) => b.lastChild.getBoundingClientRect().width)"

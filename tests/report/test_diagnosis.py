@@ -166,7 +166,7 @@ def test_the_arms_of_the_proof_are_figures_or_words(tmp_path: Path) -> None:
 
 def test_m_is_told_without_and_with(tmp_path: Path) -> None:
     found = told(laid_out(tmp_path, DIAGNOSIS))
-    assert "m 0.75 without, 1.08 with the effects." in found
+    assert "m 0.75 refitted, 1.08 with the effects." in found
     table = found[found.index('aria-label="Constants: table"') :]
     assert table.index("polytropic exponent") < table.index("effective area of the injector")
 

@@ -179,7 +179,7 @@ def _of_columns(
     for name, quantity in found.items():
         text = shown(quantity)
         told = f"{text.verdict} {_marks(marked(quantity, known)[0])}".strip()
-        cells = {
+        cells: dict[str, str | Text] = {
             "value": text.value,
             "± std": text.std,
             "95 % interval": text.interval,

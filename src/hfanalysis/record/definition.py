@@ -178,7 +178,7 @@ def _no_definition(tests: Path, path: Path) -> str:
     if path.parent.is_dir():
         return f"{path}: not found; expected the test's definition there beside its log"
     names = sorted(p.parent.name for p in tests.glob("*/test.toml"))
-    known = f"; expected one of {', '.join(names)}" if names else f"; {tests} holds no test"
+    known = f"; expected one of {', '.join(names)}" if names else f"; {tests} holds no test (hfa demo writes two)"
     return f"test {path.parent.name!r}: no such folder in {tests}{near(path.parent.name, names) or known}"
 
 

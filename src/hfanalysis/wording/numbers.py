@@ -58,6 +58,8 @@ NAMES: dict[str, str] = {
     "burn_time_5_percent": "burn time, by 5 % of the thrust",
     "action_time": "action time, by 10 % of the thrust",
     "impulse_liquid": "impulse of the liquid phase",
+    "specific_impulse_liquid": "specific impulse of the liquid phase",
+    "pressure_lag": "lag of the chamber pressure behind the thrust",
     "impulse_vapor": "impulse of the vapor phase",
     "impulse_nitrogen": "impulse from nitrogen on",
     "tail_impulse": "impulse after the liquid",

@@ -11,10 +11,12 @@ from hfanalysis.arrays import Array
 from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.reconstruction import Reconstruction
+from hfanalysis.products.diagnosis import Diagnosis
+from hfanalysis.products.reconstruction import AXIS, Reconstruction
 from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
+from hfanalysis.report.beside_names import sentences
 from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.time_charts import broken, over_time
@@ -50,12 +52,24 @@ def render(material: Material) -> Iterator[Block]:
     for name, title, axis, style in _CHARTS if found.variant != "a" else _CHARTS[:2]:
         yield _chart(material, table, name, title, axis, style)
     yield _law(found, material.get(Calibration))
+    diagnosis = material.get(Diagnosis)
+    if diagnosis is not None:
+        for said in sentences(found, _beside(material, table), diagnosis):
+            yield html.paragraph(said[0].upper() + said[1:])
+
+
+def _beside(material: Material, table: Table) -> dict[str, Array]:
+    """Histories of the reconstruction, and the chamber's pressure at their times."""
+    whole = material.table("performance")
+    found = {name: table[name].values for name in table}
+    pressure = np.interp(found["time"], whole["time"].values, whole["p_chamber"].values)
+    return found | {"p_chamber": pressure}
 
 
 def _chart(material: Material, table: Table, name: str, title: str, axis: tuple[str, str], style: str) -> Chart | None:
     if name not in table:
         return None
-    time = table["time"].values
+    time = table[AXIS].values
     told = table["told"].values > 0.5 if name in ("of_ratio", "regression_rate") else np.ones(time.size, dtype=bool)
 
     def where(values: Array) -> Array:
@@ -84,7 +98,7 @@ def _law(found: Reconstruction, calibration: Calibration | None) -> Markup | Non
         return html.paragraph(f"{said}.")
     agree = _overlap(n, fitted)
     words = "agrees with" if agree else "does not agree with"
-    rests = "" if agree else ": one rests on the fuel burnt and one c* efficiency, the other on the law and ideal gas"
+    rests = "" if agree else ": one rests on the fuel and one c* efficiency that drifts, the other on ideal combustion"
     return html.paragraph(f"{said}; that {words} {_said(fitted)}, fitted to burn time and chamber pressure{rests}.")
 
 
