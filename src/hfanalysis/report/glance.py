@@ -117,7 +117,7 @@ def _faults(doubts: list[Doubt]) -> str:
         kinds = by_channel.setdefault(_whose(doubt), [])
         if (kind := KINDS.get(doubt.finding.kind, doubt.finding.kind)) not in kinds:
             kinds.append(kind)
-    told = [f"{whose}: {listed(kinds[:_MOST_NAMED])}" for whose, kinds in by_channel.items()]
+    told = [f"{whose} ({listed(kinds[:_MOST_NAMED])})" for whose, kinds in by_channel.items()]
     more = len(told) - _MOST_NAMED
     rest = [f"{_count(more)} more"] if more > 0 else []
     return capitalised(listed([*told[:_MOST_NAMED], *rest]))
