@@ -94,7 +94,7 @@ def test_a_stand_that_is_not_stated_is_known_by_its_tank(tmp_path: Path) -> None
     hardware = '[tank]\nvolume = "16.5 L"\n'
     path = tmp_path / "raw_tests" / "F" / "test.toml"
     path.write_text(text + hardware, encoding="utf-8")
-    assert stand_of(load_definition(path)) == "not stated: the tank of 16.5 L"
+    assert stand_of(load_definition(path)) == "not stated: the tank of 16.5 L (synthetic)"
 
 
 def test_what_belongs_to_an_injector_is_not_pooled_over_two_of_them(tmp_path: Path) -> None:

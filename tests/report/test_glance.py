@@ -40,9 +40,19 @@ _DEAD = {
     "means": "the sensor is dead",
     "cure": None,
 }
+_STOOD_STILL = {
+    **_DEAD,
+    "kind": "stuck",
+    "channels": ["p_tank", "p_run", "p_chamber", "p_purge", "thrust", "m_tank"],
+    "start": 104.83,
+    "end": 104.84,
+    "evidence": "14 rows repeat the one before them exactly",
+    "means": "the logger stood still",
+    "cure": "[[exclude]]",
+}
 DEAD: dict[str, Any] = {
     **HEALTH,
-    "channels": {"p_chamber": {"verdict": "unusable", "findings": [_DEAD]}},
+    "channels": {"p_chamber": {"verdict": "unusable", "findings": [_STOOD_STILL, _DEAD]}},
     "between": [],
     "quoted": {},
 }
@@ -68,8 +78,13 @@ def test_the_four_sentences_of_a_whole_test(tmp_path: Path) -> None:
     [
         ({"segments": {**SEGMENTS, "misfire": True}}, "Result", "misfire"),
         ({"segments": {**SEGMENTS, "kind": "cold_flow"}}, "Result", "did not burn"),
-        ({"health": DEAD}, "Measurement", "Chamber pressure: dead: what is unusable is left out"),
-        ({"health": HEALTH}, "Measurement", "Thrust: zero off and thrust and chamber pressure: scale off"),
+        (
+            {"health": DEAD},
+            "Measurement",
+            "Chamber pressure (dead and stuck): what is unusable is left out",
+        ),
+        ({"health": DEAD}, "Next", "Repair or replace the sensor of chamber pressure before the next test."),
+        ({"health": HEALTH}, "Measurement", "Thrust (zero off) and thrust and chamber pressure (scale off)"),
         ({"diagnosis": NOTHING}, "Model", "what they cannot show may be"),
         ({"diagnosis": NOTHING}, "Next", "a test of another load"),
     ],
@@ -132,7 +147,7 @@ def test_numbers_stand_beside_those_of_last_time(tmp_path: Path) -> None:
     assert "HF9 12000 N s, +53 %" in text
     assert "HF9 2430 N, the same" in text
     assert re.search(r"Last time on this stand: HF9 of 2024-05-01\. Ci was 0\.2600\s*, now \+13 %\.", text)
-    assert "Sensors then: Thrust: zero off" in text
+    assert "Sensors then: Thrust (zero off)" in text
     assert "Last time" not in page(made)
 
 

@@ -111,16 +111,27 @@ def measurement(material: Material) -> str:
 
 
 def _faults(doubts: list[Doubt]) -> str:
-    """Whose channels, and what is wrong with them."""
+    """Whose channels, and what is wrong with them: what is lost throughout first, moments of a log last."""
     by_channel: dict[str, list[str]] = {}
-    for doubt in doubts:
-        kinds = by_channel.setdefault(listed(list(map(called, doubt.channels))), [])
+    for doubt in sorted(doubts, key=_weight):
+        kinds = by_channel.setdefault(_whose(doubt), [])
         if (kind := KINDS.get(doubt.finding.kind, doubt.finding.kind)) not in kinds:
             kinds.append(kind)
-    told = [f"{whose}: {listed(kinds[:_MOST_NAMED])}" for whose, kinds in by_channel.items()]
+    told = [f"{whose} ({listed(kinds[:_MOST_NAMED])})" for whose, kinds in by_channel.items()]
     more = len(told) - _MOST_NAMED
     rest = [f"{_count(more)} more"] if more > 0 else []
     return capitalised(listed([*told[:_MOST_NAMED], *rest]))
+
+
+def _weight(doubt: Doubt) -> tuple[bool, bool]:
+    """What comes first: what concerns the whole test, and of that what is unusable."""
+    return not doubt.finding.whole, doubt.finding.verdict != UNUSABLE
+
+
+def _whose(doubt: Doubt) -> str:
+    """A few channels by name, of many how many."""
+    names = list(map(called, doubt.channels))
+    return listed(names) if len(names) <= _MOST_NAMED else f"{_count(len(names))} channels"
 
 
 def _count(number: int) -> str:
@@ -133,7 +144,10 @@ def model(material: Material) -> str:
     if included(material):
         return included(material)
     if product is None:
-        return f"What the model lacks is not known: {material.why_not('diagnosis')}."
+        test = material.definition.test.id
+        if "calibration" in material.absent:
+            return "What the model lacks cannot be told by the model: this test has no calibration to start from."
+        return f"What the model lacks is not known yet: hfa diagnose {test} looks for it."
     if product.effects and product.constants is not None:
         return _named(product)
     if product.constants is None:
@@ -178,6 +192,9 @@ def following(material: Material) -> str:
     test = material.definition.test.id
     if not material.fired:
         return "Look at the log: if the valve opened, state when, in test.toml."
+    if lost := _lost(material):
+        without = ", without which this one has no calibration" if "calibration" in material.absent else ""
+        return f"Repair or replace the sensor of {lost} before the next test{without}."
     if cure:
         return f"Write the cure of {cure} into test.toml (hfa health {test} --apply), if the finding is right."
     if included(material):
@@ -194,10 +211,17 @@ def following(material: Material) -> str:
     return "Nothing has to be measured again for the model; a test of another load would try it harder."
 
 
+def _lost(material: Material) -> str:
+    """The channels that are unusable throughout and that no line of test.toml cures."""
+    doubts = [d for d in material.reasons if d.finding.whole and d.finding.verdict == UNUSABLE and not d.trust]
+    names = [_whose(doubt) for doubt in doubts if not doubt.finding.cure]
+    return listed(names[:_MOST_NAMED]) if names else ""
+
+
 def _cure(material: Material) -> str:
-    """The channels of the first finding that a line of test.toml cures."""
-    doubt = next((doubt for doubt in material.reasons if doubt.finding.cure and not doubt.trust), None)
-    return listed(list(map(called, doubt.channels))) if doubt is not None else ""
+    """The channels of the weightiest finding that a line of test.toml cures."""
+    cured = [doubt for doubt in material.reasons if doubt.finding.cure and not doubt.trust]
+    return _whose(min(cured, key=_weight)) if cured else ""
 
 
 class Against(NamedTuple):

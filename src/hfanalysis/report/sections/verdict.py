@@ -39,18 +39,18 @@ def render(material: Material) -> Iterator[Block]:
     yield _sentences(material)
     yield _numbers(key_numbers(material), material)
     yield Markup("</div>")
-    for stage, reason in absence_reasons(material).items():
-        absent = Markup('<p class="absent"><strong>{}:</strong> {}</p>')
-        yield absent.format(stage, html.switchable(reason))
     yield Markup('<div class="beside">')
     yield from glance_charts(material)
     yield Markup("</div>")
     yield _last(material)
+    for stage, reason in absence_reasons(material).items():
+        absent = Markup('<p class="absent"><strong>{}:</strong> {}</p>')
+        yield absent.format(stage, html.switchable(reason))
 
 
 def glance_charts(material: Material) -> list[Chart]:
     """Thrust and chamber pressure; where the log lacks one, the tank's pressure, or its mass."""
-    drawn = (_chart(material, name) for name in _DRAWN if name in material.log)
+    drawn = (_chart(material, name) for name in _DRAWN if name in material.log and material.log[name].good.any())
     return [chart for chart in drawn if chart is not None][:2]
 
 
