@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -77,7 +77,7 @@ class Plots:
                 names.setdefault(round(event.value, 1), []).append(name)
         for at, together in names.items():
             axes.axvline(at, color="0.6", linewidth=0.8, zorder=0)
-            place = {"xycoords": ("data", "axes fraction"), "rotation": 35, "fontsize": 8}
+            place: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "rotation": 35, "fontsize": 8}
             axes.annotate(", ".join(together), (at, 1.01), **place)
         axes.set_xlim(-1.0, max(names, default=10.0) + 1.0)
 
