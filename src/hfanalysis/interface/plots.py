@@ -59,7 +59,7 @@ class Plots:
         self._phases(axes)
         axes.set_xlabel("time after the valve opening [s]")
         axes.set_ylabel(f"{what} [{scale(str(log[names[0]].attrs['units'])).unit}]")
-        axes.legend(loc="center right")
+        axes.legend(loc="upper right")
         axes.set_title(self._firing.name + self._generated(), loc="left", pad=42.0)
         return figure
 

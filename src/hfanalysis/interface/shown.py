@@ -12,7 +12,7 @@ from hfanalysis.stages import ORDER
 if TYPE_CHECKING:
     from hfanalysis.interface.firing import Firing
 
-KEY = ("C_i", "K_loss", "m", "regression_rate_reference", "oxidizer_mass", "t_feed", "t_v")
+KEY = ("C_i", "K_loss", "m", "regression_rate_reference", "oxidizer_mass")
 """Of the calibration, what is shown first."""
 
 Row = tuple[str, str, str, str]
@@ -20,8 +20,10 @@ Row = tuple[str, str, str, str]
 
 def text(firing: Firing) -> str:
     """On a few lines."""
-    rows = [f"  {name:<26} {value:>12} {unit:<8} {verdict}".rstrip() for name, value, unit, verdict in _rows(firing)]
-    return "\n".join([_head(firing), f"  made: {_made(firing)}", *rows])
+    rows = list(_rows(firing))
+    widths = [max((len(row[i]) for row in rows), default=0) for i in range(4)]
+    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return "\n".join([_head(firing), f"made: {_made(firing)}", *lines])
 
 
 def html(firing: Firing) -> str:
