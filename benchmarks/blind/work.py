@@ -57,8 +57,9 @@ def settings_of(job: Job, parameters: Mapping[str, Any]) -> dict[str, Any]:
 def diagnose(job: Job) -> Result:
     """Bring one case from its log to ``diagnosis.json``, everything anew, so that the time is that of all of it.
 
-    Raises AnalysisError where the diagnosis refuses the test.
+    Raises AnalysisError where the diagnosis refuses the test, NotConvergedError where its search did not converge.
     """
+    from hfanalysis.diagnose.naming.shortfall import assert_converged
     from hfanalysis.stages.open_test import open_test
     from hfanalysis.stages.runner import run_to
 
@@ -71,6 +72,7 @@ def diagnose(job: Job) -> Result:
         began.setdefault(text, perf_counter())
 
     started, used = perf_counter(), process_time()
-    run_to("diagnose", open_test(job.root, job.id, job.products, progress=notice, settings=settings), force=True)
+    done = run_to("diagnose", open_test(job.root, job.id, job.products, progress=notice, settings=settings), force=True)
     ended = perf_counter()
+    assert_converged(done.read_json("diagnosis.json").get("not_converged"))
     return Result(ended - started, ended - began.get("diagnose", started), settings, process_time() - used)

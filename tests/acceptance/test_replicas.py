@@ -302,6 +302,24 @@ def test_with_what_is_missing_every_channel_of_the_whole_engine_is_nearer(
     assert abs(model["value"] - measured["value"]) < 2.0 * np.hypot(measured["std"], model["std"])
 
 
+def test_one_effect_that_is_not_the_whole_story_is_refused_and_what_was_found_one_by_one_stands(
+    tmp_path: Path, products: dict[str, Any]
+) -> None:
+    """Heat of 0.9 kW alone: with it the engine misses p_run by bars, and bends C_i, m and n to their bounds."""
+    shutil.copytree(ROOT / "raw_tests" / "HF5", tmp_path / "raw_tests" / "HF5")
+    (tmp_path / "engines").mkdir()
+    adopted = tmp_path / "engines" / "HF5.effects.toml"
+    adopted.write_text('[tank_heat]\npower = "0.9 +/- 0.15 kW"\n', encoding="utf-8")
+    found = json.loads((_run(tmp_path, "HF5", "calibrate") / "calibration.json").read_text())
+    base = products["HF5"]["calibration"]
+    assert found["C_i"]["value"] == pytest.approx(base["C_i"]["value"], rel=0.01)
+    assert found["n"]["value"] == pytest.approx(base["n"]["value"], abs=0.05)
+    assert "one_by_one" not in found
+    (said,) = (w for w in found["warnings"] if "one by one, not together" in str(w))
+    for part in ("p_run is missed by", "times its noise", "m is on its bound", "C_i would be 0.13"):
+        assert part in str(said), part
+
+
 @pytest.mark.parametrize("name", ["HF4", "HF5"])
 def test_replicas_are_called_replicas(products: dict[str, Any], name: str) -> None:
     assert all(products[name][p]["source"] == "replica" for p in ("segments", "calibration", "validation"))

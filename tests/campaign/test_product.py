@@ -35,7 +35,7 @@ def test_tests_that_differ_are_said_to(product: Campaign) -> None:
     assert c_i.agreement.verdict.startswith("disagree")
     assert c_i.between > 0.02
     assert "disagree" in agreement(c_i)
-    assert "(< 0.001 by chance)" in agreement(c_i)
+    assert "(p < 0.001; below 0.01 they do not)" in agreement(c_i)
 
 
 def test_an_effect_has_its_probability_in_every_test_and_its_size_where_it_is_named(product: Campaign) -> None:

@@ -70,7 +70,7 @@ def test_what_is_named_comes_first_with_size_twins_and_what_would_decide(tmp_pat
     found = told(laid_out(tmp_path, DIAGNOSIS))
     table = found[found.index('aria-label="Probabilities: table"') :].partition("</table>")[0]
     names = re.findall(r'<th scope="row"><span>([^<]+)</span>', unescape(table))
-    assert names == ["heat into the tank", "heat from the tank's wall", "nothing", "something without a name"]
+    assert names == ["heat into the tank", "heat from the tank's wall", "something without a name", "nothing"]
     assert "2 other names are below 0.005 each" in table
     assert '<rect width="83.0" height="10"/>' in table
     first = unescape(row(table, "<span>heat into the tank"))
@@ -166,7 +166,7 @@ def test_the_arms_of_the_proof_are_figures_or_words(tmp_path: Path) -> None:
 
 def test_m_is_told_without_and_with(tmp_path: Path) -> None:
     found = told(laid_out(tmp_path, DIAGNOSIS))
-    assert "m 0.75 without, 1.08 with the effects." in found
+    assert "m 0.75 refitted, 1.08 with the effects." in found
     table = found[found.index('aria-label="Constants: table"') :]
     assert table.index("polytropic exponent") < table.index("effective area of the injector")
 

@@ -23,6 +23,7 @@ from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.beside_report import joint_of
 from hfanalysis.calibrate.conditions import conditioned, conditions
 from hfanalysis.calibrate.evidence import burn_time_of
+from hfanalysis.calibrate.joint_refused import reasons
 from hfanalysis.calibrate.regression import judge_regression, rate_at
 from hfanalysis.calibrate.tank import PEAK_OVER
 from hfanalysis.calibrate.verdicts import PHYSICAL_M
@@ -65,8 +66,8 @@ def fitted_together(subject: Subject, effects: Sequence[Active], one_by_one: Cal
     """The content of calibration.json, its constants fitted together with ``effects`` in the model.
 
     ``subject``: the test with its base calibration, from which the fit starts; ``one_by_one``: the calibration with the
-    effects acting, whose other entries stay. Raises AbsentError where the test has no engine that runs, or no chamber
-    pressure to compare.
+    effects acting, whose other entries stay. Raises AbsentError where the test has no engine that runs, no chamber
+    pressure to compare, or the fit is none to go by (:func:`hfanalysis.calibrate.joint_refused.reasons`).
     """
     hypothesis, observed = subject.compared(any_table=False)
     if "p_chamber" not in observed.names:
@@ -75,6 +76,8 @@ def fitted_together(subject: Subject, effects: Sequence[Active], one_by_one: Cal
     found = Bench(observed).settled(replace(hypothesis, engine=engine))
     if found is None:
         raise AbsentError("the engine's model with the adopted effects cannot be run")
+    if why := reasons(found, observed, one_by_one, subject.definition):
+        raise AbsentError("; ".join(why) + ". With these effects alone the model is far from this test: diagnose it")
     return _Constants(subject, observed, found, one_by_one).product()
 
 

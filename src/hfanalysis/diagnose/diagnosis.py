@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hfanalysis.diagnose.answer.at_limit import at_limit
 from hfanalysis.diagnose.answer.plausible import judged
 from hfanalysis.diagnose.answer.posterior import poor_fit, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
+from hfanalysis.diagnose.answer.standing import acting_in
+from hfanalysis.diagnose.answer.too_small import without_the_small
 from hfanalysis.diagnose.answer.verdict import (
     Verdict,
-    acting_in,
     effects_product,
     likeliest_place,
     places,
@@ -25,6 +27,7 @@ from hfanalysis.diagnose.model_free import shown
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.polish import DEEPER
+from hfanalysis.diagnose.naming.shortfall import on_firm_ground
 from hfanalysis.diagnose.naming.slack import course_error
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.weak_form.spread import Spread
@@ -34,7 +37,7 @@ from hfanalysis.engine.effect import Effect
 from hfanalysis.inference import gap
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fade import abrupt
-from hfanalysis.inference.fitting.hypothesis import TABLE
+from hfanalysis.inference.fitting.hypothesis import TABLE, Hypothesis
 from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.subject import Subject
 from hfanalysis.products.diagnosis import (
@@ -76,10 +79,19 @@ def diagnose(
     hypothesis, observed = subject.compared()
     catalogue = Catalogue(_visible(effects, observed), subject.stated())
     found = name_effects(hypothesis, observed, catalogue, progress, settings)
-    verdict = verdict_of(found)
+    found, why = on_firm_ground(found)
+    verdict = verdict_of(found, {name: effect.twins for name, effect in catalogue.effects.items()})
+    verdict, small = without_the_small(verdict, places(verdict, found), found)
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
-    product = _product(found, verdict, proof, catalogue).but(called=plain_names(effects))
+    product = _product(found, verdict, proof, catalogue)
+    product = product.but(
+        called=plain_names(effects),
+        gap=_with_calibrated(product.gap, found, hypothesis, subject),
+        constants=None if product.constants is None else product.constants.but(calibrated=_calibrated(subject)),
+        not_converged=why,
+        too_small=small,
+    )
     sentences = story(product)
     if poor_fit(found.named.leftover):
         sentences += shown(subject).sentences
@@ -90,6 +102,36 @@ def diagnose(
 def plain_names(effects: Mapping[str, Effect]) -> dict[str, str]:
     """What people call each effect, where it says so."""
     return {name: effect.plain_name for name, effect in effects.items() if effect.plain_name}
+
+
+def _with_calibrated(found: Gap, naming: Naming, hypothesis: Hypothesis, subject: Subject) -> Gap:
+    """The gap with that of the model as it is calibrated, m among its constants, and what refitting the base closes of
+    it."""
+    m, observed = None if subject.calibration is None else subject.calibration.m.value, naming.bench.observed
+    free = tuple(
+        replace(f, center=m, least=-np.inf, most=np.inf) if f.name == "polytropic_exponent" and m is not None else f
+        for f in hypothesis.free
+    )
+    try:
+        ran = gap.as_calibrated(replace(hypothesis, free=free), observed)
+        gaps = [gap.total_gap(one, observed) for one in (ran, naming.base.fit)]
+        calibrated = gap.root_mean_square(ran, observed)
+    except (ValueError, ArithmeticError):
+        return found
+    return found.but(calibrated=calibrated, closed_by_refitting=gap.closed(gaps[0], gaps[1]))
+
+
+def _calibrated(subject: Subject) -> dict[str, Quantity]:
+    """The constants that the base model has in calibration, by the names that its fits have."""
+    product, definition = subject.calibration, subject.definition
+    if product is None:
+        return {}
+    known = {"loss_factor": product.K_loss, "m": product.m, "a": product.a, "n": product.n}
+    known["oxidizer_mass"] = product.oxidizer_mass
+    if definition.injector_area is not None and product.C_i.value is not None:
+        holes = definition.injector_area.value
+        known["area"] = Quantity(product.C_i.value * holes, "m^2", (product.C_i.std or 0.0) * holes)
+    return {name: q for name, q in known.items() if q.value is not None}
 
 
 def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Effect]:
@@ -114,12 +156,15 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         by_equation=equations,
         evidences=verdict.evidences,
         unknown_elsewhere=verdict.elsewhere,
-        tried=tuple(_tried(c, found) for c in (*found.singles, *found.sets, *found.unknown)),
+        tried=tuple(_tried(c, found, verdict.held_out) for c in (*found.singles, *found.sets, *found.unknown)),
         leftover=found.named.leftover,
         localisation=places(verdict, found),
         likeliest_place=likeliest_place(verdict, found, equations),
         gap=_gap(found.base, chosen, proof, observed),
         upper_limits=upper_limits(verdict, found, catalogue),
+        doubts=verdict.doubts,
+        unknown_beside=verdict.added if verdict.doubts else (),
+        at_limit=at_limit(verdict),
         twins=_twins(verdict, catalogue),
         not_it=() if poor_fit(found.named.leftover) else _not_it(verdict),
         decisive_measurements=_decisive(verdict, catalogue),
@@ -167,13 +212,14 @@ def _gap(base: Candidate, chosen: Candidate, proof: Proof, observed: Observed) -
     )
 
 
-def _tried(candidate: Candidate, found: Naming) -> Tried:
+def _tried(candidate: Candidate, found: Naming, held_out: Mapping[tuple[str, ...], float | None]) -> Tried:
     """A row of what was tried: its names, the log evidence beyond the base model's, and the form it was judged at."""
     return Tried(
         names=tuple(candidate.names),
         unknown=candidate.unknown,
         log_evidence=candidate.log_evidence - found.base.log_evidence,
         model_form_error=_errors(candidate),
+        held_out=held_out.get(candidate.key),
     )
 
 

@@ -28,5 +28,13 @@ EFFECT = Effect(
     term=_term,
     twins=("chamber_heat_loss",),
     decisive="the fuel's mass after a firing that is cut short, which fixes the fuel flow behind c*",
-    believable=Believable("deficit", 0.25, "an engine that burns at all gives three quarters", unit="%", factor=100.0),
+    believable=Believable(
+        "deficit",
+        0.25,
+        "an engine that burns at all gives three quarters",
+        unit="%",
+        factor=100.0,
+        least=-0.01,
+        least_why="gas gives no more than at equilibrium, which tables know to 1 %",
+    ),
 )

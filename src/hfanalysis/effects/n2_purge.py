@@ -111,6 +111,6 @@ EFFECT = Effect(
     twins=(),
     decisive="a flow meter, or the pressure of the nitrogen bottle over time",
     believable=Believable(
-        "area", 3e-5, "30 mm^2 are a bore of 6 mm, more than purge lines have", unit="mm^2", factor=1e6
+        "area", 6e-5, "60 mm^2 are a bore of 9 mm, that of a pipe of 3/8 inch", unit="mm^2", factor=1e6
     ),
 )

@@ -26,5 +26,13 @@ EFFECT = Effect(
     term=_term,
     twins=(),
     decisive="the nozzle's contour, or thrust and chamber pressure of a firing with cold gas",
-    believable=Believable("loss", 0.12, "a cone of 40 degrees half-angle loses 12 %", unit="%", factor=100.0),
+    believable=Believable(
+        "loss",
+        0.12,
+        "a cone of 40 degrees half-angle loses 12 %",
+        unit="%",
+        factor=100.0,
+        least=-0.01,
+        least_why="no nozzle gives more than the ideal one, whose coefficient is known to 1 %",
+    ),
 )

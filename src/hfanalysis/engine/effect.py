@@ -65,7 +65,7 @@ class Believable:
     """The largest size of a strength that a careful engineer believes of a small stand, and why no larger.
 
     ``parameter``: the strength it is of (of all of them where an effect has several of one kind); ``most`` [SI]; shown
-    in ``unit``, of which there are ``factor`` to one of SI.
+    in ``unit``, of which there are ``factor`` to one of SI. Below ``least`` [SI] it cannot be at all, by ``least_why``.
     """
 
     parameter: str
@@ -73,6 +73,8 @@ class Believable:
     why: str
     unit: str = ""
     factor: float = 1.0
+    least: float = -np.inf
+    least_why: str = ""
 
     def text(self, value: float) -> Text:
         """A size [SI] as people read it."""

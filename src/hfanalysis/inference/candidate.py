@@ -61,6 +61,11 @@ class Candidate:
         """Whether there is something in it that has no name."""
         return self.source is not None
 
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it is known by among others: its names, those of a source last, with its kind."""
+        return self.names if self.source is None else (*self.names, type(self.source).__name__)
+
     def history(self, observed: Observed) -> History:
         """Its source over time [s], in the unit of its place."""
         assert self.source is not None

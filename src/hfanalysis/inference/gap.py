@@ -8,16 +8,18 @@ either makes of no gap counts as none, before and after.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
+from hfanalysis.engine.unsteady import Burn
 from hfanalysis.inference.candidate import SHORT, attempted
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
-from hfanalysis.inference.fitting.predict import added, readings
+from hfanalysis.inference.fitting.predict import added, predict, readings
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.channel import ObservedChannel
 from hfanalysis.inference.observations.observed import Observed
@@ -35,7 +37,34 @@ LEAST_GAP = 0.5
 """Gap, in units of the noise, below which there is no fraction of it to close."""
 
 
-def residuals_of(found: Fit, observed: Observed) -> dict[str, Array]:
+class Ran(Protocol):
+    """A model that was run: a fit, or one with constants as they are."""
+
+    @property
+    def hypothesis(self) -> Hypothesis: ...
+    @property
+    def x(self) -> Array: ...
+    @property
+    def burnt(self) -> Burn: ...
+
+
+@dataclass(frozen=True)
+class AsStated:
+    """A hypothesis at the centers of its priors ``x``, and its burn."""
+
+    hypothesis: Hypothesis
+    x: Array
+    burnt: Burn
+
+
+def as_calibrated(hypothesis: Hypothesis, observed: Observed) -> AsStated:
+    """A hypothesis run with the constants that it starts from. Raises ValueError or ArithmeticError where it cannot
+    be."""
+    x = np.zeros(hypothesis.size)
+    return AsStated(hypothesis, x, predict(hypothesis, observed, x, tangents=False).burnt)
+
+
+def residuals_of(found: Ran, observed: Observed) -> dict[str, Array]:
     """Measured less model of every channel over its blocks (blocks,) [SI], less what offset and gain of the sensor
     explain."""
     read = readings(observed, found.burnt)
@@ -56,7 +85,7 @@ def _bias(channel: ObservedChannel, residual: Array, errors: tuple[float, float]
     return np.asarray(shapes @ np.linalg.solve(shapes.T @ weighted + prior, weighted.T @ residual))
 
 
-def root_mean_square(found: Fit, observed: Observed) -> dict[str, float]:
+def root_mean_square(found: Ran, observed: Observed) -> dict[str, float]:
     """Of :func:`residuals_of` from the full line on, by channel [SI]."""
     left = residuals_of(found, observed)
     return {c.name: float(np.sqrt(np.mean(left[c.name][flowing(c, observed)] ** 2))) for c in observed.channels}
@@ -89,7 +118,7 @@ def by_phase(found: Fit, observed: Observed) -> dict[str, dict[str, float]]:
     return out
 
 
-def total_gap(found: Fit, observed: Observed, where: dict[str, NDArray[np.bool_]] | None = None) -> float:
+def total_gap(found: Ran, observed: Observed, where: dict[str, NDArray[np.bool_]] | None = None) -> float:
     """The gap of all channels together [-], each in units of its noise, as far as it is no chance.
 
     ``where``: by channel, the blocks (blocks,) that count; all by default.
@@ -128,7 +157,7 @@ def held_out(before: Fit, after: Fit, fitted: Observed, observed: Observed) -> f
     part [-]; None where a fit cannot be run.
     """
     folds = [_fold(observed, fold) for fold in range(FOLDS)]
-    rest = [fitted.without({name: mask & _burning(fitted, name) for name, mask in inside.items()}) for inside in folds]
+    rest = [fitted.without(stretches(fitted, observed, fold)) for fold in range(FOLDS)]
     tried = [(fold, model) for fold in range(FOLDS) for model in (before, after)]
     fits = each(lambda t: attempted(t[1].hypothesis, rest[t[0]], t[1].x, SHORT), tried)
     found = [f for f in fits if f is not None]
@@ -136,6 +165,11 @@ def held_out(before: Fit, after: Fit, fitted: Observed, observed: Observed) -> f
         return None
     gaps = [total_gap(f, observed, folds[fold]) for f, (fold, _) in zip(found, tried, strict=True)]
     return closed(*np.sqrt(np.mean(np.reshape(gaps, (FOLDS, 2)) ** 2, axis=0)).tolist())
+
+
+def stretches(fitted: Observed, observed: Observed, fold: int) -> dict[str, NDArray[np.bool_]]:
+    """The blocks (blocks,) of each channel that a fit leaves out in turn: those of :data:`FOLDS` while it burns."""
+    return {name: mask & _burning(fitted, name) for name, mask in _fold(observed, fold).items()}
 
 
 def _fold(observed: Observed, fold: int) -> dict[str, NDArray[np.bool_]]:

@@ -81,6 +81,9 @@ class Tried(Part):
     unknown: Annotated[bool, Is("whether an unknown source is in it")]
     log_evidence: Annotated[float, Is("beyond the base model's", "")]
     model_form_error: Annotated[FormError, Is("at which it was judged")]
+    held_out: Annotated[float | None, Is(
+        "log probability of held-out data, by a fit to the rest, beyond the base model's; of what a claim rests on", ""
+    )] = None  # fmt: skip
 
 
 class ClosedFraction(Part):
@@ -111,9 +114,15 @@ class OtherTest(Part):
 class Gap(Part):
     """Measured less model without and with what was found."""
 
-    before: Annotated[Sizes, Is("rms without, by channel", "of the channel")]
+    calibrated: Annotated[Sizes | None, Is(
+        "rms with the constants as calibrated, by channel; null where no engine runs with them", "of the channel"
+    )] = None  # fmt: skip
+    before: Annotated[Sizes, Is("rms without, the base model's constants refitted, by channel", "of the channel")]
     after: Annotated[Sizes, Is("rms with it, by channel", "of the channel")]
     noise: Annotated[Sizes, Is("of the means that are compared", "of the channel")]
+    closed_by_refitting: Annotated[float | None, Is(
+        "part of the calibrated gap that refitting the base alone closes; it is counted for no effect", ""
+    )] = None  # fmt: skip
     by_phase: Annotated[GapByPhase | None, Is("what of it is beyond the noise")] = None
     closed_fraction: Annotated[ClosedFraction, Is("of all channels together, each in units of its noise")]
     closed_by_free_form: Annotated[float | None, Is("by a spline of equal freedom", "")] = None
@@ -121,10 +130,11 @@ class Gap(Part):
 
 
 class Constants(Part):
-    """The base model's constants."""
+    """The base model's constants, by the fit that they are from."""
 
-    without: Annotated[dict[str, Quantity], Is("fitted without the effects")]
-    better: Annotated[dict[str, Quantity], Is("fitted with them"), Field(alias="with")]
+    calibrated: Annotated[Mapping[str, Quantity], Is("as calibration.json has them without adopted effects")] = {}
+    without: Annotated[dict[str, Quantity], Is("of the refitted base: to all channels together, without the effects")]
+    better: Annotated[dict[str, Quantity], Is("to all channels together, with them"), Field(alias="with")]
 
 
 class ChiSquare(Part):
@@ -199,6 +209,17 @@ class Diagnosis(Product):
         "of every effect that is not in the model: it stays below that with 95 % probability; without a value where "
         "the channels would not show it at any size"
     )]  # fmt: skip
+    too_small: Annotated[Mapping[str, float], Is(
+        "what is there but too small to matter, by effect or site: its part of what goes through its equation", ""
+    )] = {}  # fmt: skip
+    doubts: Annotated[tuple[Words, ...], Is(
+        "why the name that is likeliest is not the whole story, where the verdict is unknown beside it"
+    )] = ()  # fmt: skip
+    unknown_beside: Annotated[tuple[str, ...], Is("that name, or those names; none were added to the model")] = ()
+    at_limit: Annotated[Words | None, Is(
+        "what would be said on the other side, where a probability is within 0.01 of a limit"
+    )] = None  # fmt: skip
+    not_converged: Annotated[Words | None, Is("why the search did not converge, where it did not")] = None
     twins: Annotated[tuple[tuple[str, ...], ...], Is("groups that the library declares hard to tell apart")]
     not_it: Annotated[tuple[str, ...], Is("effects with a probability below 0.02, first or beside it")]
     decisive_measurements: Annotated[tuple[Words, ...], Is("what would decide between the names that are left")]

@@ -7,7 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from hfanalysis.products.diagnosis import Diagnosis, Plausibility
+from hfanalysis.products.diagnosis import Diagnosis, Gap, Plausibility
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.report import html
@@ -58,7 +58,8 @@ def _likely(product: Diagnosis) -> list[str]:
     odds = {name: _odds(name, product) for name in {**product.posterior, **product.partners}}
     named = [row.name for row in product.effects]
     kept = [n for n in odds if n not in _ALWAYS and (odds[n] >= SHOWN or n in product.set90) and n not in named]
-    return [*named, *sorted(kept, key=lambda name: (-odds[name], name)), *_ALWAYS]
+    last = sorted(_ALWAYS, key=lambda name: -odds.get(name, 0.0))
+    return [*named, *sorted(kept, key=lambda name: (-odds[name], name)), *last]
 
 
 def _odds(name: str, product: Diagnosis) -> float:
@@ -159,16 +160,23 @@ def _trust(product: Diagnosis) -> str:
 def gaps(product: Diagnosis) -> Markup:
     """Misfit of every channel without and with what is missing, beside the noise."""
     gap = product.gap
-    rows = [
-        (LONG_NAMES.get(name, name), *(_in_unit(name, size.get(name)) for size in (gap.before, gap.after, gap.noise)))
-        for name in gap.before
-    ]
+    arms = [size for size in (gap.calibrated, gap.before, gap.after, gap.noise) if size is not None]
+    rows = [(LONG_NAMES.get(name, name), *(_in_unit(name, size.get(name)) for size in arms)) for name in gap.before]
     caption = (
         "Root mean square of measured less model over the burn, beside the noise of the averages that are compared. "
-        "Both models were fitted to all channels."
+        f"The last two models were fitted to all channels.{_by_refitting(gap)}"
     )
-    columns = ("channel", ">refitted", ">with the effects", ">noise")
+    calibrated = (">calibrated",) if gap.calibrated is not None else ()
+    columns = ("channel", *calibrated, ">refitted", ">with the effects", ">noise")
     return html.table("Misfit", caption, columns, rows)
+
+
+def _by_refitting(gap: Gap) -> str:
+    """That what refitting the base closes is no effect's."""
+    part = gap.closed_by_refitting
+    if part is None or part <= 0.0:
+        return ""
+    return f" Refitting alone closes {_closed(part)} of the calibrated misfit, which is no effect's merit."
 
 
 def gaps_by_phase(product: Diagnosis) -> Markup | None:
@@ -227,15 +235,26 @@ def constants(product: Diagnosis) -> Iterator[Markup]:
     arm = with_what(product)
     if "m" in without and without["m"].value is not None:
         values = [fixed(side["m"].value or 0.0, 2) for side in (without, better)]
-        said = f"m {values[0]} without, {values[1]} with the effects." if arm else f"m {values[0]}."
+        said = f"m {values[0]} refitted, {values[1]} with the effects." if arm else f"m {values[0]}."
         yield html.paragraph(Markup("Polytropic exponent of the vapor: <strong>{}</strong>").format(said), "told")
     names = sorted(without, key=lambda name: name != "m")
-    rows = [
-        (_head(name), html.value(without[name], name), *((html.value(better[name], name),) if arm else ()))
-        for name in names
+    arms = [
+        (head, side)
+        for head, side in (
+            (">calibrated", product.constants.calibrated),
+            (">refitted", without),
+            (">with the effects", better),
+        )
+        if side and (arm or side is not better)
     ]
-    columns = ("constant", ">without", *((">with the effects",) if arm else ()))
-    yield html.table("Constants", "Fitted to all channels together, ± one standard deviation.", columns, rows)
+    rows = [
+        (_head(name), *(html.value(side[name], name) if name in side else "–" for _, side in arms)) for name in names
+    ]
+    caption = (
+        "By the fit that they are from. Calibrated: one after the other, without effects. Refitted: to all channels "
+        "together. ± one standard deviation."
+    )
+    yield html.table("Constants", caption, ("constant", *(head for head, _ in arms)), rows)
 
 
 def _head(name: str) -> Markup:

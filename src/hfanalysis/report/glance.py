@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from hfanalysis.health.reasons import Doubt
+from hfanalysis.health.reasons import Doubt, reasons
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.flight import Flight
-from hfanalysis.products.health import KINDS, UNUSABLE
+from hfanalysis.products.health import KINDS, UNUSABLE, Health
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import DOUBTED, Quantity
@@ -200,11 +200,40 @@ def _cure(material: Material) -> str:
     return listed(list(map(called, doubt.channels))) if doubt is not None else ""
 
 
-def against(now: Mapping[str, Quantity], before: Mapping[str, Quantity]) -> dict[str, tuple[Quantity, float | None]]:
-    """What a number was last time, and by which share [-] it changed; only of numbers that both tests have."""
-    out = {}
+class Against(NamedTuple):
+    """A number [SI] now and last time; ``change`` is the share [-] by which it changed, None from zero."""
+
+    name: str
+    now: Quantity
+    was: Quantity
+    change: float | None
+
+
+def against_last(material: Material) -> list[Against]:
+    """What changed since the stand's test before: the injector's coefficient, and the numbers that come first."""
+    if material.last is None:
+        return []
+    then = Material(material.definition, material.log, material.last.products)
+    sides = [key_numbers(one) | _coefficient(one) for one in (material, then)]
+    return list(_compared(*sides))
+
+
+def _coefficient(material: Material) -> dict[str, Quantity]:
+    calibration = material.get(Calibration)
+    return {"C_i": calibration.C_i} if calibration is not None else {}
+
+
+def _compared(now: Mapping[str, Quantity], before: Mapping[str, Quantity]) -> Iterator[Against]:
     for name, quantity in now.items():
         was = before.get(name)
         if was is not None and was.value is not None and quantity.value is not None:
-            out[name] = (was, quantity.value / was.value - 1.0 if was.value else None)
-    return out
+            yield Against(name, quantity, was, quantity.value / was.value - 1.0 if was.value else None)
+
+
+def sensors_then(material: Material) -> str:
+    """What looked wrong with the sensors last time; empty where there was no last time."""
+    health = material.last.products.get("health") if material.last is not None else None
+    if not isinstance(health, Health):
+        return ""
+    doubts = [doubt for doubt in reasons(health.channels) if not doubt.trust]
+    return _faults(doubts) if doubts else "none looked wrong"

@@ -32,17 +32,25 @@ def run(context: Context) -> None:
 def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]) -> Calibration:
     """The same with adopted effects; where one acts on the engine, its constants are fitted together."""
     from hfanalysis.calibrate.joint_fit import fitted_together
+    from hfanalysis.calibrate.joint_refused import change_nothing
     from hfanalysis.calibrate.narrow_port import with_stated_tap
     from hfanalysis.inference.subject import Subject
     from hfanalysis.products.segments import Segments
 
-    found = _calibration(context, effects)
     if all(active.effect.of_sensor for active in effects):
-        return found
-    context.progress("fitting all constants together, adopted effects in", None)
+        return _calibration(context, effects)
     segments = context.read(Segments).fired
     log, definition = context.believed()
     subject = Subject(log, segments, base, definition)
+    try:
+        nothing = change_nothing(subject, effects)
+    except AbsentError:
+        nothing = False
+    if nothing:
+        names = ", ".join(active.effect.name for active in effects)
+        return base.but(notes=(*base.notes, f"{names} as adopted: no channel would show it, and it changes nothing"))
+    found = _calibration(context, effects)
+    context.progress("fitting all constants together, adopted effects in", None)
     try:
         return fitted_together(subject, with_stated_tap(definition, effects), found)
     except AbsentError as missing:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import InputError
 from hfanalysis.stages.base import Context
+from hfanalysis.stages.calibrate import STAGE, _calibration
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
@@ -143,19 +145,40 @@ def test_a_sensors_effect_alone_leaves_the_constants_one_by_one(root: Path) -> N
     assert "one_by_one" not in found
 
 
-def test_next_to_no_heat_is_next_to_no_change(root: Path, base: dict[str, dict[str, Any]]) -> None:
-    """One by one, the vapor phase on the engine's equations is the report's, but for the order of its steps."""
-    found = done(root, "calibrate", '[tank_heat]\npower = "1e-6 W"\n')["calibration"]["one_by_one"]
+@pytest.mark.parametrize(
+    "adopted",
+    [
+        '[tank_heat]\npower = "1e-6 W"\n',
+        '[tank_wall_heat_capacity]\ncapacity = "1 J/K"\n',
+        '[chamber_heat_loss]\nloss = "1 W"\n',
+    ],
+    ids=["heat", "wall", "loss"],
+)
+def test_an_effect_that_no_channel_would_show_changes_nothing(
+    root: Path, base: dict[str, dict[str, Any]], adopted: str
+) -> None:
+    found = done(root, "calibrate", adopted)["calibration"]
+    *_, note = found["notes"]
+    assert note.endswith("no channel would show it, and it changes nothing")
+    plain = {name: value for name, value in numbers(base["calibration"]).items() if name != "notes"}
+    assert {name: value for name, value in numbers(found).items() if name != "notes"} == plain
+    assert len(found["effects"]) == 1
+
+
+def test_one_by_one_next_to_no_heat_is_next_to_no_change(root: Path, base: dict[str, dict[str, Any]]) -> None:
+    """The vapor phase on the engine's equations is the report's, but for the order of its steps."""
+    context = replace(opened(root), stage=STAGE)
+    done(root, "segment")
+    found = _calibration(context, [effect("tank_heat").at(power=1e-6)]).quantities
     for name, off in (("m", 2e-3), ("C_i", 1e-6), ("K_loss", 1e-6)):
-        assert found[name]["value"] == pytest.approx(base["calibration"][name]["value"], rel=off)
+        assert found[name].value == pytest.approx(base["calibration"][name]["value"], rel=off)
     # this burn tells little of n: its fit ends within a hundredth of n's deviation, and starts elsewhere as m differs
-    moved = found["n"]["value"] - base["calibration"]["n"]["value"]
-    assert abs(moved) < 0.03 * base["calibration"]["n"]["std"]
+    assert abs(found["n"].value - base["calibration"]["n"]["value"]) < 0.03 * base["calibration"]["n"]["std"]
     for name in ("m", "C_i", "K_loss"):
-        assert found[name]["std"] == pytest.approx(base["calibration"][name]["std"], rel=0.1)
+        assert found[name].std == pytest.approx(base["calibration"][name]["std"], rel=0.1)
     # n's is taken from what is left in p_chamber, of which four or five values are independent: itself known to a half
-    assert found["n"]["verdict"] == base["calibration"]["n"]["verdict"] == "not identifiable"
-    assert found["n"]["std"] == pytest.approx(base["calibration"]["n"]["std"], rel=0.5)
+    assert found["n"].verdict == base["calibration"]["n"]["verdict"] == "not identifiable"
+    assert found["n"].std == pytest.approx(base["calibration"]["n"]["std"], rel=0.5)
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,9 @@ STEEPNESS = 3.0
 MOST_LOST = 15.0
 """Log of the odds that a size loses at most."""
 
+IMPOSSIBLE = 6.0
+"""Log of the odds that a size loses that cannot be, by its sign."""
+
 
 def _parameter(active: Active) -> str:
     """The strength that is judged: of several of one kind the largest."""
@@ -35,10 +38,17 @@ def excess(active: Active) -> float:
     return 0.0 if limit is None else abs(active.strengths[_parameter(active)]) / limit.most
 
 
+def impossible(active: Active) -> bool:
+    """Whether a size is of a sign that it cannot have."""
+    limit = active.effect.believable
+    return limit is not None and active.strengths[_parameter(active)] < limit.least
+
+
 def lost(active: Active) -> float:
     """Log of the odds that an effect loses by its size [natural log]."""
     beyond = excess(active)
-    return 0.0 if beyond <= 1.0 else min(STEEPNESS * log(beyond) ** 2 + 1.0, MOST_LOST)
+    by_size = 0.0 if beyond <= 1.0 else min(STEEPNESS * log(beyond) ** 2 + 1.0, MOST_LOST)
+    return max(by_size, IMPOSSIBLE) if impossible(active) else by_size
 
 
 def judged(active: Active) -> Plausibility:
@@ -48,6 +58,9 @@ def judged(active: Active) -> Plausibility:
         return Plausibility(size=None, plausible=None, why="nothing is known of how large this effect can be")
     chosen = _parameter(active)
     size, most = limit.text(active.strengths[chosen]), limit.text(limit.most)
+    if impossible(active):
+        why = text("{chosen} of {size} cannot be: {why}", chosen=chosen, size=size, why=limit.least_why)
+        return Plausibility(size=size, plausible=False, why=why)
     possible = excess(active) <= 1.0
     judgment = "{chosen} {size} (limit {most})" if possible else "{chosen} {size} is beyond {most}. {why}"
     why = text(

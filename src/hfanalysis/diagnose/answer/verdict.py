@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.diagnose.answer.borne_out import borne_out
 from hfanalysis.diagnose.answer.effect_source import Acting, acting
 from hfanalysis.diagnose.answer.limits import limits
 from hfanalysis.diagnose.answer.plausible import judged, lost
@@ -21,13 +22,19 @@ from hfanalysis.diagnose.answer.posterior import (
     smallest_set,
     weights_of,
 )
+from hfanalysis.diagnose.answer.standing import (
+    acting_in,
+    against,
+    among_twins,
+    believed_share,
+    withheld,
+)
 from hfanalysis.diagnose.answer.where import elsewhere, likeliest_of, likeliest_source
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming
-from hfanalysis.engine.effect import Active, Parameter
+from hfanalysis.engine.effect import Parameter
 from hfanalysis.inference.candidate import Candidate
-from hfanalysis.inference.fitting.fit import Fit
-from hfanalysis.inference.unknown import History, has_name
+from hfanalysis.inference.unknown import History
 from hfanalysis.products.diagnosis import NamedEffect, Place, SourceHistory
 from hfanalysis.quantity import NORMAL_95, Quantity
 
@@ -49,7 +56,9 @@ class Verdict:
     """``label``: none, named, ambiguous or unknown; probabilities of all labels; the candidate that is the answer.
 
     ``partners``: probabilities of effects beside the first that is named. ``elsewhere``: evidence of an unknown source
-    in another equation than the best name's.
+    in another equation than the best name's. ``doubts``: why what is ``chosen`` is not the whole story, where that is
+    why the verdict is unknown: it is then unknown beside the names that are chosen.
+    ``held_out``: log probability of held-out data beyond the base model's [natural log], by the key of a candidate.
     """
 
     label: str
@@ -59,6 +68,8 @@ class Verdict:
     chosen: Candidate
     partners: dict[str, float] = field(default_factory=dict)
     elsewhere: float | None = None
+    doubts: tuple[str, ...] = ()
+    held_out: Mapping[tuple[str, ...], float | None] = field(default_factory=dict)
 
     @property
     def added(self) -> tuple[str, ...]:
@@ -72,17 +83,59 @@ class Verdict:
         return max(claimed, key=lambda k: (claimed[k], k))
 
 
-def verdict_of(found: Naming) -> Verdict:
-    """Probabilities, and what they amount to."""
+NO_TWINS: Mapping[str, tuple[str, ...]] = {}
+
+
+def verdict_of(found: Naming, twins: Mapping[str, tuple[str, ...]] = NO_TWINS) -> Verdict:
+    """Probabilities, and what they amount to.
+
+    ``twins``: by name, those that the channels hardly tell from it. Evidence counts as far as held-out data bear it out
+    (:func:`hfanalysis.diagnose.answer.borne_out.borne_out`); what a name does not keep, for its size or for what its
+    model misses, is unknown.
+    """
     weighed = replace(
         found,
         singles=tuple(_believed(c) for c in found.singles),
         sets=tuple(_believed(c) for c in found.sets),
     )
-    evidences = evidences_of(weighed)
-    apart = elsewhere(weighed)
+    weighed = borne_out(weighed, _by_evidence)
+    evidences, apart = evidences_of(weighed), elsewhere(weighed)
     posterior = scale().probabilities(evidences, found.named.leftover, apart)
-    return replace(_verdict(weighed, posterior, evidences), elsewhere=apart)
+    posterior = among_twins(posterior, evidences, twins, scale().heat(found.named.leftover))
+    if _verdict(weighed, posterior, evidences).label in ("none", "unknown"):
+        return replace(_verdict(weighed, posterior, evidences), elsewhere=apart, held_out=weighed.held_out)
+    kept = withheld(posterior, {n: _chosen(weighed, n) for n in _tried(weighed)}, found.bench.observed)
+    return replace(_with_doubts(weighed, posterior, kept, evidences), elsewhere=apart, held_out=weighed.held_out)
+
+
+def _tried(found: Naming) -> list[str]:
+    """The first names of all candidates."""
+    return list(dict.fromkeys(c.names[0] for c in (*found.singles, *found.sets)))
+
+
+def _by_evidence(found: Naming) -> Verdict:
+    """What the evidences alone amount to."""
+    evidences = evidences_of(found)
+    return _verdict(found, scale().probabilities(evidences, found.named.leftover, elsewhere(found)), evidences)
+
+
+def _with_doubts(
+    found: Naming, before: Mapping[str, float], kept: dict[str, float], evidences: dict[str, float]
+) -> Verdict:
+    """The verdict by what names keep; where that makes it unknown, it is so beside the name that was first."""
+    top = max((n for n in before if n not in ("none", "unknown")), key=lambda n: (before[n], n))
+    stands = kept[top] == before[top] or kept["unknown"] <= max(p for n, p in kept.items() if n != "unknown")
+    if stands:
+        return _verdict(found, kept, evidences)
+    chosen = _chosen(found, top)
+    beside = [c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]]
+    doubts = against(chosen, found.bench.observed) or (_size_of(chosen),)
+    return Verdict("unknown", kept, evidences, smallest_set(kept), next(iter(beside), chosen), doubts=doubts)
+
+
+def _size_of(chosen: Candidate) -> str:
+    """What is to be said of the size of a candidate's first effect."""
+    return judged(acting_in(chosen.fit)[chosen.names[0]]).why
 
 
 def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, float]) -> Verdict:
@@ -92,11 +145,17 @@ def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, fl
     chosen = _chosen(found, top)
     if top in ("none", "unknown"):
         return Verdict(top, posterior, evidences, set90, chosen)
-    partners = partners_of(top, found)
+    partners = _believed_partners(partners_of(top, found), chosen)
     rivals = [name for name in set90 if name not in (top, "none")]
     sure = posterior[top] >= NAMED_FROM and not rivals and all(partners[n] >= SET for n in chosen.names[1:])
     beside = {name: posterior[top] * p for name, p in partners.items()}
     return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
+
+
+def _believed_partners(partners: Mapping[str, float], chosen: Candidate) -> dict[str, float]:
+    """Probabilities of names beside the first by what can be of their sizes, as the first's own."""
+    acting_there = acting_in(chosen.fit)
+    return {n: p * (believed_share(acting_there[n]) if n in acting_there else 1.0) for n, p in partners.items()}
 
 
 def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], poor: bool = False) -> str:
@@ -115,12 +174,6 @@ def _believed(candidate: Candidate) -> Candidate:
     """The candidate with what impossible sizes cost it."""
     cost = sum(lost(active) for name, active in acting_in(candidate.fit).items() if name in candidate.names)
     return replace(candidate, log_evidence=candidate.log_evidence - cost)
-
-
-def acting_in(found: Fit) -> dict[str, Active]:
-    """The effects of a fit by their names, without unknown sources."""
-    acting = found.burnt.steps.engine.effects
-    return {active.effect.name: active for active in acting if has_name(active.effect)}
 
 
 def _chosen(found: Naming, top: str) -> Candidate:

@@ -97,7 +97,7 @@ _UNITS = {"Pa": "bar", "W": "kW", "kg/s": "g/s", "1": "%"}
 
 def story(product: Diagnosis) -> list[str]:
     """The whole verdict, sentence by sentence."""
-    out = [*headlines(product), *poor_fit_sentence(product), *equation_sentence(product)]
+    out = [*headlines(product), *doubts_sentences(product), *poor_fit_sentence(product), *equation_sentence(product)]
     out += [place_sentence(row, product.compared.end) for row in product.localisation]
     out += [line for row in product.effects for line in effect_sentences(row, product)]
     out += fade_sentence(product.compared)
@@ -130,7 +130,11 @@ def headlines(product: Diagnosis) -> list[str]:
     others = [f"{product.plain(n)} ({posterior[n]:.2f})" for n in product.set90 if n != label]
     doubt = [f"{capitalised(listed(others))} cannot be excluded."] if others else []
     if product.verdict == "none":
-        return _nothing(product)
+        return _too_small(product) if product.too_small else _nothing(product)
+    if product.unknown_beside:
+        stood = listed([product.plain(name) for name in product.unknown_beside])
+        unknown = f"something that has no name in the library (probability {posterior['unknown']:.2f})"
+        return [f"Missing from the model: {unknown}, beside {stood}.", *doubt]
     if product.verdict == "unknown":
         return [
             f"Something is missing that has no name in the library (probability {posterior['unknown']:.2f}).",
@@ -144,6 +148,15 @@ def headlines(product: Diagnosis) -> list[str]:
     return [f"Missing from the model, with probability: {listed(names[:PAIR])}.", *further, *doubt, *either]
 
 
+def _too_small(product: Diagnosis) -> list[str]:
+    posterior = product.posterior
+    parts = [
+        f"{product.plain(name)}{f' ({posterior[name]:.2f})' if name in posterior else ''}, {_percent(part)}"
+        for name, part in product.too_small.items()
+    ]
+    return [f"Something is there, but too small to matter: {listed(parts)} of what goes through its equation."]
+
+
 def _nothing(product: Diagnosis) -> list[str]:
     posterior = product.posterior
     likeliest = max(posterior, key=lambda name: (posterior[name], name))
@@ -155,6 +168,29 @@ def _nothing(product: Diagnosis) -> list[str]:
         "Nothing is claimed to be missing, for too little in the data speaks for it.",
         f"{name} ({posterior[likeliest]:.2f}) is more probable, though, than nothing ({posterior['none']:.2f}).",
     ]
+
+
+def _percent(part: float) -> str:
+    return f"{100.0 * part:.2g} %"
+
+
+def doubts_sentences(product: Diagnosis) -> list[str]:
+    """Why a name does not stand by itself, that the verdict is at a limit, and that the search did not converge."""
+    out: list[str] = []
+    if product.doubts:
+        names = capitalised(listed([product.plain(name) for name in product.unknown_beside]))
+        out.append(joined("", [f"{names} alone is not the whole story: ", joined("; ", product.doubts), "."]))
+    if product.at_limit:
+        out.append(f"This verdict is at a limit, where the last digits decide: {product.at_limit}.")
+    if product.verdict != "none":
+        out += [
+            f"{capitalised(product.plain(name))} is there, but too small to matter: {_percent(part)} of what goes "
+            "through its equation."
+            for name, part in product.too_small.items()
+        ]
+    if product.not_converged:
+        out.append(joined("", ["The search did not converge: ", product.not_converged, "."]))
+    return out
 
 
 def poor_fit_sentence(product: Diagnosis) -> list[str]:

@@ -29,6 +29,8 @@ class Naming:
 
     ``equations``: of all effects that were thought of; those that a score test saw nothing of have no candidate.
     ``risen``: log evidence by which the base model was found deeper once all had been looked for from it.
+    ``held_out``: log probability of data that were held out beyond the base model's [natural log], by the key of a
+    candidate; None where the rest of the data cannot foretell it.
     """
 
     base: Candidate
@@ -38,6 +40,7 @@ class Naming:
     bench: Bench
     equations: Mapping[str, str] = field(default_factory=dict)
     risen: float = 0.0
+    held_out: Mapping[tuple[str, ...], float | None] = field(default_factory=dict)
 
     @property
     def named(self) -> Candidate:

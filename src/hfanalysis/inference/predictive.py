@@ -1,0 +1,73 @@
+"""What a fit says of data that it was not fitted to, as a log probability.
+
+Interleaved stretches are left out in turn. The noise of a channel is correlated, so what counts is the density of the
+stretches that were left out, given the others: that of all less that of the rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hfanalysis.arrays import Array
+from hfanalysis.inference.candidate import SHORT, Bench, Candidate, attempted
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.predict import predict
+from hfanalysis.inference.fitting.threads import each
+from hfanalysis.inference.gap import FOLDS, stretches
+from hfanalysis.inference.observations.observed import Observed
+
+LEAST_LEFT = 0.25
+"""Part of what is known of a strength that has to be left without a stretch: an effect that acts in that stretch alone
+cannot be foretold from the others, and that says nothing against it."""
+
+
+@dataclass(frozen=True)
+class Foretold:
+    """Log of the probability density of what was held out given the rest [natural log of SI]: by fits to the
+    ``rest``, and by the fit to ``all`` of it."""
+
+    rest: float
+    all: float
+
+
+def log_predictive(found: Candidate, bench: Bench) -> Foretold | None:
+    """What a candidate says of interleaved stretches, given the others.
+
+    None where a fit to the rest cannot be run, or leaves a strength open that all the data tell.
+    """
+    observed = bench.at(found.form)
+    parts = each(lambda fold: _of_fold(found, observed, fold), list(range(FOLDS)))
+    kept = [part for part in parts if part is not None]
+    if len(kept) < len(parts):
+        return None
+    return Foretold(sum(part.rest for part in kept), sum(part.all for part in kept))
+
+
+def _of_fold(found: Candidate, observed: Observed, fold: int) -> Foretold | None:
+    rest = observed.without(stretches(observed, observed, fold))
+    made, x = found.fit.hypothesis, found.fit.x
+    again = attempted(made, rest, x, SHORT)
+    if again is None or not _foretold(found.fit, again):
+        return None
+    try:
+        there = predict(made, observed, again.x, tangents=False)
+        as_all = predict(made, rest, x, tangents=False)
+    except (ValueError, ArithmeticError):
+        return None
+    return Foretold(
+        _log_density(there.residual, observed) - _log_density(again.residual, rest),
+        _log_density(found.fit.residual, observed) - _log_density(as_all.residual, rest),
+    )
+
+
+def _log_density(residual: Array, observed: Observed) -> float:
+    return -0.5 * float(residual @ residual) - observed.log_size
+
+
+def _foretold(all_of_it: Fit, rest: Fit) -> bool:
+    """Whether the rest tells the strengths of effects nearly as well as all of it does."""
+    strengths = [i for group in all_of_it.hypothesis.strengths for i in group.tolist()]
+    before, after = (np.diag(f.covariance)[strengths] for f in (all_of_it, rest))
+    return bool((before >= LEAST_LEFT * after).all())
