@@ -51,15 +51,22 @@ def _starts(seed: int) -> Row:
 def _swings(seed: int, smooth: bool) -> Row:
     from simulated.oscillating import END, case, modes_of, oscillating
 
+    from hfanalysis.performance.stability.causes import aliased
     from hfanalysis.performance.stability.stability import stability
 
     of = case(seed, smooth)
     log, segments = oscillating(of)
     told = stability(log, segments, END, lambda _start, _end: modes_of(of))
     lines = [line for line in told.lines if "at rest" not in line.cause]
+    heard = [abs((line.frequency.value or 0.0) - aliased(of.mains, of.rate)) < 1.0 for line in lines]
     return {
         "rate": of.rate,
-        "lines": len(lines),
+        "lines": sum(not (of.hum and hum) for hum in heard),
+        "hum": of.hum > 0.0,
+        "hum misnamed": any(
+            of.hum and hum and "mains" not in line.cause and "cannot be told" not in line.cause
+            for hum, line in zip(heard, lines, strict=True)
+        ),
         "swings": [_beside(swing, of, told, lines) for swing in of.swings],
         "verdict": told.verdict,
     }
@@ -137,7 +144,9 @@ def table(rows: Sequence[Row]) -> Iterator[str]:
     if folded:
         yield f"Folded down by the rate: {len(folded)} found; {ok} offer the true one or say that it cannot be told."
     smooth = [row for row in rows if row["kind"] == "smooth"]
+    loud, wrong = ([row for row in smooth if row.get(key)] for key in ("hum", "hum misnamed"))
     yield f"Of {len(smooth)} smooth burns {sum(row['lines'] > 0 for row in smooth)} have a line."
+    yield f"In {len(loud)} of them the mains hum, which is taken for something else in {len(wrong)}."
     starts = [row["inside"] for row in rows if row["kind"] == "starts"]
     for name in starts[0] if starts else ():
         told = [row[name] for row in starts if row[name] is not None]

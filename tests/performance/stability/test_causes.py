@@ -43,6 +43,17 @@ def test_run_line_and_chamber_together_are_the_feed() -> None:
     assert cause([seen("p_run", 12.0)], shown(), MODES) == "the feed"
 
 
+def test_a_hum_in_both_is_the_mains_and_not_the_feed() -> None:
+    both = [seen("p_chamber", 50.0), seen("p_run", 50.0)]
+    at_rest = {"p_run": [track(50.0)]}
+    heard = cause(both, shown(run_line=DRIVES, rest=at_rest, rest_limits={"p_chamber": 2e4, "p_run": 5e3}), MODES)
+    assert heard == "the mains' 50 Hz: it is there at rest, too"
+    unheard = cause(both, shown(run_line=DRIVES, rest_limits={"p_chamber": 2e4, "p_run": 2e4}), MODES)
+    assert unheard.startswith(UNTOLD)
+    assert "mains" in unheard
+    assert cause(both, shown(run_line=DRIVES, rest_limits={"p_chamber": 5e3, "p_run": 5e3}), MODES) == FEED
+
+
 def test_the_engine_swings_by_itself_where_the_run_line_would_show_the_feed() -> None:
     assert cause([seen("p_chamber", 30.0)], shown(), MODES) == MODES[0].name
     blind = shown(limits={"p_chamber": 1e-3})

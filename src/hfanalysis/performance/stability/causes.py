@@ -62,12 +62,15 @@ def cause(seen: Sequence[Seen], shown: Shown, modes: Iterable[Mode] | None) -> s
     """In words what a line, as the channels of ``seen`` show it, can be; ``modes``: those of the engine, where they are
     known."""
     channels = {s.channel for s in seen}
-    if all(_at_rest(s, shown) for s in seen):
-        hum = _mains(seen[0], shown.sampling)
+    hum, resting = _mains(seen[0], shown.sampling), [_at_rest(s, shown) for s in seen]
+    hidden = [shown.rest_limits.get(s.channel, np.inf) > s.track.rms for s in seen]
+    as_at_rest = all(r or h for r, h in zip(resting, hidden, strict=True))
+    if any(resting) and (hum or as_at_rest):
         return f"{hum}: it is there at rest, too" if hum else "the sensors or their supply: it is there at rest, too"
-    if {"p_run", "p_chamber"} <= channels and shown.run_line == DRIVES:
+    told = not (hum and as_at_rest)  # what may be the mains' has a phase of its own in each channel
+    if told and {"p_run", "p_chamber"} <= channels and shown.run_line == DRIVES:
         return FEED
-    if channels == {"thrust"} and shown.limits.get("p_chamber", np.inf) < 0.5 * seen[0].share:
+    if told and channels == {"thrust"} and shown.limits.get("p_chamber", np.inf) < 0.5 * seen[0].share:
         return STAND
     possible = _possible(seen, shown, modes)
     if modes is None:
