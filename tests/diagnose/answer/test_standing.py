@@ -10,6 +10,7 @@ import pytest
 from tests.diagnose.answer.test_verdict import eroded, probable
 from tests.inference import made
 
+from hfanalysis.diagnose.answer import borne_out as borne_out_module
 from hfanalysis.diagnose.answer import standing
 from hfanalysis.diagnose.answer import verdict as verdict_module
 from hfanalysis.diagnose.answer.at_limit import NEAR, at_limit
@@ -24,7 +25,7 @@ from hfanalysis.effects import effect
 from hfanalysis.inference.candidate import Candidate, candidate
 from hfanalysis.inference.fitting.bounds import on_bounds
 from hfanalysis.inference.fitting.fit import fit
-from hfanalysis.inference.predictive import log_predictive
+from hfanalysis.inference.predictive import Foretold, log_predictive
 
 
 @pytest.mark.parametrize(
@@ -154,6 +155,38 @@ def test_what_noise_alone_named_is_not_borne_out() -> None:
     assert verdict.held_out[("load_cell_drift",)] < 3.0
 
 
+def test_a_name_beside_the_first_has_to_be_borne_out_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The set keeps nine tenths of all it promises, but nothing of what its second name does."""
+    first = eroded().singles[0]
+    both = replace(first, names=(*first.names, "load_cell_drift"), log_evidence=first.log_evidence + 20.0)
+    told = {(): Foretold(0.0, 0.0), first.names: Foretold(100.0, 100.0), both.names: Foretold(99.0, 125.0)}
+    monkeypatch.setattr(borne_out_module, "log_predictive", lambda c, _: told[c.names])
+    found = replace(eroded(), sets=(both,), unknown=())
+    best = borne_out(found, lambda n: Verdict("named", {}, {}, [], max(n.all, key=lambda c: c.log_evidence)))
+    assert best.sets[0].log_evidence - best.singles[0].log_evidence == pytest.approx(20.0 * 2.0 / 25.0)
+    assert best.singles[0].log_evidence == first.log_evidence
+
+
+def test_twins_beside_the_first_are_told_together_too() -> None:
+    first = eroded().singles[0]
+    sets = tuple(
+        replace(first, names=(*first.names, name), log_evidence=first.log_evidence + gain)
+        for name, gain in (("chamber_heat_loss", 45.0), ("combustion_efficiency", 41.0))
+    )
+    found = replace(
+        eroded(),
+        sets=sets,
+        unknown=(),
+        equations={
+            **eroded().equations,
+            **dict.fromkeys(("chamber_heat_loss", "combustion_efficiency"), "chamber_energy"),
+        },
+    )
+    told = verdict_of(found).partners, verdict_of(found, {"chamber_heat_loss": ("combustion_efficiency",)}).partners
+    assert told[0]["combustion_efficiency"] < 0.02
+    assert 0.2 < told[1]["combustion_efficiency"] < told[1]["chamber_heat_loss"] < 0.8
+
+
 @pytest.mark.parametrize(("none", "said"), [(CLAIM - 0.5 * NEAR, True), (CLAIM + 0.5 * NEAR, True), (0.02, False)])
 def test_a_verdict_at_a_limit_says_so(none: float, said: bool) -> None:
     label = "none" if none >= CLAIM else "named"
@@ -198,6 +231,6 @@ def test_what_stands_beside_a_name_is_said(monkeypatch: pytest.MonkeyPatch) -> N
     )  # fmt: skip
     assert "unknown 0.60), beside tank_heat" in headline(product)
     told = " ".join(map(str, doubts_sentences(product)))
-    assert "tank_heat alone is not the whole story: m is on its bound (0.95)." in told
+    assert "With tank_heat alone the story is not whole: m is on its bound (0.95)." in told
     assert "at a limit" in told
     assert "The search did not converge: n2_purge at strength zero." in told

@@ -119,7 +119,7 @@ def doubts_sentences(product: Diagnosis) -> list[str]:
     out: list[str] = []
     if product.doubts:
         names = listed(product.unknown_beside)
-        out.append(joined("", [f"{names} alone is not the whole story: ", joined("; ", product.doubts), "."]))
+        out.append(joined("", [f"With {names} alone the story is not whole: ", joined("; ", product.doubts), "."]))
     if product.at_limit:
         out.append(f"This verdict is at a limit, where the last digits decide: {product.at_limit}.")
     if product.verdict != "none":
