@@ -35,9 +35,9 @@ Made by `make coverage`, which goes on where it was stopped. {count} simulated t
 from its log to its flight. Drawn anew for each, as test.toml states it (in half of the tests) or as the documented
 defaults have it (in the others): tank volume, loaded mass, the injector's holes, grain, throat, burn time by video,
 zero and span of every gauge, the load cell's gain (calibrated in place or not) and a drift of any course, dry mass,
-drag, rail and wind. C_i drifts by {drift:.0f} % (one standard deviation) while the liquid lasts, and every second log
-is reduced with another table of nitrous oxide than its own. n counts where it is called identified. z is (found -
-truth) / stated standard deviation. {verdict}
+drag, rail and wind. C_i drifts by {drift:.0f} % (one standard deviation) while the liquid lasts, along a straight line,
+mostly early or mostly late, and every second log is reduced with another table of nitrous oxide than its own. n counts
+where it is called identified. z is (found - truth) / stated standard deviation. {verdict}
 
 """
 

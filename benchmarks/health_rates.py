@@ -28,13 +28,13 @@ from simulated.faults.kinds import FAULTS, Faulty, suits
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.errors import AnalysisError
 from hfanalysis.health.judge import judge
+from hfanalysis.performance.measured import measured
 from hfanalysis.products.health import KINDS, Finding, Health
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition, load_definition
 from hfanalysis.record.ingest import ingest
 from hfanalysis.record.log import TestLog, read_log
 from hfanalysis.segment.phases import find_phases
-from hfanalysis.validate.performance import measured
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, CACHE = ROOT / "docs" / "health-rates.md", ROOT / ".cache" / "health-rates"

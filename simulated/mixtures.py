@@ -1,7 +1,7 @@
 """Burns whose mixture is known: chamber pressure and thrust of engines of many sizes, by laws of their own.
 
-The regression goes with the total flux, the efficiency may fall, the throat may erode; pressure, thrust, flow and
-masses carry errors of the size that they state.
+The regression goes with the oxidizer's or the total flux and may fade, the efficiency may fall, the throat may erode;
+pressure, thrust, flow and masses carry errors of the size that they state.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from typing import cast
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.engine.port import stagnation_over_static
+from hfanalysis.performance.reconstruction.inputs import Firing, Shape
+from hfanalysis.performance.reconstruction.theory import Theory
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import Channel
 from hfanalysis.units import Value
-from hfanalysis.validate.flows import Flows
-from hfanalysis.validate.reconstruction.theory import Theory
-from hfanalysis.validate.reduction import Test
 
 AMBIENT, ENTHALPY, DENSITY, STEP = 1.0e5, 1.6e6, 920.0, 0.02
 """[Pa], [J/kg] of liquid nitrous oxide at 20 degC, [kg/m^3] of paraffin, [s]."""
@@ -35,13 +35,14 @@ class Burn:
     efficiency: Array
     throat: Array
     exponent: float
-    test: Test
+    test: Firing
 
 
 @dataclass(frozen=True)
 class World:
     """How a burn goes: throat radius [m], area ratio, time [s], mixture at first, efficiency at first and what it falls
-    by, growth of the throat [m], flux exponent; and which measurements there are."""
+    by, growth of the throat [m], flux exponent; what of the fuel counts in the flux and what the rate fades by through
+    the burn [-]; and which measurements there are."""
 
     throat: float = 0.012
     area_ratio: float = 3.0
@@ -51,6 +52,8 @@ class World:
     falls: float = 0.0
     erodes: float = 0.0
     exponent: float = 0.55
+    of_fuel: float = 0.5
+    fades: float = 0.0
     pressure: float = 22e5
     weighed: bool = True
     calipered: bool = True
@@ -76,6 +79,8 @@ def world(seed: int) -> World:
         exponent=float(r.uniform(0.4, 0.65)),
         pressure=float(r.uniform(12e5, 40e5)),
         noise=float(r.choice([0.001, 0.003, 0.01])),
+        of_fuel=float(r.choice([0.0, 0.5])),
+        fades=float(r.choice([0.0, 0.0, 0.15])),
     )
 
 
@@ -98,9 +103,9 @@ def burn(of: World, seed: int) -> Burn:
     burnt = float(np.trapezoid(fuel, time))
     outer = float(np.sqrt(port[-1] ** 2 + 1e-5))
     mass = DENSITY * pi * length * (outer**2 - port0**2)
-    test = _measured(
-        r, of, time, pressure, thrust, oxidizer, burnt, mass, (port0, outer, length, area, exit_area), port
-    )
+    gamma = float(np.mean(theory.at(theory.gamma, pressure, mixture)))
+    static = pressure / stagnation_over_static(gamma, pi * outer**2 / area)
+    test = _measured(r, of, time, static, thrust, oxidizer, burnt, mass, (port0, outer, length, area, exit_area), port)
     return Burn(time, mixture, efficiency, throat, of.exponent, test)
 
 
@@ -113,15 +118,15 @@ def _first_flow(theory: Theory, of: World, area: float) -> float:
 def _run(
     theory: Theory, of: World, time: Array, oxidizer: Array, area: Array, efficiency: Array, grain: tuple[float, float]
 ) -> tuple[Array, Array, Array]:
-    """Port [m], mixture [-] and pressure [Pa] over time; regression in total flux."""
+    """Port [m], mixture [-] and pressure [Pa] over time."""
     port0, length = grain
-    flux0 = oxidizer[0] * (1.0 + 0.5 / of.mixture) / (pi * port0**2)
+    flux0 = oxidizer[0] * (1.0 + of.of_fuel / of.mixture) / (pi * port0**2)
     rate0 = oxidizer[0] / of.mixture / (2.0 * pi * port0 * length * DENSITY)
     port, mixture, radius, fuel = np.empty(time.size), np.empty(time.size), port0, oxidizer[0] / of.mixture
     for i in range(time.size):
         for _ in range(3):
-            flux = (oxidizer[i] + 0.5 * fuel) / (pi * radius**2)
-            rate = rate0 * (flux / flux0) ** of.exponent
+            flux = (oxidizer[i] + of.of_fuel * fuel) / (pi * radius**2)
+            rate = rate0 * (flux / flux0) ** of.exponent * (1.0 - of.fades * time[i] / of.lasts)
             fuel = 2.0 * pi * radius * length * DENSITY * rate
         port[i], mixture[i] = radius, oxidizer[i] / fuel
         radius += STEP * rate
@@ -135,7 +140,7 @@ def _run(
 def _measured(
     r: np.random.Generator, of: World, time: Array, pressure: Array, thrust: Array, oxidizer: Array, burnt: float,
     mass: float, shape: tuple[float, float, float, float, float], port: Array,
-) -> Test:  # fmt: skip
+) -> Firing:  # fmt: skip
     """What a team would have of it."""
     port0, outer, length, area, exit_area = shape
     e = {name: std * r.standard_normal() for name, std in ERRORS.items()}
@@ -159,15 +164,15 @@ def _measured(
     )  # fmt: skip
     definition.known = _known(definition)
     flow = oxidizer * (1.0 + e["flow"])
-    engine = SimpleNamespace(
+    shape = Shape(
         throat_area=area, exit_area=exit_area, port_radius=port0, outer_radius=outer, grain_length=length,
-        fuel_density=DENSITY, oxidizer_enthalpy=ENTHALPY, ambient_pressure=AMBIENT,
+        dead_volume=0.0, fuel_density=DENSITY, oxidizer_enthalpy=ENTHALPY,
     )  # fmt: skip
-    rough = Flows(time, flow, flow / 7.0, np.zeros(time.size), port)
-    return cast("Test", SimpleNamespace(
+    passed = Quantity(float(np.trapezoid(flow, time)), "kg", ERRORS["flow"] * float(np.trapezoid(flow, time)))
+    return cast("Firing", SimpleNamespace(
         log=log, segments=SimpleNamespace(time=lambda name: 0.1 if name == "t_feed" else None),
-        definition=definition, calibration=SimpleNamespace(C_i=Quantity(0.3, "", 0.3 * ERRORS["flow"])),
-        fire=SimpleNamespace(end=float(time[-1])), engine=engine, flows=rough, ambient=AMBIENT, purge=None,
+        definition=definition, calibration=SimpleNamespace(oxidizer_mass_liquid_phase=passed),
+        fire=SimpleNamespace(end=float(time[-1])), shape=shape, time=time, oxidizer=flow, ambient=AMBIENT,
         measured={"p_chamber": read, **({"thrust_corrected": force} if of.thrust else {})},
     ))  # fmt: skip
 

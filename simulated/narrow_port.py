@@ -20,10 +20,10 @@ from hfanalysis.arrays import Array
 from hfanalysis.engine.nozzle import mach_at_area, pressure_ratio
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.inference.budget import Input
+from hfanalysis.performance.efficiency import Ideal, Spread, efficiencies, ideal, means
+from hfanalysis.performance.flows import HISTORY_STEP, Flows
+from hfanalysis.performance.measured import Fire
 from hfanalysis.products.validation import Efficiencies
-from hfanalysis.validate.efficiency import Ideal, Spread, efficiencies, ideal, means
-from hfanalysis.validate.flows import HISTORY_STEP, Flows
-from hfanalysis.validate.performance import Fire
 
 FIRE = Fire(4.4, 0.01, "simulated")
 STEADY = 0.4

@@ -1,9 +1,9 @@
 """Logs of whole engines with all the errors that a test engineer signs for, each drawn from what is stated of it.
 
 As simulated/engine.py, of fuels that paraffin is known for, but: volume, holes, masses, throat and burn time are off as
-test.toml states or as the documented defaults have it; C_i drifts; the log may be reduced with another table of
-nitrous oxide; gauges have errors of zero and span; the load cell one of gain, and a drift of any course; the rocket
-differs from what is stated of it. No nitrogen enters.
+test.toml states or as the documented defaults have it; C_i drifts along any course; the log may be reduced with another
+table of nitrous oxide; gauges have errors of zero and span; the load cell one of gain, and a drift of any course; the
+rocket differs from what is stated of it. No nitrogen enters.
 """
 
 from __future__ import annotations
@@ -17,10 +17,9 @@ import numpy as np
 from simulated.engine import possible
 from simulated.stand import AMBIENT, HOLE_AREA, PSI, Array, Truth, noise
 
-from hfanalysis.calibrate.drifting import DRIFT as INJECTOR_DRIFT
-from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.flight.ascent import ANGLE, CROSSWIND, DRAG, MASS, NOMINAL, PROPELLANT, WIND
+from simulated import drifting_injector
 
 DRIFT = 0.05
 """Standard deviation of the part by which C_i changes while the liquid lasts [-]."""
@@ -94,13 +93,13 @@ def _ran(stand: Truth, engine: Engine, done: Burn, generator: np.random.Generato
     wet = burn(engine, longest=40.0, run_on=True).liquid_out
     if wet is None:
         raise ValueError("the liquid does not run out")
-    drift = DRIFT * generator.standard_normal()
-    drifting = replace(engine, effects=(Active(INJECTOR_DRIFT, (drift, wet)),))
+    drift = drifting_injector.drawn(generator, DRIFT, wet)
+    drifting = replace(engine, effects=(drift,))
     burnt = burn(drifting, longest=max(done.burn_time, wet) * 1.2 + 4.0, run_on=True)
     if burnt.liquid_out is None or not burnt.fuel_out:
         raise ValueError("the log does not hold both ends")
     time, flow = burnt.time, burnt.output("oxidizer_flow")
-    factor = 1.0 + drift * (np.minimum(time, wet) / wet - 0.5)
+    factor = drifting_injector.factor(drift, time)
     liquid = time <= burnt.liquid_out
     mean = np.trapezoid(flow[liquid], time[liquid]) / np.trapezoid((flow / factor)[liquid], time[liquid])
     curves = {

@@ -23,7 +23,7 @@ from benchmarks.mutants.mutant import ROOT, Mutant
 from benchmarks.mutants.page import page
 from benchmarks.mutants.workshop import Ran, Workshop, room_tests, state
 
-ROOMS = "calibrate,validate,measured_flight,flight,segment,effects,diagnose/answer"
+ROOMS = "calibrate,performance,validate,measured_flight,flight,segment,effects,diagnose/answer"
 FOUND = Path(__file__).parent / "found.jsonl"
 
 

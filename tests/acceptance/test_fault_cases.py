@@ -14,6 +14,7 @@ from hfanalysis.drafting.new import new_test
 from hfanalysis.errors import InputError
 from hfanalysis.health.judge import judge
 from hfanalysis.health.usable import as_accurate, usable, widened
+from hfanalysis.performance.quick import quick_look
 from hfanalysis.products.health import Health
 from hfanalysis.products.quick import QuickLook
 from hfanalysis.products.segments import Segments
@@ -22,7 +23,6 @@ from hfanalysis.record.definition import load_definition
 from hfanalysis.record.ingest import ingest
 from hfanalysis.record.log import read_log
 from hfanalysis.segment.phases import find_phases
-from hfanalysis.validate.quick import quick_look
 
 FAULTS = Path(__file__).parents[3] / "shared" / "faults"
 C_I, T_V, IMPULSE = 0.2915, 5.264, 16.13e3

@@ -120,6 +120,37 @@ def test_a_cell_that_has_not_settled_is_told_as_the_chamber_comes_to_ambient(tmp
     assert (told.kind, told.channels, told.cure) == ("zero", ("thrust",), None)
 
 
+def with_a_tail() -> Columns:
+    """A firing whose chamber and thrust fade after 8 s, within seconds, and whose cell is quiet at rest."""
+    columns = fire.columns()
+    tail = np.where(columns["time"] > 8.0, np.exp(-np.clip(columns["time"] - 8.0, 0.0, None) / 2.0), 0.0)
+    columns["p_chamber"] += 6.0 * tail
+    pushed = columns["thrust"] + 500.0 * tail
+    rests = (columns["time"] < -0.02) | (columns["time"] > 12.0)
+    return columns | {"thrust": np.where(rests, 12.0, np.round(pushed, 2))}
+
+
+def test_a_cell_that_stands_at_its_rest_while_the_chamber_still_pushes_is_at_its_lower_end(tmp_path: Path) -> None:
+    columns = with_a_tail()
+    cut = columns | {"thrust": np.maximum(columns["thrust"], 330.0)}
+    told = [f for f in found(tmp_path, cut) if f.kind == "railed"]
+    assert [(f.channels, f.verdict) for f in told] == [(("thrust",), "unusable")] * 2
+    assert told[0].span[1] < 0.02
+    assert 8.0 < told[1].span[0] < 9.5
+
+
+def test_a_cell_half_of_whose_noise_at_rest_is_missing_is_at_its_lower_end(tmp_path: Path) -> None:
+    columns = changed("thrust", lambda t, v: np.maximum(v, 14.0))
+    told = [f for f in found(tmp_path, columns) if f.kind == "railed"]
+    assert [(f.channels, f.verdict) for f in told] == [(("thrust",), "unusable")] * 2
+    assert told[0].span[1] < 0.02
+    assert told[1].span[0] > 7.9
+
+
+def test_a_cell_that_is_quiet_at_rest_is_at_no_end(tmp_path: Path) -> None:
+    assert "railed" not in {f.kind for f in found(tmp_path, with_a_tail())}
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_healthy_firing_is_blamed_for_nothing(seed: int, tmp_path: Path) -> None:
     assert found(tmp_path, fire.columns(seed), fire.toml() + THROAT) == []

@@ -139,6 +139,18 @@ def test_a_clock_at_another_pace_widens_what_goes_with_time() -> None:
     assert (found.m.std, found.m.verdict) == (0.01, "doubted")
 
 
+def test_a_clock_off_by_any_factor_leaves_a_flow_positive_and_events_where_the_log_has_them() -> None:
+    slow = health_of("p_run", "suspect", kind="clock", pace=810.0)
+    found = doubted(filled(Calibration, {"C_i": Quantity(0.6, "", 0.001)}), slow)
+    assert isinstance(found, Calibration)
+    assert found.C_i.interval is not None
+    assert 0.0 < found.C_i.interval[0] < 0.6 / 810.0
+    assert found.C_i.interval[1] > 0.6 * 810.0
+    events = doubted(filled(Segments, {"t_open": Quantity(1.0, "s", 0.1), "t_v": Quantity(5.0, "s", 0.01)}), slow)
+    assert isinstance(events, Segments)
+    assert (events.t_v.std, events.t_v.verdict) == (0.01, "doubted")
+
+
 def test_what_the_engineer_states_rests_on_no_channel() -> None:
     burn = {"performance": {"measured": {"burn_time": Quantity(17.0, "s", 0.1, why="[observed] burn_time")}}}
     product = doubted(filled(Validation, burn), health_of("thrust", "suspect"))

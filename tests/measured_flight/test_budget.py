@@ -7,7 +7,7 @@ import pytest
 
 from hfanalysis.flight.ascent import ANGLE, APOGEE, CROSSWIND, DRAG, MASS, NOMINAL, RESULTS, THRUST_SCALE, WIND
 from hfanalysis.measured_flight.budget import CURVE, WIND_AND_ANGLE, apogee_budget
-from hfanalysis.validate.load_cell import ROWS
+from hfanalysis.performance.load_cell import ROWS
 
 FLIGHTS = 4000
 

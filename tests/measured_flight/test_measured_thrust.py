@@ -10,11 +10,11 @@ from tests.segment.heated_cell import EMPTY, heated, quenched
 from tests.segment.stand import Trial, definition, segments_of
 
 from hfanalysis.measured_flight.thrust import MeasuredThrust, measured_thrust
+from hfanalysis.performance.load_cell import ANY_COURSE, UNSEEN_DRIFT
+from hfanalysis.performance.measured import measured
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.log import TestLog
-from hfanalysis.validate.load_cell import ANY_COURSE, UNSEEN_DRIFT
-from hfanalysis.validate.performance import measured
 
 
 @pytest.fixture(scope="module")

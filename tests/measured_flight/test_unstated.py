@@ -16,6 +16,7 @@ from hfanalysis.flight.summary import ASCENT
 from hfanalysis.measured_flight.propellant import exponent_of, propellant
 from hfanalysis.measured_flight.thrust import MeasuredThrust, _drift_taken, measured_thrust
 from hfanalysis.measured_flight.uncertainty import DrawnFlights
+from hfanalysis.performance.thrust import Thrust
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import ChannelSpec
@@ -24,7 +25,6 @@ from hfanalysis.record.schema import changed
 from hfanalysis.record.sections import GrainSection
 from hfanalysis.record.signals import Signal
 from hfanalysis.units import Value
-from hfanalysis.validate.thrust import Thrust
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,8 @@ import pytest
 from tests.record import make
 
 from hfanalysis.arrays import Array
+from hfanalysis.errors import InputError
+from hfanalysis.record.quiet import Trace, in_blocks
 from hfanalysis.record.readers.stamps import StampParser
 
 STEP = 0.25
@@ -107,3 +109,15 @@ def test_stamps_of_a_logger_that_pauses_are_not_spread(tmp_path: Path) -> None:
     text = "time,p_tank\n" + "".join(f"{s},{50 + i % 7}\n" for i, s in enumerate(seconds))
     log = make.read(tmp_path, make.LOG + make.channel("p_tank", "bar"), {"log.csv": text})
     np.testing.assert_array_equal(log["p_tank"].time, seconds)
+
+
+@pytest.mark.parametrize("stamps", [np.zeros(50), np.linspace(-1e307, 0.0, 50), np.linspace(0.0, 1e-60, 50)])
+def test_stamps_of_no_clock_are_refused(stamps: Array, tmp_path: Path) -> None:
+    log = make.csv(time=stamps, p_tank=np.full(50, 1.0))
+    with pytest.raises(InputError, match="is their column a clock"):
+        make.read(tmp_path, make.LOG + make.channel("p_tank", "bar"), {"log.csv": log})
+
+
+def test_blocks_of_samples_closer_than_numbers_can_tell_are_one() -> None:
+    blocks = in_blocks(Trace(np.linspace(0.0, 1e-60, 50), np.ones(50)), 0.1)
+    assert blocks.time.shape == (1,)

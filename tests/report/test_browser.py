@@ -181,7 +181,7 @@ WEAK = '[data-chart="diagnosis-weak-tank-energy"]'
 def test_the_diagnosis_is_read_and_drawn_without_a_complaint(opened: Page) -> None:
     said = opened.ask(f"{SECTION}.innerText")
     assert "The model lacks tank_heat (0.83)" in said
-    assert "m 0.75 of the base refitted, 1.08 with tank_heat." in said
+    assert "m 0.75 refitted, 1.08 with the effects." in said
     assert opened.ask(f"{SECTION}.querySelectorAll('figure .line.p_tank').length") > 0
     bars = opened.ask(
         f"[...{SECTION}.querySelectorAll('.share')].map((b) => b.lastChild.getBoundingClientRect().width)"

@@ -16,7 +16,7 @@ from hfanalysis.engine.unsteady import Burn, Engine, burn
 from hfanalysis.inference.full_run import FullRun
 from hfanalysis.products.calibration import Calibration, Joint
 from hfanalysis.quantity import Quantity
-from hfanalysis.validate.performance import modeled
+from hfanalysis.validate.modeled import modeled
 
 FLUX = 130.0
 GRAVITY = 9.80665

@@ -272,7 +272,7 @@ class _Work:
     def _judged(self, r: Reduction, draws: Draws, inputs: Inputs, left: Array) -> dict[str, Quantity]:
         held = "C_i" in self.held.values
         discharge = self.held.quantity("C_i") if held else judge_discharge(r, draws, self._excluded_share())
-        known = np.isfinite(r.C_i) and 0.0 < r.C_i < 10.0
+        known = np.isfinite(draws.of_flow) and 0.0 < r.C_i < 10.0
         out = {"C_i": discharge, "m": judge_exponent(r, draws, inputs, self.end_reason, self.saturation)}
         out["Z"] = looked_up(judged("Z", r.Z, "", draws))
         out["K_loss"] = judged("K_loss", r.K_loss, "1/m^4", draws, unphysical_below=0.0)

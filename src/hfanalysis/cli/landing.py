@@ -19,7 +19,7 @@ from hfanalysis.errors import AnalysisError, InputError
 from hfanalysis.record.definition import TestDefinition
 
 if TYPE_CHECKING:
-    from hfanalysis.validate.quick import Facts
+    from hfanalysis.performance.quick import Facts
 
 POLL = 0.5
 """Between two looks into the folder [s]. Source: by choice: a log waits no longer than people do."""
@@ -90,8 +90,8 @@ def _look(log: Path, root: Path, as_json: bool) -> None:
 def _as_test(log: Path, root: Path, place: Path) -> tuple[str, Facts]:
     """The log as a test in a root of its own: the test's name, and whose test.toml it has."""
     from hfanalysis.drafting.new import new_test
+    from hfanalysis.performance.quick import Facts
     from hfanalysis.record.lent import last_alike, lend
-    from hfanalysis.validate.quick import Facts
 
     name = re.sub(r"[^\w.+-]+|\.\.+", "_", log.stem).lstrip(".+-_") or "log"
     folder = place / "raw_tests" / name

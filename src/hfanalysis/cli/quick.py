@@ -12,7 +12,7 @@ from hfanalysis.products.quick import QuickLook
 from hfanalysis.stages.base import Context, load_stage
 
 if TYPE_CHECKING:
-    from hfanalysis.validate.quick import Facts
+    from hfanalysis.performance.quick import Facts
 
 
 def quick(request: Request, facts: Facts | None = None) -> None:
@@ -21,7 +21,7 @@ def quick(request: Request, facts: Facts | None = None) -> None:
     Their products are those of the full run; what else is found is shown and never written. Raises AbsentError, after
     what its sensors say, for a log without a firing.
     """
-    from hfanalysis.validate.quick import OWN
+    from hfanalysis.performance.quick import OWN
 
     facts = facts or OWN
     try:
@@ -34,9 +34,9 @@ def quick(request: Request, facts: Facts | None = None) -> None:
 
 def _look(context: Context, facts: Facts) -> QuickLook:
     from hfanalysis.inference.adopted.effects import read_adopted
+    from hfanalysis.performance.quick import quick_look
     from hfanalysis.products.health import Health
     from hfanalysis.products.segments import Segments
-    from hfanalysis.validate.quick import quick_look
 
     at = context.at(load_stage("calibrate"))
     log, definition = at.believed()
@@ -46,8 +46,8 @@ def _look(context: Context, facts: Facts) -> QuickLook:
 
 
 def _of_sensors(context: Context, why: str, facts: Facts) -> QuickLook:
+    from hfanalysis.performance.quick import nothing_happened
     from hfanalysis.products.health import Health
-    from hfanalysis.validate.quick import nothing_happened
 
     return nothing_happened(context.definition, context.read(Health), why, facts)
 

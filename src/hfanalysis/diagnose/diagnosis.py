@@ -26,7 +26,8 @@ from hfanalysis.diagnose.answer.words import story
 from hfanalysis.diagnose.model_free import shown
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
-from hfanalysis.diagnose.naming.shortfall import on_firm_ground
+from hfanalysis.diagnose.naming.polish import not_converged
+from hfanalysis.diagnose.naming.slack import course_error
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
@@ -77,16 +78,14 @@ def diagnose(
     hypothesis, observed = subject.compared()
     catalogue = Catalogue(_visible(effects, observed), subject.stated())
     found = name_effects(hypothesis, observed, catalogue, progress, settings)
-    found, why = on_firm_ground(found)
     verdict = verdict_of(found, {name: effect.twins for name, effect in catalogue.effects.items()})
     verdict, small = without_the_small(verdict, places(verdict, found), found)
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
-    product = _product(found, verdict, proof, catalogue)
+    product = _product(found, verdict, proof, catalogue).but(called=plain_names(effects))
     product = product.but(
         gap=_with_calibrated(product.gap, found, hypothesis, subject),
         constants=None if product.constants is None else product.constants.but(calibrated=_calibrated(subject)),
-        not_converged=why,
         too_small=small,
     )
     sentences = story(product)
@@ -126,6 +125,11 @@ def _calibrated(subject: Subject) -> dict[str, Quantity]:
     return {name: q for name, q in known.items() if q.value is not None}
 
 
+def plain_names(effects: Mapping[str, Effect]) -> dict[str, str]:
+    """What people call each effect, where it says so."""
+    return {name: effect.plain_name for name, effect in effects.items() if effect.plain_name}
+
+
 def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Effect]:
     """Effects that the channels of a test can show at all: a sensor's need the sensor."""
     return {n: e for n, e in effects.items() if not e.of_sensor or set(e.sites) & set(observed.names)}
@@ -137,6 +141,8 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
     left = {*verdict.set90, *verdict.added}
     residuals = weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))
     unsure = () if chosen.fit.converged else ("the last fit did not converge: sizes and intervals are rough",)
+    if (why := not_converged(found.risen)) is not None:
+        unsure = (*unsure, f"the search did not converge: {why}; take names with care")
     return Diagnosis(
         verdict=verdict.label,
         effects=effects_product(verdict),
@@ -155,6 +161,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         doubts=verdict.doubts,
         unknown_beside=verdict.added if verdict.doubts else (),
         at_limit=at_limit(verdict),
+        not_converged=why,
         twins=_twins(verdict, catalogue),
         not_it=() if poor_fit(found.named.leftover) else _not_it(verdict),
         decisive_measurements=_decisive(verdict, catalogue),
@@ -163,7 +170,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         weak_form=weak_product(residuals),
         compared=_compared(found, chosen, observed),
         probabilities_from="probabilities.json" if scale().temperature != 1.0 else "raw evidences",
-        notes=proof.notes,
+        notes=(*proof.notes, *_course(verdict, found)),
         warnings=unsure,
         runtime_s=NO_TIME,
         seed=0,
@@ -241,6 +248,16 @@ def _plausibility(found: Naming, chosen: Candidate) -> dict[str, Plausibility]:
     return out | {name: judged(active) for name, active in acting_in(chosen.fit).items()}
 
 
+def _course(verdict: Verdict, found: Naming) -> list[str]:
+    """That the course of what is named differs from the library's, where it does."""
+    if verdict.label not in ("named", "ambiguous") or verdict.chosen.unknown:
+        return []
+    off = course_error(verdict.chosen, found.bench)
+    return [COURSE.format(" and ".join(verdict.chosen.names), 100.0 * off)] if off > 0.0 else []
+
+
+COURSE = "{}: the course differs from the library's by about {:.0f} % of itself"
+
 LIKELY = 0.02
 """Probability below which a listed effect is said not to be it."""
 
@@ -270,4 +287,5 @@ def _decisive(verdict: Verdict, catalogue: Catalogue) -> tuple[str, ...]:
     """What would decide between the names that are left; nothing where none is claimed."""
     left = () if verdict.label == "none" else dict.fromkeys((*verdict.added, *verdict.set90))
     names = [n for n in left if n in catalogue.effects]
-    return tuple(dict.fromkeys(f"{n}: {catalogue.effects[n].decisive}" for n in names if catalogue.effects[n].decisive))
+    told = {n: catalogue.effects[n] for n in names if catalogue.effects[n].decisive}
+    return tuple(dict.fromkeys(f"{effect.plain_name or name}: {effect.decisive}" for name, effect in told.items()))

@@ -11,7 +11,6 @@ import numpy as np
 from hfanalysis.health.reasons import Doubt, reasons
 from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns, power_of_time, rests
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.health import HEALTHY, UNUSABLE, Finding, Health
 from hfanalysis.products.model import Part, Product
 from hfanalysis.products.segments import Segments
@@ -22,6 +21,8 @@ P = TypeVar("P", bound=Part)
 NEAR = 1.0
 """[s] about an event in which a stretch may have moved it. Evidence: ignition is late by a second at most, and the
 searches look at less."""
+ONLY_WARNED = "diagnosis.json"
+"""A product whose quantities are not doubted one by one: what it weighs, it weighs with the doubts in."""
 WORSE = (NOT_IDENTIFIABLE, UNPHYSICAL)
 """Verdicts that a doubt does not replace."""
 
@@ -35,7 +36,7 @@ def doubted(product: Product, health: Health) -> Product:
         return product
     if isinstance(product, Segments):
         return _events(product, health)
-    if isinstance(product, Diagnosis):
+    if product.file == ONLY_WARNED:
         return product.but(warnings=tuple(dict.fromkeys((*product.warnings, *health.warnings))))
     together = isinstance(product, Calibration) and product.oxidizer_mass_fitted is not None
     return _part(product, product.file + TOGETHER * together, health)
@@ -113,15 +114,28 @@ def _wider(quantity: Quantity, product: str, name: str, findings: Sequence[Findi
     if quantity.value is None:
         return quantity
     late = [finding.delay for finding in findings if finding.delay and product == Segments.file]
-    paced = [finding.pace * power_of_time(name) * quantity.value for finding in findings if finding.pace]
-    extra = float(np.linalg.norm([*late, *paced])) if late or paced else 0.0
-    if extra == 0.0:
+    paces = [abs(power_of_time(name)) * float(np.log1p(finding.pace)) for finding in findings if finding.pace]
+    delay, pace = float(np.linalg.norm(late)), float(np.linalg.norm(paces))
+    if delay == pace == 0.0:
         return quantity
-    interval = quantity.interval or (quantity.value, quantity.value)
-    ends = [quantity.value + sign * np.hypot(end - quantity.value, NORMAL_95 * extra)
-            for sign, end in zip((-1.0, 1.0), interval, strict=True)]  # fmt: skip
-    std = float(np.hypot(quantity.std or 0.0, extra))
-    return replace(quantity, std=std, ci95=(float(ends[0]), float(ends[1])))
+    value = quantity.value
+    low, high = quantity.interval or (value, value)
+    ends = [_stretched(value, value + sign * float(np.hypot(end - value, NORMAL_95 * delay)), sign, pace)
+            for sign, end in ((-1.0, low), (1.0, high))]  # fmt: skip
+    std = float(np.linalg.norm((quantity.std or 0.0, delay, value * pace)))
+    return replace(quantity, std=std, ci95=(ends[0], ends[1]))
+
+
+def _stretched(value: float, end: float, side: float, pace: float) -> float:
+    """The lower or upper (``side`` -1 or 1) end of a value's interval where the value may be off by a factor, too.
+
+    ``pace``: the standard deviation of the factor's logarithm [-]. A factor leaves the sign: a clock that is eight
+    hundred times too slow makes no flow negative.
+    """
+    if value * end <= 0.0:
+        return end * float(np.exp(NORMAL_95 * pace))
+    own = float(np.log(end / value))
+    return value * float(np.exp(np.copysign(side, value * side) * np.hypot(own, NORMAL_95 * pace)))
 
 
 def with_doubts(quantity: Quantity, found: Sequence[Doubt]) -> Quantity:

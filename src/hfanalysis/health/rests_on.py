@@ -93,6 +93,8 @@ VALIDATION = {
     **dict.fromkeys(("ignition_delay", "rise_time", "ignition_overshoot"), ("p_chamber",)),
     **dict.fromkeys(("action_time", "burn_time_5_percent", "tail_impulse"), ("thrust",)),
     **dict.fromkeys(("impulse_liquid", "impulse_vapor", "impulse_nitrogen"), ("thrust",)),
+    "specific_impulse_liquid": ("thrust",),
+    "pressure_lag": ("thrust", "p_chamber"),
     **dict.fromkeys(("injector_drop_liquid", "injector_drop_vapor"), ("p_run", "p_chamber")),
     **dict.fromkeys(("of_ratio_mean", "a", "n", "throat_radius_change", "nozzle_efficiency"), PRESSURES),
     **dict.fromkeys(("roughness_rms", "roughness_peak_to_peak", "rms", "peak_to_peak"), ("p_chamber",)),
@@ -120,18 +122,20 @@ TOGETHER = " together"
 """How the name of a product ends here whose constants were fitted together, with the thrust."""
 
 PACED = {
-    **dict.fromkeys(("t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end", "burn_time"), 1.0),
+    "burn_time": 1.0,
     **dict.fromkeys(("C_i", "spi", "hem", "dyer", "vapor_C_d"), -1.0),
     **dict.fromkeys(("oxidizer_flow_peak", "a", "regression_rate_reference"), -1.0),
     **dict.fromkeys(("total_impulse", "specific_impulse", "total_impulse_of_file", *FLOWN), 1.0),
     "specific_impulse_loaded": 1.0,
-    **dict.fromkeys(("ignition_delay", "rise_time", "action_time", "burn_time_5_percent"), 1.0),
+    "specific_impulse_liquid": 1.0,
+    **dict.fromkeys(("ignition_delay", "rise_time", "action_time", "burn_time_5_percent", "pressure_lag"), 1.0),
     **dict.fromkeys(("impulse_liquid", "impulse_vapor", "impulse_nitrogen", "tail_impulse"), 1.0),
     "K_loss": 2.0,
     "drift": -2.0,
 }  # fmt: skip
 """With which power of the clock's pace a quantity goes, about: a clock at half its pace makes flows of twice the size.
-Source: the definitions; of a flight's numbers no more than their size."""
+Source: the definitions; of a flight's numbers no more than their size. Events are not in it: they are dated on the
+log's own clock, which is where every later stage looks for them."""
 
 OUTSIDE = ("[observed]", "set by the engineer", "as stated", "held as")
 """How the reason of a quantity begins that comes from test.toml, not from the log."""

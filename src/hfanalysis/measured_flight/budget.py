@@ -18,8 +18,8 @@ from hfanalysis.flight.ascent import (
     WIND,
 )
 from hfanalysis.inference.budget import by_draws
+from hfanalysis.performance.load_cell import ROWS
 from hfanalysis.products.budget import Budget
-from hfanalysis.validate.load_cell import ROWS
 
 WIND_AND_ANGLE, CURVE = "wind and launch angle", "purge gas and nozzle's law"
 

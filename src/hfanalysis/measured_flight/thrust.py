@@ -8,14 +8,14 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
+from hfanalysis.performance.load_cell import left_in
+from hfanalysis.performance.measured import cell_error_of
+from hfanalysis.performance.thrust import Thrust, burnt_out, thrust_of
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.record.signals import Signal
 from hfanalysis.sentences import said, text
-from hfanalysis.validate.load_cell import left_in
-from hfanalysis.validate.performance import cell_error_of
-from hfanalysis.validate.thrust import Thrust, burnt_out, thrust_of
 
 EARLY = 0.5
 """[s] before the burn's end at which the thrust may end and still be flown: the model of a fire that goes out."""

@@ -18,10 +18,10 @@ import numpy as np
 from scipy.special import ndtri
 
 from hfanalysis.arrays import Array
+from hfanalysis.assembly.burnt_gas import combustion_of
 from hfanalysis.assembly.calibrated import ASSUMED_EXPONENT
-from hfanalysis.assembly.engine import combustion_of
-from hfanalysis.calibrate.blowdown import EXPONENTS
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
+from hfanalysis.calibrate.reducing import EXPONENTS
 from hfanalysis.effects.injector_choked_vapor import expanding_flow
 from hfanalysis.engine.grain import USUAL_N, Grain, opened, pace_between
 from hfanalysis.engine.injector import mass_flows
@@ -31,6 +31,7 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.flight.curve import accumulated
 from hfanalysis.measured_flight.propellant import Propellant, exponent_of
 from hfanalysis.measured_flight.vapor_burn import VAPOR_GAMMA, Course, VaporBurn
+from hfanalysis.performance.thrust import AT_AMBIENT
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import IDENTIFIED
@@ -40,7 +41,6 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.units import Value
-from hfanalysis.validate.thrust import AT_AMBIENT
 
 VAPORS = INCOMPRESSIBLE, CHOKED, CHOKED_GAS = range(3)
 """How the vapor passes the injector: as the report has it; choked, with the liquid's coefficient; choked, with the

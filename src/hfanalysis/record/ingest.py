@@ -34,6 +34,9 @@ from hfanalysis.version import __version__
 
 Progress = Callable[[str, float], None]
 """Called now and then with the file's name and the share of it that has been read."""
+OF_A_CLOCK = (1e-5, 1e11)
+"""[s] from the first stamp to the last outside of which they are of no clock, in whatever unit. Source: half a minute
+in days, taken for seconds, is 3e-4, and in nanoseconds 3e10."""
 SHORTEST_LOG = 0.5
 """[s] of a log below which no firing fits into it."""
 WORKERS = 2
@@ -155,6 +158,8 @@ class _Ingest:
         clock = read_clock(spool, plan.stamps, plan.time, rows, str(path))
         self.warnings += clock.warnings
         span = float(np.ptp(clock.time))
+        if not OF_A_CLOCK[0] <= span <= OF_A_CLOCK[1]:
+            raise InputError(f"{path}: its time stamps span {span:.3g} s; expected a log's: is their column a clock?")
         if span < SHORTEST_LOG:
             self.warnings.append(f"{path.name}: the whole log lasts {span:.3g} s: is the unit of its time right?")
         return clock

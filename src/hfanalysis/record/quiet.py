@@ -118,7 +118,7 @@ def in_blocks(trace: Trace, width: float) -> Trace:
         return trace
     every = max(1, len(trace.time) // 20_000)
     step = float(np.median(trace.time[1::every] - trace.time[:-1:every]))
-    per = max(1, round(width / step)) if step > 0 else 1
+    per = round(float(np.clip(width / step, 1.0, len(trace.time)))) if step > 0 else 1
     count = len(trace.time) // per
     shape = (count, per)
     return Trace(trace.time[: count * per].reshape(shape).mean(1), trace.values[: count * per].reshape(shape).mean(1))

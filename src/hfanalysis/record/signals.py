@@ -19,6 +19,10 @@ ON_EDGE = 1e-3
 """Of the time between samples, within which one counts as on the edge of a stretch. Evidence: times counted from
 another origin are rounded anew, and means changed with the last digits of a log."""
 
+MOST_COUNTS = 20.0
+"""Usual change of reading, in the least one, up to which that is a converter's step. Assumed: a finer one makes no
+noise to speak of."""
+
 BRIDGE = 0.1
 """[s] on either side of a hole over which a signal's mean is taken. Evidence: an impulse across a hole hung on two
 single samples (test_performance.py)."""
@@ -52,6 +56,20 @@ class Signal:
     def dead(self) -> bool:
         """Whether the channel holds too few samples to say anything, or never changes at all."""
         return self.time.size < 8 or float(np.ptp(self.value)) == 0.0
+
+    @property
+    def resolution(self) -> float:
+        """The least change of reading [SI] where most of them are whole multiples of it, a converter's step; else 0.
+
+        >>> Signal("p", np.arange(4.0), np.array([1.0, 1.5, 1.5, 3.0]), 0.0, 1.0).resolution
+        0.5
+        """
+        steps = np.abs(np.diff(self.value))
+        steps = steps[steps > 0.0]
+        if steps.size == 0:
+            return 0.0
+        least = float(steps.min())
+        return least if float(np.median(steps)) < MOST_COUNTS * least else 0.0
 
     def between(self, start: float, end: float) -> Signal:
         """The samples with start <= time < end [s], whatever the time of one on an edge was rounded to."""

@@ -51,6 +51,13 @@ SHARP = 0.04
 test_events.py: they fall with the liquid and date it best."""
 
 
+SEEN = 4.0
+"""Standard deviations of the difference of two slopes above which it is a knee [-]. Source: of some hundred differences
+of noise the largest is three."""
+
+WIDER = 4
+"""How often the slopes are taken over twice as long, until a knee stands above the noise."""
+
 STEP_AFTER = 0.15
 """Seconds after a fall of chamber pressure or thrust that are looked at, and how far from the knee it may be."""
 
@@ -96,14 +103,15 @@ def find_liquid_end(
     None where the tank pressure shows no knee. A knee that is ``impossible`` [s] leaves its place to the next best.
     """
     tank = signals["p_tank"]
-    rough = _rough_knee(tank, end, expected, impossible)
-    if rough is None:
+    found = _rough_knee(tank, end, expected, impossible)
+    if found is None:
         return None
+    rough, wider = found
     noise = Noise.of(tank, tank.between(-3.0, -0.05))
     for start, unseen_to in tank.holes(rough, rough):
         return LiquidEnd(*anywhere_in(rough, 0.0, start, unseen_to), ("p_tank",), {})
-    half = min(max(0.3, 15.0 * tank.step), max(0.8 * rough, 6.0 * tank.step))
-    reach = max(0.12, 4.0 * tank.step)
+    half = min(wider * max(0.3, 15.0 * tank.step), max(0.8 * rough, 6.0 * tank.step))
+    reach = wider * max(0.12, 4.0 * tank.step)
     knee = refine_knee(tank, rough, min(half + reach, rough), half + reach, reach, noise)
     if knee is None or not _steeper(tank, knee.time, half):
         return LiquidEnd(rough, 0.5 * reach, ("p_tank",), {})
@@ -144,12 +152,28 @@ def _run_line_fall(run: Signal, about: float, wide: float) -> float | None:
     return float(times[best]) if np.isfinite(drop[best]) and drop[best] > 0.5 * abs(usual) else None
 
 
-def _rough_knee(tank: Signal, end: float, expected: float | None, impossible: Callable[[float], bool]) -> float | None:
+def _rough_knee(
+    tank: Signal, end: float, expected: float | None, impossible: Callable[[float], bool]
+) -> tuple[float, float] | None:
+    """The likeliest knee [s], and how many times wider than usual the slopes were that saw it [-].
+
+    As wide as it takes to see a fall above the noise: a wide slope blurs a knee, a narrow one makes knees of noise.
+    """
+    narrow = float(np.clip(0.05 * end, max(0.1, 5 * tank.step), max(0.4, 8 * tank.step)))
+    for wider in 2.0 ** np.arange(WIDER):
+        times, score = _knees(tank, end, expected, float(wider * narrow))
+        for k in np.argsort(-score):
+            if score[k] > 0.0 and not impossible(float(times[k])):
+                return float(times[k]), float(wider)
+    return None
+
+
+def _knees(tank: Signal, end: float, expected: float | None, width: float) -> tuple[Array, Array]:
+    """Instants [s] and how much each looks like the end of the liquid (0: it does not), by slopes over a width [s]."""
     coarse = tank.reduced(max(0.01, tank.step))
-    width = float(np.clip(0.05 * end, max(0.1, 5 * tank.step), max(0.4, 8 * tank.step)))
     times = np.arange(0.5 * width, end - 0.4 * width, 0.25 * width)
     if times.size == 0:
-        return None
+        return times, times
     start, after_hole = _beside_holes(times, tank.holes(0.0, end))
     before = np.array([_slope(coarse, t - width if t > 1.2 * width else 0.2 * width, t) for t in start])
     after = np.array([_slope(coarse, t, t + width) for t in after_hole])
@@ -160,16 +184,12 @@ def _rough_knee(tank: Signal, end: float, expected: float | None, impossible: Ca
     if expected is not None:
         unlikely = np.exp(0.5 * (np.log(pressure / expected) / DRY_PRESSURE_SPREAD) ** 2)
     typical = float(np.nanmedian(np.abs(before[np.isfinite(before)]))) if np.isfinite(before).any() else 0.0
-    uncertain = 6.0 * tank.noise * np.sqrt(2.0 * tank.step / width) / width
+    # of two slopes by least squares
+    uncertain = SEEN * tank.noise * np.sqrt(24.0 * tank.step / width) / width
     steeper = after < STEEPER * unlikely * np.minimum(before, -0.2 * typical)
     empties = -after * times > GAS_EMPTIES * pressure
     score = np.where(steeper & lost & empties & (before < 0.0) & (fall > uncertain), fall / unlikely, 0.0)
-    for k in np.argsort(-np.nan_to_num(score)):
-        if not score[k] > 0.0:
-            break
-        if not impossible(float(times[k])):
-            return float(times[k])
-    return None
+    return times, np.nan_to_num(score)
 
 
 def _steeper(tank: Signal, instant: float, width: float) -> bool:

@@ -14,10 +14,10 @@ from hfanalysis.stages.base import Context, Stage
 def run(context: Context) -> None:
     """Compare what can be compared; what cannot says why."""
     from hfanalysis.inference.adopted.effects import read_adopted
+    from hfanalysis.performance.histories import write_histories
+    from hfanalysis.performance.reconstruction.written import write_reconstructed
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.products.segments import Segments
-    from hfanalysis.validate.histories import write_histories
-    from hfanalysis.validate.reconstruction.reconstruct import write_reconstructed
     from hfanalysis.validate.residuals import write_residuals
     from hfanalysis.validate.validation import validate
 

@@ -12,10 +12,10 @@ from hfanalysis.engine.observe import read_as
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun
+from hfanalysis.performance.flows import Flows, nozzle_along
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.validate.flows import Flows, nozzle_along
 from hfanalysis.validate.residuals import Residual, compared
 
 

@@ -17,6 +17,21 @@ from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun, run_full
+from hfanalysis.performance import histories as histories_of
+from hfanalysis.performance.budgets import budgets
+from hfanalysis.performance.efficiency import BASIS
+from hfanalysis.performance.flows import Flows, Oxidizer, burn_fuel, oxidizer_flow
+from hfanalysis.performance.histories import Histories
+from hfanalysis.performance.measured import NAMES, Fire, fire_of, impulse_inputs
+from hfanalysis.performance.measured import measured as measured_column
+from hfanalysis.performance.reconstruction.of_test import reconstructed
+from hfanalysis.performance.reconstruction.reconstruct import Reconstructed
+from hfanalysis.performance.reduction import Reduced, Test, reduced
+from hfanalysis.performance.stability.modes import Mode, chamber_between
+from hfanalysis.performance.stability.stability import stability
+from hfanalysis.performance.tank_alone import run_tank_alone
+from hfanalysis.performance.thrust import motor_class, thrust_of
+from hfanalysis.performance.transients import transients
 from hfanalysis.products.budget import Budget
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.reconstruction import Reconstruction
@@ -25,23 +40,11 @@ from hfanalysis.products.validation import Closure, Column, Performance, Validat
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
-from hfanalysis.validate import histories as histories_of
-from hfanalysis.validate import performance
-from hfanalysis.validate.budgets import budgets
 from hfanalysis.validate.chamber_forced import run_chamber_forced
-from hfanalysis.validate.efficiency import BASIS
-from hfanalysis.validate.flows import Flows, burn_fuel, oxidizer_flow
 from hfanalysis.validate.full import compare_full
-from hfanalysis.validate.histories import Histories
-from hfanalysis.validate.performance import Fire
-from hfanalysis.validate.reconstruction.reconstruct import Reconstructed, reconstruct
-from hfanalysis.validate.reduction import Reduced, Test, reduced
+from hfanalysis.validate.modeled import modeled
 from hfanalysis.validate.residuals import Residual, gaps
-from hfanalysis.validate.stability.modes import Mode, chamber_between
-from hfanalysis.validate.stability.stability import stability
-from hfanalysis.validate.tank_free import run_tank_alone, run_tank_free
-from hfanalysis.validate.thrust import motor_class, thrust_of
-from hfanalysis.validate.transients import transients
+from hfanalysis.validate.tank_free import run_tank_free
 
 Result = TypeVar("Result")
 MODES = ("tank_free", "chamber_forced", "full")
@@ -100,24 +103,26 @@ class _Work:
         self._calibration = None if water else calibration
         self.uncalibrated = "water flows: there is no tank of nitrous oxide to run" if water else uncalibrated
         self.ambient = definition.ambient_pressure.value
-        self.fire = performance.fire_of(segments, definition, self.true)
+        self.fire = fire_of(segments, definition, self.true)
         self.absent: dict[str, str] = {}
 
     def result(self) -> Validated:
         """All modes, tables and histories."""
         full = self._try("full", self._full)
-        flows = self._try("histories", lambda: self._flows(full))
+        oxidizer = self._try("oxidizer_flow", self._oxidizer)
+        flows = self._try("histories", lambda: self._flows(full, oxidizer))
         residuals = {
             "tank_free": self._try("tank_free", self._tank_free),
             "chamber_forced": self._try("chamber_forced", lambda: self._chamber_forced(full, flows)),
             "full": compare_full(self.before_nozzle, self.segments, full) if full else None,
         }
-        measured = performance.measured(self.true, self.segments, self.definition, self._calibration)
+        measured = measured_column(self.true, self.segments, self.definition, self._calibration)
         if full is not None:
-            model = performance.modeled(full, self.calibration, self.segments.time("t_purge"))
+            model = modeled(full, self.calibration, self.segments.time("t_purge"))
         else:
-            model = {name: Quantity.absent(self.absent["full"]) for name in performance.NAMES}
-        histories, found, again = self._histories(full, flows)
+            model = {name: Quantity.absent(self.absent["full"]) for name in NAMES}
+        histories, found = self._histories(full, flows)
+        again = self._reconstructed(full, oxidizer, histories)
         measured |= found.impulses
         if isinstance(fire := self.fire, Fire):
             starts = self._attempt("transients", lambda: transients(self.true, self.segments, self.definition, fire))
@@ -147,7 +152,7 @@ class _Work:
         if impulse is None or isinstance(self.fire, str):
             return {}
         thrust = thrust_of(self.true, self.segments, self.definition)
-        return budgets(measured, performance.impulse_inputs(self.true, thrust, self.fire, self.definition, impulse))
+        return budgets(measured, impulse_inputs(self.true, thrust, self.fire, self.definition, impulse))
 
     @property
     def calibration(self) -> Calibration:
@@ -182,41 +187,52 @@ class _Work:
         acting = with_stated_tap(self.definition, self.effects)
         return run_full(self.true, self.segments, self.calibration, self.definition, acting)
 
-    def _flows(self, full: FullRun | None) -> tuple[Flows, Array]:
-        """The flows, and the nitrogen [kg/s] that passes the injector beside the oxidizer, where a purge is adopted."""
-        if full is None or isinstance(self.fire, str):
-            raise AbsentError(self.absent["full"])
+    def _oxidizer(self) -> Oxidizer:
+        """What passes the injector; no regression law is needed."""
+        if isinstance(self.fire, str):
+            raise AbsentError(self.fire)
         read = before_injector(self.true, self.segments, self.definition)
         alone = run_tank_alone(
             read, self.segments, self.calibration, self.definition, constant=False, effects=self.effects
         )
         time = histories_of.clock(self.log, self.segments, self.fire.end)
         flow = oxidizer_flow(read, self.segments, self.calibration, self.definition, alone, time)
-        factor = full.factor("regression_factor", time)
-        burnt = burn_fuel(full.engine, Regression.of(self.calibration), time, flow, factor)
-        # all that flows drives the regression, as in the engine; what of it is nitrogen is no oxidizer
         nitrogen = flow * np.interp(time, alone.measured.time, alone.nitrogen, left=0.0)
-        return replace(burnt, oxidizer=flow - nitrogen), nitrogen
+        return Oxidizer(time, flow, nitrogen)
+
+    def _flows(self, full: FullRun | None, oxidizer: Oxidizer | None) -> tuple[Flows, Array]:
+        """The flows, and the nitrogen [kg/s] that passes the injector beside the oxidizer, where a purge is adopted."""
+        if full is None or oxidizer is None:
+            raise AbsentError(self.absent.get("full") or self.absent["oxidizer_flow"])
+        factor = full.factor("regression_factor", oxidizer.time)
+        # all that flows drives the regression, as in the engine; what of it is nitrogen is no oxidizer
+        burnt = burn_fuel(full.engine, Regression.of(self.calibration), oxidizer.time, oxidizer.flow, factor)
+        return replace(burnt, oxidizer=oxidizer.oxidizer), oxidizer.nitrogen
+
+    def _reconstructed(self, full: FullRun | None, oxidizer: Oxidizer | None, histories: Histories) -> Reconstructed:
+        """With or without an engine that can be run."""
+        if oxidizer is None or isinstance(self.fire, str):
+            return Reconstructed(Reconstruction(variant=None, reason=self.absent["oxidizer_flow"]))
+        test = self.true, self.segments, self.definition, self.calibration, self.fire
+        engine = None if full is None else full.engine
+        return reconstructed(*test, oxidizer, histories.values, engine)
 
     def _chamber_forced(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> list[Residual]:
         if full is None or flows is None or isinstance(self.fire, str):
             raise AbsentError(self.absent.get("full") or self.absent["histories"])
         return run_chamber_forced(self.before_nozzle, self.segments, full, flows[0], self.ambient, self.fire.end)
 
-    def _histories(
-        self, full: FullRun | None, flows: tuple[Flows, Array] | None
-    ) -> tuple[Histories, Reduced, Reconstructed]:
+    def _histories(self, full: FullRun | None, flows: tuple[Flows, Array] | None) -> tuple[Histories, Reduced]:
         end = self.fire.end if isinstance(self.fire, Fire) else 10.0
         time = histories_of.clock(self.log, self.segments, end)
         values = histories_of.measured_histories(self.true, self.segments, self.definition, time)
         if full is None or flows is None or isinstance(self.fire, str):
             reason = self.absent.get("histories", "")
-            without = Reconstructed(Reconstruction(variant=None, reason=reason))
-            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced(), without
+            return Histories(time, values, dict.fromkeys((*FLOW_NAMES, *RATIO_NAMES), reason)), Reduced()
         test = Test(self.true, self.segments, self.definition, self.calibration, self.fire, full.engine, *flows, values)
         found = reduced(test)
         values |= histories_of.flow_histories(flows[0]) | found.ratios
-        return Histories(time, values), found, reconstruct(test)
+        return Histories(time, values), found
 
     def _stability(self, full: FullRun | None, flows: Flows | None, histories: Histories) -> dict[str, Any]:
         """How a hot fire burnt."""

@@ -24,15 +24,16 @@ from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.dropping import dropped
 from hfanalysis.diagnose.naming.freeform import LEAST, unknown_sources
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
+from hfanalysis.diagnose.naming.polish import DEEPER, polished
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
 from hfanalysis.diagnose.naming.singles import _first_children, _promising, singles_of
-from hfanalysis.diagnose.naming.slack import slack_gain
+from hfanalysis.diagnose.naming.slack import course_error, slack_gain
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Engine
-from hfanalysis.inference.candidate import Bench, Candidate, attempted, candidate
+from hfanalysis.inference.candidate import Bench, Candidate, attempted, candidate, held
 from hfanalysis.inference.fitting.fit import Fit, fit, promised
 from hfanalysis.inference.fitting.form import COARSEST, FINEST, Form
 from hfanalysis.inference.fitting.hypothesis import Hypothesis, mid_flux
@@ -384,7 +385,10 @@ def test_slack_takes_what_a_closure_gets_wrong() -> None:
     bench = Bench(uneven)
     again = attempted(chosen.fit.hypothesis, uneven, chosen.fit.x)
     assert again is not None
-    assert slack_gain(candidate(("tank_heat",), again, FINEST), bench) > 10.0
+    told = candidate(("tank_heat",), again, FINEST)
+    assert slack_gain(told, bench) > 10.0
+    assert course_error(chosen, found.bench) == 0.0
+    assert 0.05 < course_error(told, bench) < 0.6
 
 
 def heat_by_turns() -> Active:
@@ -525,3 +529,37 @@ def test_fits_are_followed_where_they_went_astray_and_nowhere_else() -> None:
     assert singles._led_astray(parent, [(8.0, a), (1.0, b)], [ended(95.0), None]) == [b]
     assert singles._led_astray(parent, [(90.0, a), (1.0, b)], [ended(95.0), ended(97.0)]) == [a]
     assert singles._led_astray(parent, [(0.0, a)], [ended(100.0)]) == []
+
+
+def test_a_base_model_in_a_wrong_valley_is_fitted_again_from_its_children() -> None:
+    """Every child of a base model with n at the wrong end has come out of that valley, whatever effect it is of."""
+    bench = Bench(made.observed())
+    hypothesis = made.hypothesis()
+    right = candidate((), fit(hypothesis, bench.at(FINEST)), FINEST)
+    place = [f.name for f in hypothesis.free].index("n")
+    stuck = fit(held(hypothesis, slice(place, place + 1), right.fit.x + 1.5), bench.at(FINEST))
+    wrong = candidate((), replace(stuck, hypothesis=hypothesis), FINEST)
+    made_one = hypothesis.with_effect(effect("load_cell_drift"))
+    child = candidate(
+        ("load_cell_drift",),
+        fit(made_one, bench.at(FINEST), np.append(right.fit.x, np.zeros(made_one.size - hypothesis.size))),
+        FINEST,
+    )
+    assert child.log_evidence > wrong.log_evidence + 10.0
+    found = polished(wrong, [child], bench)
+    assert found.log_evidence > right.log_evidence - 0.1
+    assert child.log_evidence < found.log_evidence + DEEPER
+    assert polished(found, [child], bench) is found
+
+
+@pytest.mark.parametrize("hidden", ["none", "tank_heat"])
+def test_no_child_without_its_effect_stands_above_the_base_model(hidden: str) -> None:
+    found = named(hidden)
+    assert found.risen == 0.0
+    for child in (*found.singles, *found.sets, *found.unknown):
+        again = attempted(
+            found.base.fit.hypothesis, found.bench.at(found.base.form), child.fit.x[: found.base.fit.x.size]
+        )
+        assert again is not None
+        there = candidate((), again, found.base.form)
+        assert there.log_evidence < found.base.log_evidence + DEEPER

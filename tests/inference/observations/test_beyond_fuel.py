@@ -105,7 +105,7 @@ def test_the_tank_is_compared_until_shortly_before_the_valve_closes(late: bool) 
     test = reduced(late)
     assert test.fuel_out == fuel_out(late)
     for name in test.names:
-        if name in TANK_SIDE:
+        if name in TANK_SIDE and name != "p_run":  # its pressure goes by that of a chamber without a flame
             assert CLOSING - AROUND_END - 0.2 < last(test, name) <= CLOSING - AROUND_END + 0.06
         else:
             assert last(test, name) < fuel_out(late)
@@ -196,11 +196,14 @@ def test_the_constants_come_back_from_a_wrong_start() -> None:
     assert found.residual @ found.residual < 1.4 * found.residual.size
 
 
-def test_nitrogen_shows_only_where_it_flows() -> None:
-    """It enters once the tank is below its line: most of what tells of it lies beyond the fuel's end."""
+def test_without_a_flame_the_tank_tells_what_it_holds_and_not_what_flows() -> None:
+    """Nitrogen enters once the tank is below its line, most of it beyond the fuel's end. There nobody knows the flow:
+    only what pressure the tank has with so much in it tells, and a flow that is known would tell three times as much.
+    """
     test = reduced()
     beyond = {c.name: c.time > fuel_out() for c in test.channels}
-    assert information(test) > 3.0 * information(test.without(beyond))
+    before = information(test.without(beyond))
+    assert 1.1 * before < information(test) < 3.0 * before
 
 
 def information(test: Observed) -> float:

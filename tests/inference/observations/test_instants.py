@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.segment.stand import signal
 
-from hfanalysis.inference.observations.blocks import Blocks
+from hfanalysis.inference.observations.blocks import Blocks, centered, stamp_error
 from hfanalysis.inference.observations.covariance import LEAST_SHIFT, of_the_model
 from hfanalysis.inference.observations.frame import EVENT_STD, Frame
 
@@ -24,7 +26,7 @@ OPENING, LIQUID_END = 0, 1
 def _blocks(name: str, time: NDArray[np.float64], value: NDArray[np.float64]) -> Blocks:
     """Blocks of one point each, all of them good."""
     ones = np.ones(time.size, dtype=np.int64)
-    return Blocks(signal(name, time, value), time, value, np.arange(time.size), ones, value, ones > 0)
+    return Blocks(signal(name, time, value), time, value, np.arange(time.size), ones, value, ones > 0, 0.0 * time)
 
 
 def _frame(time: NDArray[np.float64], liquid_end: float, opening: float) -> Frame:
@@ -56,3 +58,31 @@ def test_a_chamber_that_fills_is_as_unsure_as_the_opening(seen: float, shift: fl
     early = time < 0.3
     assert moved[early, OPENING] == pytest.approx(by_shift[early], rel=0.1, abs=0.01 * by_shift[0])
     assert (moved[time >= KNEE, OPENING] == 0.0).all()
+
+
+def test_a_block_with_one_sample_is_carried_to_its_middle() -> None:
+    """A chamber that fills with 40 bar/s read at 50 Hz by a clock that jitters: means are those of the middles, within
+    what is stated of them."""
+    rng, speed = np.random.default_rng(4), 4e6
+    time = np.sort(0.02 * np.arange(100.0) + 0.005 + rng.uniform(-4e-3, 4e-3, 100))
+    centers, late = 0.02 * np.arange(100.0) + 0.01, 2e-3
+    read = signal("p_chamber", time, speed * (time + late * rng.standard_normal(100)))
+    at = np.searchsorted(time, np.append(centers - 0.01, centers[-1] + 0.01))
+    samples = np.diff(at)
+    means = np.array([read.value[a:b].mean() if b > a else 0.0 for a, b in pairwise(at)])
+    moved, unsure = centered(read, centers, means, samples, at)
+    there = samples > 0
+    plain, carried = ((values - speed * centers)[there] for values in (means, moved))
+    assert np.sqrt(np.mean(plain**2)) > 1.5 * np.sqrt(np.mean(carried**2))
+    assert 0.4 < np.mean((carried / unsure[there]) ** 2) < 2.5
+
+
+def test_a_clock_without_jitter_is_sure_of_its_stamps() -> None:
+    assert stamp_error(signal("p_tank", np.arange(0.0, 1.0, 1e-3), np.arange(1000.0))) < 1e-9
+
+
+def test_steps_of_a_converter_are_noise_where_a_reading_stands_on_one_count() -> None:
+    time = np.arange(0.0, 5.0, 0.02)
+    coarse, fine = (signal("p_tank", time, v) for v in (np.round(np.sin(time) / 0.3) * 0.3, np.sin(time)))
+    assert coarse.resolution == pytest.approx(0.3)
+    assert fine.resolution == 0.0

@@ -19,7 +19,7 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.gap import noise_of, root_mean_square
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import has_name
-from hfanalysis.record.channels import unit_of
+from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.sentences import said, text
 
 SEVERAL, OF_RANGE = 5.0, 0.01
@@ -59,7 +59,7 @@ def missed(found: Fit, observed: Observed) -> tuple[str, ...]:
     return tuple(
         text(
             "{channel} is missed by {size}, {times} times its noise",
-            channel=name,
+            channel=LONG_NAMES.get(name, name),
             size=said(size, SHOWN.get(unit_of(name), unit_of(name)), ".2g"),
             times=f"{size / noise[name]:.0f}",
         )

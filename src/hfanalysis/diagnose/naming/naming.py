@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from hfanalysis.diagnose.naming.base_model import base_model
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import unknown_sources
+from hfanalysis.diagnose.naming.polish import ROUNDS, polished
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import sets_of
 from hfanalysis.diagnose.naming.singles import singles_of
@@ -29,6 +30,7 @@ class Naming:
     ``equations``: of all effects that were thought of; those that a score test saw nothing of have no candidate.
     ``held_out``: log probability of data that were held out beyond the base model's [natural log], by the key of a
     candidate; None where the rest of the data cannot foretell it.
+    ``risen``: log evidence by which the base model was found deeper once all had been looked for from it.
     """
 
     base: Candidate
@@ -38,6 +40,7 @@ class Naming:
     bench: Bench
     equations: Mapping[str, str] = field(default_factory=dict)
     held_out: Mapping[tuple[str, ...], float | None] = field(default_factory=dict)
+    risen: float = 0.0
 
     @property
     def named(self) -> Candidate:
@@ -69,12 +72,28 @@ def name_effects(
     search = Search(bench, catalogue, settings, progress)
     progress("fitting the base model", 0.0)
     base, valleys = base_model(hypothesis, bench)
-    singles = singles_of(base, valleys, search)
+    base, valleys, singles = _from_the_deepest(base, valleys, search)
     singles, sets = sets_of(base, singles, search)
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
     unknown = unknown_sources(base, valleys, named, bench)
+    told, base = base, polished(base, (*sets, *unknown), bench)
     best = max(c.log_evidence for c in (named, *unknown))
     singles, sets, unknown = (_told(some, best, bench) for some in (singles, sets, unknown))
     equations = {name: effect.equation for name, effect in catalogue.effects.items()}
-    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations)
+    risen = base.log_evidence - told.log_evidence
+    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations, risen=risen)
+
+
+def _from_the_deepest(
+    base: Candidate, valleys: list[Candidate], search: Search
+) -> tuple[Candidate, list[Candidate], list[Candidate]]:
+    """The base model that none of its children leads out of, its other valleys, and the single effects from there."""
+    singles = singles_of(base, valleys, search)
+    for _ in range(ROUNDS):
+        better = polished(base, singles, search.bench)
+        if better is base:
+            break
+        base, valleys = better, [base, *valleys]
+        singles = singles_of(base, valleys, search)
+    return base, valleys, singles

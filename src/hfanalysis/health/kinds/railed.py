@@ -30,6 +30,11 @@ SPIKES = 0.1
 NOISY = 2.0
 """Noise in steps of its resolution from which on a channel does not stand at one level [-]. Source: with a deviation of
 two steps, one reading in five is the most frequent."""
+CUT = (0.15, 0.95)
+"""Share of readings at rest that are cut off, from what to what [-]: fewer are chance, and more may be a quiet
+sensor's, of which a knock moves some."""
+DIFFER = 0.5
+"""Part of the others that are different readings [-]: of noise within few steps of the resolution, few are."""
 NEIGHBORS = 12
 """Levels beside a rail that say how often a level is read usually."""
 
@@ -42,7 +47,7 @@ def find(seen: Seen) -> Iterator[Finding]:
     time, values = seen.channel.time[finite], seen.said[finite]
     if len(values) < 10 * OFTEN or np.ptp(values) == 0.0:
         return
-    yield from _but_for_spikes(seen, values) or _clipped(seen, time, values)
+    yield from _but_for_spikes(seen, values) or _clipped(seen, time, values) or _cut_at_rest(seen, time, values)
 
 
 def _but_for_spikes(seen: Seen, values: Array) -> list[Finding]:
@@ -87,6 +92,26 @@ def _held_up(seen: Seen, time: Array, values: Array) -> list[Finding]:
     if rail is None or not _of_no_rest(seen, -rail) or not _noisy(seen, values, -rail):
         return []
     return [_finding(seen, time, values, -rail, "lowest")]
+
+
+def _cut_at_rest(seen: Seen, time: Array, values: Array) -> list[Finding]:
+    """The lower part of its noise at rest is missing: what it reads there is no zero."""
+    if seen.fire is None:
+        return []
+    lowest = float(values.min())
+    levels = [level for level in (seen.coarse.rest, seen.coarse.last) if level is not None]
+    if not any(_half_cut(values[(time >= at.span[0]) & (time <= at.span[1])], lowest) for at in levels):
+        return []
+    at, middle = values == lowest, 0.5 * sum(seen.fire)
+    parts = [at & (time < middle), at & (time > middle)]
+    return [_finding(seen, time[part], values[part], lowest, "lowest") for part in parts if part.any()]
+
+
+def _half_cut(values: Array, lowest: float) -> bool:
+    """Whether many readings (n,) are the lowest one to the last digit, and the others hardly ever the same."""
+    above = values[values != lowest]
+    often = len(values) - len(above)
+    return often >= OFTEN and CUT[0] < often / len(values) < CUT[1] and len(np.unique(above)) > DIFFER * len(above)
 
 
 def _rail(values: Array) -> float | None:

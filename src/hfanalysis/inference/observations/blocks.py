@@ -13,7 +13,7 @@ from hfanalysis.inference.observations.channel import averaged
 from hfanalysis.inference.observations.frame import AROUND_CHANGE, BLOCK, Frame
 from hfanalysis.inference.observations.recorded import LONGEST_RECORD
 from hfanalysis.record.noise import Noise
-from hfanalysis.record.signals import Signal
+from hfanalysis.record.signals import MAD_TO_STD, Signal
 
 MERGED, NEAR = 5, 0.4
 """Blocks that are merged into one farther than NEAR [s] from any change: the noise there is coherent anyway."""
@@ -35,7 +35,8 @@ class Blocks:
 
     ``fine`` means of all blocks while something flows, ``good`` ones among them or not.
 
-    ``time`` (blocks,) [s after the opening]; ``value`` (blocks,) and ``fine`` in the signal's SI unit.
+    ``time`` (blocks,) [s after the opening]; ``value`` (blocks,) and ``fine`` in the signal's SI unit, and so is
+    ``untimed`` (blocks,): standard deviation of a mean by the errors of its samples' times.
     """
 
     signal: Signal
@@ -45,6 +46,7 @@ class Blocks:
     count: Integers
     fine: Array
     good: NDArray[np.bool_]
+    untimed: Array
 
 
 def blocks_of(signal: Signal, frame: Frame, zeroed: bool, start: float = 0.0) -> Blocks | None:
@@ -60,6 +62,7 @@ def blocks_of(signal: Signal, frame: Frame, zeroed: bool, start: float = 0.0) ->
     sums = np.concatenate([[0.0], np.cumsum(signal.value)])
     samples, centers = np.diff(at), frame.grid[flowing]
     means = np.where(samples > 0, np.diff(sums[at]) / np.maximum(samples, 1), 0.0)
+    means, unsure = centered(signal, centers, means, samples, at)
     filled = (samples > 0) & (samples >= 0.5 * BLOCK / max(signal.step, 1e-9))
     good = filled & (centers > max(frame.start, start)) & (centers < frame.end(signal.name))
     for name, (instant, deviation) in frame.changes.items():
@@ -81,7 +84,51 @@ def blocks_of(signal: Signal, frame: Frame, zeroed: bool, start: float = 0.0) ->
         np.r_[np.ones_like(before), count, np.ones_like(after)],
         means,
         good,
+        np.r_[
+            np.zeros(before.size),
+            np.sqrt(averaged(unsure**2, first - flowing.start, count) / count),
+            np.zeros(after.size),
+        ],
     )
+
+
+def centered(signal: Signal, centers: Array, means: Array, samples: Integers, at: Integers) -> tuple[Array, Array]:
+    """Means of blocks (blocks,) carried to the middles of the blocks by the slope there, and by how much (blocks,) they
+    are unsure, both in the signal's SI unit: |dy/dt| times the error of a stamp, and what the slope is unsure of.
+
+    A block of a slow log holds one sample, which may lie anywhere in it: at the opening a chamber fills by half a bar
+    from one end of the block to the other. ``centers`` (blocks,) [s]; ``samples`` (blocks,) in each; ``at`` (blocks +
+    1,): the first sample of each and the one after the last.
+
+    >>> time = np.array([0.004, 0.026, 0.045])
+    >>> ramp = Signal("p", time, 10.0 * time, 0.0, 0.02)
+    >>> middles, one = np.array([0.01, 0.03, 0.05]), np.ones(3, dtype=int)
+    >>> centered(ramp, middles, ramp.value, one, np.arange(4))[0].round(9).tolist()
+    [0.1, 0.3, 0.5]
+    """
+    there = samples > 0
+    if there.sum() < 3:
+        return means, np.zeros(means.size)
+    sums = np.concatenate([[0.0], np.cumsum(signal.time)])
+    middle = np.diff(sums[at])[there] / samples[there]
+    slope = np.gradient(means[there], middle)
+    moved = centers[there] - middle
+    bend = np.gradient(slope, middle)
+    out, unsure = means.copy(), np.zeros(means.size)
+    out[there] += slope * moved
+    stamp = stamp_error(signal) / np.sqrt(samples[there])
+    unsure[there] = np.hypot(slope * stamp, bend * moved * np.diff(middle, append=middle[-1]))
+    return out, unsure
+
+
+def stamp_error(signal: Signal) -> float:
+    """Standard deviation [s] of the time of a sample about its stamp.
+
+    A clock that jitters by what its stamps show is off by as much again between the reading and the stamp. It is the
+    deviation of the intervals from their usual length, by the median, over the root of two: each has two ends.
+    """
+    steps = np.diff(signal.time)
+    return float(MAD_TO_STD * np.median(np.abs(steps - np.median(steps))) / np.sqrt(2.0)) if steps.size else 0.0
 
 
 def _before(signal: Signal, frame: Frame, zeroed: bool) -> Integers:

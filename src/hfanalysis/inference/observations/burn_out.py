@@ -33,9 +33,11 @@ SHORTEST = 10
 SHARP = 0.05
 """Standard deviation [s] of the fuel's end above which it is no fall but a slope that blocks show."""
 
-UNSURE, LAG = 0.2, 5e-3
-"""Standard deviation of the log of a fall's duration, for the flush is no straight ramp; and the seconds by which what
-is between the chamber and both sensors may slow a fall, the line to the one and the mount of the other."""
+UNSURE, LAG = 1.5, 5e-3
+"""Standard deviation of the log of a fall's duration; and the seconds by which what is between the chamber and both
+sensors may slow a fall, the line to the one and the mount of the other. Source: what is left in pores and on walls
+burns on, and a chamber without a flame turns cold, within 6 ms to 1 s, and nobody knows how fast on a stand: the
+deviation of logarithms spread evenly over that. A slow fall is worth a note; a name needs more."""
 
 
 def fade_of(signals: Mapping[str, Signal], segments: Segments) -> tuple[float, float] | None:

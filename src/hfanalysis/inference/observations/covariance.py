@@ -84,7 +84,7 @@ def coherence_of(own: Array) -> float:
 
 
 def _own(blocks: Blocks, frame: Frame, shaken: Array | None, noise: Wander) -> Array:
-    """By the wander of the sensor, its white noise, and the oscillation."""
+    """By the wander of the sensor, its white noise, the oscillation, its converter's steps, and its samples' times."""
     signal = blocks.signal
     own, white = noise.covariance(frame.grid, frame.width), noise.white
     if shaken is not None:
@@ -94,8 +94,9 @@ def _own(blocks: Blocks, frame: Frame, shaken: Array | None, noise: Wander) -> A
         rough = float(sample_noise(fine.value)) ** 2 - roughness(noise, BLOCK)
         white = max(white, max(rough, 0.0) ** 0.5)
     floor = max(white, 1e-9 * float(np.abs(blocks.value).max())) ** 2
+    floor = max(floor, signal.resolution**2 / 12.0 * min(signal.step / BLOCK, 1.0))
     own[np.diag_indices_from(own)] += floor * BLOCK / np.where(frame.width > 0.0, frame.width, BLOCK)
-    return _of_blocks(own, blocks)
+    return _of_blocks(own, blocks) + np.diag(blocks.untimed**2)
 
 
 def _of_blocks(covariance: Array, blocks: Blocks) -> Array:
@@ -164,30 +165,51 @@ def _moved_by_knee(blocks: Blocks, frame: Frame) -> Array:
 
 
 def _without_fire(blocks: Blocks, frame: Frame) -> tuple[Array, ...]:
-    """What a channel differs by if the flow into the chamber without fire is WITHOUT_FIRE larger than the model's.
+    """What a channel differs by if the flow into the chamber without fire is WITHOUT_FIRE larger than the model's, all
+    along or for a time.
 
-    Its pressure there, and with it the flow, is the model's weakest point. The tank is then empty sooner, and the run
-    line loses more. Where liquid is left at the end of the fire, its end is compared by itself: the model is laid over
-    the measurement up to there.
+    Its pressure there, and with it the flow, is nobody's model: it is no evidence for anything in injector or line. The
+    tank is then empty sooner, or empties faster at first and slower later. What pressure it has with so much in it
+    still tells. Where liquid is left at the end of the fire, its end is compared by itself: the model is laid over the
+    measurement up to there.
     """
     if frame.fuel_out is None:
         return ()
-    t_v = max(frame.changes.get("t_v", (0.0, 0.0))[0], frame.fuel_out)
-    flowing = ~frame.resting[blocks.first]
-    wet, dry = (blocks.time > frame.fuel_out) & (blocks.time < t_v) & flowing, (blocks.time > t_v) & flowing
-    if dry.sum() <= SPEED_ORDER + 2:
-        return ()
-    passed = blocks.time[dry] - t_v
-    speed = np.polyval(np.polyder(np.polyfit(passed, blocks.value[dry], SPEED_ORDER)), passed)
-    sooner = np.zeros(blocks.time.size)
-    sooner[dry] = WITHOUT_FIRE * speed * passed
-    if blocks.signal.name != "p_run":
-        return (sooner,)
-    return sooner, *(np.where(part, 2.0 * WITHOUT_FIRE * LOST * blocks.value, 0.0) for part in (wet, dry) if part.any())
+    t_v, last = max(frame.changes.get("t_v", (0.0, 0.0))[0], frame.fuel_out), frame.ends["tank"]
+    return (
+        *_passed(blocks, frame, (frame.fuel_out, t_v), pinned=True),
+        *_passed(blocks, frame, (t_v, last), pinned=False),
+    )
 
 
-LOST = 0.25
-"""Of the run line's pressure, about what is lost before it."""
+def _passed(blocks: Blocks, frame: Frame, within: tuple[float, float], pinned: bool) -> list[Array]:
+    """What a channel differs by (blocks,) [SI] if what passes ``within`` two instants [s] passes sooner, for each
+    stretch of STRETCH seconds and for all of it; where both ends are ``pinned`` the last is no difference."""
+    start, end = within
+    if end - start < BLOCK:
+        return []
+    part = ~frame.resting[blocks.first] & (blocks.time > start) & (blocks.time < end)
+    knots = np.linspace(start, end, max(int(np.ceil((end - start) / STRETCH)), 1) + 1)
+    fine = np.linspace(start, end, 20 * knots.size + 1)
+    unsure = np.maximum(np.exp(-(knots - (frame.fuel_out or 0.0)) / STRETCH), SETTLED)
+    mores = [*np.diag(unsure), *([] if pinned else [np.ones(knots.size)])]
+    columns = [np.zeros(blocks.time.size) for _ in mores]
+    if part.sum() <= SPEED_ORDER + 2:
+        return columns
+    time = blocks.time[part]
+    speed = np.polyval(np.polyder(np.polyfit(time - start, blocks.value[part], SPEED_ORDER)), time - start)
+    for column, at_knots in zip(columns, mores, strict=True):
+        more = np.interp(fine, knots, at_knots)
+        sooner = np.concatenate([[0.0], np.cumsum(0.5 * (more[1:] + more[:-1]) * np.diff(fine))])
+        sooner -= sooner[-1] * (fine - start) / (end - start) if pinned else 0.0
+        column[part] = WITHOUT_FIRE * speed * np.interp(time, fine, sooner)
+    return columns
+
+
+STRETCH, SETTLED = 1.0, 0.2
+"""Seconds over which the flow without fire is off by as much, for a chamber turns cold within up to that; and the part
+of it that is left when it has. Source: a cold chamber has less than a fifth of the injector's pressure, whose flow goes
+by the root of the difference."""
 
 
 def oscillations(blocks: Mapping[str, Blocks], frame: Frame) -> dict[tuple[str, str], Array]:

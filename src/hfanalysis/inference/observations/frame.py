@@ -57,7 +57,8 @@ class Frame:
 
     The grid has ``before`` wide blocks of the rest before the opening, the opening itself, points while something
     flows, and wide blocks of the rest after it; ``width`` [s] of the wide ones, 0 of points. ``filled``: the feed line
-    is; ``ends`` of "chamber" (and thrust) and "tank"; ``fuel_out``: the end of the fuel where the tank is compared
+    is; ``ends`` of "chamber" (and thrust) and "tank", and of "p_run" where it is another one: its pressure goes by
+    that of a chamber that no model knows without a flame; ``fuel_out``: the end of the fuel where the tank is compared
     beyond it; ``hidden``: seconds before the end of the liquid without blocks; ``opening``: the deviation of
     the opening's instant.
     """
@@ -76,7 +77,7 @@ class Frame:
 
     def end(self, channel: str) -> float:
         """Where the comparison of a channel ends [s]."""
-        return self.ends["tank" if channel in TANK_SIDE else "chamber"]
+        return self.ends[channel if channel in self.ends else "tank" if channel in TANK_SIDE else "chamber"]
 
     @property
     def steady(self) -> float:
@@ -105,6 +106,7 @@ def frame_of(log: TestLog, segments: Segments, definition: TestDefinition, origi
         fuel_out = None
     else:
         ends["tank"] = min(flow_end - AROUND_END, LONGEST_RECORD)
+        ends["p_run"] = end
     changes = {
         name: (value, segments.std(name))
         for name in ("t_v", "t_fuel_gone")

@@ -8,6 +8,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.observations.blocks import Blocks, blocks_of
 from hfanalysis.inference.observations.burn_out import fade_of
+from hfanalysis.inference.observations.burning import as_it_burns
 from hfanalysis.inference.observations.channel import ObservedChannel, range_of
 from hfanalysis.inference.observations.covariance import (
     channel_of,
@@ -34,6 +35,7 @@ def observe_test(log: TestLog, segments: Segments, definition: TestDefinition) -
     origin = segments.t_open.value
     if origin is None:
         raise AbsentError("no opening was found: there is nothing to compare")
+    segments = as_it_burns(log, segments, definition, origin)
     signals = recorded(log, definition, origin)
     frame = frame_of(log, segments, definition, origin)
     unknowns = in_samples(Samples(signals, segments, frame.steady))

@@ -13,6 +13,8 @@ from markupsafe import Markup
 from hfanalysis.charts import svg
 from hfanalysis.charts.chart import TIME
 from hfanalysis.errors import AbsentError
+from hfanalysis.performance.stability.fluctuation import fluctuation
+from hfanalysis.performance.stability.spectrum import Spectrum, spectra
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.stability import Line, Stability
 from hfanalysis.products.validation import Validation
@@ -20,8 +22,6 @@ from hfanalysis.record.signals import Signal
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.validate.stability.fluctuation import fluctuation
-from hfanalysis.validate.stability.spectrum import Spectrum, spectra
 from hfanalysis.wording.numbers import in_words, tidy
 
 _SHOWN = 0.5
@@ -113,4 +113,4 @@ def _png(decibels: np.ndarray[Any, np.dtype[np.float64]]) -> str:
     return base64.b64encode(out.getvalue()).decode("ascii")
 
 
-SECTION = Section("Stability", 33, ("validation",), render)
+SECTION = Section("Stability", 33, ("validation",), render, folded=True)

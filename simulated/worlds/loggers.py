@@ -1,0 +1,95 @@
+"""Four loggers: slow with jitter and 12 bit, fast with little rest, quiet with much, and one whose sensors wander."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from simulated.blind import sensors as se
+from simulated.blind import slots as s
+from simulated.blind.stand import Histories, Stand
+from simulated.worlds.laws import Array
+
+
+@dataclass(frozen=True)
+class Logger:
+    """``rate`` [1/s], ``rest`` before the opening [s], white and slow noise over the usual [-], ``jitter`` of samples
+    that is written down and that is not [s], and ``bits`` of the converter (0: as fine as it is printed)."""
+
+    rate: float
+    rest: float
+    white: float = 1.0
+    slow: float = 1.0
+    jitter: tuple[float, float] = (0.0, 0.0)
+    bits: int = 0
+
+
+LOGGERS = {
+    "50 Hz, jitter, 12 bit": Logger(50.0, 20.0, jitter=(2e-3, 1.5e-3), bits=12),
+    "2 kHz, 0.5 s of rest": Logger(2000.0, 0.5, white=1.5),
+    "250 Hz, quiet, a minute of rest": Logger(250.0, 60.0, white=0.35, slow=0.35),
+    "200 Hz, slow noise times 3": Logger(200.0, 4.0, slow=3.0),
+}
+SCALE = {"psi": 1500.0, "lbf": 3000.0, "kg": 60.0}
+"""Full scale of a converter, in the channel's unit."""
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """What was drawn of a test's sensors, each in its channel's unit, by channel: bias, relative error of the gain,
+    white and slow noise; the chamber's oscillation; and the size of the thrust cell over the usual one [-]."""
+
+    zero: Array
+    gain: Array
+    white: Array
+    slow: tuple[tuple[tuple[float, float], ...], ...]
+    oscillation: se.Oscillation
+
+
+def drawn(rng: np.random.Generator, logger: Logger, stand: Stand) -> Sensors:
+    """Sensors of a stand by a logger."""
+    force = max(stand.throat_radius / 0.018, 0.7) ** 2
+    sizes = [force if c == "thrust" else 1.0 for c in s.CHANNELS]
+    accuracy = np.array([se.ACCURACY[c] for c in s.CHANNELS])
+    full = np.array([se.FULL_SCALE[c] for c in s.CHANNELS])
+    slow = []
+    for channel, size in zip(s.CHANNELS, sizes, strict=True):
+        sigma = logger.slow * size * rng.uniform(*se.SLOW[channel]) / len(se.FLICKER_TIMES) ** 0.5
+        slow.append(tuple((float(sigma), tau) for tau in se.FLICKER_TIMES))
+    return Sensors(
+        zero=rng.normal(0.0, 1.0, len(accuracy)) * accuracy,
+        gain=rng.normal(0.0, 1.0, len(accuracy)) * accuracy / full,
+        white=np.array([rng.uniform(*se.WHITE[c]) * k for c, k in zip(s.CHANNELS, sizes, strict=True)]) * logger.white,
+        slow=tuple(slow),
+        oscillation=se.Oscillation(
+            *(float(rng.uniform(*r)) for r in ((20.0, 80.0), (2.0, 12.0), (0.003, 0.012), (0.5, 1.2)))
+        ),
+    )
+
+
+def written(
+    rng: np.random.Generator, stand: Stand, true: Histories, channels: Array, logger: Logger, with_: Sensors
+) -> se.Log:
+    """The log: slow noise and oscillation on the run's own grid, then what a logger samples of it."""
+    end, fine = float(true.time[-1]), 1.0 / se.RATE
+    grid = np.arange(-logger.rest, end - fine, fine)
+    slow = np.stack([se.slow_noise(rng, one, grid.size) for one in with_.slow], axis=1)
+    swing = se.narrow_band(rng, with_.oscillation.poles, grid.size)
+    swing *= with_.oscillation.relative * np.interp(grid, true.time, se.envelope(true, stand.ambient), left=0.0)
+    count = int((end - fine + logger.rest) * logger.rate)
+    stamps = np.arange(count) / logger.rate - logger.rest + rng.uniform(0.0, 1.0) / logger.rate
+    stamps = np.sort(stamps + rng.uniform(-1.0, 1.0, count) * logger.jitter[0])
+    at = np.clip(stamps + rng.normal(0.0, 1.0, count) * logger.jitter[1], grid[0], grid[-1])
+    ideal = np.where(at[:, None] < 0.0, se.rest(stand, true), se._sampled(channels, at))
+    common = np.interp(at, grid, swing)
+    ideal[:, s.P_CHAMBER] += common
+    ideal[:, s.THRUST] += with_.oscillation.coupling * np.pi * stand.throat_radius**2 * common
+    values = np.empty_like(ideal)
+    for i, channel in enumerate(s.CHANNELS):
+        unit = se.UNITS[channel]
+        x = ideal[:, i] / se.SIZE[unit] * (1.0 + with_.gain[i]) + with_.zero[i] + np.interp(at, grid, slow[:, i])
+        x += rng.normal(0.0, with_.white[i], count)
+        step = SCALE[unit] / 2**logger.bits
+        values[:, i] = np.round(x / step) * step if logger.bits else x
+    late = float(rng.choice([0.0, 37.5]))
+    return se.Log(np.round(stamps + late, 4 if logger.rate > 1000.0 else 3), values, t_open=late)

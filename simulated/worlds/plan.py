@@ -1,0 +1,80 @@
+"""Which tests there are: a third hide nothing; engines, loggers and ends of the fuel go round among all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from simulated.blind.effects import LIBRARY
+from simulated.worlds.engines import ENDS, ENGINES
+from simulated.worlds.loggers import LOGGERS
+
+SETS = {"quick": 5_000_000, "development": 6_000_000}
+"""Where the seeds of each begin: those of ``quick`` are scored, and nothing is set by them."""
+
+OUTSIDE = ("slow_valve", "vent_leak", "injector_hydraulic_flip", "combustion_dc_shift", "entrainment_regression",
+           "logger_skew", "feed_line_flashing", "tank_gas_ingestion")  # fmt: skip
+"""Of those outside the library."""
+
+KINDS = {"none": 20, "single": 28, "outside": 7, "pair": 5}
+"""Tests of each kind among sixty."""
+
+TARGETS = (12.0, 40.0)
+"""d' of what is hidden, from and to, in logarithms."""
+
+
+@dataclass(frozen=True)
+class Test:
+    """One test to write."""
+
+    id: str
+    kind: str
+    effects: tuple[str, ...]
+    engine: str
+    logger: str
+    end: str
+    target: float
+    seed: int
+
+
+def plan(which: str = "quick", count: int = 60) -> list[Test]:
+    """All tests, always the same, in an order in which every stretch holds every kind."""
+    start = SETS[which]
+    rng = np.random.default_rng(start)
+    inside = [e.name for e in LIBRARY]
+    singles = [inside[i] for _ in range(count) for i in rng.permutation(len(inside))]
+    outside = [OUTSIDE[i] for _ in range(count) for i in rng.permutation(len(OUTSIDE))]
+    kinds = [kind for _ in range(-(-count // 60)) for kind in _spread()][:count]
+    stands = [(e, log) for _ in range(count) for e, log in _round(rng)]
+    tests = []
+    for i, kind in enumerate(kinds):
+        names = {"none": 0, "single": 1, "outside": 1, "pair": 2}[kind]
+        effects = tuple((outside if kind == "outside" else singles).pop(0) for _ in range(names))
+        engine, logger = stands[i]
+        low, high = np.log(TARGETS)
+        end = "late" if "fuel_sliver" in effects else str(rng.choice(ENDS, p=(0.4, 0.2, 0.2, 0.2)))
+        tests.append(
+            Test(
+                f"{which[0].upper()}{i:03d}",
+                kind,
+                effects,
+                engine,
+                logger,
+                end,
+                float(np.exp(rng.uniform(low, high))),
+                start + i,
+            )
+        )
+    return tests
+
+
+def _spread() -> list[str]:
+    """Kinds of sixty tests, evenly mixed."""
+    places = [((k + 0.5) / number, kind) for kind, number in KINDS.items() for k in range(number)]
+    return [kind for _, kind in sorted(places)]
+
+
+def _round(rng: np.random.Generator) -> list[tuple[str, str]]:
+    """Every engine by every logger once."""
+    among = [(engine, logger) for engine in ENGINES for logger in LOGGERS]
+    return [among[i] for i in rng.permutation(len(among))]

@@ -1,0 +1,92 @@
+"""Tests on disk: raw_tests/ID/{test.toml, log.csv} for the engineer, answers/ID.json kept apart.
+
+python -m simulated.worlds.write DIR [--set quick] [--limit 60]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from simulated.blind import sensors as se
+from simulated.blind import slots as s
+from simulated.blind.build import Built
+from simulated.blind.effects import EFFECTS, drawn, named_shape
+from simulated.blind.kernel import STEP
+from simulated.blind.plan import Case
+from simulated.blind.write import column, document
+from simulated.worlds import engines, laws, loggers
+from simulated.worlds.hidden import observed, sized
+from simulated.worlds.plan import SETS, Test, plan
+
+
+def write_test(test: Test, root: Path) -> None:
+    """Write one test; the answer comes last, whole, and is what says that the test is there."""
+    rng = np.random.default_rng(test.seed)
+    world, logger = laws.draw(rng), loggers.LOGGERS[test.logger]
+    stand = engines.drawn(rng, test.engine, test.end, world)
+    with_ = loggers.drawn(rng, logger, stand)
+    sizes = [sized(stand, world, drawn(EFFECTS[n], rng), test.target, logger, with_) for n in test.effects]
+    hidden = tuple(h for h, _ in sizes)
+    channels, true = observed(stand, world, hidden, (world.tank_table(), world.gas_table()))
+    log = loggers.written(rng, stand, true, channels, logger, with_)
+    left = max(stand.fuel_mass - float(true.trace(s.FUEL).sum()) * STEP, 0.0)
+    weighed = {"oxidizer_mass": stand.mass + float(rng.normal(0.0, 0.01)),
+               "fuel_mass_after": max(left + float(rng.normal(0.0, 0.003)), 0.0)}  # fmt: skip
+    case = Case(test.id, test.kind, test.effects, test.target, test.logger, test.seed, test.seed)
+    built = Built(case, stand, _none(), hidden, true, channels, log, {}, weighed)
+    folder = root / "raw_tests" / test.id
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "test.toml").write_text(document(built), encoding="utf-8")
+    frame = pd.DataFrame({"Time (s)": [f"{t:.4f}" for t in log.time]})
+    for i, name in enumerate(s.CHANNELS):
+        frame[column(name)] = log.values[:, i]
+    frame.to_csv(folder / "log.csv", index=False, float_format="%.4f", lineterminator="\n")
+    _answer(test, root, {
+        "effects": {h.effect.name: {"strength": h.strength, "unit": h.effect.unit, "d_prime": d,
+                                    "inside_library": h.effect.inside, "equations": list(h.effect.equations),
+                                    "shape": named_shape(h.shape)} for h, d in sizes},
+        "laws": world.names, "fade": [float(world.laws[i]) for i in (laws.TAIL, laws.MIXING)],
+        "t_v": true.t_v, "t_fuel_out": true.t_fuel_out if np.isfinite(true.t_fuel_out) else None,
+        "truth": {"C_i": stand.C_i, "K_loss": stand.K_loss, "m": stand.m, "a": stand.a, "n": stand.n},
+    })  # fmt: skip
+
+
+def _none() -> se.Instruments:
+    """No instruments of the blind generator: what is stated in test.toml does not depend on them."""
+    return se.Instruments("worlds", (), se.Oscillation(50.0, 5.0, 0.0, 0.0), 0.0, 20.0, 0, 0)
+
+
+def _answer(test: Test, root: Path, found: dict[str, object]) -> None:
+    path = answer_path(test, root)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(f".{os.getpid()}.part")
+    stated = {"id": test.id, "kind": test.kind, "engine": test.engine, "logger": test.logger, "end": test.end}
+    part.write_text(json.dumps(stated | found, indent=1), encoding="utf-8")
+    os.replace(part, path)
+
+
+def answer_path(test: Test, root: Path) -> Path:
+    """Where the answer to a test lies."""
+    return root / "answers" / f"{test.id}.json"
+
+
+def main() -> None:
+    """Write the tests that are not there."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=Path, metavar="DIR")
+    parser.add_argument("--set", choices=sorted(SETS), default="quick")
+    parser.add_argument("--limit", type=int, default=60)
+    given = parser.parse_args()
+    for test in plan(given.set, max(given.limit, 60))[: given.limit]:
+        if not answer_path(test, given.out).is_file():
+            write_test(test, given.out)
+            print(test.id, test.kind, "+".join(test.effects), test.engine, test.logger, test.end, flush=True)
+
+
+if __name__ == "__main__":
+    main()

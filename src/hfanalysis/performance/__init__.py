@@ -1,0 +1,1 @@
+"""What a firing measured: its table of numbers, its histories, reconstruction, stability and transients."""

@@ -1,0 +1,126 @@
+"""What ``hfa design`` finds: the steady-state design of an engine file, its optimum mixture and its apogee."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hfanalysis.assembly import engine as build
+from hfanalysis.engine.grain import Grain
+from hfanalysis.errors import InputError
+from hfanalysis.flight import constant_thrust
+from hfanalysis.products.engines import Designed, Optimum
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.engine_file import EngineFile, Needs
+from hfanalysis.rocket.vehicle import Vehicle
+from hfanalysis.simulation import heading
+from hfanalysis.steady_design import steady
+from hfanalysis.steady_design.steady import Requirement, SteadyEngine
+from hfanalysis.thermo.combustion import restart
+
+COMMAND = "hfa design"
+
+UNITS = {
+    "burn_time": "s",
+    "oxidizer_mass": "kg",
+    "fuel_mass": "kg",
+    "of_ratio": "",
+    "chamber_temperature": "K",
+    "thrust": "N",
+    "throat_radius": "m",
+    "exit_radius": "m",
+    "total_impulse": "N s",
+    "specific_impulse": "s",
+}
+"""The fields of a steady engine that the product states."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a design is made from; ``target`` is the apogee above the site [m] where the fuel is to be solved for it."""
+
+    requirement: Requirement
+    grain: Grain
+    vehicle: Vehicle | str
+    target: float | None
+    fuel_mass: float | None
+
+
+@dataclass(frozen=True)
+class DesignRun:
+    """The task, the engine that answers it, and the JSON product."""
+
+    task: Task
+    engine: SteadyEngine
+    product: Designed
+
+
+def design(file: EngineFile) -> DesignRun:
+    """The steady-state design of an engine file.
+
+    Raises :class:`InputError` where the file lacks what the model needs, or no engine meets what it asks for.
+    """
+    restart()
+    needs = Needs(file, COMMAND)
+    task = task_of(needs)
+    try:
+        engine = solve(task)
+        best = steady.optimum(task.requirement)
+    except (ValueError, ArithmeticError) as error:
+        raise InputError(f"{file.where('design')}: {error}") from None
+    product = Designed.from_json(
+        {
+            **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
+            "fuel_mass_from": "grain.mass" if task.target is None else "design.target_apogee",
+            **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
+            **_flown(file, task, engine),
+            "optimum": Optimum(of_ratio=Quantity(best.of_ratio), specific_impulse=Quantity(best.specific_impulse, "s")),
+            "warnings": file.warnings,
+            "provenance": heading.provenance(file),
+        }
+    )
+    return DesignRun(task, engine, product)
+
+
+def task_of(needs: Needs) -> Task:
+    """What the engine file asks for: the fuel for its target apogee, or else the fuel it states."""
+    file = needs.file
+    vehicle, target = build.vehicle(file), file.design.target_apogee
+    if target is not None and not isinstance(vehicle, Vehicle):
+        raise InputError(f"{file.where('design', 'target_apogee')}: {vehicle}; {COMMAND} needs it for an apogee")
+    return Task(
+        requirement=build.requirement(needs),
+        grain=build.steady_grain(needs),
+        vehicle=vehicle,
+        target=target.value if target else None,
+        fuel_mass=None if target else build.fuel_mass(needs),
+    )
+
+
+def solve(task: Task) -> SteadyEngine:
+    """The engine for a task. Raises ValueError where there is none, with the reason."""
+    mass = task.fuel_mass
+    if mass is None:
+        assert isinstance(task.vehicle, Vehicle)
+        assert task.target is not None
+        mass = steady.fuel_for_apogee(task.requirement, task.grain, task.vehicle, task.target)
+    return steady.design(task.requirement, task.grain, mass)
+
+
+def _flown(file: EngineFile, task: Task, engine: SteadyEngine) -> dict[str, Quantity]:
+    """Thrust to weight, wet mass and apogee of the rocket on this engine."""
+    vehicle = task.vehicle
+    if not isinstance(vehicle, Vehicle):
+        return {name: Quantity.absent(vehicle) for name in ("wet_mass", "pad_thrust_to_weight", "apogee")}
+    return {
+        "wet_mass": Quantity(vehicle.dry_mass + engine.oxidizer_mass + engine.fuel_mass, "kg"),
+        "pad_thrust_to_weight": Quantity(engine.thrust_to_weight(vehicle)),
+        "apogee": _apogee(vehicle, engine),
+    }
+
+
+def _apogee(vehicle: Vehicle, engine: SteadyEngine) -> Quantity:
+    try:
+        height = constant_thrust.apogee(vehicle, engine.thrust, engine.propellant_flow, engine.burn_time)
+    except ValueError as error:
+        return Quantity.absent(str(error))
+    return Quantity(height, "m") if height > 0.0 else Quantity.absent("the rocket does not leave its pad")

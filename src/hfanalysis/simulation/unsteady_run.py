@@ -1,0 +1,150 @@
+"""What ``hfa simulate`` finds: the unsteady engine of an engine file, and the flight of its rocket."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hfanalysis.arrays import Array
+from hfanalysis.assembly import engine as build
+from hfanalysis.engine import closure, unsteady
+from hfanalysis.engine.unsteady import Burn, Engine
+from hfanalysis.errors import InputError
+from hfanalysis.flight import summary
+from hfanalysis.products.engines import Simulated
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.engine_file import EngineFile, Needs
+from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, gravity
+from hfanalysis.simulation import flown, heading, propellant
+
+COMMAND = "hfa simulate"
+
+LONGEST_RUN = 600.0
+"""Longest run that can be asked for [s]: no stand runs on for longer."""
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """An engine as built, its burn, the chamber's temperature [K] along it, and the JSON product."""
+
+    engine: Engine
+    burnt: Burn
+    chamber_temperature: Array
+    product: Simulated
+
+
+def simulate(file: EngineFile, until: float | None = None) -> Simulation:
+    """Run the unsteady model of an engine file, to burn-out or on through cold gas ``until`` [s].
+
+    Raises :class:`InputError` where the file lacks what the model needs, or states an engine that cannot be run.
+    """
+    needs = Needs(file, COMMAND)
+    tank = build.tank(needs)
+    engine = build.engine(needs, tank)
+    burnt = run(file, engine, until)
+    hot = burnt.chamber_temperature()
+    product = Simulated.from_json(
+        {
+            **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
+            **_engine(engine, burnt, hot),
+            **_loaded(file, engine, burnt),
+            **_tank(tank),
+            "flight": _flight(file, engine, burnt),
+            **_propellant(needs, engine),
+            "warnings": [*file.warnings, *_warnings(burnt)],
+            "provenance": heading.provenance(file),
+        }
+    )
+    return Simulation(engine, burnt, hot, product)
+
+
+def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:
+    """The burn, ``until`` [s]; an engine that cannot be lit or integrated is refused with the reason (InputError)."""
+    if until is not None and not 0.0 < until <= LONGEST_RUN:
+        raise InputError(f"--until {until:g}: expected seconds between 0 and {LONGEST_RUN:g}")
+    try:
+        return unsteady.burn(engine) if until is None else unsteady.burn(engine, until, run_on=True)
+    except (ValueError, ArithmeticError) as error:
+        raise InputError(f"{file.path}: {error}") from None
+
+
+def _engine(engine: Engine, burnt: Burn, hot: Array) -> dict[str, Quantity]:
+    impulse = float(burnt.state("impulse")[-1])
+    loaded = engine.oxidizer_mass + engine.fuel_mass
+    burn_time = _burn_time(burnt)
+    known = burn_time.value is not None
+    dry = "the liquid does not run out within the burn"
+    return {
+        "burn_time": burn_time,
+        "total_impulse": Quantity(impulse, "N s"),
+        "specific_impulse": Quantity(impulse / (STANDARD_GRAVITY * loaded), "s"),
+        "peak_chamber_temperature": Quantity(float(hot.max()), "K"),
+        "peak_chamber_pressure": Quantity(float(burnt.output("chamber_pressure").max()), "Pa"),
+        "peak_thrust": Quantity(peak_thrust(burnt), "N"),
+        "average_thrust": Quantity(impulse / burnt.burn_time, "N") if known else burn_time,
+        "liquid_depletion_time": Quantity.absent(dry) if burnt.liquid_out is None else Quantity(burnt.liquid_out, "s"),
+        "residual_oxidizer_mass": Quantity(float(burnt.state("tank_mass")[-1]), "kg"),
+        **_implied(burnt),
+    }
+
+
+def _implied(burnt: Burn) -> dict[str, Quantity]:
+    """Heat that the polytropic vapor and the quasi-steady chamber would need: what the model leaves open."""
+    power, stored = closure.vapor_heat(burnt), closure.chamber_energy(burnt)
+    none = "there is no vapor phase within the burn"
+    return {
+        "implied_vapor_heat": Quantity(closure.vapor_heat_total(burnt), "J") if power.any() else Quantity.absent(none),
+        "implied_vapor_power": Quantity(float(power[power != 0.0][0]), "W") if power.any() else Quantity.absent(none),
+        "implied_chamber_heat": Quantity(float(stored[0] - stored[-1]), "J"),
+    }
+
+
+def _burn_time(burnt: Burn) -> Quantity:
+    if not burnt.fuel_out:
+        return Quantity.absent(f"the fuel is not gone after {burnt.burn_time:.0f} s")
+    return Quantity(burnt.burn_time, "s")
+
+
+def peak_thrust(burnt: Burn) -> float:
+    """Highest thrust [N]."""
+    return float(burnt.output("thrust").max())
+
+
+def _loaded(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity]:
+    """The loaded rocket on its pad."""
+    if file.rocket is None:
+        return {name: Quantity.absent("no [rocket] is given") for name in ("wet_mass", "pad_thrust_to_weight")}
+    mass = file.rocket.dry_mass.value + engine.oxidizer_mass + engine.fuel_mass
+    weight = mass * gravity(build.launch_altitude(file))
+    return {"wet_mass": Quantity(mass, "kg"), "pad_thrust_to_weight": Quantity(peak_thrust(burnt) / weight)}
+
+
+def _tank(tank: build.TankBuilt) -> dict[str, Quantity]:
+    size = tank.size
+    return {
+        "tank_length": Quantity(size.length, "m") if size else Quantity.absent(tank.reason),
+        "dip_tube_length": Quantity(size.dip_tube_length, "m") if size else Quantity.absent(tank.reason),
+        "tank_volume": Quantity(tank.volume, "m^3"),
+    }
+
+
+def _flight(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity]:
+    """As flight.json."""
+    vehicle = build.vehicle(file)
+    if not isinstance(vehicle, Vehicle):
+        found = summary.absent(vehicle)
+    else:
+        rail = file.rocket.guided_length if file.rocket else None
+        found = flown.flight(engine, burnt, rail, build.parachutes(file))
+    return found | _loaded(file, engine, burnt)
+
+
+def _propellant(needs: Needs, engine: Engine) -> dict[str, dict[str, Quantity]]:
+    """The load for the target apogee, where the file has one and its rocket can fly."""
+    target = needs.file.design.target_apogee
+    if target is None or not isinstance(build.vehicle(needs.file), Vehicle):
+        return {}
+    return {"propellant_for_target_apogee": propellant.for_apogee(needs, engine, target.value)}
+
+
+def _warnings(burnt: Burn) -> list[str]:
+    return [] if burnt.fuel_out else [f"{_burn_time(burnt).reason}; impulse and residual are those until then"]

@@ -1,0 +1,85 @@
+"""Until when a chamber burns: by its pressure over the flow, whatever of the fall is hidden by the liquid's end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from simulated.blind import slots as s
+from simulated.blind.stand import Histories, Stand
+from simulated.worlds import laws
+from simulated.worlds.engines import drawn, simulated
+from tests.segment.stand import signal
+
+from hfanalysis.inference.observations.flame import FlameOut, flame_out
+from hfanalysis.thermo.nitrous import saturation
+
+FADES = (0.01, 0.03, 0.3)
+"""Seconds in which a chamber without a flame turns cold."""
+
+
+def world(mixing: float, tail: float = 1e-3) -> laws.World:
+    values = np.zeros(laws.LAWS)
+    values[[laws.TAIL, laws.MIXING]] = tail, mixing
+    return laws.World(values, "coolprop", (0.0, 0.0))
+
+
+@cache
+def run(end: str, mixing: float, tail: float = 1e-3) -> tuple[Stand, Histories]:
+    stand = drawn(np.random.default_rng(6_900_003), "4 kN", end, world(mixing, tail))
+    return stand, simulated(stand, world(mixing, tail))
+
+
+def found(stand: Stand, true: Histories, chamber: float = 1.0) -> FlameOut | None:
+    """What is found in its pressures, the chamber's times a factor."""
+    rng = np.random.default_rng(2)
+    read = [
+        signal(name, true.time[::4], k * true.trace(which)[::4] + 5e3 * rng.standard_normal(true.time[::4].size))
+        for name, which, k in (("p_tank", s.P_TANK, 1.0), ("p_run", s.P_RUN, 1.0), ("p_chamber", s.P_CHAMBER, chamber))
+    ]
+    return flame_out(*read, saturation(), true.t_v, stand.closing)
+
+
+@pytest.mark.parametrize("mixing", FADES)
+@pytest.mark.parametrize("end", ["early", "together"])
+def test_the_end_of_a_flame_is_found_where_liquid_or_its_end_hides_it(end: str, mixing: float) -> None:
+    stand, true = run(end, mixing)
+    flame = found(stand, true)
+    assert flame is not None
+    assert -0.15 < flame.begins - true.t_fuel_out < 0.05 + 0.1 * mixing
+    assert flame.out < true.t_fuel_out + 0.15 + 2.5 * mixing
+    assert flame.std == pytest.approx((flame.out - flame.begins) / np.sqrt(12.0))
+
+
+def test_fuel_that_goes_on_for_a_time_burns_on() -> None:
+    stand, true = run("early", 0.01, tail=0.15)
+    flame = found(stand, true)
+    assert flame is not None
+    assert -0.15 < flame.begins - true.t_fuel_out < 0.6
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_chamber_that_burns_to_the_end_has_no_such_end(seed: int) -> None:
+    rng = np.random.default_rng(6_900_100 + seed)
+    here = laws.draw(rng)
+    stand = drawn(rng, ("1 kN", "2 kN", "4 kN", "9 kN")[seed], "left", here)
+    assert found(stand, simulated(stand, here)) is None
+
+
+def test_a_valve_behind_the_gauge_that_closes_is_no_end_of_a_flame() -> None:
+    stand, true = run("left", 0.01)
+    closing, traces = true.t_v - 0.6, true.traces.copy()
+    after = true.time > closing
+    traces[after, s.P_TANK] = traces[after, s.P_RUN] = traces[after, s.P_TANK][0]
+    traces[after, s.P_CHAMBER] = stand.ambient
+    assert found(stand, replace(true, traces=traces)) is None
+
+
+def test_a_gauge_that_reads_a_tenth_less_changes_nothing() -> None:
+    stand, true = run("together", 0.03)
+    one, other = found(stand, true), found(stand, true, 0.9)
+    assert one is not None
+    assert other is not None
+    assert other.begins == pytest.approx(one.begins, abs=0.05)

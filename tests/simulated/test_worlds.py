@@ -1,0 +1,143 @@
+"""Tests of other worlds: laws that are neutral where they are none, and counts that say what was found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from benchmarks.worlds_quick import Scored, figures
+from simulated.blind import nitrous
+from simulated.blind import slots as s
+from simulated.blind import stand as blind
+from simulated.blind.effects import EFFECTS, Hidden, slots_of
+from simulated.worlds import laws
+from simulated.worlds.engines import ENGINES, drawn, simulated
+from simulated.worlds.loggers import LOGGERS, written
+from simulated.worlds.loggers import drawn as drawn_sensors
+from simulated.worlds.plan import KINDS, plan
+
+SUDDEN = 1e-6
+SIZES = {laws.TAIL: 0.1, laws.MIXING: 0.3, laws.ZONE_LAG: 0.002, laws.OPENING: 0.03, laws.THRUST_LOSS: 0.01}
+
+
+def plain_world() -> laws.World:
+    """No law but those of the blind generator; the flame ends with the fuel."""
+    values = np.zeros(laws.LAWS)
+    values[[laws.TAIL, laws.MIXING]] = SUDDEN
+    return laws.World(values, "coolprop", (0.0, 0.0))
+
+
+def with_law(which: int, size: float) -> laws.World:
+    values = plain_world().laws.copy()
+    values[which] = size
+    return replace(plain_world(), laws=values)
+
+
+@pytest.fixture(scope="module")
+def stand() -> blind.Stand:
+    return drawn(np.random.default_rng(3), "2 kN", "late", plain_world())
+
+
+def test_without_laws_the_engine_is_that_of_the_blind_generator(stand: blind.Stand) -> None:
+    here, there = simulated(stand, plain_world()), blind.simulate(stand)
+    assert here.t_v == pytest.approx(there.t_v, abs=2e-3)
+    assert here.t_fuel_out == pytest.approx(there.t_fuel_out, abs=2e-3)
+    both = min(here.t_v, here.t_fuel_out) - 0.1
+    rows = (here.time > 0.05) & (here.time < both)
+    for channel in range(len(s.CHANNELS)):
+        assert here.traces[rows, channel] == pytest.approx(there.traces[rows, channel], rel=2e-3, abs=1e-3)
+
+
+@pytest.mark.parametrize("which", range(laws.LAWS - 4))
+def test_every_law_shows(stand: blind.Stand, which: int) -> None:
+    size = SIZES.get(which, 0.05)
+    plain, other = (simulated(stand, world).traces[:, :6] for world in (plain_world(), with_law(which, size)))
+    assert np.abs(other - plain).max(axis=0).max() > 0.0
+    spread = np.ptp(plain, axis=0)
+    early = slice(100, int(1e3 * 0.6 * simulated(stand, plain_world()).t_v))
+    assert (np.abs(other - plain)[early] < 0.05 * spread).all()
+
+
+def test_other_closures_of_what_is_hidden_are_none_at_strength_zero(stand: blind.Stand) -> None:
+    everything = plain_world()
+    everything.laws[laws.DYER :] = 1.0
+    assert (simulated(stand, everything).traces == simulated(stand, plain_world()).traces).all()
+    for name in ("injector_two_phase", "injector_choked_vapor", "grain_pressure_regression", "fuel_sliver"):
+        effect = EFFECTS[name]
+        shape = dict.fromkeys(effect.shape, 800000.0)
+        hidden = slots_of((Hidden(effect, 0.3 * effect.most, shape),))
+        one, other = (simulated(stand, world, hidden).traces for world in (plain_world(), everything))
+        assert np.abs(one - other).max() > 0.0
+
+
+def test_a_chamber_without_a_flame_turns_cold_as_slowly_as_its_law_says() -> None:
+    early = drawn(np.random.default_rng(5), "2 kN", "early", plain_world())
+
+    def left(mixing: float) -> float:
+        run = simulated(early, with_law(laws.MIXING, mixing))
+        gone = int(1e3 * run.t_fuel_out)
+        return float(run.trace(s.P_CHAMBER)[gone + 150] / run.trace(s.P_CHAMBER)[gone - 10])
+
+    # c* goes with the root of R T, which has come down by exp(-0.15 s / mixing) to that of cold nitrous oxide, a
+    # twentieth; and the fuel's flow is gone, an eighth of all
+    assert left(0.3) == pytest.approx((7.0 / 8.0) * np.sqrt(np.exp(-0.5) + 0.05 * (1.0 - np.exp(-0.5))), abs=0.08)
+    assert left(0.03) < 0.4
+
+
+def test_the_other_table_is_another_nitrous_oxide() -> None:
+    esdu = replace(plain_world(), properties="esdu").tank_table()
+    off = esdu[nitrous.P] / nitrous.table()[nitrous.P] - 1.0
+    assert 1e-4 < np.abs(off[np.arange(off.size) > 4000]).max() < 0.02
+
+
+@pytest.mark.parametrize("logger", LOGGERS)
+def test_logs_are_as_their_logger_writes_them(stand: blind.Stand, logger: str) -> None:
+    rng, of = np.random.default_rng(1), LOGGERS[logger]
+    run = simulated(stand, plain_world())
+    log = written(rng, stand, run, run.traces[:, :6], of, drawn_sensors(rng, of, stand))
+    steps = np.diff(log.time)
+    assert np.median(steps) == pytest.approx(1.0 / of.rate, rel=0.1)
+    assert (steps > 0.0).all()
+    assert log.t_open - log.time[0] == pytest.approx(of.rest, abs=1.1 / of.rate)
+    if of.bits:
+        assert np.unique(np.round(log.values[:, 0] / (1500.0 / 2**of.bits), 6) % 1.0).size == 1
+
+
+def test_a_third_of_the_plan_hides_nothing_and_all_stands_are_in_it() -> None:
+    tests = plan()
+    assert [sum(t.kind == kind for t in tests) for kind in KINDS] == [20, 28, 7, 5]
+    assert {t.engine for t in tests} == set(ENGINES)
+    assert {t.logger for t in tests} == set(LOGGERS)
+    assert not {t.seed for t in tests} & {t.seed for t in plan("development", 200)}
+    assert tests == plan()
+
+
+def case(kind: str, hidden: tuple[str, ...], verdict: str, named: dict[str, float], unknown: float = 0.0) -> Scored:
+    answer = {"id": "Q", "kind": kind, "engine": "1 kN", "logger": "a", "end": "left",
+              "effects": {name: {"d_prime": 20.0} for name in hidden}}  # fmt: skip
+    effects = [{"name": name, "probability": p} for name, p in named.items()]
+    product: dict[str, Any] = {"verdict": verdict, "effects": effects, "posterior": {"unknown": unknown}}
+    return Scored(answer, product, 10.0, "")
+
+
+def test_what_is_stated_surely_beside_the_right_name_is_wrong_all_the_same() -> None:
+    right = case("single", ("tank_heat",), "named", {"tank_heat": 0.99})
+    more = case("single", ("tank_heat",), "named", {"tank_heat": 0.99, "n2_purge": 0.95})
+    strange = case("single", ("tank_heat",), "unknown", {}, 0.99)
+    outside = case("outside", ("vent_leak",), "unknown", {}, 0.99)
+    alarm = case("none", (), "ambiguous", {"tank_heat": 0.6})
+    assert [c.wrong for c in (right, more, strange, outside, alarm)] == [[], ["n2_purge"], ["unknown"], [], []]
+    assert [c.exact for c in (right, more, strange, outside, alarm)] == [True, False, False, True, False]
+    rows = figures([right, more, strange, outside, alarm])
+    quiet = case("none", (), "none", {})
+    quiet.product["compared"] = {"model_form_error": {"tank": 2e-4, "chamber": 1e-3}}
+    quiet.product["warnings"] = ["the search did not converge: the base model came to lie 3.0 deeper"]
+    assert figures([quiet])[-3:] == [
+        "Model-form error where nothing is hidden, as parts of ranges, the median (the largest): "
+        "tank 0.0002 (0.0002), chamber 0.001 (0.001).",
+        "",
+        "The search did not converge in Q.",
+    ]
+    assert rows[2] == "| all | 5 | 1 of 1 | 2 of 5 | 1 of 3 | 1 of 1 | 0 of 0 | 0 |"
