@@ -133,8 +133,8 @@ def headlines(product: Diagnosis) -> list[str]:
         return _small(product) or _nothing(product)
     if product.unknown_beside:
         known = listed([product.plain(name) for name in product.unknown_beside])
-        beside = f"Something is missing that has no name in the library, beside {known}"
-        return [f"{beside} (probability {posterior['unknown']:.2f}).", *doubt]
+        what = f"Something is missing that has no name in the library, beside {known}"
+        return [f"{what} (probability {posterior['unknown']:.2f}).", *doubt]
     if product.verdict == "unknown":
         return [
             f"Something is missing that has no name in the library (probability {posterior['unknown']:.2f}).",
