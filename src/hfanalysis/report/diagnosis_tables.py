@@ -234,7 +234,7 @@ def constants(product: Diagnosis) -> Iterator[Markup]:
     arm = with_what(product)
     if "m" in without and without["m"].value is not None:
         values = [fixed(side["m"].value or 0.0, 2) for side in (without, better)]
-        said = f"m {values[0]} refitted, {values[1]} with the effects." if arm else f"m {values[0]} refitted."
+        said = f"m {values[0]} refitted, {values[1]} with the effects." if arm else f"m {values[0]}."
         yield html.paragraph(Markup("Polytropic exponent of the vapor: <strong>{}</strong>").format(said), "told")
     names = sorted(without, key=lambda name: name != "m")
     arms = [

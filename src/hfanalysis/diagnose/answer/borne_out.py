@@ -60,25 +60,37 @@ def _counted(
     found: Naming, one: Candidate, before: Foretold, told: Mapping[tuple[str, ...], Foretold | None]
 ) -> Naming:
     """The same after a candidate was asked: it has as much of its evidence as it keeps of its promise: beyond the base
-    model, or of a set beyond its largest part that was asked before."""
+    model, or of a set beyond its largest part that was asked before. Other sets with that part keep no more of what they
+    have beyond it, until they are asked."""
     there = told[one.key]
     gain = None if there is None else there.rest - before.rest
     found = replace(found, held_out={**found.held_out, one.key: gain})
     if there is None:
         return found
-    zero = found.base.log_evidence
-    most = zero + _part(there, before) * max(one.log_evidence - zero, 0.0)
     part = _largest_part(one, found)
     of_part = None if part is None else told.get(part.key)
-    if part is not None and of_part is not None:
-        further = max(one.log_evidence - part.log_evidence, 0.0)
-        most = part.log_evidence + _part(there, of_part) * further
+    if part is None or of_part is None:
+        return _lessened(found, found.base, _part(there, before), lambda c: c.key == one.key)
+    beside = set(part.names)
+    alike = _lessened(
+        found, part, _part(there, of_part), lambda c: c.key not in told and beside < set(c.names) and not c.unknown
+    )
+    return _lessened(alike, part, _part(there, of_part), lambda c: c.key == one.key)
 
-    def lessened(candidates: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
-        out = [replace(c, log_evidence=min(c.log_evidence, most)) if c.key == one.key else c for c in candidates]
+
+def _lessened(found: Naming, beyond: Candidate, share: float, which: Callable[[Candidate], bool]) -> Naming:
+    """The same with a ``share`` [-] of the evidence of some candidates beyond another."""
+
+    def of(candidates: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+        out = [_with_share(c, beyond, share) if which(c) else c for c in candidates]
         return tuple(sorted(out, key=lambda c: -c.log_evidence))
 
-    return replace(found, singles=lessened(found.singles), sets=lessened(found.sets), unknown=lessened(found.unknown))
+    return replace(found, singles=of(found.singles), sets=of(found.sets), unknown=of(found.unknown))
+
+
+def _with_share(one: Candidate, beyond: Candidate, share: float) -> Candidate:
+    gain = max(one.log_evidence - beyond.log_evidence, 0.0)
+    return replace(one, log_evidence=min(one.log_evidence, beyond.log_evidence + share * gain))
 
 
 def _part(there: Foretold, before: Foretold) -> float:
