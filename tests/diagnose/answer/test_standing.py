@@ -223,7 +223,7 @@ def test_what_stands_beside_a_name_is_said(monkeypatch: pytest.MonkeyPatch) -> N
         verdict="unknown", effects=(), posterior={"unknown": 0.6, "tank_heat": 0.4}, set90=("unknown", "tank_heat"),
         unknown_beside=("tank_heat",), doubts=("m is on its bound (0.95)",), at_limit="none has 0.150",
     )  # fmt: skip
-    assert "beside tank_heat (probability 0.60)" in headline(product)
+    assert "beside tank heat (probability 0.60)" in headline(product)
     told = " ".join(map(str, doubts_sentences(product)))
-    assert "With tank_heat alone the story is not whole: m is on its bound (0.95)." in told
+    assert "With tank heat alone the story is not whole: m is on its bound (0.95)." in told
     assert "at a limit" in told

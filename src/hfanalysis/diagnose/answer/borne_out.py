@@ -43,6 +43,7 @@ def borne_out(found: Naming, claimed: Callable[[Naming], Claim]) -> Naming:
     A rival, or a curve, that is RIVAL behind what is left of the claim stays there: it is not asked.
     """
     told: dict[tuple[str, ...], Foretold | None] = {}
+    all_of_it = {c.key: c.log_evidence for c in reversed(found.all)}
     before: Foretold | None = None
     for _ in range(ROUNDS):
         one = next((c for c in _contenders(found, claimed(found)) if c.key not in told), None)
@@ -52,45 +53,42 @@ def borne_out(found: Naming, claimed: Callable[[Naming], Claim]) -> Naming:
         if before is None:
             break
         told[one.key] = log_predictive(one, found.bench)
-        found = _counted(found, one, before, told)
+        found = _counted(found, one, before, told, all_of_it)
     return found
 
 
+Told = Mapping[tuple[str, ...], Foretold | None]
+
+
 def _counted(
-    found: Naming, one: Candidate, before: Foretold, told: Mapping[tuple[str, ...], Foretold | None]
+    found: Naming, one: Candidate, before: Foretold, told: Told, all_of_it: Mapping[tuple[str, ...], float]
 ) -> Naming:
-    """The same after a candidate was asked: it has as much of its evidence as it keeps of its promise: beyond the base
-    model, or of a set beyond its largest part that was asked before. Other sets with that part keep no more of what they
-    have beyond it, until they are asked."""
-    there = told[one.key]
+    """The same after a candidate was asked: it has as much of its evidence as it keeps of its promise, beyond the base
+    model, or of a set beyond its largest part that was asked before.
+
+    Other sets with that part keep no more of what they have beyond it, until they are asked. ``all_of_it``: the
+    evidence [natural log] of each as it was.
+    """
+    there, part = told[one.key], _largest_part(one, found)
     gain = None if there is None else there.rest - before.rest
     found = replace(found, held_out={**found.held_out, one.key: gain})
     if there is None:
         return found
-    part = _largest_part(one, found)
     of_part = None if part is None else told.get(part.key)
-    if part is None or of_part is None:
-        return _lessened(found, found.base, _part(there, before), lambda c: c.key == one.key)
-    beside = set(part.names)
-    alike = _lessened(
-        found, part, _part(there, of_part), lambda c: c.key not in told and beside < set(c.names) and not c.unknown
-    )
-    return _lessened(alike, part, _part(there, of_part), lambda c: c.key == one.key)
+    beyond, rest = (found.base, before) if part is None or of_part is None else (part, of_part)
+    share, names = _part(there, rest), set(beyond.names)
 
+    def lessened(c: Candidate) -> Candidate:
+        alike = bool(names) and c.key not in told and names < set(c.names) and not c.unknown
+        if c.key != one.key and not alike:
+            return c
+        further = max(all_of_it[c.key] - all_of_it[beyond.key], 0.0)
+        return replace(c, log_evidence=min(all_of_it[c.key], beyond.log_evidence + share * further))
 
-def _lessened(found: Naming, beyond: Candidate, share: float, which: Callable[[Candidate], bool]) -> Naming:
-    """The same with a ``share`` [-] of the evidence of some candidates beyond another."""
+    def each_of(candidates: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+        return tuple(sorted(map(lessened, candidates), key=lambda c: -c.log_evidence))
 
-    def of(candidates: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
-        out = [_with_share(c, beyond, share) if which(c) else c for c in candidates]
-        return tuple(sorted(out, key=lambda c: -c.log_evidence))
-
-    return replace(found, singles=of(found.singles), sets=of(found.sets), unknown=of(found.unknown))
-
-
-def _with_share(one: Candidate, beyond: Candidate, share: float) -> Candidate:
-    gain = max(one.log_evidence - beyond.log_evidence, 0.0)
-    return replace(one, log_evidence=min(one.log_evidence, beyond.log_evidence + share * gain))
+    return replace(found, singles=each_of(found.singles), sets=each_of(found.sets), unknown=each_of(found.unknown))
 
 
 def _part(there: Foretold, before: Foretold) -> float:
