@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test lint format docs pictures benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -66,6 +66,12 @@ lint: $(STAMP) ## ruff, mypy, and that no room of the package imports one above 
 
 format: $(STAMP) ## format the code with ruff
 	$(BIN)/ruff format
+
+pictures: $(STAMP) ## the pictures of README and documentation anew, from HF5; needs a browser
+	$(BIN)/python pipeline/pictures.py
+
+docs: $(STAMP) ## the documentation as pages in site/: no warning, no dead link, nothing loaded from elsewhere
+	@$(BIN)/python pipeline/site.py
 
 benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers, localisation, a 1 GB log beside pandas
 	$(BIN)/python -m benchmarks.startup
@@ -202,5 +208,5 @@ lock: $(STAMP) ## write both lock files anew from pyproject.toml
 	$(COMPILE) --group rocketpy --constraint requirements.lock -o requirements-rocketpy.lock
 
 clean: ## remove processed/ and caches; raw_tests/ and .venv/ stay
-	rm -rf processed .mypy_cache .ruff_cache .pytest_cache .hypothesis .cache dist
+	rm -rf processed site .mypy_cache .ruff_cache .pytest_cache .hypothesis .cache dist
 	find src tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -23,6 +23,21 @@ IMPORTED = "import sys; from hfanalysis.cli import main\ntry: main()\nexcept Sys
 HEAVY = ("pandas", "xarray", "matplotlib", "CoolProp", "pint", "numba", "scipy", "h5py", "pydantic", "numpy")
 
 
+BARE = """
+from hfanalysis.performance.reconstruction.reconstruct import Reconstructed
+from hfanalysis.products.reconstruction import Reconstruction
+from hfanalysis.validate import validation
+validation.reconstructed = lambda *_: Reconstructed(Reconstruction(variant=None, reason="left out"))
+validation._Work._stability = lambda *_: {}
+validation.transients = lambda *_: {}
+from hfanalysis.cli import main
+main()
+"""
+"""The command line with a validate that looks at no reconstruction, stability and transients."""
+
+SLOWER = 0.5
+"""By which these may make it slower [s]. Source: what was promised."""
+
 AT_STAND = 3.0
 """Within which `hfa run TEST --quick` has answered [s]. Source: what was promised (docs/at-the-stand.md)."""
 
@@ -47,6 +62,16 @@ def beside(calibrate: Sequence[str], other: Sequence[str], log: Path, repeat: in
         health = [stage["seconds"] for stage in stages if stage["stage"] == "health"][-1:]
         ratios.append((whole - sum(health)) / against)
     return statistics.median(ratios)
+
+
+def added(test: str, out: str, repeat: int) -> tuple[float, float]:
+    """Processor time [s] that reconstruction, stability and transients add to validate, warm, and its ratio with over
+    without: medians of pairs in turn."""
+    arguments = ["validate", test, "--out", out, "--force"]
+    whole = [str(Path(sys.executable).with_name("hfa")), *arguments]
+    bare = [sys.executable, "-c", BARE, *arguments]
+    pairs = [(processor(whole), processor(bare)) for _ in range(repeat + 1)][1:]
+    return statistics.median(a - b for a, b in pairs), statistics.median(a / b for a, b in pairs)
 
 
 def elsewhere(checkout: Path, test: str, out: str) -> list[str]:
@@ -102,6 +127,11 @@ def main() -> None:
             print(f"  {name:<42} {took[name]:7.3f} s", flush=True)
         verdict = "within" if took[quick] <= AT_STAND else "NOT within"
         print(f"  the quick look: {verdict} {AT_STAND:g} s")
+        more, times = added(options.test, out, options.repeat)
+        print(
+            f"  hfa validate {options.test} --force: reconstruction, stability and transients add {more:.2f} s of "
+            f"processor time ({times:.2f} times, in pairs), {'within' if more <= SLOWER else 'NOT within'} {SLOWER:g} s"
+        )
         other, what = [sys.executable, "-c", STACK], "the stack's import"
         if options.against:
             other, what = elsewhere(options.against, options.test, out), f"the one of {options.against}"

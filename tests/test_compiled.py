@@ -142,3 +142,17 @@ def test_a_flight_through_other_air_is_computed_anew(tmp_path: Path) -> None:
     assert "101_290.0" in air.read_text("utf-8")
     air.write_text(air.read_text("utf-8").replace("101_290.0", "202_580.0"), "utf-8")
     assert dragged(tmp_path) == (pytest.approx(2.0 * before, rel=1e-12), 0)
+
+
+def test_who_watches_is_told_of_what_is_compiled_and_not_of_what_is_kept(tmp_path: Path) -> None:
+    code = (
+        "from hfanalysis.progress import watching_compiler\nfrom hfanalysis.compiled import compiled\nimport made\n"
+        "told = []\nwith watching_compiler(lambda: told.append(1)):\n    made.twice(2.0)\nprint(len(told))"
+    )
+    (tmp_path / "made.py").write_text(
+        "from hfanalysis.compiled import compiled\n\n\n@compiled\ndef twice(x):\n    return 2.0 * x\n"
+    )
+    places = os.pathsep.join([str(tmp_path), *filter(None, [os.environ.get("PYTHONPATH")])])
+    env = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": places}
+    runs = [subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True) for _ in range(2)]
+    assert [run.stdout.strip() for run in runs] == ["1", "0"], runs[0].stderr

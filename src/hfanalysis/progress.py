@@ -9,13 +9,13 @@ Progress = Callable[[str, float | None], None]
 """Told what is being done, and the fraction done where it is known."""
 
 
-_COMPILED = 0
-_TOLD: list[Callable[[int], None]] = []
+_TOLD: list[Callable[[], None]] = []
+"""Who wants to know when something is compiled."""
 
 
 @contextmanager
-def watching_compiler(tell: Callable[[int], None]) -> Iterator[None]:
-    """Have ``tell`` called with how many functions this process has compiled, each time that one more is."""
+def watching_compiler(tell: Callable[[], None]) -> Iterator[None]:
+    """Have ``tell`` called each time that one more function has to be compiled."""
     _TOLD.append(tell)
     try:
         yield
@@ -25,10 +25,8 @@ def watching_compiler(tell: Callable[[int], None]) -> Iterator[None]:
 
 def compiling() -> None:
     """Called by the compiler for every function that no earlier run has kept."""
-    global _COMPILED
-    _COMPILED += 1
     for tell in _TOLD:
-        tell(_COMPILED)
+        tell()
 
 
 def silent(_text: str, _fraction: float | None = None) -> None:

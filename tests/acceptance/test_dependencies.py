@@ -13,12 +13,25 @@ from hfanalysis.sources import PACKAGE, libraries
 REPOSITORY = Path(__file__).parents[2]
 COMES_WITH = {"pydantic_core": "pydantic", "python_calamine": "python-calamine"}
 """Imported modules that come in a distribution of another name."""
+BY_NAME = {"h5netcdf"}
+"""Required, and loaded by xarray, which is told its name."""
 
 
 def required() -> set[str]:
     """The distributions named in pyproject.toml, in lower case."""
     project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["project"]
-    return {re.split(r"[\s<>=!~;\[]", text, maxsplit=1)[0].lower() for text in project["dependencies"]}
+    return names(project["dependencies"])
+
+
+def optional() -> set[str]:
+    """The distributions of extras for who uses the package."""
+    extras = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    return set().union(*(names(texts) for extra, texts in extras.items() if extra != "dev"))
+
+
+def names(texts: list[str]) -> set[str]:
+    """Of requirements, without versions and conditions."""
+    return {re.split(r"[\s<>=!~;\[]", text, maxsplit=1)[0].lower() for text in texts}
 
 
 def pinned(lock: str) -> dict[str, set[str]]:
@@ -30,11 +43,21 @@ def pinned(lock: str) -> dict[str, set[str]]:
 
 
 def test_what_is_imported_is_required_and_the_other_way_round() -> None:
-    assert {COMES_WITH.get(name, name).lower() for name in libraries(PACKAGE.rglob("*.py"))} == required()
+    imported = {COMES_WITH.get(name, name).lower() for name in libraries(PACKAGE.rglob("*.py"))}
+    assert imported | BY_NAME == required() | optional()
+    assert required() & optional() == set()
+
+
+def test_what_an_extra_brings_is_asked_for_by_the_extra_s_name() -> None:
+    """Where it is imported, its absence is met, and the message says what to install."""
+    for path in PACKAGE.rglob("*.py"):
+        for name in optional() & {name.lower() for name in libraries([path])}:
+            assert "except ImportError" in path.read_text(), f"{path.name}: {name}"
+            assert "hfanalysis[" in path.read_text(), f"{path.name}: {name}"
 
 
 def test_what_is_required_is_locked() -> None:
-    assert required() - pinned("requirements.lock").keys() == set()
+    assert (required() | optional()) - pinned("requirements.lock").keys() == set()
 
 
 def test_what_flights_are_compared_with_is_no_part_of_the_package_and_pinned_apart() -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from pipeline import constants_page
+import pytest
+from pipeline import constants_page, site, site_hooks
 
 from hfanalysis.record.definition import load_definition
 
@@ -33,6 +34,33 @@ def test_links_between_documents_lead_somewhere() -> None:
     for document in [REPOSITORY / "README.md", *(REPOSITORY / "docs").glob("*.md")]:
         for target in re.findall(r"\]\((?!https?:)([^)#]+)", document.read_text()):
             assert (document.parent / target).exists(), f"{document.name}: {target}"
+
+
+@pytest.mark.parametrize(
+    ("html", "count"),
+    [
+        ('<script src="https://x.org/a.js"></script>', 1),
+        ('<script src="assets/a.js"></script><img src="hf5.png">', 0),
+        ('<link rel="stylesheet" href="//fonts.org/a.css">', 1),
+        ('<link rel="canonical" href="https://x.org/">', 0),
+        ('<a href="https://x.org/">a source</a>', 0),
+    ],
+)
+def test_what_a_page_loads_from_elsewhere_is_found(html: str, count: int) -> None:
+    assert len(list(site.from_elsewhere(html))) == count
+
+
+def test_equations_of_pages_become_mathml_and_files_of_the_repository_names() -> None:
+    made = site_hooks.on_page_markdown("$$ \\frac{a}{b} $$\n[a stage](../CONTRIBUTING.md#a-stage), [page](files.md)")
+    assert made.startswith("<math")
+    assert "<mfrac>" in made
+    assert made.endswith("a stage, [page](files.md)")
+
+
+def test_every_page_has_its_place() -> None:
+    navigation = (REPOSITORY / "mkdocs.yml").read_text()
+    pages = {path.name for path in (REPOSITORY / "docs").glob("*.md")}
+    assert set(re.findall(r"[\w-]+\.md", navigation.partition("\nnav:")[2])) == pages
 
 
 def test_the_lock_file_names_no_place() -> None:

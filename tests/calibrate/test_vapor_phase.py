@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
 
-from hfanalysis.calibrate.blowdown import Inputs, Shift, Tables, VaporPhase
+from hfanalysis.calibrate.blowdown import Inputs, Shift, Tables, VaporPhase, reduce, reduce_all
 from hfanalysis.engine.blowdown import blow_down
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.thermo.nitrous import saturation
@@ -52,3 +52,29 @@ def test_what_is_behind_the_tank_comes_in_as_means_over_steps() -> None:
     at = np.linspace(inputs.t_v, inputs.t_end, 11)
     plain, swung = tables.behind(at)[1], swinging.behind(at)[1]
     assert swung == pytest.approx(plain, abs=0.1 * 1e5)
+
+
+def test_many_reductions_at_once_are_each_as_if_by_itself() -> None:
+    """Also one whose vapor phase has no exponent, one without a vapor phase, and one of which C_i and m are held."""
+    tables, inputs, _ = emptied(1.0)
+    inputs = replace(inputs, C_i=1.0)
+    several = [
+        inputs,
+        replace(inputs, mass=8.1, p_v=0.995 * inputs.p_v, t_v=inputs.t_v + 2e-3),
+        replace(inputs, p_end=1.1 * inputs.p_v),
+        replace(inputs, t_end=np.nan),
+        replace(inputs, C_i=1.02, m=1.1),
+    ]
+    shifts = [Shift(), Shift(2e4, -1e4, 1e4), Shift(), Shift(), Shift()]
+    phase = VaporPhase.plain(saturation(), inputs)
+    rows = np.array([astuple(x) for x in several]), np.array([astuple(x) for x in shifts])
+    found = reduce_all(tables, saturation(), *rows, phase)
+    for row, x, shift in zip(found, several, shifts, strict=True):
+        assert row == pytest.approx(
+            np.array(astuple(reduce(tables, saturation(), x, shift, phase))), rel=1e-6, nan_ok=True
+        )
+    assert found[0, 1] == pytest.approx(1.0, abs=1e-4)
+    assert np.isfinite(found[1, 1])
+    assert np.isnan(found[2, 1])
+    assert np.isnan(found[3, 1])
+    assert found[4, [0, 1]] == pytest.approx([1.02, 1.1])

@@ -35,7 +35,7 @@ def test_tests_that_differ_are_said_to(product: Campaign) -> None:
     assert c_i.agreement.verdict.startswith("disagree")
     assert c_i.between > 0.02
     assert "disagree" in agreement(c_i)
-    assert "(< 0.001 by chance)" in agreement(c_i)
+    assert "(p < 0.001; below 0.01 they do not)" in agreement(c_i)
 
 
 def test_an_effect_has_its_probability_in_every_test_and_its_size_where_it_is_named(product: Campaign) -> None:
@@ -94,7 +94,7 @@ def test_a_stand_that_is_not_stated_is_known_by_its_tank(tmp_path: Path) -> None
     hardware = '[tank]\nvolume = "16.5 L"\n'
     path = tmp_path / "raw_tests" / "F" / "test.toml"
     path.write_text(text + hardware, encoding="utf-8")
-    assert stand_of(load_definition(path)) == "not stated: the tank of 16.5 L"
+    assert stand_of(load_definition(path)) == "not stated: the tank of 16.5 L (synthetic)"
 
 
 def test_what_belongs_to_an_injector_is_not_pooled_over_two_of_them(tmp_path: Path) -> None:

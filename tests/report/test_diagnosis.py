@@ -70,7 +70,7 @@ def test_what_is_named_comes_first_with_size_twins_and_what_would_decide(tmp_pat
     found = told(laid_out(tmp_path, DIAGNOSIS))
     table = found[found.index('aria-label="Probabilities: table"') :].partition("</table>")[0]
     names = re.findall(r'<th scope="row"><span>([^<]+)</span>', unescape(table))
-    assert names == ["heat into the tank", "heat from the tank's wall", "nothing", "something without a name"]
+    assert names == ["heat into the tank", "heat from the tank's wall", "something without a name", "nothing"]
     assert "2 other names are below 0.005 each" in table
     assert '<rect width="83.0" height="10"/>' in table
     first = unescape(row(table, "<span>heat into the tank"))

@@ -426,11 +426,24 @@ def test_the_index_lists_every_test() -> None:
             "numbers": [[HOSTILE, HOSTILE, HOSTILE]],
             "spark": {"path": "M0 0L1 1", "of": HOSTILE, "style": HOSTILE},
             "href": "a%3C/report.html",
+            "compared": [(HOSTILE, "a%3C/compare_b.html")],
         }
     ]
-    text = render("index.html.j2", rows=rows)
+    text = render("index.html.j2", rows=rows, campaign="")
     assert Reader(text).open == []
     assert text.count("<script>") == 1
+
+
+def test_the_index_leads_to_the_pages_of_pairs_and_of_the_campaign(tmp_path: Path) -> None:
+    folder = tmp_path / "processed"
+    (folder / "HF0").mkdir(parents=True)
+    (folder / "HF0" / "report.html").write_text(page(material(tmp_path)), encoding="utf-8")
+    assert "compare_" not in write_index(folder).read_text(encoding="utf-8")
+    (folder / "HF0" / "compare_HF1.html").write_text("", encoding="utf-8")
+    (folder / "campaign.html").write_text("", encoding="utf-8")
+    text = write_index(folder).read_text(encoding="utf-8")
+    assert '<a href="HF0/compare_HF1.html">HF1</a>' in text
+    assert '<a href="campaign.html">' in text
 
 
 def test_the_index_reads_what_the_pages_say_of_themselves(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from hfanalysis.campaign.words import HIDDEN, agreement, alone, diagnosed, regre
 from hfanalysis.products.campaign import Campaign, StandRow, TestRow, Together
 from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
+from hfanalysis.report.names import called
 from hfanalysis.report.page import render
 from hfanalysis.wording.numbers import KINDS, fixed
 
@@ -92,7 +93,7 @@ def _effects(stand: StandRow) -> Markup:
     rows: list[tuple[Any, ...]] = []
     for name, found in stand.effects.items():
         chances = [_chance(found.probability.get(test), test in found.named_in) for test in tests]
-        rows.append((Markup("<strong>{}</strong>").format(name), *chances, "", ""))
+        rows.append((Markup("<strong>{}</strong>").format(called(name)), *chances, "", ""))
         for parameter, numbers in found.parameters.items():
             words = Markup('<span class="words">{}</span>').format(parameter.replace("_", " "))
             cells = [_cell(parameter, numbers.by_test.get(test)) for test in tests]

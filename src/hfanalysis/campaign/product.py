@@ -71,11 +71,16 @@ def row_of(definition: TestDefinition | None, folder: Path, ended: Ended) -> Tes
 
 
 def stand_of(definition: TestDefinition) -> str | None:
-    """The stand as it is stated; where it is not, its tank, by which tests of one stand are known."""
+    """The stand as it is stated; where it is not, its tank, by which tests of one stand are known.
+
+    Replicas and simulated tests are a stand of their own: nothing is pooled of what was measured and what was not.
+    """
+    source = definition.test.source
+    apart = "" if source == "measured" else f" ({source})"
     if definition.test.stand:
-        return definition.test.stand
+        return f"{definition.test.stand}{apart}"
     volume = definition.tank.volume if definition.tank else None
-    return None if volume is None else f"not stated: the tank of {1e3 * volume.value:.4g} L"
+    return None if volume is None else f"not stated: the tank of {1e3 * volume.value:.4g} L{apart}"
 
 
 def _injector(definition: TestDefinition) -> float | None:

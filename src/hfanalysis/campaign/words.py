@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from hfanalysis.campaign.pooling import DISAGREE
 from hfanalysis.products.campaign import CommonLaw, Diagnosed, NoLaw, Together
+from hfanalysis.report.names import called
 from hfanalysis.wording.numbers import listed, shown
 
 HIDDEN = 0.01
@@ -15,7 +17,8 @@ def agreement(together: Together | CommonLaw) -> str:
     if found is None:
         return (together.mean.reason or "") if isinstance(together, Together) else ""
     chance, verdict = found.probability, found.verdict.partition(":")[0]
-    return f"{verdict} ({'< 0.001' if chance < 1e-3 else f'{chance:.2g}'} by chance)"
+    said = "p < 0.001" if chance < 1e-3 else f"p = {chance:.2g}"
+    return f"{verdict} ({said}; below {DISAGREE:g} they do not)"
 
 
 def diagnosed(diagnosis: Diagnosed | None) -> str:
@@ -23,8 +26,10 @@ def diagnosed(diagnosis: Diagnosed | None) -> str:
     if diagnosis is None:
         return "not diagnosed"
     if diagnosis.effects:
-        return listed([f"{row.name} ({row.probability:.2f})" for row in diagnosis.effects])
-    return "nothing that can be claimed" if diagnosis.verdict == "none" else diagnosis.verdict
+        return listed([f"{called(row.name)} ({row.probability:.2f})" for row in diagnosis.effects])
+    if diagnosis.verdict == "none":
+        return "nothing that can be claimed"
+    return "something without a name" if diagnosis.verdict == "unknown" else "something whose name is open"
 
 
 def alone(test: str) -> str:

@@ -28,6 +28,7 @@ def apply(request: Request, stand: bool) -> None:
     context = stage("diagnose", proved_as_before(request))
     path = adopt(context, context.read(Diagnosis), stand)
     tell(f"{path}: written; every stage of {_whose(context, stand)} now has it in its model")
+    tell(f"next: hfa run {context.id} shows m, the misfit and the flight with it; a test of another load would try it")
 
 
 def proved_as_before(request: Request) -> Request:
@@ -61,7 +62,7 @@ def adopt(context: Context, diagnosis: Diagnosis, stand: bool = False) -> Path:
     if diagnosis.verdict != "named" or not diagnosis.effects:
         raise AbsentError(
             f"test {context.id}: there is nothing to adopt: the diagnosis names no effect (verdict "
-            f"{diagnosis.verdict!r}; what holds 90 %: {', '.join(diagnosis.set90)})"
+            f"{diagnosis.verdict!r}; what holds 90 %: {', '.join(map(diagnosis.plain, diagnosis.set90))})"
         )
     path = _path(context, stand)
     if path.is_file() and not path.read_text(encoding="utf-8", errors="replace").startswith(f"# {MARK}"):

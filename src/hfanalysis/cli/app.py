@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from hfanalysis.cli.exit_status import plain_exit
-from hfanalysis.cli.request import Request
+from hfanalysis.cli.request import Request, named
 from hfanalysis.cli.trust import ask
 from hfanalysis.errors import InputError
 from hfanalysis.stages import RUN, STAGES
@@ -26,14 +27,15 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-Test = Annotated[str, typer.Argument(metavar="TEST", help="Name of the test: its folder below raw_tests/.")]
+Test = Annotated[str, typer.Argument(metavar="TEST", help="Name of the test, or its folder: raw_tests/TEST.")]
 Root = Annotated[Path, typer.Option(help="Folder that holds raw_tests/ and processed/.", show_default="here")]
 Out = Annotated[Path | None, typer.Option(help="Write products to OUT/TEST/ instead of ROOT/processed/TEST/.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the stage's JSON product on standard output, nothing else.")]
 Force = Annotated[bool, typer.Option("--force", help="Redo the stage and all before it, even if nothing changed.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No table and no progress; warnings still show.")]
 Set = Annotated[
-    list[str] | None, typer.Option("--set", metavar="STAGE.NAME=VALUE", help="Set a parameter of a stage for this run.")
+    list[str] | None,
+    typer.Option("--set", metavar="STAGE.NAME=VALUE", help="Set a parameter of a stage; help lists them."),
 ]
 
 Firing = Annotated[
@@ -54,7 +56,7 @@ def _version(wanted: bool) -> None:
 @app.callback()
 def _hfa(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and stop.")
+        bool, typer.Option("--version", "-V", callback=_version, is_eager=True, help="Print the version and stop.")
     ] = False,
 ) -> None:
     """Hot-fire test data analysis for nitrous oxide / paraffin hybrid engines."""
@@ -72,6 +74,7 @@ def _common(
     trust_effects: Trust = False,
 ) -> Request:
     """What every stage is asked with."""
+    test, root = named(test, root)
     ask(root, trust_effects)
     request = Request(test, root, out, as_json, force, quiet, tuple(settings or ()))
     return request if firing is None else request.setting(f"segment.firing={firing}")
@@ -140,10 +143,19 @@ Pdf = Annotated[bool, typer.Option("--pdf", help="Also print the page to PDF; ne
 Plots = Annotated[bool, typer.Option("--plots", help="Also write every chart as PNG and CSV to TEST/plots/.")]
 
 
-def _report(request: Request, pdf: Pdf = False, plots: Plots = False) -> None:
+Summary = Annotated[bool, typer.Option("--summary", help="Also write the first screen as one page: summary.pdf (A4).")]
+Letter = Annotated[bool, typer.Option("--letter", help="With --summary: on Letter paper.")]
+
+
+def _report(
+    request: Request, pdf: Pdf = False, plots: Plots = False, summary: Summary = False, letter: Letter = False
+) -> None:
     from hfanalysis.cli import exports
 
-    exports.report(request, pdf, plots)
+    if letter and not summary:
+        raise InputError("found --letter alone; expected it with --summary")
+    size = ("letter" if letter else "a4") if summary else None
+    exports.report(request, pdf, plots, size)
 
 
 Cure = Annotated[bool, typer.Option("--apply", help="Write the cures of what is found into test.toml, after asking.")]
@@ -169,7 +181,10 @@ Quick = Annotated[
 ]
 
 
-def _run(request: Request, quick: Quick = False) -> None:
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Print what every stage found, and every warning.")]
+
+
+def _run(request: Request, quick: Quick = False, verbose: Verbose = False) -> None:
     if quick:
         from hfanalysis.cli import quick as at_stand
 
@@ -177,7 +192,7 @@ def _run(request: Request, quick: Quick = False) -> None:
     else:
         from hfanalysis.cli import perform
 
-        perform.stage(RUN, request)
+        perform.stage(RUN, replace(request, verbose=verbose))
 
 
 _WITH_OPTIONS: dict[str, Callable[..., None]] = {

@@ -10,6 +10,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.products.disk import atomic
 
 PACKAGE = Path(__file__).parents[1]
+"""Where the package is installed."""
 REPOSITORY = PACKAGE.parents[1]
 """Of a checkout; of an installed package it is some folder without these files."""
 

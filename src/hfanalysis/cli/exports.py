@@ -16,7 +16,7 @@ from hfanalysis.stages.material import load
 from hfanalysis.stages.open_test import open_test
 
 
-def report(request: Request, as_pdf: bool, plots: bool) -> None:
+def report(request: Request, as_pdf: bool, plots: bool, summary: str | None = None) -> None:
     """The page of a test, and what else is asked for."""
     if as_pdf:
         pdf.find_browser()  # said before anything is computed
@@ -25,6 +25,18 @@ def report(request: Request, as_pdf: bool, plots: bool) -> None:
         _told(pdf.print_page(context.product("report.html"), context.product("report.pdf")), request)
     if plots:
         _plots(context, request)
+    if summary is not None:
+        _summary(context, request, summary)
+
+
+def _summary(context: Context, request: Request, size: str) -> None:
+    """The first screen as a PDF of one page."""
+    from hfanalysis.report.one_page import write_summary
+
+    path = context.product("summary.pdf")
+    with atomic(path) as scratch:
+        write_summary(load(context), scratch, size)
+    _told(path, request)
 
 
 def _plots(context: Context, request: Request) -> None:

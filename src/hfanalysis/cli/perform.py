@@ -43,14 +43,26 @@ def stage(name: str, request: Request) -> Context:
             tell(f"warning: {text}")
         raise
     _show(name, context, request)
-    for text in _warnings(context, name):
-        tell(f"warning: {text}")
+    _warn(_warnings(context, name), whole=name != "run" or request.verbose)
     if edited(context):
         path = context.definition.path
         tell(f"warning: {path} was edited while this ran: these numbers are of the file as it was; run again")
     if name == "run":
         _check_spine(context)
     return context
+
+
+MOST_WARNINGS = 3
+"""Warnings that fit on one screen with what a run found. Source: a screen of 40 lines holds it with them."""
+
+
+def _warn(texts: list[str], whole: bool) -> None:
+    """Warn of all, or of the first and how many more there are."""
+    shown = texts if whole else texts[:MOST_WARNINGS]
+    for text in shown:
+        tell(f"warning: {text}")
+    if more := len(texts) - len(shown):
+        tell(f"{more} more {'warning' if more == 1 else 'warnings'} on the page, or with --verbose")
 
 
 def _log_warnings(request: Request) -> list[str]:
@@ -77,6 +89,9 @@ def _settings(texts: tuple[str, ...]) -> dict[str, Any]:
 def _setting(text: str) -> tuple[str, Any]:
     name, equals, value = text.partition("=")
     known = {f"{stage}.{key}": default for stage in ORDER for key, default in load_stage(stage).parameters.items()}
+    if text == "help":
+        listed = "".join(f"\n  {key}={json.dumps(default)}" for key, default in known.items())
+        raise InputError(f"--set help: expected one of these, with their defaults:{listed}")
     if not equals or name not in known:
         raise InputError(
             f"--set {text}: expected STAGE.NAME=VALUE{near(name, known)}; there are: {', '.join(known) or 'none'}"
@@ -120,7 +135,10 @@ def _show(name: str, context: Context, request: Request) -> None:
     elif not request.quiet:
         from hfanalysis.cli import tables
 
-        tables.show(name, context)
+        if name == "run" and not request.verbose:
+            tables.show_run(context)
+        else:
+            tables.show(name, context)
 
 
 def _json(name: str, context: Context) -> str:

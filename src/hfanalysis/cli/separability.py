@@ -18,6 +18,7 @@ from hfanalysis.effects import FOLDER, library
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.disk import to_json
 from hfanalysis.products.effects import AddedSensor, EffectLibrary, Pair, Rival, Separability, TwinPair, Visibility
+from hfanalysis.report.names import called
 from hfanalysis.stages.diagnose import subject_of
 from hfanalysis.wording import numbers as wording
 
@@ -98,14 +99,14 @@ def _declarations(outlook: Outlook) -> list[tuple[str, str]]:
 def show(product: Separability) -> None:
     """Print it for people."""
     console = tables.paper()
-    title = f"{product.id}: what {', '.join(product.channels)} can show"
-    table = tables.new_table("effect", "typical", "d'", "seen from", "closest rivals", title=title)
+    title = f"{product.id}: what {', '.join(map(called, product.channels))} can show"
+    table = tables.new_table("effect", "typical size", "stands out by", "seen from", "closest rivals", title=title)
     for name, row in product.effects.items():
-        rivals = ", ".join(f"{r.name} {r.apart:.1f}" for r in row.rivals[:2])
-        table.add_row(name, _size(row.typical, row), f"{row.detectability:.1f}", _seen(row), rivals)
+        rivals = ", ".join(f"{called(r.name)} {r.apart:.1f}" for r in row.rivals[:2])
+        table.add_row(called(name), _size(row.typical, row), f"{row.detectability:.1f}", _seen(row), rivals)
     console.print(table)
     for sentence in sentences(product):
-        console.print(Text(sentence), soft_wrap=True)
+        console.print(Text(sentence), soft_wrap=not console.is_terminal)
 
 
 def _size(strength: float, row: Visibility) -> str:
@@ -123,19 +124,25 @@ def sentences(product: Separability) -> list[str]:
     out = []
     for pair in product.twins:
         one, other = pair.effects
-        out += [f"twins: {one} and {other}: {pair.apart:.1f} of {NOMINAL:g}", f"  {_advice(one, other, product)}"]
+        out += [
+            f"twins: {called(one)} and {called(other)}: {pair.apart:.1f} of {NOMINAL:g}",
+            f"  {_advice(one, other, product)}",
+        ]
     if not out:
         out = ["twins: none"]
-    declared = [f"{' and '.join(pair.effects)} {pair.apart:.1f}" for pair in product.declared_twins_apart]
+    declared = [f"{' and '.join(map(called, pair.effects))} {pair.apart:.1f}" for pair in product.declared_twins_apart]
     if declared:
         out.append(f"called twins in the library, but told apart here: {', '.join(declared)}")
     for name, sensor in product.sensors.items():
         if sensor.shows:
-            out.append(f"{name} ({sensor.words}) would show {', '.join(sensor.shows)} of typical strength as well")
+            out.append(
+                f"{name} ({sensor.words}) would show {', '.join(map(called, sensor.shows))} of typical strength as well"
+            )
     return [
         *out,
-        f"d': standard deviations by which the typical strength stands out; seen from: d' = {SEEN:g}; closest rivals: "
-        f"what they leave of d' = {NOMINAL:g}, twins less than {TWINS:g}.",
+        "Stands out by: standard deviations of the noise, at the typical size.",
+        f"Seen from: the size that stands out by {SEEN:g}.",
+        f"Closest rivals: what they leave of an effect that stands out by {NOMINAL:g}; twins less than {TWINS:g}.",
         "Only noise, times and constants of the test are used.",
     ]
 

@@ -38,11 +38,12 @@ _WIDE = 116
 _ROOMY = 100
 """Columns from which on the intervals fit beside the deviations."""
 
-_MAY_WRAP = ("", "flags", "column", "unit", "closest rivals")
+_MAY_WRAP = ("", "effect", "what it is", "flags", "column", "closest rivals")
 """Columns that give way where the terminal is narrow; numbers and symbols never do."""
 
 _NUMBERS = (
-    "value", "± std", "samples", "rate", "least", "largest", "rms", "bias", "noise", "d'", "typical", "seen from",
+    "value", "± std", "samples", "rate", "least", "largest", "rms", "bias", "noise", "stands out by", "typical size",
+    "seen from",
 )  # fmt: skip
 
 _WORDS = {"of_ratio": "O/F"}
@@ -67,6 +68,11 @@ def paper() -> Console:
     return console
 
 
+def _soft(console: Console) -> bool:
+    """Whether lines are left whole, for what reads a pipe; a terminal wraps them at words."""
+    return not console.is_terminal
+
+
 def show(name: str, context: Context) -> None:
     """Print what a stage ("run": all of them) found, on standard output."""
     console = paper()
@@ -75,7 +81,38 @@ def show(name: str, context: Context) -> None:
         if stage not in context.absent:
             _SHOWN.get(stage, partial(_written, stage))(context, console)
     if adopted := _adopted(name, context):
-        console.print(Text(adopted), soft_wrap=True)
+        console.print(Text(adopted), soft_wrap=_soft(console))
+
+
+def show_run(context: Context) -> None:
+    """Print on one screen what all stages found: four sentences, six numbers, and where the rest is."""
+    from hfanalysis.report.glance import four, key_numbers, motor_class
+    from hfanalysis.stages.material import load
+
+    console, material = paper(), load(context)
+    console.print(_headline(context))
+    for told in four(material):
+        console.print(_told(told.head, told.words))
+    numbers = key_numbers(material)
+    table = new_table("", "value", "± std", "unit", "", title="")
+    for name, quantity in numbers.items():
+        text = shown(quantity, "si", name)
+        letter = motor_class(material) if name == "total_impulse" else ""
+        unit = f"{text.unit}, class {letter}" if letter else text.unit
+        table.add_row(in_words(name), text.value, text.std, unit, _doubt(quantity, material.reasons))
+    if numbers:
+        console.print(table)
+    console.print(Text(f"page: {context.product('report.html')}"), soft_wrap=_soft(console))
+    console.print(Text(f"everything that was found: hfa run {context.id} --verbose"), soft_wrap=_soft(console))
+
+
+def _told(head: str, words: str) -> Table:
+    """A sentence beside the question that it answers, wrapped at words."""
+    table = Table.grid(padding=(0, 2))
+    table.add_column(width=11, style="dim", no_wrap=True)
+    table.add_column(overflow="fold")
+    table.add_row(head, Text(words))
+    return table
 
 
 def _adopted(name: str, context: Context) -> str:
@@ -116,16 +153,40 @@ def new_table(*columns: str, title: str) -> Table:
     return table
 
 
-def _quantities(found: Mapping[str, Quantity], title: str, width: int, known: Sequence[Doubt]) -> Table:
-    wide, roomy = width >= _WIDE, width >= _ROOMY
-    columns = ("symbol", *[""] * wide, "value", "± std", *["95 % interval"] * roomy, "unit", "verdict")
-    table = new_table(*columns, title=title)
+def _quantities(found: Mapping[str, Quantity], title: str, console: Console, known: Sequence[Doubt]) -> Table:
+    """The quantities in as many columns as the terminal has room for: columns go before digits do."""
+    kept = ["value", "± std", *["95 % interval"] * (console.width >= _ROOMY), "unit", "verdict"]
+    wide = console.width >= _WIDE
+    table = _of_columns(found, title, wide, kept, known)
+    for name in ("", "95 % interval", "verdict", "± std"):
+        if _too_wide(table, console) and (name in kept or (not name and wide)):
+            kept = [column for column in kept if column != name]
+            table = _of_columns(found, title, False, kept, known)
+    if _too_wide(table, console):
+        table.columns[0].no_wrap = False
+    return table
+
+
+def _too_wide(table: Table, console: Console) -> bool:
+    """Whether a table has to break a word or a number to fit."""
+    return console.measure(table, options=console.options.update(width=10 * _WIDE)).maximum > console.width
+
+
+def _of_columns(
+    found: Mapping[str, Quantity], title: str, wide: bool, columns: Sequence[str], known: Sequence[Doubt]
+) -> Table:
+    table = new_table("symbol", *[""] * wide, *columns, title=title)
     for name, quantity in found.items():
         text = shown(quantity)
         told = f"{text.verdict} {_marks(marked(quantity, known)[0])}".strip()
-        verdict = Text(told, style=_STYLES.get(text.verdict, "yellow"))
-        numbers = (text.value, text.std, *[text.interval] * roomy, text.unit)
-        table.add_row(name, *[in_words(name)] * wide, *numbers, verdict)
+        cells: dict[str, str | Text] = {
+            "value": text.value,
+            "± std": text.std,
+            "95 % interval": text.interval,
+            "unit": text.unit,
+            "verdict": Text(told, style=_STYLES.get(text.verdict, "yellow")),
+        }
+        table.add_row(name, *[in_words(name)] * wide, *(cells[column] for column in columns))
     return table
 
 
@@ -145,9 +206,11 @@ def _notes(found: Mapping[str, Quantity], known: Sequence[Doubt]) -> Iterator[st
 
 
 def _print(console: Console, found: Mapping[str, Quantity], title: str, known: Sequence[Doubt] = ()) -> None:
-    console.print(_quantities(found, title, console.width, known))
-    for note in _notes(found, known):
-        console.print(Text(f"  {note}"), soft_wrap=True)
+    console.print(_quantities(found, title, console, known))
+    from hfanalysis.report.names import plain
+
+    for note in map(plain, _notes(found, known)):
+        console.print(Text(f"  {note}"), soft_wrap=_soft(console))
 
 
 def _reasons(context: Context) -> list[Doubt]:
@@ -225,16 +288,18 @@ def _calibrate(context: Context, console: Console) -> None:
 
 def _regression(regression: RegressionBasis, console: Console) -> None:
     """What a and n were fitted with, and how well."""
+    from hfanalysis.report.names import plain
+
     for test in regression.tests:
-        console.print(Text(f"  a, n: {'; '.join(test.fitted_with)}"), soft_wrap=True)
+        console.print(Text(plain(f"  a, n: {'; '.join(test.fitted_with)}")), soft_wrap=_soft(console))
         burn = test.burn_time_measured
         seen = "" if burn is None else f" (measured {burn:.2f} s)"
         console.print(
             Text(
-                f"  a, n leave {test.p_chamber_rms / 1e5:.3f} bar rms in p_chamber over the window, "
+                f"  a, n leave {test.p_chamber_rms / 1e5:.3f} bar rms in chamber pressure over the window, "
                 f"{test.independent_samples:.0f} independent values; burn time {test.burn_time_model:.2f} s{seen}"
             ),
-            soft_wrap=True,
+            soft_wrap=_soft(console),
         )
 
 
@@ -244,11 +309,11 @@ def show_quick(product: QuickLook) -> None:
     head = [product.test, wording.KINDS.get(product.kind or "", product.kind or "no firing"), "quick look"]
     source = wording.SOURCES.get(product.source, product.source)
     console.print(Text.assemble(("  ".join(head), "bold"), "  ", (source, "bold yellow")))
-    console.print(Text(f"test.toml: {product.facts}"), soft_wrap=True)
+    console.print(Text(f"test.toml: {product.facts}"), soft_wrap=_soft(console))
     verdicts = ", ".join(f"{name} {verdict}" for name, verdict in product.health.items())
-    console.print(Text(f"sensors: {verdicts}"), soft_wrap=True)
+    console.print(Text(f"sensors: {verdicts}"), soft_wrap=_soft(console))
     for finding in product.findings:
-        console.print(Text(f"  {finding}", style="yellow"), soft_wrap=True)
+        console.print(Text(f"  {finding}", style="yellow"), soft_wrap=_soft(console))
     if product.phases:
         _print(console, product.phases, "phases (seconds after the valve opens)")
     _print(console, {"C_i": product.C_i} | product.performance, "performance, as measured")
@@ -279,13 +344,16 @@ def _performance(product: Validation, known: Sequence[Doubt], console: Console) 
             table.add_row(in_words(name), found.value, found.std, model.value, model.std, unit, _doubt(measured, known))
     console.print(table)
     if performance.motor_class:
-        console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=True)
+        console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=_soft(console))
     if product.reconstruction is not None:
-        console.print(Text(f"  reconstruction: {_reconstructed(product.reconstruction)}"), soft_wrap=True)
+        console.print(Text(f"  reconstruction: {_reconstructed(product.reconstruction)}"), soft_wrap=_soft(console))
     if product.stability is not None:
-        console.print(Text(f"  stability: {product.stability.verdict}: {product.stability.why}"), soft_wrap=True)
+        console.print(
+            Text(f"  stability: {product.stability.verdict}: {product.stability.why}"),
+            soft_wrap=_soft(console),
+        )
     for name, reason in product.absent.items():
-        console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=True)
+        console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=_soft(console))
 
 
 def _reconstructed(found: Reconstruction) -> str:
@@ -322,12 +390,12 @@ def _flight(context: Context, console: Console) -> None:
     product = context.read(Flight)
     title = f"flight, thrust {product.thrust_basis}, {product.thrust}"
     _values(console, ordered(product.flown), title, _reasons(context))
-    console.print(Text(f"  the intervals hold {product.band_covers}"), soft_wrap=True)
+    console.print(Text(f"  the intervals hold {product.band_covers}"), soft_wrap=_soft(console))
     _values(console, ordered(product.stability.quantities), "stability")
     for name, check in product.checks.items():
         style = {"passed": "green", "failed": "red"}.get(check.result, "yellow")
         line = Text.assemble(f"  {in_words(name)}: ", (check.result, style), f": {check.why}")
-        console.print(line, soft_wrap=True)
+        console.print(line, soft_wrap=_soft(console))
 
 
 def _diagnose(context: Context, console: Console) -> None:
@@ -335,13 +403,15 @@ def _diagnose(context: Context, console: Console) -> None:
 
     product = context.read(Diagnosis)
     for i, sentence in enumerate(product.sentences):
-        console.print(Text(sentence, style="bold" if i == 0 else ""), soft_wrap=True)
+        console.print(Text(sentence, style="bold" if i == 0 else ""), soft_wrap=_soft(console))
     likely = sorted(((p, n) for n, p in product.posterior.items() if p >= SHOWN), reverse=True)
-    console.print(Text("  probabilities: " + ", ".join(f"{name} {p:.2f}" for p, name in likely)), soft_wrap=True)
-    if partners := {name: p for name, p in product.partners.items() if p >= SHOWN}:
-        console.print(Text("  beside it: " + ", ".join(f"{n} {p:.2f}" for n, p in partners.items())), soft_wrap=True)
+    odds = ", ".join(f"{product.plain(name)} {p:.2f}" for p, name in likely)
+    console.print(Text(f"  probabilities: {odds}"), soft_wrap=_soft(console))
+    if partners := {product.plain(name): p for name, p in product.partners.items() if p >= SHOWN}:
+        beside = ", ".join(f"{n} {p:.2f}" for n, p in partners.items())
+        console.print(Text(f"  beside it: {beside}"), soft_wrap=_soft(console))
     for warning in (*product.notes, *product.warnings):
-        console.print(Text(f"  {warning}", style="yellow"), soft_wrap=True)
+        console.print(Text(f"  {warning}", style="yellow"), soft_wrap=_soft(console))
 
 
 SHOWN = 0.005
@@ -351,7 +421,7 @@ SHOWN = 0.005
 def _written(stage: str, context: Context, console: Console) -> None:
     """What a stage wrote, where nothing else is said of it here."""
     for name in load_stage(stage).products:
-        console.print(Text(f"{stage}: {context.product(name)}"), soft_wrap=True)
+        console.print(Text(f"{stage}: {context.product(name)}"), soft_wrap=_soft(console))
 
 
 def show_engine(product: Simulated | Designed) -> None:
@@ -369,11 +439,17 @@ def show_engine(product: Simulated | Designed) -> None:
 def show_effects(product: EffectLibrary) -> None:
     """Print the library of effects: where each acts, when, and how strong it typically is."""
     console = paper()
-    table = new_table("effect", "equation", "phases", "typical strength", "", title="effects")
+    from hfanalysis.report.names import called
+
+    table = new_table("effect", "name in files", "acts in", "phases", "typical size", "what it is", title="effects")
     for name, found in product.effects.items():
-        table.add_row(name, found.equation, _phases(found.phases), _strength(found), Text(found.meaning))
+        words = (called(name), name, found.equation.replace("_", " "), _phases(found.phases), _strength(found))
+        table.add_row(*words, Text(found.meaning))
     console.print(table)
-    console.print(Text("docs/effects.md has their equations, priors and sources; --json all of it"), soft_wrap=True)
+    console.print(
+        Text("docs/effects.md has their equations, priors and sources; --json all of it"),
+        soft_wrap=_soft(console),
+    )
 
 
 def _phases(phases: tuple[str, ...]) -> str:

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
+from itertools import count
 
 from hfanalysis.progress import Progress, silent, watching_compiler
 
@@ -18,9 +19,9 @@ def watch(name: str, quiet: bool) -> Iterator[Progress]:
         return
     from hfanalysis.cli.progress import spinner
 
-    with spinner(name) as progress, watching_compiler(partial(_compiles, progress)):
+    with spinner(name) as progress, watching_compiler(partial(_compiles, progress, count(1))):
         yield progress
 
 
-def _compiles(progress: Progress, count: int) -> None:
-    progress(f"compiling the numerical code, once ({count} functions)", None)
+def _compiles(progress: Progress, number: Iterator[int]) -> None:
+    progress(f"compiling the numerical code, once ({next(number)} functions)", None)

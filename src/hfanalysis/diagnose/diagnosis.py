@@ -82,8 +82,9 @@ def diagnose(
     verdict, small = without_the_small(verdict, places(verdict, found), found)
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
-    product = _product(found, verdict, proof, catalogue).but(called=plain_names(effects))
+    product = _product(found, verdict, proof, catalogue)
     product = product.but(
+        called=plain_names(effects),
         gap=_with_calibrated(product.gap, found, hypothesis, subject),
         constants=None if product.constants is None else product.constants.but(calibrated=_calibrated(subject)),
         too_small=small,

@@ -37,7 +37,7 @@ def doubted(product: Product, health: Health) -> Product:
     if isinstance(product, Segments):
         return _events(product, health)
     if product.file == ONLY_WARNED:
-        return product.but(warnings=tuple(dict.fromkeys((*product.warnings, *health.warnings))))
+        return product.but(warnings=tuple(dict.fromkeys((*product.warned, *health.warnings))))
     together = isinstance(product, Calibration) and product.oxidizer_mass_fitted is not None
     return _part(product, product.file + TOGETHER * together, health)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -59,8 +59,8 @@ class Plots:
         self._phases(axes)
         axes.set_xlabel("time after the valve opening [s]")
         axes.set_ylabel(f"{what} [{scale(str(log[names[0]].attrs['units'])).unit}]")
-        axes.legend(loc="upper right")
-        axes.set_title(self._firing.name + self._generated())
+        axes.legend(loc="center right")
+        axes.set_title(self._firing.name + self._generated(), loc="left", pad=42.0)
         return figure
 
     def _line(self, axes: Axes, channel: xr.DataArray, flags: xr.DataArray, origin: float) -> None:
@@ -71,11 +71,15 @@ class Plots:
 
     def _phases(self, axes: Axes) -> None:
         """A line at each event, its name above; the view is the firing's, with a second on either side."""
-        events = {name: event.value for name, event in self._firing.segments.events.items() if event.value is not None}
-        for name, at in events.items():
+        names: dict[float, list[str]] = {}
+        for name, event in self._firing.segments.events.items():
+            if event.value is not None:
+                names.setdefault(round(event.value, 1), []).append(name)
+        for at, together in names.items():
             axes.axvline(at, color="0.6", linewidth=0.8, zorder=0)
-            axes.annotate(name, (at, 1.0), xycoords=("data", "axes fraction"), rotation=90, va="top", fontsize=7)
-        axes.set_xlim(-1.0, max(events.values(), default=10.0) + 1.0)
+            place: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "rotation": 35, "fontsize": 8}
+            axes.annotate(", ".join(together), (at, 1.01), **place)
+        axes.set_xlim(-1.0, max(names, default=10.0) + 1.0)
 
     def _generated(self) -> str:
         source = self._firing.definition.test.source

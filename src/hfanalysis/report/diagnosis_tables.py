@@ -58,7 +58,8 @@ def _likely(product: Diagnosis) -> list[str]:
     odds = {name: _odds(name, product) for name in {**product.posterior, **product.partners}}
     named = [row.name for row in product.effects]
     kept = [n for n in odds if n not in _ALWAYS and (odds[n] >= SHOWN or n in product.set90) and n not in named]
-    return [*named, *sorted(kept, key=lambda name: (-odds[name], name)), *_ALWAYS]
+    last = sorted(_ALWAYS, key=lambda name: -odds.get(name, 0.0))
+    return [*named, *sorted(kept, key=lambda name: (-odds[name], name)), *last]
 
 
 def _odds(name: str, product: Diagnosis) -> float:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from hfanalysis.health.reasons import Doubt
+from hfanalysis.health.reasons import Doubt, reasons
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.flight import Flight
-from hfanalysis.products.health import KINDS, UNUSABLE
+from hfanalysis.products.health import KINDS, UNUSABLE, Health
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import DOUBTED, Quantity
@@ -111,16 +111,27 @@ def measurement(material: Material) -> str:
 
 
 def _faults(doubts: list[Doubt]) -> str:
-    """Whose channels, and what is wrong with them."""
+    """Whose channels, and what is wrong with them: what is lost throughout first, moments of a log last."""
     by_channel: dict[str, list[str]] = {}
-    for doubt in doubts:
-        kinds = by_channel.setdefault(listed(list(map(called, doubt.channels))), [])
+    for doubt in sorted(doubts, key=_weight):
+        kinds = by_channel.setdefault(_whose(doubt), [])
         if (kind := KINDS.get(doubt.finding.kind, doubt.finding.kind)) not in kinds:
             kinds.append(kind)
-    told = [f"{whose}: {listed(kinds[:_MOST_NAMED])}" for whose, kinds in by_channel.items()]
+    told = [f"{whose} ({listed(kinds[:_MOST_NAMED])})" for whose, kinds in by_channel.items()]
     more = len(told) - _MOST_NAMED
     rest = [f"{_count(more)} more"] if more > 0 else []
     return capitalised(listed([*told[:_MOST_NAMED], *rest]))
+
+
+def _weight(doubt: Doubt) -> tuple[bool, bool]:
+    """What comes first: what concerns the whole test, and of that what is unusable."""
+    return not doubt.finding.whole, doubt.finding.verdict != UNUSABLE
+
+
+def _whose(doubt: Doubt) -> str:
+    """A few channels by name, of many how many."""
+    names = list(map(called, doubt.channels))
+    return listed(names) if len(names) <= _MOST_NAMED else f"{_count(len(names))} channels"
 
 
 def _count(number: int) -> str:
@@ -133,7 +144,10 @@ def model(material: Material) -> str:
     if included(material):
         return included(material)
     if product is None:
-        return f"What the model lacks is not known: {material.why_not('diagnosis')}."
+        test = material.definition.test.id
+        if "calibration" in material.absent:
+            return "What the model lacks cannot be told by the model: this test has no calibration to start from."
+        return f"What the model lacks is not known yet: hfa diagnose {test} looks for it."
     if product.effects and product.constants is not None:
         return _named(product)
     if product.constants is None:
@@ -178,6 +192,9 @@ def following(material: Material) -> str:
     test = material.definition.test.id
     if not material.fired:
         return "Look at the log: if the valve opened, state when, in test.toml."
+    if lost := _lost(material):
+        without = ", without which this one has no calibration" if "calibration" in material.absent else ""
+        return f"Repair or replace the sensor of {lost} before the next test{without}."
     if cure:
         return f"Write the cure of {cure} into test.toml (hfa health {test} --apply), if the finding is right."
     if included(material):
@@ -194,17 +211,53 @@ def following(material: Material) -> str:
     return "Nothing has to be measured again for the model; a test of another load would try it harder."
 
 
+def _lost(material: Material) -> str:
+    """The channels that are unusable throughout and that no line of test.toml cures."""
+    doubts = [d for d in material.reasons if d.finding.whole and d.finding.verdict == UNUSABLE and not d.trust]
+    names = [_whose(doubt) for doubt in doubts if not doubt.finding.cure]
+    return listed(names[:_MOST_NAMED]) if names else ""
+
+
 def _cure(material: Material) -> str:
-    """The channels of the first finding that a line of test.toml cures."""
-    doubt = next((doubt for doubt in material.reasons if doubt.finding.cure and not doubt.trust), None)
-    return listed(list(map(called, doubt.channels))) if doubt is not None else ""
+    """The channels of the weightiest finding that a line of test.toml cures."""
+    cured = [doubt for doubt in material.reasons if doubt.finding.cure and not doubt.trust]
+    return _whose(min(cured, key=_weight)) if cured else ""
 
 
-def against(now: Mapping[str, Quantity], before: Mapping[str, Quantity]) -> dict[str, tuple[Quantity, float | None]]:
-    """What a number was last time, and by which share [-] it changed; only of numbers that both tests have."""
-    out = {}
+class Against(NamedTuple):
+    """A number [SI] now and last time; ``change`` is the share [-] by which it changed, None from zero."""
+
+    name: str
+    now: Quantity
+    was: Quantity
+    change: float | None
+
+
+def against_last(material: Material) -> list[Against]:
+    """What changed since the stand's test before: the injector's coefficient, and the numbers that come first."""
+    if material.last is None:
+        return []
+    then = Material(material.definition, material.log, material.last.products)
+    sides = [key_numbers(one) | _coefficient(one) for one in (material, then)]
+    return list(_compared(*sides))
+
+
+def _coefficient(material: Material) -> dict[str, Quantity]:
+    calibration = material.get(Calibration)
+    return {"C_i": calibration.C_i} if calibration is not None else {}
+
+
+def _compared(now: Mapping[str, Quantity], before: Mapping[str, Quantity]) -> Iterator[Against]:
     for name, quantity in now.items():
         was = before.get(name)
         if was is not None and was.value is not None and quantity.value is not None:
-            out[name] = (was, quantity.value / was.value - 1.0 if was.value else None)
-    return out
+            yield Against(name, quantity, was, quantity.value / was.value - 1.0 if was.value else None)
+
+
+def sensors_then(material: Material) -> str:
+    """What looked wrong with the sensors last time; empty where there was no last time."""
+    health = material.last.products.get("health") if material.last is not None else None
+    if not isinstance(health, Health):
+        return ""
+    doubts = [doubt for doubt in reasons(health.channels) if not doubt.trust]
+    return _faults(doubts) if doubts else "none looked wrong"

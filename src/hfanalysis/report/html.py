@@ -165,7 +165,7 @@ def verdict(text: str) -> Markup:
     if not text:
         return Markup()
     kind = mark(text)
-    badge = Markup('<span class="verdict {}"><span aria-hidden="true">{}</span> {}</span>')
+    badge = Markup('<span class="verdict {}"><span aria-hidden="true">{}</span> <span class="long">{}</span></span>')
     return badge.format(kind, MARKS[kind], text)
 
 

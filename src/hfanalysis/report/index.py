@@ -13,13 +13,16 @@ from hfanalysis.report.page import SUMMARY, render
 _HEAD = 64_000
 """Characters from the start of a page within which its summary ends [characters]."""
 
-_EMPTY: dict[str, Any] = {"kind": "", "date": "", "source": "measured", "sentence": "", "numbers": [], "spark": {}}
+_EMPTY: dict[str, Any] = {"kind": "", "date": "", "source": "measured", "sentence": "", "numbers": [], "spark": {},
+                          "compared": []}  # fmt: skip
 
 
 def write_index(folder: Path) -> Path:
     """Write ``index.html`` over the pages below ``folder`` (processed/); returns its path."""
     path = folder / "index.html"
-    text = render("index.html.j2", rows=[_row(page) for page in sorted(folder.glob("*/report.html"))])
+    rows = [_row(page) for page in sorted(folder.glob("*/report.html"))]
+    campaign = "campaign.html" if (folder / "campaign.html").is_file() else ""
+    text = render("index.html.j2", rows=rows, campaign=campaign)
     if not (path.exists() and path.read_text(encoding="utf-8") == text):
         with atomic(path) as scratch:
             scratch.write_text(text, encoding="utf-8")
@@ -34,4 +37,7 @@ def _row(page: Path) -> dict[str, Any]:
         found = json.loads(rest.partition("</script>")[0])
     except ValueError:
         found = {}
-    return {**_EMPTY, **found, "id": page.parent.name, "href": f"{quote(page.parent.name)}/report.html"}
+    name = page.parent.name
+    beside = {path.stem.removeprefix("compare_"): path.name for path in sorted(page.parent.glob("compare_*.html"))}
+    compared = [(other, f"{quote(name)}/{quote(file)}") for other, file in beside.items()]
+    return {**_EMPTY, **found, "id": name, "href": f"{quote(name)}/report.html", "compared": compared}

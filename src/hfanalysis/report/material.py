@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -46,6 +47,15 @@ Store = Mapping[str, Table]
 
 
 @dataclass(frozen=True)
+class Last:
+    """The stand's test before by date, with those of its JSON products that are there."""
+
+    id: str
+    date: datetime.date | None
+    products: Mapping[str, Product]
+
+
+@dataclass(frozen=True)
 class Material:
     """All that the page shows.
 
@@ -58,6 +68,7 @@ class Material:
     products: Mapping[str, Product]
     stores: Mapping[str, Store] = field(default_factory=dict)
     absent: Mapping[str, str] = field(default_factory=dict)
+    last: Last | None = None
 
     def get(self, kind: type[P]) -> P | None:
         """A JSON product; None where there is none."""

@@ -78,20 +78,25 @@ def png(chart: Chart, path: Path, about: str) -> None:
     figure = Figure(figsize=(_INCHES, _INCHES * chart.height / 800.0 + 0.6), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots()
-    _frame(axes, chart, about)
-    for one in chart.series:
-        _add(axes, chart, one)
+    draw_on(axes, chart, f"{about}: {chart.title}")
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=9)
     figure.savefig(path, format="png", metadata={"Software": "hfanalysis"})
 
 
-def _frame(axes: Any, chart: Chart, about: str) -> None:
+def draw_on(axes: Any, chart: Chart, title: str) -> None:
+    """Draw the chart on axes of matplotlib, in SI, under a title."""
+    _frame(axes, chart, title)
+    for one in chart.series:
+        _add(axes, chart, one)
+
+
+def _frame(axes: Any, chart: Chart, title: str) -> None:
     scale = chart.scale()
     axes.set_xlim(chart.span)
     axes.set_ylim(draw.value_span(chart, scale))
-    axes.set_title(_plain(f"{about}: {chart.title}"), loc="left", fontsize=11, pad=26)
+    axes.set_title(plain_text(title), loc="left", fontsize=11, pad=26)
     axes.set_xlabel(chart.x_label)
-    axes.set_ylabel(_plain(draw.axis_label(chart, scale)))
+    axes.set_ylabel(plain_text(draw.axis_label(chart, scale)))
     axes.grid(axis="y", color=_LIGHT["grid"])
     axes.spines[["top", "right"]].set_visible(False)
     for phase in chart.phases:
@@ -107,13 +112,13 @@ def _event(axes: Any, time: float, name: str, row: int) -> None:
     axes.annotate(name, **place, textcoords="offset points", ha="center", fontsize=8, annotation_clip=False)
 
 
-def _plain(text: str) -> str:
+def plain_text(text: str) -> str:
     """Text in which a dollar sign is one."""
     return text.replace("$", r"\$")
 
 
 def _add(axes: Any, chart: Chart, one: Series) -> None:
-    scale, color, label = chart.scale(), _LIGHT.get(one.style, _LIGHT["ink"]), _plain(one.label).lstrip("_")
+    scale, color, label = chart.scale(), _LIGHT.get(one.style, _LIGHT["ink"]), plain_text(one.label).lstrip("_")
     if one.kind == "level":
         axes.axhline(scale(float(one.values[0])), color=color, linewidth=1.0, linestyle="--", label=label)
         return

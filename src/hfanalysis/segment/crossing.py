@@ -161,7 +161,7 @@ def _fitted(columns: Array, value: Array) -> tuple[Array, float, Array]:
 
     By the normal equations: powers up to the fourth over -1 to 1 lose three digits of sixteen by them.
     """
-    inverse = np.linalg.inv(columns.T @ columns)
+    inverse: Array = np.linalg.inv(columns.T @ columns).astype(np.float64)
     best = inverse @ (columns.T @ value)
     left = value - columns @ best
     return best, float(left @ left), inverse

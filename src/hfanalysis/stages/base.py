@@ -18,8 +18,8 @@ smallest value of those that have one) and ``adopts``
 (False for a stage that adopted effects do not change: neither their file nor products made with them are its input),
 ``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input), ``runs``
 (stages that this one runs itself, on other tests: what their code and that of the stages before them says is part of
-what it rests on, as everything is that the module imports) and ``others`` (the other tests that this one reads the raw
-files of: they are its input, too).
+what it rests on, as everything is that the module imports) ``others`` (the other tests that this one reads the raw
+files of: they are its input, too) and ``beside`` (finished products of other tests that it reads where they are there).
 """
 
 from __future__ import annotations
@@ -66,6 +66,7 @@ class Stage:
     tries_effects: bool = False
     runs: tuple[str, ...] = ()
     others: Callable[[Context], Sequence[TestDefinition]] = lambda _: ()
+    beside: Callable[[Context], Sequence[Path]] = lambda _: ()
 
     def reads(self, other: Stage) -> tuple[str, ...]:
         """The products of an upstream stage that this one's products follow from."""

@@ -109,6 +109,12 @@ def _of_others(context: Context, stage: Stage, hashes: HashCache) -> dict[str, A
     return {"others": found} if found else {}
 
 
+def _of_products_beside(context: Context, stage: Stage, hashes: HashCache) -> dict[str, Any]:
+    """The hashes of finished products of other tests that are read; nothing of a stage that reads none."""
+    found = {f"{path.parent.name}/{path.name}": hashes(path) for path in stage.beside(context.at(stage))}
+    return {"beside": found} if found else {}
+
+
 def _of_test(other: TestDefinition, hashes: HashCache) -> dict[str, str]:
     return {
         path.relative_to(other.folder).as_posix(): _raw_hash(path, hashes) for path in (other.path, *raw_files(other))
@@ -152,6 +158,7 @@ def provenance(context: Context, stage: Stage, hashes: HashCache) -> dict[str, A
             path.relative_to(context.raw).as_posix(): _raw_hash(path, hashes) for path in raw_files(context.definition)
         },
         **_of_others(context, stage, hashes),
+        **_of_products_beside(context, stage, hashes),
         "effects": {path.name: hashes(path) for path in effect_files(context, stage)},
         "libraries": library_versions(names),
         "parameters": context.at(stage).parameters(),

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from hfanalysis.products.disk import read_json
 from hfanalysis.products.kinds import KINDS
-from hfanalysis.report.material import Material, read_store
+from hfanalysis.report.material import Last, Material, read_store
 from hfanalysis.stages.base import BASE, Context, load_stage
+from hfanalysis.stages.stand import before, of_before
 
 _LOG = "ingest.h5"
 
@@ -21,4 +23,13 @@ def load(context: Context) -> Material:
                 products[path.stem] = context.read(KINDS[path.name])
             elif path.suffix == ".h5" and path.name != _LOG:
                 stores[path.stem] = read_store(path)
-    return Material(context.definition, context.marked(), products, stores, absent)
+    return Material(context.definition, context.marked(), products, stores, absent, last=_last(context))
+
+
+def _last(context: Context) -> Last | None:
+    """The stand's test before, where it has been analysed."""
+    found, paths = before(context), of_before(context)
+    if found is None or not paths:
+        return None
+    read = {path.stem: KINDS[path.name].from_json(read_json(path)) for path in paths}
+    return Last(found.test.id, found.test.date, read)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from hfanalysis.stages import ORDER
 from hfanalysis.stages.base import Context, Stage
+from hfanalysis.stages.stand import of_before
 
 
 def run(context: Context) -> None:
@@ -24,4 +25,5 @@ STAGE = Stage(
     wants=tuple(name for name in ORDER if name not in ("ingest", "health", "report")),
     products=("report.html",),
     run=run,
+    beside=of_before,
 )

@@ -23,12 +23,36 @@ MOST = 4
 
 
 def others(context: Context) -> list[TestDefinition]:
-    """The other tests of the stand, by name; a test.toml that cannot be read is left out."""
-    stand = context.definition.test.stand
+    """The other tests of the stand, by name; a test.toml that cannot be read is left out.
+
+    Measured tests, replicas and simulated tests are never compared with each other, whatever their stand.
+    """
+    stand, source = context.definition.test.stand, context.definition.test.source
     if stand is None:
         return []
     paths = sorted((context.root / "raw_tests").glob("*/test.toml"))
-    return [found for path in paths for found in _readable(path, stand) if found.test.id != context.id]
+    found = [one for path in paths for one in _readable(path, stand)]
+    return [one for one in found if one.test.id != context.id and one.test.source == source]
+
+
+def before(context: Context) -> TestDefinition | None:
+    """The stand's test before by date: "last time"; None where there is none."""
+    day = context.definition.test.date
+    if day is None:
+        return None
+    earlier = [one for one in others(context) if one.test.date is not None and one.test.date < day]
+    return max(earlier, key=lambda one: (one.test.date, one.test.id), default=None)
+
+
+LAST = ("calibration.json", "validation.json", "health.json", "flight.json")
+"""Products of the test before that a page compares with its own."""
+
+
+def of_before(context: Context) -> list[Path]:
+    """Those of them that are there."""
+    found = before(context)
+    folder = context.out.parent / found.test.id if found is not None else None
+    return [] if folder is None else [path for name in LAST if (path := folder / name).is_file()]
 
 
 def _readable(path: Path, stand: str) -> Iterator[TestDefinition]:

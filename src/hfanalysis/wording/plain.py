@@ -11,6 +11,10 @@ MOST_WORDS = 25
 """Words of a sentence beyond which it is cut into parts. Source: what plain English asks for (GOV.UK
 content design: sentences of up to 25 words)."""
 
+LEAST_WORDS = 4
+"""Words of a part from which on it is a sentence of its own: what is shorter is the head of what follows. Source: what
+"m: unphysical: ..." and "channel thrust: ..." are."""
+
 _KEPT = r"(?<![\w.\[\]/\"'`-]){}(?![\w\"'`]|\.\w|\s*=)"
 """A name that stands in a sentence, and is not part of a key, a path or a quotation."""
 
@@ -63,7 +67,7 @@ def _split(sentence: str, cut: str) -> list[str]:
     out = [""]
     for piece in re.split(f"({re.escape(cut)})", sentence):
         inside = out[-1].count("(") + out[-1].count("[") > out[-1].count(")") + out[-1].count("]")
-        if piece == cut and not inside:
+        if piece == cut and not inside and len(out[-1].split()) >= LEAST_WORDS:
             out.append("")
         else:
             out[-1] += piece

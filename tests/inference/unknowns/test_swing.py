@@ -10,7 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.inference.logged import seen
 
-from hfanalysis.inference.unknowns.swing import SLOWEST, Swing
+from hfanalysis.inference.oscillations.fluctuation import fluctuation
+from hfanalysis.inference.oscillations.lines import lines
+from hfanalysis.inference.unknowns.swing import LEAD_IN, SLOWEST, Swing
 from hfanalysis.record.signals import Signal
 
 STEP, END = 1e-3, 5.0
@@ -53,6 +55,15 @@ def test_a_swing_is_seen_with_its_frequency_size_phase_and_time(
     apart = 2.0 * np.pi * (found.frequency - frequency) * middle + found.phase - phase
     assert np.cos(apart) > 0.9
     assert found.log_evidence > 12.0
+
+
+def test_its_frequency_is_that_of_the_line_that_the_chamber_shows() -> None:
+    signals = logged(Swing(0.015, 7.3, 1.0, 0.0, END, 0.0))
+    found = seen(Swing, signals, END)
+    whole = fluctuation(signals["p_chamber"], LEAD_IN, END)
+    assert found is not None
+    assert whole is not None
+    assert found.frequency == lines(whole)[0].frequency
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import h5py
@@ -10,11 +11,17 @@ import numpy as np
 import pytest
 from simulated.mixtures import Burn, World, burn
 from tests.products.cf import check
+from tests.products.filled import filled
+from tests.segment.stand import definition
 
+from hfanalysis.errors import AbsentError
+from hfanalysis.performance.reconstruction.inputs import Shape
 from hfanalysis.performance.reconstruction.reconstruct import Reconstructed, reconstruct
 from hfanalysis.performance.reconstruction.written import write_reconstructed
 from hfanalysis.products import netcdf
-from hfanalysis.quantity import CONDITIONAL
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.quantity import CONDITIONAL, Quantity
+from hfanalysis.record.sections import Chamber, GrainSection
 from hfanalysis.units import Value
 
 LEAN = World(mixture=8.0, erodes=2e-4, noise=0.002)
@@ -81,7 +88,52 @@ def test_a_gauge_in_doubt_gives_none() -> None:
     made = burn(LEAN, 5)
     channel = made.test.log["p_chamber"]
     made.test.log.__setitem__("p_chamber", replace(channel, doubt=1e4))  # type: ignore[attr-defined]
-    assert "in doubt" in str(reconstruct(made.test).product.reason)
+    found = reconstruct(made.test)
+    assert "in doubt" in str(found.product.reason)
+    assert not found.histories
+
+
+def test_fuel_that_leaves_the_nozzle_after_the_window_is_a_bound_and_an_efficiency_assumed() -> None:
+    made = burn(LEAN, 5)
+    nitrogen = replace_segments(made.test, t_purge=2.0)
+    found = reconstruct(nitrogen)
+    assert found.product.variant == "a"
+    assert "may have burnt after" in str(found.product.assumption)
+    assert found.product.window is not None
+    assert found.product.window[1] < 2.0
+    assert inside(found, "of_ratio", made.of_ratio, made) > 0.9
+
+
+def replace_segments(test: Any, **times: float) -> Any:
+    known = {"t_feed": 0.1, **times}
+    return SimpleNamespace(**{**vars(test), "segments": SimpleNamespace(time=known.get)})
+
+
+def test_thrust_tells_the_throat_from_its_radius_before_on() -> None:
+    made = burn(replace(LEAN, erodes=6e-4, calipered=False), 5)
+    found = reconstruct(made.test)
+    assert found.product.variant == "d"
+    change = found.product.throat_radius_change
+    assert change is not None
+    assert change.interval is not None
+    assert change.interval[0] < 6e-4 < change.interval[1]
+    assert change.interval[1] - change.interval[0] < 6e-4
+    untold = reconstruct(burn(replace(LEAN, erodes=6e-4, calipered=False, thrust=False), 5).test)
+    assert untold.product.variant == "b"
+    assert untold.product.throat_radius_change is not None
+    assert untold.product.throat_radius_change.value is None
+    assert inside(untold, "throat_radius", made.throat, made) > 0.9
+
+
+def test_a_calibration_without_a_law_is_enough() -> None:
+    grain = GrainSection(mass=Value(1.6), length=Value(0.6), density=Value(800.0), outer_radius=Value(0.04))
+    stated = definition(grain=grain, chamber=Chamber(pre_volume=Value(2e-4), post_volume=Value(9e-4)))
+    calibration = filled(Calibration, {"C_i": Quantity(0.3), "K_loss": Quantity(0.0), "oxidizer_mass": Quantity(8.0)})
+    shape = Shape.of_test(stated, calibration, 50e5)
+    assert shape.fuel_mass == pytest.approx(1.6)
+    assert shape.dead_volume == pytest.approx(1.1e-3)
+    with pytest.raises(AbsentError, match="pre_volume"):
+        Shape.of_test(definition(grain=grain), calibration, 50e5)
 
 
 def test_it_is_written_with_its_bands(tmp_path: Any) -> None:

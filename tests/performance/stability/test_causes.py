@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from hfanalysis.inference.oscillations.lines import Track
 from hfanalysis.performance.stability.causes import (
     DRIVES,
     FEED,
@@ -16,7 +17,6 @@ from hfanalysis.performance.stability.causes import (
     Shown,
     cause,
 )
-from hfanalysis.performance.stability.lines import Track
 from hfanalysis.performance.stability.modes import Chamber, Mode
 
 MODES = (Mode("the intrinsic low frequency of a hybrid", 20.0, 40.0), Mode("the longitudinal mode", 500.0, 700.0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.performance.stability.made import MEAN, clock, noise, wave
+from tests.inference.oscillations.made import MEAN, clock, noise, wave
 
 from hfanalysis.arrays import Array
 from hfanalysis.performance.stability.causes import FEED

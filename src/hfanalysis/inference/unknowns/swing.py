@@ -21,6 +21,8 @@ from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, switch, term
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import Free, Hypothesis
 from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.oscillations.fluctuation import fluctuation
+from hfanalysis.inference.oscillations.lines import lines
 from hfanalysis.inference.places import SourcePlace
 from hfanalysis.inference.unknown import POINTS, Described, History, Samples, nameless_effect
 from hfanalysis.products import diagnosis
@@ -155,7 +157,8 @@ class Swing(Described):
         tank, line, chamber = (float(np.median(signals[name].at(time))) for name in ("p_tank", "p_run", "p_chamber"))
         # by the feed's loss, which goes with the flow's square; the line's pressure holds a part of the swing back
         share = 0.5 * (tank - chamber) / max((tank - line) * (line - chamber), LEAST_LOSS**2)
-        swing = _swing_at(rough["p_run"], time, best, share, float(np.log(trials)))
+        peak = best._replace(frequency=_line_at(signals["p_chamber"], best, end))
+        swing = _swing_at(rough["p_run"], time, peak, share, float(np.log(trials)))
         return swing if (swing.end - swing.start) * swing.frequency >= TURNS else None
 
     def added_to(self, fitted: Fit) -> tuple[Hypothesis, Array]:
@@ -262,14 +265,29 @@ def _spectra(rough: Mapping[str, Array], count: int) -> tuple[Array, dict[str, _
     return frequency[inside], out
 
 
+def _line_at(chamber: Signal, peak: _Peak, end: float) -> float:
+    """Frequency [Hz] of the chamber's line that a peak is of, as everywhere else; its own where there is none."""
+    whole = fluctuation(chamber, LEAD_IN, end)
+    tracks = lines(whole) if whole is not None else []
+    width = 1.0 / peak.length
+    after, before = peak.start, peak.start + peak.length
+    during = [track for track in tracks if track.start < before and track.end > after]
+    same = [track for track in during if abs(track.frequency - peak.frequency) < width]
+    if same:
+        return min(same, key=lambda track: abs(track.frequency - peak.frequency)).frequency
+    part = fluctuation(chamber, peak.start, peak.start + peak.length)
+    if part is None:
+        return peak.frequency
+    near = peak.frequency + np.linspace(-0.5, 0.5, FINE) * width
+    turned = part.value * np.hanning(part.value.size)
+    strength = [abs(np.sum(turned * np.exp(-2j * np.pi * f * part.time))) for f in near]
+    return float(near[int(np.argmax(strength))])
+
+
 def _swing_at(line: Array, time: Array, peak: _Peak, by_pascal: float, price: float) -> Swing:
     """Size, phase and duration; ``by_pascal``: the injector's share for each pascal that the run line swings by."""
     inside = (time >= peak.start) & (time < peak.start + peak.length)
-    near = peak.frequency + np.linspace(-0.5, 0.5, FINE) / peak.length
-    window = np.zeros(time.size)
-    window[inside] = np.hanning(int(inside.sum()))
-    strength = [abs(np.sum((line * window) * np.exp(-2j * np.pi * f * time))) for f in near]
-    frequency = float(near[int(np.argmax(strength))])
+    frequency = peak.frequency
     turning = gaussian_filter1d(
         2.0 * line * np.exp(-2j * np.pi * frequency * time), BLUR / SAMPLE_STEP, mode="constant"
     )

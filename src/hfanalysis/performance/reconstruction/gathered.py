@@ -11,6 +11,7 @@ from hfanalysis.arrays import Array
 from hfanalysis.engine.chamber import chamber_volume
 from hfanalysis.engine.grain import USUAL_N
 from hfanalysis.errors import AbsentError
+from hfanalysis.performance.closing import CHEMISTRY
 from hfanalysis.performance.efficiency import EFFICIENCY_WIDTH, oxidizer_spread, smooth, throat_spread
 from hfanalysis.performance.flows import HISTORY_STEP
 from hfanalysis.performance.measured import bias
@@ -88,6 +89,7 @@ def gather(firing: Firing, theory: Theory) -> Gathered:
         "gain": Error("pressure", np.full(time.size, float(by_gauge.mean()))),
         "flow": Error("oxidizer", np.full(time.size, oxidizer_spread(firing.calibration))),
         "throat": Error("throat", np.full(time.size, throat_spread(firing.definition))),
+        "theory": Error("theory", np.full(time.size, CHEMISTRY)),
         "drift": Error("efficiency", DRIFT * (share - 0.5)),
         **({"tap": Error("pressure", np.log(low) * UNIFORM, 0.5 / UNIFORM)} if (low < 1.0).any() else {}),
         **throat.errors,

@@ -20,8 +20,8 @@ from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.thermo.nitrous import saturation
 
-SIGNS = {"pressure": 1.0, "throat": 1.0, "oxidizer": -1.0, "efficiency": -1.0}
-"""Sense in which each moves p A_t / (efficiency * oxidizer flow). Source: that expression."""
+SIGNS = {"pressure": 1.0, "throat": 1.0, "oxidizer": -1.0, "efficiency": -1.0, "theory": -1.0}
+"""Sense in which each moves p A_t / (efficiency * theory * oxidizer flow). Source: that expression."""
 
 
 @dataclass(frozen=True)

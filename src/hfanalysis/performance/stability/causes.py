@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hfanalysis.performance.stability.lines import Track
+from hfanalysis.inference.oscillations.lines import Track
 from hfanalysis.performance.stability.modes import Mode
 
 MAINS = (50.0, 60.0)

@@ -22,10 +22,10 @@ the fuel's surface."""
 
 DELAY = 2.05
 """Delay of the boundary layer: DELAY L p / ((2 + 1/OF) G R T) [-]. Source: Karabeyoglu et al., J. Propulsion and Power
-21(6), 1107 (2005)."""
+21(6), 1107 (2005); from memory, not checked against the text."""
 
 TURN = 0.48
-"""Its frequency times the delay [-]. Source: the same."""
+"""Its frequency times the delay [-]. Source: the same, as little checked."""
 
 
 @dataclass(frozen=True)

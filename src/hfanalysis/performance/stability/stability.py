@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
+from hfanalysis.inference.oscillations.fluctuation import SMOOTH, Fluctuation, fluctuation
+from hfanalysis.inference.oscillations.lines import Track, lines
+from hfanalysis.inference.oscillations.paths import EDGE, detectable
+from hfanalysis.inference.oscillations.spectrum import Spectrum, spectra
 from hfanalysis.performance.stability.causes import ALIKE, APART, DRIVES, FOLLOWS, Seen, Shown, cause
-from hfanalysis.performance.stability.fluctuation import SMOOTH, Fluctuation, fluctuation
-from hfanalysis.performance.stability.lines import Track, lines
 from hfanalysis.performance.stability.modes import Mode
-from hfanalysis.performance.stability.paths import EDGE, detectable
-from hfanalysis.performance.stability.spectrum import Spectrum, spectra
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.stability import Line, Roughness, Stability
 from hfanalysis.quantity import Quantity

@@ -19,7 +19,7 @@ function startFolds() {
   addEventListener("hashchange", openLinked);
   openLinked();
   label();
-  const more = [...document.querySelectorAll("details.more")];
+  const more = [...document.querySelectorAll("details.more, details.why")];
   for (const part of more) part.addEventListener("toggle", () => schedule());
   let closed = [];
   addEventListener("beforeprint", () => {

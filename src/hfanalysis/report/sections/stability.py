@@ -13,8 +13,8 @@ from markupsafe import Markup
 from hfanalysis.charts import svg
 from hfanalysis.charts.chart import TIME
 from hfanalysis.errors import AbsentError
-from hfanalysis.performance.stability.fluctuation import fluctuation
-from hfanalysis.performance.stability.spectrum import Spectrum, spectra
+from hfanalysis.inference.oscillations.fluctuation import fluctuation
+from hfanalysis.inference.oscillations.spectrum import Spectrum, spectra
 from hfanalysis.products.segments import Segments
 from hfanalysis.products.stability import Line, Stability
 from hfanalysis.products.validation import Validation

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from markupsafe import Markup
 
@@ -13,17 +14,20 @@ from hfanalysis.products.health import TRUSTED
 from hfanalysis.quantity import DOUBTED, Quantity
 from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.report import html
-from hfanalysis.report.glance import four, key_numbers, motor_class
+from hfanalysis.report.glance import Against, against_last, four, key_numbers, motor_class, sensors_then
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.time_charts import lines_of, over_time
-from hfanalysis.wording.numbers import in_words
+from hfanalysis.wording.numbers import MINUS, fixed, in_words
 
 _DRAWN = ("thrust", "p_chamber", "p_tank", "m_tank")
 """Channels of which the first two that the log has are drawn."""
 
 _COMMAND = re.compile(r"\b(hfa [a-z]+ [\w.-]*\w(?: --[a-z]+)?)")
 """A command of the package in a sentence."""
+
+SAME = 5e-4
+"""Share below which a number is the same as last time [-]: it would read 0.0 %. Source: definition."""
 
 _HEIGHT = 250.0
 """Of a chart of the first screen [px]."""
@@ -35,17 +39,18 @@ def render(material: Material) -> Iterator[Block]:
     yield _sentences(material)
     yield _numbers(key_numbers(material), material)
     yield Markup("</div>")
-    for stage, reason in absence_reasons(material).items():
-        absent = Markup('<p class="absent"><strong>{}:</strong> {}</p>')
-        yield absent.format(stage, html.switchable(reason))
     yield Markup('<div class="beside">')
     yield from glance_charts(material)
     yield Markup("</div>")
+    yield _last(material)
+    for stage, reason in absence_reasons(material).items():
+        absent = Markup('<p class="absent"><strong>{}:</strong> {}</p>')
+        yield absent.format(stage, html.switchable(reason))
 
 
 def glance_charts(material: Material) -> list[Chart]:
     """Thrust and chamber pressure; where the log lacks one, the tank's pressure, or its mass."""
-    drawn = (_chart(material, name) for name in _DRAWN if name in material.log)
+    drawn = (_chart(material, name) for name in _DRAWN if name in material.log and material.log[name].good.any())
     return [chart for chart in drawn if chart is not None][:2]
 
 
@@ -66,6 +71,39 @@ def absence_reasons(material: Material) -> dict[str, str]:
     return told
 
 
+def _last(material: Material) -> Markup | None:
+    """What else there is against the stand's test before: the injector's coefficient, and the sensors."""
+    coefficient = next((row for row in against_last(material) if row.name == "C_i"), None)
+    if material.last is None:
+        return None
+    when = f" of {material.last.date}" if material.last.date else ""
+    parts = [Markup("Last time on this stand: <bdi>{}</bdi>{}.").format(material.last.id, when)]
+    if coefficient is not None:
+        parts.append(Markup("{} was {}, now {}.").format(
+            html.symbol("C_i"), html.value(replace(coefficient.was, std=None)), _change(coefficient)))  # fmt: skip
+    if then := sensors_then(material):
+        parts.append(Markup("Sensors then: {}.").format(then))
+    return html.paragraph(Markup(" ").join(parts), "last")
+
+
+def _was(name: str, material: Material) -> Markup:
+    """What a number was last time, and its change."""
+    row = next((row for row in against_last(material) if row.name == name), None)
+    if row is None or material.last is None:
+        return Markup()
+    was = Markup('<span class="was"><bdi>{}</bdi> {}, {}</span>')
+    return was.format(material.last.id, html.value(replace(row.was, std=None), name), _change(row))
+
+
+def _change(row: Against) -> str:
+    if row.change is None:
+        return "from zero"
+    if abs(row.change) < SAME:
+        return "the same"
+    text = fixed(100.0 * row.change, 0 if abs(row.change) >= 0.1 else 1)
+    return f"{text} %" if text.startswith(MINUS) else f"+{text} %"
+
+
 def _sentences(material: Material) -> Markup:
     item = Markup("<div><dt>{}</dt><dd>{}</dd></div>")
     items = (item.format(told.head, _with_commands(html.switchable(told.words))) for told in four(material))
@@ -81,7 +119,10 @@ def _numbers(found: Mapping[str, Quantity], material: Material) -> Markup | None
     if not found:
         return None
     item = Markup("<div><dt>{}</dt><dd>{}</dd></div>")
-    items = (item.format(in_words(name), _key_number(name, quantity, material)) for name, quantity in found.items())
+    items = (
+        item.format(in_words(name), _key_number(name, quantity, material) + _was(name, material))
+        for name, quantity in found.items()
+    )
     return Markup('<dl class="key-numbers">{}</dl>').format(Markup().join(items))
 
 

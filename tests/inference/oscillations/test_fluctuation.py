@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.performance.stability.made import MEAN, clock, noise, signal, wave
+from tests.inference.oscillations.made import MEAN, clock, noise, signal, wave
 
-from hfanalysis.performance.stability.fluctuation import LOWEST, fluctuation
+from hfanalysis.inference.oscillations.fluctuation import LOWEST, fluctuation
 
 
 def test_an_oscillation_stays_and_the_course_goes() -> None:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
-from hfanalysis.performance.stability.fluctuation import Fluctuation
-from hfanalysis.performance.stability.paths import Path, clearest
-from hfanalysis.performance.stability.spectrum import Spectrum, spectra
+from hfanalysis.inference.oscillations.fluctuation import Fluctuation
+from hfanalysis.inference.oscillations.paths import Path, clearest
+from hfanalysis.inference.oscillations.spectrum import Spectrum, spectra
 
 REACH = 2
 """Frequencies on either side that the power of a line reaches. Source: the main lobe of a Hann window."""

@@ -15,7 +15,7 @@ from scipy.ndimage import median_filter
 from scipy.signal.windows import hann
 
 from hfanalysis.arrays import Array
-from hfanalysis.performance.stability.fluctuation import LEAST, LOWEST, Fluctuation
+from hfanalysis.inference.oscillations.fluctuation import LEAST, LOWEST, Fluctuation
 
 LENGTHS = (0.25, 0.5, 1.0, 2.0)
 """[s] of the windows: short ones follow an oscillation whose frequency moves, long ones see fainter ones."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.performance.stability.made import MEAN, clock, noise, signal, wave
+from tests.inference.oscillations.made import MEAN, clock, noise, signal, wave
 
 from hfanalysis.arrays import Array
-from hfanalysis.performance.stability.fluctuation import Fluctuation, fluctuation
-from hfanalysis.performance.stability.lines import lines
-from hfanalysis.performance.stability.paths import detectable
-from hfanalysis.performance.stability.spectrum import spectra
+from hfanalysis.inference.oscillations.fluctuation import Fluctuation, fluctuation
+from hfanalysis.inference.oscillations.lines import lines
+from hfanalysis.inference.oscillations.paths import detectable
+from hfanalysis.inference.oscillations.spectrum import spectra
 
 
 def fluctuating(time: Array, *parts: Array, end: float = 4.0) -> Fluctuation:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
-from hfanalysis.performance.stability.spectrum import Spectrum
+from hfanalysis.inference.oscillations.spectrum import Spectrum
 
 CHANCE = 3e-4
 """Probability [-] of a line in a stretch of a channel that has none. Source: with four channels and two stretches, one
