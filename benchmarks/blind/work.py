@@ -59,7 +59,7 @@ def diagnose(job: Job) -> Result:
 
     Raises AnalysisError where the diagnosis refuses the test, NotConvergedError where its search did not converge.
     """
-    from hfanalysis.diagnose.naming.shortfall import assert_converged
+    from hfanalysis.diagnose.naming.polish import assert_converged
     from hfanalysis.stages.open_test import open_test
     from hfanalysis.stages.runner import run_to
 

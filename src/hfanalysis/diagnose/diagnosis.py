@@ -26,8 +26,7 @@ from hfanalysis.diagnose.answer.words import story
 from hfanalysis.diagnose.model_free import shown
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
-from hfanalysis.diagnose.naming.polish import DEEPER
-from hfanalysis.diagnose.naming.shortfall import on_firm_ground
+from hfanalysis.diagnose.naming.polish import not_converged
 from hfanalysis.diagnose.naming.slack import course_error
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.weak_form.spread import Spread
@@ -79,7 +78,6 @@ def diagnose(
     hypothesis, observed = subject.compared()
     catalogue = Catalogue(_visible(effects, observed), subject.stated())
     found = name_effects(hypothesis, observed, catalogue, progress, settings)
-    found, why = on_firm_ground(found)
     verdict = verdict_of(found, {name: effect.twins for name, effect in catalogue.effects.items()})
     verdict, small = without_the_small(verdict, places(verdict, found), found)
     progress("proving it", 0.93)
@@ -89,7 +87,6 @@ def diagnose(
         called=plain_names(effects),
         gap=_with_calibrated(product.gap, found, hypothesis, subject),
         constants=None if product.constants is None else product.constants.but(calibrated=_calibrated(subject)),
-        not_converged=why,
         too_small=small,
     )
     sentences = story(product)
@@ -97,11 +94,6 @@ def diagnose(
         sentences += shown(subject).sentences
     notes = (*subject.notes, *product.notes)
     return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
-
-
-def plain_names(effects: Mapping[str, Effect]) -> dict[str, str]:
-    """What people call each effect, where it says so."""
-    return {name: effect.plain_name for name, effect in effects.items() if effect.plain_name}
 
 
 def _with_calibrated(found: Gap, naming: Naming, hypothesis: Hypothesis, subject: Subject) -> Gap:
@@ -134,6 +126,11 @@ def _calibrated(subject: Subject) -> dict[str, Quantity]:
     return {name: q for name, q in known.items() if q.value is not None}
 
 
+def plain_names(effects: Mapping[str, Effect]) -> dict[str, str]:
+    """What people call each effect, where it says so."""
+    return {name: effect.plain_name for name, effect in effects.items() if effect.plain_name}
+
+
 def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Effect]:
     """Effects that the channels of a test can show at all: a sensor's need the sensor."""
     return {n: e for n, e in effects.items() if not e.of_sensor or set(e.sites) & set(observed.names)}
@@ -145,8 +142,8 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
     left = {*verdict.set90, *verdict.added}
     residuals = weak_residuals(observed, found.base.fit.burnt.steps.engine, Spread.of_fit(found.base.fit))
     unsure = () if chosen.fit.converged else ("the last fit did not converge: sizes and intervals are rough",)
-    if found.risen > DEEPER:
-        unsure = (*unsure, UNSETTLED.format(found.risen))
+    if (why := not_converged(found.risen)) is not None:
+        unsure = (*unsure, f"the search did not converge: {why}; take names with care")
     return Diagnosis(
         verdict=verdict.label,
         effects=effects_product(verdict),
@@ -165,6 +162,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         doubts=verdict.doubts,
         unknown_beside=verdict.added if verdict.doubts else (),
         at_limit=at_limit(verdict),
+        not_converged=why,
         twins=_twins(verdict, catalogue),
         not_it=() if poor_fit(found.named.leftover) else _not_it(verdict),
         decisive_measurements=_decisive(verdict, catalogue),
@@ -249,12 +247,6 @@ def _plausibility(found: Naming, chosen: Candidate) -> dict[str, Plausibility]:
         name = candidate.names[0]
         out.setdefault(name, judged(acting_in(candidate.fit)[name]))
     return out | {name: judged(active) for name, active in acting_in(chosen.fit).items()}
-
-
-UNSETTLED = (
-    "the search did not converge: the base model came to lie {:.1f} deeper in log evidence after all had been compared "
-    "with it; take names with care"
-)
 
 
 def _course(verdict: Verdict, found: Naming) -> list[str]:

@@ -164,7 +164,7 @@ def gaps(product: Diagnosis) -> Markup:
     rows = [(LONG_NAMES.get(name, name), *(_in_unit(name, size.get(name)) for size in arms)) for name in gap.before]
     caption = (
         "Root mean square of measured less model over the burn, beside the noise of the averages that are compared. "
-        f"The last two models were fitted to all channels.{_by_refitting(gap)}"
+        f"Fitted to all channels: refitted and with the effects.{_by_refitting(gap)}"
     )
     calibrated = (">calibrated",) if gap.calibrated is not None else ()
     columns = ("channel", *calibrated, ">refitted", ">with the effects", ">noise")
@@ -176,7 +176,7 @@ def _by_refitting(gap: Gap) -> str:
     part = gap.closed_by_refitting
     if part is None or part <= 0.0:
         return ""
-    return f" Refitting alone closes {_closed(part)} of the calibrated misfit, which is no effect's merit."
+    return f" Refitting alone takes away {_closed(part)} of the misfit as calibrated. That is no effect's merit."
 
 
 def gaps_by_phase(product: Diagnosis) -> Markup | None:
@@ -251,8 +251,8 @@ def constants(product: Diagnosis) -> Iterator[Markup]:
         (_head(name), *(html.value(side[name], name) if name in side else "–" for _, side in arms)) for name in names
     ]
     caption = (
-        "By the fit that they are from. Calibrated: one after the other, without effects. Refitted: to all channels "
-        "together. ± one standard deviation."
+        "By the fit that they are from. Calibrated: one after the other, without adopted effects. Refitted: the base "
+        "model to all channels together. With the effects: the same with what was found. ± one standard deviation."
     )
     yield html.table("Constants", caption, ("constant", *(head for head, _ in arms)), rows)
 

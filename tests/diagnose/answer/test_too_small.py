@@ -77,5 +77,5 @@ def test_the_headline_says_that_it_is_there() -> None:
         verdict="none", effects=(), posterior={"none": 0.02, "tank_heat": 0.97}, set90=("tank_heat",),
         too_small={"tank_heat": 4e-4},
     )  # fmt: skip
-    said = "Something is there, but too small to matter: tank_heat (0.97), 0.04 % of what goes through its equation."
+    said = "Tank heat (0.97) is there, but too small to matter: 0.04 % of what goes through its equation."
     assert headline(product) == said

@@ -8,11 +8,11 @@ that evidence: more than the rival, and more than the curve.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Protocol
 
-from hfanalysis.diagnose.naming.naming import Naming
+from hfanalysis.diagnose.naming.naming import RIVAL, Naming
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.predictive import Foretold, log_predictive
 
@@ -21,8 +21,8 @@ SPARE = 3.0
 data has twice the variance; each parameter that an effect has, of which there are one to four, costs a half per
 stretch for it."""
 
-ROUNDS = 3
-"""Times that another claim takes the place of one that is not borne out."""
+ROUNDS = 8
+"""Times that something is asked: what is claimed, what that has as its part, and what comes near it then."""
 
 
 class Claim(Protocol):
@@ -38,42 +38,67 @@ class Claim(Protocol):
 
 
 def borne_out(found: Naming, claimed: Callable[[Naming], Claim]) -> Naming:
-    """The same with the evidence of all that a claim rests on as far as held-out data bear it out."""
+    """The same with the evidence of all that a claim rests on as far as held-out data bear it out.
+
+    A rival, or a curve, that is RIVAL behind what is left of the claim stays there: it is not asked.
+    """
+    told: dict[tuple[str, ...], Foretold | None] = {}
+    all_of_it = {c.key: c.log_evidence for c in reversed(found.all)}
     before: Foretold | None = None
     for _ in range(ROUNDS):
-        claim = claimed(found)
-        asked = [c for c in _contenders(found, claim) if c.key not in found.held_out]
-        if claim.label == "none" or not asked:
+        one = next((c for c in _contenders(found, claimed(found)) if c.key not in told), None)
+        if one is None:
             break
-        before = log_predictive(found.base, found.bench) if before is None else before
+        before = before or log_predictive(found.base, found.bench)
         if before is None:
             break
-        told = {c.key: _kept(c, found, before) for c in asked}
-        found = replace(
-            found,
-            held_out={**found.held_out, **{key: None if kept is None else kept.gain for key, kept in told.items()}},
-            singles=_lessened(found.singles, told, found.base),
-            sets=_lessened(found.sets, told, found.base),
-            unknown=_lessened(found.unknown, told, found.base),
-        )
+        told[one.key] = log_predictive(one, found.bench)
+        found = _counted(found, one, before, told, all_of_it)
     return found
 
 
-@dataclass(frozen=True)
-class Kept:
-    """The ``gain`` in log probability of what was held out, and the ``part`` [-] that it is of what was promised."""
-
-    gain: float
-    part: float
+Told = Mapping[tuple[str, ...], Foretold | None]
 
 
-def _kept(one: Candidate, found: Naming, before: Foretold) -> Kept | None:
-    """What a candidate keeps of what it promises beyond the base model; None where that tells nothing."""
-    there = log_predictive(one, found.bench)
+def _counted(
+    found: Naming, one: Candidate, before: Foretold, told: Told, all_of_it: Mapping[tuple[str, ...], float]
+) -> Naming:
+    """The same after a candidate was asked: it has as much of its evidence as it keeps of its promise, beyond the base
+    model, or of a set beyond its largest part that was asked before.
+
+    Other sets with that part keep no more of what they have beyond it, until they are asked. ``all_of_it``: the
+    evidence [natural log] of each as it was.
+    """
+    there, part = told[one.key], _largest_part(one, found)
+    gain = None if there is None else there.rest - before.rest
+    found = replace(found, held_out={**found.held_out, one.key: gain})
     if there is None:
-        return None
-    gain, promised = there.rest - before.rest, there.all - before.all
-    return Kept(gain, part_kept(gain, promised))
+        return found
+    of_part = None if part is None else told.get(part.key)
+    beyond, rest = (found.base, before) if part is None or of_part is None else (part, of_part)
+    share, names = _part(there, rest), set(beyond.names)
+
+    def lessened(c: Candidate) -> Candidate:
+        alike = bool(names) and c.key not in told and names < set(c.names) and not c.unknown
+        if c.key != one.key and not alike:
+            return c
+        further = max(all_of_it[c.key] - all_of_it[beyond.key], 0.0)
+        return replace(c, log_evidence=min(all_of_it[c.key], beyond.log_evidence + share * further))
+
+    def each_of(candidates: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+        return tuple(sorted(map(lessened, candidates), key=lambda c: -c.log_evidence))
+
+    return replace(found, singles=each_of(found.singles), sets=each_of(found.sets), unknown=each_of(found.unknown))
+
+
+def _part(there: Foretold, before: Foretold) -> float:
+    return part_kept(there.rest - before.rest, there.all - before.all)
+
+
+def _largest_part(one: Candidate, found: Naming) -> Candidate | None:
+    """The most probable explanation by some of the names of a set; None of a single one."""
+    parts = [c for c in (*found.singles, *found.sets) if set(c.names) < set(one.names) and not c.unknown]
+    return max(parts, key=lambda c: c.log_evidence, default=None) if not one.unknown else None
 
 
 def part_kept(gain: float, promised: float) -> float:
@@ -86,27 +111,13 @@ def part_kept(gain: float, promised: float) -> float:
 
 
 def _contenders(found: Naming, claim: Claim) -> list[Candidate]:
-    """What is claimed, what it is part of or has as its part, the likeliest rival, and the likeliest free curve."""
+    """What a claim has as its part, what is claimed, and the likeliest rival and the likeliest free curve where they
+    come near it."""
     chosen = claim.chosen
-    if chosen is found.base:
+    if claim.label == "none" or chosen is found.base:
         return []
-    first = next((c for c in found.singles if c.names == chosen.names[:1]), None)
     rival = next((c for c in found.singles if not set(c.names) & set(chosen.names)), None)
     curve = next((c for c in found.unknown if len(c.names) == 1), None)
-    kept = [c for c in (chosen, first, rival, curve) if c is not None and c.log_evidence > found.base.log_evidence]
-    return list({c.key: c for c in kept}.values())
-
-
-def _lessened(
-    candidates: tuple[Candidate, ...], told: dict[tuple[str, ...], Kept | None], base: Candidate
-) -> tuple[Candidate, ...]:
-    """Those with no more evidence than is borne out, the best first."""
-    out = [_at_most(c, told.get(c.key), base) for c in candidates]
-    return tuple(sorted(out, key=lambda c: -c.log_evidence))
-
-
-def _at_most(one: Candidate, kept: Kept | None, base: Candidate) -> Candidate:
-    gain = one.log_evidence - base.log_evidence
-    if kept is None or gain <= 0.0:
-        return one
-    return replace(one, log_evidence=base.log_evidence + kept.part * gain)
+    near = [c for c in (rival, curve) if c is not None and c.log_evidence > chosen.log_evidence - RIVAL]
+    part = _largest_part(chosen, found)
+    return [*([part] if part is not None else []), chosen, *near]

@@ -5,7 +5,7 @@ A name that does not meet it keeps a part of its probability; the rest is that o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import exp
 
 import numpy as np
@@ -19,7 +19,7 @@ from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.gap import noise_of, root_mean_square
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import has_name
-from hfanalysis.record.channels import unit_of
+from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.sentences import said, text
 
 SEVERAL, OF_RANGE = 5.0, 0.01
@@ -34,6 +34,9 @@ is not what is stated, and more than a tenth, for it may be part of it."""
 
 LEAST_ASKED = 0.05
 """Probability from which on a name is asked whether it stands."""
+
+ASKED = ("p_tank", "p_run", "p_chamber", "thrust")
+"""Channels that show the engine's own state; a purge line follows the tank through a valve that nobody has a law of."""
 
 SHOWN = {"Pa": "bar"}
 
@@ -56,12 +59,12 @@ def missed(found: Fit, observed: Observed) -> tuple[str, ...]:
     return tuple(
         text(
             "{channel} is missed by {size}, {times} times its noise",
-            channel=name,
+            channel=LONG_NAMES.get(name, name),
             size=said(size, SHOWN.get(unit_of(name), unit_of(name)), ".2g"),
             times=f"{size / noise[name]:.0f}",
         )
         for name, size in rms.items()
-        if size > SEVERAL * noise[name] and size > OF_RANGE * most[name]
+        if name in ASKED and size > SEVERAL * noise[name] and size > OF_RANGE * most[name]
     )
 
 
@@ -109,14 +112,42 @@ def among_twins(
     >>> round(among_twins({"a": 0.99, "b": 0.01}, {"a": 90.0, "b": 8.7}, {"a": ("b",)}, 0.8)["a"], 2)
     1.0
     """
-    out = dict(posterior)
     names = sorted((n for n in posterior if kind(n) == "named"), key=lambda n: -posterior[n])
-    first = names[0] if names else ""
+    out, first = dict(posterior), names[0] if names else ""
     for twin in twins.get(first, ()):
         if twin in out and evidences[first] > 0.0:
-            warm = float(np.hypot(heat, LAWS * np.sqrt(evidences[first])))
-            least = 1.0 / (1.0 + exp(min(max((evidences[first] - evidences[twin]) / warm, 0.0), 500.0)))
-            both = out[first] + out[twin]
-            out[twin] = max(out[twin], least * both)
-            out[first] = both - out[twin]
+            shared(out, first, twin, evidences[first] - evidences[twin], evidences[first], heat)
+    return out
+
+
+def shared(out: dict[str, float], first: str, twin: str, apart: float, explained: float, heat: float) -> None:
+    """Let a name share its probability in ``out`` with its twin, that is ``apart`` from it in log evidence, of what it
+    has ``explained`` [both natural log]; ``heat``: temperature [-] of other evidences."""
+    warm = float(np.hypot(heat, LAWS * np.sqrt(max(explained, 0.0))))
+    least = 1.0 / (1.0 + exp(min(max(apart / warm, 0.0), 500.0)))
+    both = out[first] + out.get(twin, 0.0)
+    out[twin] = max(out.get(twin, 0.0), least * both)
+    out[first] = both - out[twin]
+
+
+def among_partners(
+    partners: Mapping[str, float],
+    chosen: Candidate,
+    others: Sequence[Candidate],
+    twins: Mapping[str, tuple[str, ...]],
+    heat: float,
+) -> dict[str, float]:
+    """As :func:`among_twins`, of names beside the first: by the ``others`` that have the twin in the place of one.
+
+    ``partners``: probability [-] of each if the first is there.
+    """
+    out = dict(partners)
+    for name in chosen.names[1:]:
+        less = [c.log_evidence for c in others if set(c.names) == set(chosen.names) - {name}]
+        for twin in twins.get(name, ()):
+            same = {twin if n == name else n for n in chosen.names}
+            with_twin = [c.log_evidence for c in others if set(c.names) == same]
+            if with_twin and name in out:
+                explained = chosen.log_evidence - max(less, default=min(with_twin))
+                shared(out, name, twin, chosen.log_evidence - max(with_twin), explained, heat)
     return out

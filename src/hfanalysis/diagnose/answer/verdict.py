@@ -25,6 +25,7 @@ from hfanalysis.diagnose.answer.posterior import (
 from hfanalysis.diagnose.answer.standing import (
     acting_in,
     against,
+    among_partners,
     among_twins,
     believed_share,
     withheld,
@@ -102,10 +103,11 @@ def verdict_of(found: Naming, twins: Mapping[str, tuple[str, ...]] = NO_TWINS) -
     evidences, apart = evidences_of(weighed), elsewhere(weighed)
     posterior = scale().probabilities(evidences, found.named.leftover, apart)
     posterior = among_twins(posterior, evidences, twins, scale().heat(found.named.leftover))
-    if _verdict(weighed, posterior, evidences).label in ("none", "unknown"):
-        return replace(_verdict(weighed, posterior, evidences), elsewhere=apart, held_out=weighed.held_out)
+    plain = _verdict(weighed, posterior, evidences, twins)
+    if plain.label in ("none", "unknown"):
+        return replace(plain, elsewhere=apart, held_out=weighed.held_out)
     kept = withheld(posterior, {n: _chosen(weighed, n) for n in _tried(weighed)}, found.bench.observed)
-    return replace(_with_doubts(weighed, posterior, kept, evidences), elsewhere=apart, held_out=weighed.held_out)
+    return replace(_with_doubts(weighed, posterior, kept, evidences, twins), elsewhere=apart, held_out=weighed.held_out)
 
 
 def _tried(found: Naming) -> list[str]:
@@ -120,13 +122,14 @@ def _by_evidence(found: Naming) -> Verdict:
 
 
 def _with_doubts(
-    found: Naming, before: Mapping[str, float], kept: dict[str, float], evidences: dict[str, float]
-) -> Verdict:
+    found: Naming, before: Mapping[str, float], kept: dict[str, float], evidences: dict[str, float],
+    twins: Mapping[str, tuple[str, ...]],
+) -> Verdict:  # fmt: skip
     """The verdict by what names keep; where that makes it unknown, it is so beside the name that was first."""
     top = max((n for n in before if n not in ("none", "unknown")), key=lambda n: (before[n], n))
     stands = kept[top] == before[top] or kept["unknown"] <= max(p for n, p in kept.items() if n != "unknown")
     if stands:
-        return _verdict(found, kept, evidences)
+        return _verdict(found, kept, evidences, twins)
     chosen = _chosen(found, top)
     beside = [c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]]
     doubts = against(chosen, found.bench.observed) or (_size_of(chosen),)
@@ -138,14 +141,21 @@ def _size_of(chosen: Candidate) -> str:
     return judged(acting_in(chosen.fit)[chosen.names[0]]).why
 
 
-def _verdict(found: Naming, posterior: dict[str, float], evidences: dict[str, float]) -> Verdict:
+def _verdict(
+    found: Naming,
+    posterior: dict[str, float],
+    evidences: dict[str, float],
+    twins: Mapping[str, tuple[str, ...]] = NO_TWINS,
+) -> Verdict:
     """What probabilities amount to."""
     set90 = smallest_set(posterior)
     top = _claimed(posterior, evidences, poor_fit(found.named.leftover))
     chosen = _chosen(found, top)
     if top in ("none", "unknown"):
         return Verdict(top, posterior, evidences, set90, chosen)
-    partners = _believed_partners(partners_of(top, found), chosen)
+    heat = scale().heat(found.named.leftover)
+    partners = among_partners(partners_of(top, found), chosen, (*found.singles, *found.sets), twins, heat)
+    partners = _believed_partners(partners, chosen)
     rivals = [name for name in set90 if name not in (top, "none")]
     sure = posterior[top] >= NAMED_FROM and not rivals and all(partners[n] >= SET for n in chosen.names[1:])
     beside = {name: posterior[top] * p for name, p in partners.items()}

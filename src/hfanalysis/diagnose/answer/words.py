@@ -130,11 +130,11 @@ def headlines(product: Diagnosis) -> list[str]:
     others = [f"{product.plain(n)} ({posterior[n]:.2f})" for n in product.set90 if n != label]
     doubt = [f"{capitalised(listed(others))} cannot be excluded."] if others else []
     if product.verdict == "none":
-        return _too_small(product) if product.too_small else _nothing(product)
+        return _small(product) or _nothing(product)
     if product.unknown_beside:
-        stood = listed([product.plain(name) for name in product.unknown_beside])
-        unknown = f"something that has no name in the library (probability {posterior['unknown']:.2f})"
-        return [f"Missing from the model: {unknown}, beside {stood}.", *doubt]
+        known = listed([product.plain(name) for name in product.unknown_beside])
+        what = f"Something is missing that has no name in the library, beside {known}"
+        return [f"{what} (probability {posterior['unknown']:.2f}).", *doubt]
     if product.verdict == "unknown":
         return [
             f"Something is missing that has no name in the library (probability {posterior['unknown']:.2f}).",
@@ -146,15 +146,6 @@ def headlines(product: Diagnosis) -> list[str]:
     beside = [f"{product.plain(n)} ({p:.2f})" for n, p in product.partners.items() if n not in named and p >= LIKELY]
     either = [f"In place of what stands beside it may be {' or '.join(beside)}."] if beside else []
     return [f"Missing from the model, with probability: {listed(names[:PAIR])}.", *further, *doubt, *either]
-
-
-def _too_small(product: Diagnosis) -> list[str]:
-    posterior = product.posterior
-    parts = [
-        f"{product.plain(name)}{f' ({posterior[name]:.2f})' if name in posterior else ''}, {_percent(part)}"
-        for name, part in product.too_small.items()
-    ]
-    return [f"Something is there, but too small to matter: {listed(parts)} of what goes through its equation."]
 
 
 def _nothing(product: Diagnosis) -> list[str]:
@@ -170,27 +161,37 @@ def _nothing(product: Diagnosis) -> list[str]:
     ]
 
 
-def _percent(part: float) -> str:
-    return f"{100.0 * part:.2g} %"
+def _small(product: Diagnosis) -> list[str]:
+    """What is there, but too small to matter."""
+    return [
+        f"{capitalised(product.plain(name))}{_probability(name, product)} is there, but too small to matter: "
+        f"{100.0 * part:.2g} % of what goes through its equation."
+        for name, part in product.too_small.items()
+    ]
+
+
+def _probability(name: str, product: Diagnosis) -> str:
+    return f" ({product.posterior[name]:.2f})" if name in product.posterior else ""
 
 
 def doubts_sentences(product: Diagnosis) -> list[str]:
-    """Why a name does not stand by itself, that the verdict is at a limit, and that the search did not converge."""
+    """Why a name does not stand by itself, that the verdict is at a limit, and what beside it is too small."""
     out: list[str] = []
     if product.doubts:
-        names = capitalised(listed([product.plain(name) for name in product.unknown_beside]))
-        out.append(joined("", [f"{names} alone is not the whole story: ", joined("; ", product.doubts), "."]))
+        names = listed([product.plain(name) for name in product.unknown_beside])
+        out.append(joined("", [f"With {names} alone the story is not whole: ", joined("; ", product.doubts), "."]))
     if product.at_limit:
-        out.append(f"This verdict is at a limit, where the last digits decide: {product.at_limit}.")
+        out.append(f"This verdict is at a limit, where the last digits decide: {_plainly(product, product.at_limit)}.")
     if product.verdict != "none":
-        out += [
-            f"{capitalised(product.plain(name))} is there, but too small to matter: {_percent(part)} of what goes "
-            "through its equation."
-            for name, part in product.too_small.items()
-        ]
-    if product.not_converged:
-        out.append(joined("", ["The search did not converge: ", product.not_converged, "."]))
+        out += _small(product)
     return out
+
+
+def _plainly(product: Diagnosis, words: str) -> str:
+    """Words with effects called what people call them."""
+    for name in sorted(product.posterior, key=len, reverse=True):
+        words = words.replace(name, product.plain(name))
+    return words
 
 
 def poor_fit_sentence(product: Diagnosis) -> list[str]:

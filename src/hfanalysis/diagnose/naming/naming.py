@@ -28,9 +28,9 @@ class Naming:
     """The base model, every single effect, sets of effects, and unknown sources; each the best first.
 
     ``equations``: of all effects that were thought of; those that a score test saw nothing of have no candidate.
-    ``risen``: log evidence by which the base model was found deeper once all had been looked for from it.
     ``held_out``: log probability of data that were held out beyond the base model's [natural log], by the key of a
     candidate; None where the rest of the data cannot foretell it.
+    ``risen``: log evidence by which the base model was found deeper once all had been looked for from it.
     """
 
     base: Candidate
@@ -39,8 +39,8 @@ class Naming:
     unknown: tuple[Candidate, ...]
     bench: Bench
     equations: Mapping[str, str] = field(default_factory=dict)
-    risen: float = 0.0
     held_out: Mapping[tuple[str, ...], float | None] = field(default_factory=dict)
+    risen: float = 0.0
 
     @property
     def named(self) -> Candidate:
@@ -82,7 +82,7 @@ def name_effects(
     singles, sets, unknown = (_told(some, best, bench) for some in (singles, sets, unknown))
     equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     risen = base.log_evidence - told.log_evidence
-    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations, risen)
+    return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations, risen=risen)
 
 
 def _from_the_deepest(

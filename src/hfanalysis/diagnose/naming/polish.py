@@ -46,3 +46,21 @@ def _starts(base: Candidate, children: Sequence[Candidate]) -> list[np.ndarray]:
         if all(np.abs(x - other).max() > SAME for other in (base.fit.x, *out)):
             out.append(x)
     return out
+
+
+class NotConvergedError(AssertionError):
+    """A search that did not converge where that must not be: in tests and benchmarks."""
+
+
+def not_converged(risen: float) -> str | None:
+    """Why a search did not converge of which the base model has ``risen`` in log evidence after all had been compared
+    with it; None where it did."""
+    if risen <= DEEPER:
+        return None
+    return f"the base model came to lie {risen:.1f} deeper in log evidence after all had been compared with it"
+
+
+def assert_converged(why: str | None) -> None:
+    """Raises NotConvergedError where a search did not converge, for ``why``."""
+    if why is not None:
+        raise NotConvergedError(why)
