@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock clean flown-thrust coverage narrow-port feed-laws
+.PHONY: help setup $(STAGES) compare campaign all test lint format benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -94,7 +94,13 @@ LOGS ?= ../shared/real_tests
 real-logs: $(STAMP) ## logs of other teams by hfa new, their facts and hfa run: docs/real-logs.md; LOGS=FOLDER
 	$(BIN)/python -m benchmarks.real_logs --logs '$(LOGS)' --write docs/real-logs.md $(FLAGS)
 
-phases-coverage: $(STAMP) ## how often the intervals of the phases hold, on simulated logs: into docs/phases.md; goes on where stopped
+phases-reconstruction: $(STAMP) ## mixtures reconstructed beside known ones: into docs/validation.md; goes on where stopped
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.reconstruction --write docs/validation.md $(FLAGS)
+
+oscillations: $(STAMP) ## oscillations found beside known ones, begin and end: into docs/validation.md; goes on where stopped
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.oscillations --write docs/validation.md $(FLAGS)
+
+coverage: $(STAMP) ## how often the intervals of the phases hold, on simulated logs: into docs/phases.md; goes on where stopped
 	$(BIN)/python -m benchmarks.phase_coverage --write $(FLAGS)
 
 flown-thrust: $(STAMP) ## flights without the stand's nitrogen and of a separated flow, beside the truth: docs/flight.md
@@ -105,6 +111,12 @@ recovery: $(STAMP) ## calibrate logs whose truth is known: bias and coverage
 
 narrow-port: $(STAMP) ## a gauge at the head of a port as wide as the throat, with and without that: docs/narrow-port.md
 	$(BIN)/python -m benchmarks.narrow_port --write
+
+reconstruction: $(STAMP) ## mixtures reconstructed beside known ones: into docs/validation.md; goes on where stopped
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.reconstruction --write docs/validation.md $(FLAGS)
+
+oscillations: $(STAMP) ## oscillations found beside known ones, begin and end: into docs/validation.md; goes on where stopped
+	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.oscillations --write docs/validation.md $(FLAGS)
 
 coverage: $(STAMP) ## 95 % intervals of simulated tests with systematic errors: docs/coverage.md; goes on where stopped
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.coverage --write docs/coverage.md $(FLAGS)

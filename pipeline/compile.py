@@ -21,7 +21,7 @@ def run_engine() -> None:
     """The reference engine and its sensitivities."""
     from hfanalysis.engine.sensitivity import run_with_tangents
     from hfanalysis.record.engine_file import load_engine
-    from hfanalysis.simulate.unsteady_run import simulate
+    from hfanalysis.simulation.unsteady_run import simulate
 
     engine = simulate(load_engine(ENGINE)).engine
     run_with_tangents(engine, ("volume",), times=(0.0, 1.0)).output("impulse", (0.5,))

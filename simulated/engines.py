@@ -6,10 +6,10 @@ from dataclasses import replace
 from functools import cache
 from math import pi, radians
 
-from hfanalysis.design.sizing import DipTube, size_for_ullage
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.rocket.vehicle import Vehicle
+from hfanalysis.steady_design.sizing import DipTube, size_for_ullage
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.combustion_table import CombustionTable, build
 from hfanalysis.thermo.nitrous import saturation

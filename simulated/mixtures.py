@@ -1,7 +1,7 @@
 """Burns whose mixture is known: chamber pressure and thrust of engines of many sizes, by laws of their own.
 
-The regression goes with the total flux, the efficiency may fall, the throat may erode; pressure, thrust, flow and
-masses carry errors of the size that they state.
+The regression goes with the oxidizer's or the total flux and may fade, the efficiency may fall, the throat may erode;
+pressure, thrust, flow and masses carry errors of the size that they state.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ class Burn:
 @dataclass(frozen=True)
 class World:
     """How a burn goes: throat radius [m], area ratio, time [s], mixture at first, efficiency at first and what it falls
-    by, growth of the throat [m], flux exponent; and which measurements there are."""
+    by, growth of the throat [m], flux exponent; what of the fuel counts in the flux and what the rate fades by through
+    the burn [-]; and which measurements there are."""
 
     throat: float = 0.012
     area_ratio: float = 3.0
@@ -51,6 +52,8 @@ class World:
     falls: float = 0.0
     erodes: float = 0.0
     exponent: float = 0.55
+    of_fuel: float = 0.5
+    fades: float = 0.0
     pressure: float = 22e5
     weighed: bool = True
     calipered: bool = True
@@ -76,6 +79,8 @@ def world(seed: int) -> World:
         exponent=float(r.uniform(0.4, 0.65)),
         pressure=float(r.uniform(12e5, 40e5)),
         noise=float(r.choice([0.001, 0.003, 0.01])),
+        of_fuel=float(r.choice([0.0, 0.5])),
+        fades=float(r.choice([0.0, 0.0, 0.15])),
     )
 
 
@@ -113,15 +118,15 @@ def _first_flow(theory: Theory, of: World, area: float) -> float:
 def _run(
     theory: Theory, of: World, time: Array, oxidizer: Array, area: Array, efficiency: Array, grain: tuple[float, float]
 ) -> tuple[Array, Array, Array]:
-    """Port [m], mixture [-] and pressure [Pa] over time; regression in total flux."""
+    """Port [m], mixture [-] and pressure [Pa] over time."""
     port0, length = grain
-    flux0 = oxidizer[0] * (1.0 + 0.5 / of.mixture) / (pi * port0**2)
+    flux0 = oxidizer[0] * (1.0 + of.of_fuel / of.mixture) / (pi * port0**2)
     rate0 = oxidizer[0] / of.mixture / (2.0 * pi * port0 * length * DENSITY)
     port, mixture, radius, fuel = np.empty(time.size), np.empty(time.size), port0, oxidizer[0] / of.mixture
     for i in range(time.size):
         for _ in range(3):
-            flux = (oxidizer[i] + 0.5 * fuel) / (pi * radius**2)
-            rate = rate0 * (flux / flux0) ** of.exponent
+            flux = (oxidizer[i] + of.of_fuel * fuel) / (pi * radius**2)
+            rate = rate0 * (flux / flux0) ** of.exponent * (1.0 - of.fades * time[i] / of.lasts)
             fuel = 2.0 * pi * radius * length * DENSITY * rate
         port[i], mixture[i] = radius, oxidizer[i] / fuel
         radius += STEP * rate

@@ -1,16 +1,58 @@
-"""Hot-fire test data analysis for nitrous oxide / paraffin hybrid rocket engines."""
+"""Hot-fire test data analysis for nitrous oxide / paraffin hybrid rocket engines.
+
+What is named in ``__all__`` is the public interface, and follows semantic versions; everything else is private.
+"""
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from hfanalysis.errors import AbsentError, AnalysisError, InputError
 from hfanalysis.version import __version__
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["__version__", "load_residuals"]
+    from hfanalysis.interface.engines import design, simulate
+    from hfanalysis.interface.firing import Firing, open
+    from hfanalysis.interface.made import firing
+    from hfanalysis.quantity import Quantity
+
+__all__ = [
+    "AbsentError",
+    "AnalysisError",
+    "Firing",
+    "InputError",
+    "Quantity",
+    "__version__",
+    "design",
+    "firing",
+    "load_residuals",
+    "open",
+    "simulate",
+]
+
+_PLACES = {
+    "Firing": "hfanalysis.interface.firing",
+    "open": "hfanalysis.interface.firing",
+    "firing": "hfanalysis.interface.made",
+    "simulate": "hfanalysis.interface.engines",
+    "design": "hfanalysis.interface.engines",
+    "Quantity": "hfanalysis.quantity",
+}
+"""Where the names are that are loaded when they are asked for: importing the package takes no time."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(_PLACES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
 
 
 def load_residuals(test: str | Path, root: str | Path = ".") -> xr.DataTree:

@@ -8,10 +8,8 @@ module of the package that it imports, directly or not*, read as they did; how o
 
 from __future__ import annotations
 
-import os
 import pickle
 import stat
-import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cached_property, partial
@@ -26,7 +24,9 @@ from numba.core.runtime.nrt import rtsys
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic, register_jitable
 
+from hfanalysis.progress import compiling
 from hfanalysis.sources import source_digest
+from hfanalysis.users import own_temporary, user
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -207,12 +207,12 @@ def _keep(made: Any, function: Callable[..., Any]) -> None:
 def _private_folder() -> Path | None:
     """A folder that only this user can write to, for what is loaded from it is run; None where there is none."""
     try:
-        folder = Path(tempfile.gettempdir()) / f"hfanalysis-{os.geteuid()}"
+        folder, number = own_temporary(), user()
         folder.mkdir(mode=0o700, exist_ok=True)
         found = folder.lstat()
     except OSError:
         return None
-    own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & 0o022
+    own = stat.S_ISDIR(found.st_mode) and (number is None or (found.st_uid == number and not found.st_mode & 0o022))
     return folder if own else None
 
 
@@ -236,8 +236,12 @@ def _kept(cache: Any, signature: Any, context: Any) -> Any:
     what is compiled asks for its memory management alone, and a compiler that starts for what is not kept loads the
     rest by itself."""
     rtsys.initialize(context)
+    found = None
     with cache._guard_against_spurious_io_errors():
-        return cache._load_overload(signature, context)
+        found = cache._load_overload(signature, context)
+    if found is None:
+        compiling()
+    return found
 
 
 def _seal(index: Any, name: str, data: Any) -> None:

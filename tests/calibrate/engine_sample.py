@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hfanalysis.assembly.calibrated import Regression
-from hfanalysis.assembly.engine import combustion_of
+from hfanalysis.assembly.burnt_gas import combustion_of
 from hfanalysis.calibrate.evidence import NUISANCES, Evidence, Scalar, chamber_at
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn

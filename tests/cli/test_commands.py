@@ -204,9 +204,9 @@ def test_ctrl_c_ends_without_a_traceback(run: Run, root: Path, monkeypatch: pyte
 
 def test_only_a_defect_of_ours_shows_a_traceback(root: Path) -> None:
     code = (
-        "import sys; from hfanalysis.cli import main, perform\n"
+        "import sys; from hfanalysis.cli import main\nfrom hfanalysis.interface import bringing\n"
         "def broken(*_, **__): raise ValueError('ours')\n"
-        f"perform.run_to = broken; sys.argv = ['hfa', 'ingest', 'HF5', '--root', {str(root)!r}]; main()"
+        f"bringing.run_to = broken; sys.argv = ['hfa', 'ingest', 'HF5', '--root', {str(root)!r}]; main()"
     )
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert ended.returncode == 1

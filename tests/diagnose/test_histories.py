@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import h5py
 from tests.diagnose.naming.test_naming import catalogue
 from tests.inference import made
+from tests.products.cf import check
 
 from hfanalysis.diagnose.naming.naming import name_effects
 from hfanalysis.diagnose.product_histories import write_histories
@@ -25,6 +26,7 @@ def test_an_effect_and_an_unknown_source_beside_it_may_have_the_same_name(tmp_pa
         naming=naming, verdict=SimpleNamespace(chosen=naming.base), product=SimpleNamespace(localisation=rows)
     )
     write_histories(tmp_path / "diagnosis.h5", found, {})  # type: ignore[arg-type]
+    check(tmp_path / "diagnosis.h5")
     with h5py.File(tmp_path / "diagnosis.h5") as file:
         assert set(file["sources"]) == {"tank_heat", "tank_heat 2"}
         assert [file[f"sources/{name}/mean"][0] for name in ("tank_heat", "tank_heat 2")] == [5.0, 2.0]

@@ -75,7 +75,7 @@ def test_what_falls_too_low_is_vapor_made_late(depth: float, size: float) -> Non
     assert found is not None
     assert found.names == ("tank_nonequilibrium",)
     assert 0.2 < found.end < 1.2
-    assert "comes back to it: vapor is made late" in found.text
+    assert "it comes back, so vapor is made late" in found.text
     assert ("tank_stratification" in found.text) == ("p_tank falls by" in found.text)
 
 

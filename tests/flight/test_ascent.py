@@ -17,7 +17,7 @@ from hfanalysis.flight.curve import Curve, even_curve
 from hfanalysis.flight.descent import Descent, descend, fall
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, drag_coefficient, gravity
-from hfanalysis.simulate import flown
+from hfanalysis.simulation import flown
 from hfanalysis.thermo import air as compiled
 from hfanalysis.thermo import atmosphere
 

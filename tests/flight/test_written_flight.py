@@ -20,7 +20,7 @@ from hfanalysis.flight.summary import FlightSpread, quantities
 from hfanalysis.rocket.aerodynamics import Fins, Nose, Shape, Tail
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.simulate import flown
+from hfanalysis.simulation import flown
 from hfanalysis.thermo import atmosphere
 
 DROGUE, MAIN = Parachute(1.55, 1.17), Parachute(2.20, 10.5, 457.0)

@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from simulated.purged import ROCKET, Truth, fired
+from tests.flight import loaders
 
 from hfanalysis.flight import rasp, rocksim
 from hfanalysis.measured_flight.engine_files import Export, export
@@ -70,3 +71,15 @@ def test_burn_time_and_average_are_the_designation_s_under_their_own_names() -> 
     assert f"burn_time_5_percent {time:.3f} s" in made.eng
     assert f"average_thrust_5_percent {mean:.1f} N" in made.rse
     assert f"N{mean:.0f}" in made.eng
+
+
+def test_the_stand_s_thrust_has_a_file_of_its_own() -> None:
+    """Its impulse is that of the stand; along the flight the air is thinner, and the thrust larger."""
+    made = exported()
+    motor, points, comments = rasp.read(made.static_eng)
+    assert motor == rasp.read(made.eng)[0]
+    assert points.impulse == pytest.approx(launched().firing.impulse_stand, rel=1e-3)
+    assert "as measured on the stand, purge gas included, at an ambient pressure of" in comments[1]
+    for text in (made.eng, made.static_eng):
+        assert loaders.openrocket_eng(text) == loaders.thrustcurve_eng(text) == []
+    assert loaders.openrocket_rse(made.rse) == loaders.thrustcurve_rse(made.rse) == []

@@ -9,6 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from tests.products.cf import check
 from tests.segment.stand import definition, fire, log_of, segments_of
 
 from hfanalysis.measured_flight.firing import firing
@@ -69,6 +70,7 @@ def test_stated_deviations_are_those_of_the_drawn_flights() -> None:
 def test_heights_count_from_the_ground(tmp_path: Path) -> None:
     write_histories(tmp_path / "flight.h5", flown(), "no geometry", {})
     apogee = product(flown(), ROCKET, "no geometry").apogee.value
+    check(tmp_path / "flight.h5")
     with h5py.File(tmp_path / "flight.h5") as file:
         assert file["ascent/height"][0] == pytest.approx(0.0, abs=0.1)
         assert np.max(file["ascent/height"]) == pytest.approx(apogee, rel=1e-3)

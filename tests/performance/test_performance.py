@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from simulated.engines import hf5_like
+from tests.products.cf import check
 from tests.segment.stand import AMBIENT, THROAT, Trial, definition, fire, log_of, segments_of
 
 from hfanalysis.performance.efficiency import efficiencies, ideal
@@ -117,6 +118,7 @@ def test_histories_are_read_with_their_units(burn: Trial, tmp_path: Path) -> Non
         time, measured_histories(log, segments, definition(burn.stand), time), {"of_ratio": "a and n are missing"}
     )
     write_histories(tmp_path / "performance.h5", found, {"version": "1"})
+    check(tmp_path / "performance.h5")
     with h5py.File(tmp_path / "performance.h5") as file:
         assert set(file) == {"time", "thrust_raw", "thrust_corrected", "p_chamber"}
         for name in file:

@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
+from tests.products.cf import check
 from tests.record import make
 
 from hfanalysis.errors import AbsentError, InputError
@@ -206,6 +207,7 @@ def test_a_file_that_is_no_product_is_refused(tmp_path: Path) -> None:
 
 def test_times_are_not_in_the_file(tmp_path: Path) -> None:
     make.read(tmp_path, make.LOG + TANK, {"log.csv": make.csv(time=T, p_tank=P)})
+    check(tmp_path / "ingest.h5")
     with h5py.File(tmp_path / "ingest.h5") as file:
         assert "created" not in " ".join([*file.attrs, *file["p_tank"].attrs]).lower()
 

@@ -18,8 +18,8 @@ from hfanalysis.record.engine_file import EngineStatements, load_engine
 from hfanalysis.record.log import read_log
 from hfanalysis.record.schema import DERIVED, Section
 from hfanalysis.record.unused import OF_ENGINES, OF_TESTS, SPREADS_OF_TESTS
-from hfanalysis.simulate.steady_run import design
-from hfanalysis.simulate.unsteady_run import simulate
+from hfanalysis.simulation.steady_run import design
+from hfanalysis.simulation.unsteady_run import simulate
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 from hfanalysis.units import Value

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from hfanalysis.effects import library
 from hfanalysis.report.material import Store, StoredVariable
 
 
@@ -37,7 +38,7 @@ def _weak(unit: str, level: float, **more: Any) -> dict[str, Any]:
 
 
 _NOWHERE = {"value": None, "reason": "nowhere beyond two standard deviations"}
-_SIZE = {"size": "0.9 kW", "plausible": True, "why": "power of 0.9 kW is below 3 kW"}
+_SIZE = {"size": "0.9 kW", "plausible": True, "why": "power 0.9 kW (limit 3 kW)"}
 
 DIAGNOSIS: dict[str, Any] = {
     "verdict": "named",
@@ -93,7 +94,7 @@ DIAGNOSIS: dict[str, Any] = {
     },
     "twins": [["tank_heat", "tank_wall_heat_capacity"]],
     "not_it": ["fuel_sliver", "n2_purge"],
-    "decisive_measurements": ["tank_heat: a thermocouple on the tank's wall"],
+    "decisive_measurements": ["heat into the tank: a thermocouple on the tank's wall"],
     "plausibility": {
         "tank_heat": _SIZE,
         "tank_wall_heat_capacity": {"size": "90 kJ/K", "plausible": False, "why": "that is 100 kg of aluminum"},
@@ -112,11 +113,12 @@ DIAGNOSIS: dict[str, Any] = {
     "notes": ["there is no other test of this stand to prove it on"],
     "warnings": [],
     "sentences": [
-        "The model lacks tank_heat (0.83); tank_wall_heat_capacity (0.15) cannot be excluded.",
-        "From 0.4 to 6.2 s the tank's energy differs by 0.9 ± 0.15 kW on average.",
-        "p_tank: rms 0.9 bar without, 0.1 bar with it; noise 0.08 bar.",
+        "Missing from the model, with probability: heat into the tank (0.83).",
+        "From 0.4 s to 6.2 s 0.90 ± 0.15 kW of heat enters the tank that the model does not have.",
+        "Run tank pressure misfit: 0.9 bar refitted, 0.1 bar with the effects; noise 0.08 bar.",
     ],
     "quoted": {f"{size} bar": {"value": 1e5 * size, "unit": "Pa", "std": None} for size in (0.9, 0.1, 0.08)},
+    "called": {name: effect.plain_name for name, effect in library().items()},
     "provenance": {"hfanalysis": "0.1.0"},
 }
 

@@ -9,7 +9,7 @@ from tests.segment.stand import Stand, definition, fire, log_of
 from hfanalysis.record.sections import GrainSection, ObservedSection
 from hfanalysis.segment.fade import find_fade
 from hfanalysis.segment.fire import GRID, Response
-from hfanalysis.segment.fuel_at_once import _fall_at, _step
+from hfanalysis.segment.fuel_at_once import _falls, _step
 from hfanalysis.segment.phases import find_phases
 from hfanalysis.units import Value
 
@@ -25,12 +25,12 @@ def response(value: np.ndarray, noise: float) -> Response:
 def test_a_fall_of_a_twentieth_of_a_bar_is_the_wander_of_a_sensor(level: float, fall: float, seen: bool) -> None:
     """However large a part of the response it is, and however clear: it is that of a chamber near ambient."""
     value = np.where(TIME < 3.0, level, level - fall)
-    assert (_fall_at(response(value, 1e-3 * fall), 3.0, None) > 0.0) is seen
+    assert bool(_falls(response(value, 1e-3 * fall), np.array([3.0]), None)[0] > 0.0) is seen
 
 
 @pytest.mark.parametrize("share", [0.1, 0.2])
 def test_a_fall_of_a_fifth_is_no_end_of_the_fuel(share: float) -> None:
-    assert _fall_at(response(np.where(TIME < 3.0, 10e5, (1.0 - share) * 10e5), 1e2), 3.0, None) == 0.0
+    assert _falls(response(np.where(TIME < 3.0, 10e5, (1.0 - share) * 10e5), 1e2), np.array([3.0]), None)[0] == 0.0
 
 
 @pytest.mark.parametrize(("lasts", "seen"), [(0.25, True), (0.4, True), (0.75, False)])

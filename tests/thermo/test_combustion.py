@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hfanalysis.arrays import Array
-from hfanalysis.design.steady import Requirement, ideal_specific_impulse, optimum
+from hfanalysis.steady_design.steady import Requirement, ideal_specific_impulse, optimum
 from hfanalysis.thermo.combustion import (
     FORMATION_OFFSET,
     FUEL_MOLAR_MASS,

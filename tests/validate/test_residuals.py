@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
+from tests.products.cf import check
 
 from hfanalysis.validate.residuals import PHASES, Residual, gaps, phases_of, write_residuals
 
@@ -72,6 +73,7 @@ def test_the_phase_of_a_sample(t_v: float | None, t_purge: float | None, expecte
 
 
 def test_the_residuals_open_in_xarray(product: Path) -> None:
+    check(product)
     with xr.open_dataset(product, engine="h5netcdf", group="tank_free/p_tank") as data:
         assert set(data.data_vars) == {"measured", "model", "residual", "noise_std", "phase"}
         assert data["residual"].dims == ("time",)

@@ -92,7 +92,9 @@ def test_adopted_effects_are_said_with_their_values_and_their_file() -> None:
     heat = AdoptedEffect(name="tank_heat", parameters={"power": Quantity(912.34, "W", 152.1)}, file=file)
     layers = {"excess": Quantity(2.0, "K"), "mixing": Quantity(0.031, "-", 0.004)}
     layer = AdoptedEffect(name="tank_stratification", parameters=layers, file=file)
-    assert adopted_in_words([]) == ""
-    assert adopted_in_words([heat]) == "With tank_heat 0.91 ± 0.15 kW adopted (engines/HF5.effects.toml)."
-    said = adopted_in_words([heat, layer])
-    assert said.endswith("and tank_stratification 2 K (mixing 0.0310 ± 0.0040) adopted (engines/HF5.effects.toml).")
+    names = {"tank_heat": "heat into the tank", "tank_stratification": "warm layers in the tank"}
+    assert adopted_in_words([], names.__getitem__) == ""
+    said = adopted_in_words([heat], names.__getitem__)
+    assert said == "Included in the model: heat into the tank, 0.91 ± 0.15 kW (engines/HF5.effects.toml)."
+    said = adopted_in_words([heat, layer], names.__getitem__)
+    assert said.endswith("and warm layers in the tank, 2 K (mixing 0.0310 ± 0.0040) (engines/HF5.effects.toml).")

@@ -6,22 +6,22 @@ report's constant losses by phase stop the flow before the fuel is gone.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from math import pi
 
 import numpy as np
-from scipy.optimize import brentq, newton
 
-from hfanalysis.assembly.engine import combustion_of
+from hfanalysis.assembly.burnt_gas import combustion_of
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.unsteady import Engine, burn
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import FuelLaw, TankConstants
 from hfanalysis.record.definition import TestDefinition
+from hfanalysis.roots import root_between
 from hfanalysis.sentences import said, text
 from hfanalysis.thermo.combustion import FORMATION_OFFSET, PROPEP_OXIDIZER_ENTHALPY
 from hfanalysis.thermo.nitrous import saturation
@@ -170,8 +170,8 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
     near = min(max(engine.temperature, low), high)
     with suppress(ValueError, AbsentError, RuntimeError):  # a step may lead to a tank that cannot be, or nowhere
         second = near - miss(near) / float(engine.saturation.pressure_slope(near))
-        found = float(newton(miss, near, x1=second, tol=WITHIN, maxiter=SOON))
-        if low < found < high:
+        found = _by_secants(miss, near, second)
+        if found is not None and low < found < high:
             return replace(engine, temperature=found)
     if not low < high or not miss(low) <= 0.0 <= miss(high):
         raise AbsentError(
@@ -183,7 +183,20 @@ def starting_for(engine: Engine, instant: float, pressure: float) -> Engine:
                 instant=instant,
             )
         )
-    return replace(engine, temperature=float(brentq(miss, low, high, xtol=WITHIN)))
+    return replace(engine, temperature=root_between(lambda warm, _: miss(warm))(None, low, high, WITHIN))
+
+
+def _by_secants(miss: Callable[[float], float], first: float, second: float) -> float | None:
+    """Where ``miss`` is zero, from two guesses [K]; None where that does not come to an end SOON."""
+    at_first, at_second = miss(first), miss(second)
+    for _ in range(SOON):
+        if at_second == at_first:
+            return second if at_second == 0.0 else None
+        third = second - at_second * (second - first) / (at_second - at_first)
+        if abs(third - second) < WITHIN:
+            return third
+        first, at_first, second, at_second = second, at_second, third, miss(third)
+    return None
 
 
 def pressure_at(engine: Engine, instant: float) -> float:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from math import isfinite, pi
 
 from hfanalysis.assembly import rocket
-from hfanalysis.design import sizing, steady
+from hfanalysis.assembly.burnt_gas import combustion_of
 from hfanalysis.engine import unsteady
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.grain import Grain
@@ -16,7 +15,8 @@ from hfanalysis.errors import InputError
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.thermo import atmosphere, combustion, combustion_table
+from hfanalysis.steady_design import sizing, steady
+from hfanalysis.thermo import atmosphere, combustion
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
 from hfanalysis.units import Value
@@ -67,12 +67,6 @@ def oxidizer_enthalpy(needs: Needs) -> OxidizerEnthalpy:
     t = temperature(needs)
     liquid = float(properties(needs.file).energy(Property.LIQUID_ENTHALPY, t)[0])
     return OxidizerEnthalpy(combustion.FORMATION_OFFSET + liquid, f"saturated liquid at {t:.2f} K")
-
-
-@lru_cache(maxsize=1)
-def combustion_of() -> combustion_table.CombustionTable:
-    """The combustion table, loaded once."""
-    return combustion_table.build()
 
 
 def ambient_pressure(file: EngineFile) -> float:

@@ -8,16 +8,16 @@ the other end of what it may be. One course of the pressure tells one number: m 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
-from scipy.optimize import brentq
+import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.compiled import compiled
-from hfanalysis.effects.injector_choked_vapor import expanding_flow
+from hfanalysis.compiled import compiled, inner, law
+from hfanalysis.effects.injector_choked_vapor import critical_ratio, expanding_flow
 from hfanalysis.engine.injector import mass_flow
 from hfanalysis.engine.tank import polytropic
+from hfanalysis.roots import root_between, root_near
 
 EXPONENTS = (0.05, 6.0)
 """Between which m [-] is looked for, as by the report's law (blowdown.py)."""
@@ -31,6 +31,13 @@ VAPOR_M = 1.15
 
 WITHIN = 1e-6
 """To what m and C_d are found [-]."""
+
+NEAR = 0.1
+"""Part of a guess by which m or C_d are looked for around it first. Source: by choice, for speed: some standard
+deviations of a test's m; beyond it the whole range is looked through."""
+
+Measured = tuple[Array, Array, Array, float, float, float, float, float, float, bool]
+"""The fields of an :class:`Expansion`, in their order."""
 
 
 @dataclass(frozen=True)
@@ -52,61 +59,87 @@ class Expansion:
     gamma: float
     throttled: bool = False
 
+    @property
+    def measured(self) -> Measured:
+        """As compiled code takes it."""
+        return (
+            self.time, self.loss, self.chamber, self.volume, self.area, self.pressure, self.mass, self.reached,
+            self.gamma, self.throttled,
+        )  # fmt: skip
+
     def exponent(self, coefficient: float) -> float:
         """m [-] with which the tank comes to the pressure ``reached``; NaN: with none."""
-        return _root(lambda m: self._end(m, coefficient) - self.reached, EXPONENTS)
+        return float(exponent_of(self.measured, coefficient, np.nan))
 
     def coefficient(self, exponent: float) -> float:
         """C_d [-] that an ``exponent`` m [-] needs; NaN: there is none."""
-        return _root(lambda c: self._end(exponent, c) - self.reached, COEFFICIENTS)
-
-    def _end(self, exponent: float, coefficient: float) -> float:
-        area = coefficient * self.area
-        return _expand(
-            self.time, self.loss, self.chamber, self.pressure, self.mass, self.volume, area, exponent, self.gamma,
-            self.throttled,
-        )  # fmt: skip
+        return float(coefficient_of(self.measured, exponent, np.nan))
 
 
-def _root(miss: Callable[[float], float], between: tuple[float, float]) -> float:
-    try:
-        return float(brentq(miss, *between, xtol=WITHIN))
-    except ValueError:
-        return float("nan")
-
-
-@compiled
-def choked_flow(
-    area: float, density: float, tank: float, run: float, chamber: float, gamma: float, throttled: bool
-) -> float:
-    """C_d A sqrt(rho p_run) psi(p_c/p_run) [kg/s] of a gas that expands and chokes; 0 where nothing drives it.
-
-    ``area`` C_d A [m^2]; ``density`` [kg/m^3] and pressure ``tank`` [Pa] in the tank; ``run`` and ``chamber`` [Pa];
-    ``gamma`` [-].
-    """
-    if run <= chamber or run <= 0.0:
-        return 0.0
-    at = density * run / tank if throttled else density
-    return mass_flow(area, at, run - chamber) * expanding_flow(chamber / run, gamma)
-
-
-@compiled
+@inner
 def _expand(
     time: Array, loss: Array, chamber: Array, start: float, mass: float, volume: float, area: float, exponent: float,
     gamma: float, throttled: bool,
 ) -> float:  # fmt: skip
-    """Pressure [Pa] at the last of the times of p = p_v (M/M_v)^m, by the midpoint rule."""
-    left = mass
+    """Pressure [Pa] at the last of the times of p = p_v (M/M_v)^m, by the midpoint rule.
+
+    The flow is C_d A sqrt(rho p_run) psi(p_c/p_run) [kg/s] of a gas that expands and chokes; 0 where nothing drives it.
+    """
+    left, choked = mass, critical_ratio(gamma)
+    at_throat = expanding_flow(choked, gamma) * np.sqrt(1.0 - choked)
     for i in range(time.size - 1):
         h = time[i + 1] - time[i]
         trial = left
         for half in range(2):
             p = polytropic(start, mass, exponent, trial)
             share = 0.5 * half
-            lost = loss[i] + share * (loss[i + 1] - loss[i])
+            run = p - (loss[i] + share * (loss[i + 1] - loss[i]))
             behind = chamber[i] + share * (chamber[i + 1] - chamber[i])
-            flow = choked_flow(area, trial / volume, p, p - lost, behind, gamma, throttled)
+            flow = 0.0
+            if run > behind and run > 0.0:
+                density, ratio = trial / volume * (run / p if throttled else 1.0), behind / run
+                lasts = at_throat / np.sqrt(1.0 - ratio) if ratio <= choked else expanding_flow(ratio, gamma)
+                flow = mass_flow(area, density, run - behind) * lasts
             step = 0.5 * h if half == 0 else h
             trial = max(left - step * flow, 1e-6 * mass)
         left = trial
     return float(polytropic(start, mass, exponent, left))
+
+
+@inner
+def _miss(measured: Measured, exponent: float, coefficient: float) -> float:
+    """Pressure [Pa] at the end beyond that measured."""
+    time, loss, chamber, volume, area, pressure, mass, reached, gamma, throttled = measured
+    end = _expand(time, loss, chamber, pressure, mass, volume, coefficient * area, exponent, gamma, throttled)
+    return float(end - reached)
+
+
+@inner
+def _by_exponent(exponent: float, given: tuple[Measured, float]) -> float:
+    measured, coefficient = given
+    return float(_miss(measured, exponent, coefficient))
+
+
+@inner
+def _by_coefficient(coefficient: float, given: tuple[Measured, float]) -> float:
+    measured, exponent = given
+    return float(_miss(measured, exponent, coefficient))
+
+
+_exponent = law(root_near(law(root_between(_by_exponent))))
+_coefficient = law(root_near(law(root_between(_by_coefficient))))
+
+
+@compiled
+def exponent_of(measured: Measured, coefficient: float, guess: float) -> float:
+    """m [-] with which the tank comes to the pressure at the end with C_d = ``coefficient`` [-]; NaN: with none.
+
+    ``guess`` [-]: about where it is (NaN: anywhere).
+    """
+    return float(_exponent((measured, coefficient), EXPONENTS[0], EXPONENTS[1], WITHIN, guess, NEAR * guess))
+
+
+@compiled
+def coefficient_of(measured: Measured, exponent: float, guess: float) -> float:
+    """C_d [-] that an ``exponent`` m [-] needs; NaN: there is none. ``guess`` [-]: about where it is (or NaN)."""
+    return float(_coefficient((measured, exponent), COEFFICIENTS[0], COEFFICIENTS[1], WITHIN, guess, NEAR * guess))

@@ -12,10 +12,9 @@ from math import log
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
-from scipy.special import stdtrit
 
 from hfanalysis.arrays import Array
+from hfanalysis.calibrate.student import limit
 from hfanalysis.quantity import NORMAL_95
 
 Misfit = Callable[[Array], float]
@@ -134,7 +133,7 @@ def _weights(
         scatter = max(float(np.sqrt(pressures @ pressures / samples * lost)), least)
     precision = np.asarray(np.linalg.inv(common + _diagonal(samples, scatter, effective, scales)), dtype=np.float64)
     freedom = min(max(effective - 2.0, 1.0) + scales.size, known)
-    return Weights(precision, float(stdtrit(freedom, 0.975)) ** 2, scatter, effective, samples)
+    return Weights(precision, limit(freedom) ** 2, scatter, effective, samples)
 
 
 def _diagonal(samples: int, scatter: float, effective: float, scales: Array) -> Array:
@@ -189,7 +188,22 @@ def surface(misfit: Misfit, best: Array, covariance: Array, threshold: float) ->
     nodes, axis = np.linspace(-1.0, 1.0, NODES), np.linspace(-1.0, 1.0, SURFACE_POINTS)
     values = np.array([[misfit(best + spread @ np.array([x, y])) for y in nodes] for x in nodes])
     values = np.minimum(values - values.min(), CEILING * threshold)
-    fine = RectBivariateSpline(nodes, nodes, values)(axis, axis).ravel()
+    between = _cubic(nodes, axis)
+    fine = (between @ values @ between.T).ravel()
     x, y = (grid.ravel() for grid in np.meshgrid(axis, axis, indexing="ij"))
     edge = (np.abs(x) > 0.999) | (np.abs(y) > 0.999)
     return Surface(best + np.column_stack((x, y)) @ spread.T, np.maximum(fine, 0.0), edge, threshold)
+
+
+def _cubic(nodes: Array, at: Array) -> Array:
+    """Weights (k, n) of values at ``nodes`` (n,) in the cubic spline through them at ``at`` (k,).
+
+    It has no knot at the second node and the last but one: as many pieces as values tell (de Boor, A Practical Guide to
+    Splines, chapter IV).
+    """
+
+    def columns(x: Array) -> Array:
+        powers, after = np.vander(x, 4, increasing=True), np.maximum(x[:, np.newaxis] - nodes[2:-2], 0.0)
+        return np.hstack([powers, after**3])
+
+    return np.asarray(np.linalg.solve(columns(nodes).T, columns(at).T).T)

@@ -7,12 +7,12 @@ volume, the phase times and the pressures read at them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, fields
 
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.calibrate.blowdown import Inputs, Reduction, Shift, Tables, VaporPhase, reduce
+from hfanalysis.calibrate.blowdown import Inputs, Reduction, Tables, VaporPhase, reduce_all
 from hfanalysis.thermo.saturation import Saturation
 
 SEED = 20230101
@@ -109,22 +109,21 @@ def draw(
     generator = np.random.default_rng(SEED)
     z = generator.standard_normal((samples, 11))
     own = generator.standard_normal((samples, len(HELD)))
-    drawn = [_drawn(_held(inputs, spread, held), spread, row) for row, held in zip(z, own, strict=True)]
-    phase = vapor_phase or VaporPhase.plain(saturation, inputs)
-    results = [reduce(tables, saturation, *row, phase) for row in drawn]
-    values = {n: np.array([getattr(r, n) for r in results]) for n in Reduction.__dataclass_fields__}
-    return Draws(values, _what_was_drawn(drawn) | _deviates(spread, z, own))
+    rows, shifts = _drawn(inputs, spread, z, own), np.asarray(z[:, 8:11] * spread.bias)
+    found = reduce_all(tables, saturation, rows, shifts, vapor_phase or VaporPhase.plain(saturation, inputs))
+    values = {f.name: column for f, column in zip(fields(Reduction), found.T, strict=True)}
+    return Draws(values, _what_was_drawn(rows, shifts) | _deviates(spread, z, own))
 
 
-def _held(inputs: Inputs, spread: InputSpread, z: Array) -> Inputs:
-    """With what is held drawn, too; a factor stays positive."""
-    shifted = {n: getattr(inputs, n) + s * float(x) for n, s, x in zip(HELD, spread.held, z, strict=True)}
-    return replace(inputs, **{n: max(v, 1e-3 * getattr(inputs, n)) for n, v in shifted.items() if v == v})
+def _held(inputs: Inputs, spread: InputSpread, z: Array) -> Array:
+    """What is held, drawn (samples, 3); a factor stays positive, and what is not held is NaN."""
+    stated = np.array([getattr(inputs, name) for name in HELD])
+    return np.asarray(np.maximum(stated + z * spread.held, 1e-3 * stated))
 
 
-def _what_was_drawn(drawn: list[tuple[Inputs, Shift]]) -> dict[str, Array]:
-    found = {n: np.array([getattr(i, n) for i, _ in drawn]) for n in ("mass", "volume", "area")}
-    return found | {f"p_{n}": np.array([getattr(s, n) for _, s in drawn]) for n in ("tank", "run", "chamber")}
+def _what_was_drawn(rows: Array, shifts: Array) -> dict[str, Array]:
+    found = dict(zip(("mass", "volume", "area"), rows[:, :3].T, strict=True))
+    return found | {f"p_{n}": column for n, column in zip(("tank", "run", "chamber"), shifts.T, strict=True)}
 
 
 def _deviates(spread: InputSpread, z: Array, own: Array) -> dict[str, Array]:
@@ -134,18 +133,9 @@ def _deviates(spread: InputSpread, z: Array, own: Array) -> dict[str, Array]:
     return {name: column for name, std, column in columns if std > 0.0}
 
 
-def _drawn(inputs: Inputs, spread: InputSpread, z: Array) -> tuple[Inputs, Shift]:
-    later, later_end = spread.t_v * z[4], spread.t_end * z[5]
-    reading = spread.reading @ z[6:8]
-    drawn = replace(
-        inputs,
-        mass=inputs.mass + spread.mass * z[0],
-        volume=inputs.volume + spread.volume * z[1],
-        area=inputs.area + spread.area * z[2],
-        t_feed=inputs.t_feed + spread.t_feed * z[3],
-        t_v=inputs.t_v + later,
-        t_end=inputs.t_end + later_end,
-        p_v=inputs.p_v + float(reading[0]) + spread.slopes[0] * later,
-        p_end=inputs.p_end + float(reading[1]) + spread.slopes[1] * later_end,
-    )
-    return drawn, Shift(*(b * x for b, x in zip(spread.bias, z[8:11], strict=True)))
+def _drawn(inputs: Inputs, spread: InputSpread, z: Array, own: Array) -> Array:
+    """The inputs of every repetition, (samples, 11): rows as the fields of :class:`Inputs`."""
+    stds = (spread.mass, spread.volume, spread.area, spread.t_feed, spread.t_v, spread.t_end)
+    off = z[:, :6] * stds
+    read = z[:, 6:8] @ spread.reading.T + off[:, 4:6] * spread.slopes
+    return np.column_stack([np.array(astuple(inputs)[:8]) + np.hstack([off, read]), _held(inputs, spread, own)])

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from hfanalysis.calibrate.blowdown import EXPONENTS, Inputs, Reduction
+from hfanalysis.calibrate.blowdown import Inputs, Reduction
+from hfanalysis.calibrate.reducing import EXPONENTS
 from hfanalysis.calibrate.uncertainty import Draws
 from hfanalysis.engine.closure import implied_heat
 from hfanalysis.quantity import DERIVED, DOUBTED, IDENTIFIED, NOT_IDENTIFIABLE, UNPHYSICAL, Quantity

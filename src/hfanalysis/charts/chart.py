@@ -32,6 +32,13 @@ class Series:
     kind: str = "line"
     upper: Array | None = None
     dashed: bool = False
+    faint: bool = False
+    """Drawn thin, and no part of what sets the value axis: what a sensor reads that nobody believes."""
+
+    @property
+    def css(self) -> str:
+        """The classes that draw it."""
+        return " ".join([self.style, *["dashed"] * self.dashed, *["faint"] * self.faint])
 
     def reduced(self, start: float, end: float, bins: int) -> Envelope:
         """The line from ``start`` to ``end`` [s] with at most ``bins`` points, in the chart's unit [SI]."""
@@ -65,6 +72,8 @@ class Chart:
     """Charts of one clock are zoomed together."""
     weight: float = 1.0
     """The share of a page's detail that its lines ask for, beside the others."""
+    repeats: bool = False
+    """Whether another chart of the page shows its lines as well, so that files and comparisons go without it."""
     difference: bool = False
     """Whether the values are differences, which the zero point of a unit does not concern."""
 

@@ -17,7 +17,8 @@ from hfanalysis.wording.scales import SYSTEMS, Scale
 def static(chart: Chart) -> Markup:
     """The chart in SI."""
     scale = chart.scale()
-    plot = svg.new_plot(chart.span, value_span(chart, scale), chart.height)
+    names = [one.label for one in chart.lines]
+    plot = svg.new_plot(chart.span, value_span(chart, scale), chart.height, names)
     svg.phases(plot, chart.phases)
     svg.axes(plot, chart.x_label, axis_label(chart, scale))
     svg.events(plot, chart.events)
@@ -42,7 +43,8 @@ def value_span(chart: Chart, scale: Scale) -> tuple[float, float]:
     if chart.value_span is not None:
         low, high = chart.value_span
         return scale(low), scale(high)
-    envelopes = [reduced(chart, one) for one in chart.lines]
+    believed = [one for one in chart.lines if not one.faint and one.finite] or chart.lines
+    envelopes = [reduced(chart, one) for one in believed]
     arrays = [array for data in envelopes for array in (data.low, data.high)]
     return svg.value_range([scale.factor * array + scale.zero for array in arrays], chart.with_zero)
 
@@ -56,7 +58,7 @@ def _add(plot: svg.Plot, chart: Chart, one: Series, scale: Scale) -> None:
         upper = scaled(Series("", "", one.time, one.upper).reduced(*chart.span, BINS), scale)
         svg.band(plot, data.time, data.mean, upper.mean, one.style)
     else:
-        svg.line(plot, data, one.style + (" dashed" if one.dashed else ""), one.label)
+        svg.line(plot, data, one.css, one.label)
 
 
 def scaled(data: Envelope, scale: Scale) -> Envelope:

@@ -16,7 +16,9 @@ from hfanalysis.wording.numbers import fixed
 WIDTH = 960.0
 """Width of every chart [px of its view box]; the page scales it."""
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 116.0, 56.0, 46.0
-"""Margins [px]: for the values, the names at the lines' ends, the events, and the time."""
+"""Margins [px]: for the values, the least for the names at the lines' ends, the events, and the time."""
+_WIDEST = 250.0
+"""The most for the names at the lines' ends [px]."""
 
 _ROWS = 3
 """Rows for the names of events above a chart."""
@@ -73,10 +75,22 @@ class Plot:
     over: list[str] = field(default_factory=list)
 
 
-def new_plot(times: tuple[float, float], values: tuple[float, float], height: float = 320.0) -> Plot:
-    """An empty chart over the given ranges: ``times`` [s], ``values`` [as shown], of a ``height`` [px]."""
+def new_plot(
+    times: tuple[float, float], values: tuple[float, float], height: float = 320.0, names: Sequence[str] = ()
+) -> Plot:
+    """An empty chart over the given ranges: ``times`` [s], ``values`` [as shown], of a ``height`` [px], with room for
+    the ``names`` of its lines."""
     low, high = values
-    return Plot(Axis(*times, LEFT, WIDTH - RIGHT), Axis(low, high, height - BOTTOM, TOP), height)
+    return Plot(Axis(*times, LEFT, WIDTH - right_of(names)), Axis(low, high, height - BOTTOM, TOP), height)
+
+
+def right_of(names: Sequence[str]) -> float:
+    """The right margin [px] that the names at the lines' ends take.
+
+    >>> right_of(["tank"]), right_of(["model with the effects"])
+    (116.0, 175.2)
+    """
+    return min(max(RIGHT, *(30.0 + _LETTER * len(name) for name in names)) if names else RIGHT, _WIDEST)
 
 
 def value_range(arrays: Iterable[Array], with_zero: bool = True) -> tuple[float, float]:
@@ -119,7 +133,7 @@ def nice_ticks(low: float, high: float, most: int = 7) -> list[float]:
 
 def axes(plot: Plot, x_label: str, y_label: str) -> None:
     """Grid, values and the names of the axes."""
-    right, bottom = WIDTH - RIGHT, plot.height - BOTTOM
+    right, bottom = plot.x.end, plot.height - BOTTOM
     plot.parts += _y_ticks(plot, right)
     plot.parts += _x_ticks(plot, bottom)
     plot.parts.append(f'<path class="axis" d="M{LEFT:.1f} {TOP:.1f}V{bottom:.1f}H{right:.1f}"/>')
@@ -215,7 +229,7 @@ def band(plot: Plot, time: Array, low: Array, high: Array, style: str) -> None:
 
 def level(plot: Plot, value: float, style: str) -> None:
     """A horizontal line across the chart at a ``value`` [as shown]."""
-    plot.parts.append(f'<path class="level {style}" d="M{LEFT:.1f} {plot.y(value):.1f}H{WIDTH - RIGHT:.1f}"/>')
+    plot.parts.append(f'<path class="level {style}" d="M{LEFT:.1f} {plot.y(value):.1f}H{plot.x.end:.1f}"/>')
 
 
 def line_path(plot: Plot, time: Array, values: Array) -> str:
@@ -266,12 +280,12 @@ def _name_ends(plot: Plot) -> None:
     ordered = sorted(plot.ends)
     places = _apart([y for y, _, _ in ordered], 15.0, plot.height - BOTTOM)
     for place, (_, name, style) in zip(places, ordered, strict=True):
-        x = WIDTH - RIGHT + 8
+        x = plot.x.end + 8
         plot.parts.append(f'<path class="line {style}" d="M{x:.1f} {place:.1f}h12"/>')
         plot.parts.append(lettering(x + 17, place + 4, shortened(name), "end-name", "start"))
 
 
-def shortened(name: str, most: int = 13) -> str:
+def shortened(name: str, most: int = 33) -> str:
     """A name that fits beside a chart."""
     return name if len(name) <= most else f"{name[: most - 1]}…"
 

@@ -353,3 +353,43 @@ def _new(
         from hfanalysis.cli import new
 
         new.new(root, test, log, edit)
+
+
+@app.command("table")
+def _table(
+    tests: Tests = None,
+    root: Root = Path(),
+    out: Out = None,
+    write: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write it there: .csv, .parquet or .xlsx, by the ending.")
+    ] = None,
+) -> None:
+    """Every quantity of the products of tests as one tidy table: CSV on standard output, or a file. Runs nothing."""
+    with plain_exit():
+        from hfanalysis.cli import table
+
+        table.table(tests or (), root, out, write)
+
+
+@app.command("demo")
+def _demo(
+    folder: Annotated[
+        Path, typer.Argument(metavar="[FOLDER]", help="Where to write them.", show_default="here")
+    ] = Path(),
+) -> None:
+    """Write examples to start from: the tests HF5 and HF4 (generated, not measured) and the report's engine."""
+    with plain_exit():
+        from hfanalysis.cli import demo
+
+        demo.demo(folder)
+
+
+@app.command("docs")
+def _docs(
+    page: Annotated[str | None, typer.Argument(metavar="[PAGE]", help="Such as tutorial; none: the list.")] = None,
+) -> None:
+    """Show a page of the documentation that comes with the package, or list them."""
+    with plain_exit():
+        from hfanalysis.cli import demo
+
+        demo.docs(page)

@@ -24,7 +24,7 @@ def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: fl
     """
     file = load_engine(path)
     with watch(file.engine.id, quiet):
-        from hfanalysis.simulate import unsteady_run, write
+        from hfanalysis.simulation import unsteady_run, write
 
         found = unsteady_run.simulate(file, until)
         if out is not None:
@@ -37,7 +37,7 @@ def design(path: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
     """The steady design of the engine file at ``path``; with its parametric study to ``out`` where that is given."""
     file = load_engine(path)
     with watch(file.engine.id, quiet):
-        from hfanalysis.simulate import steady_run, write
+        from hfanalysis.simulation import steady_run, write
 
         found = steady_run.design(file)
         if out is not None:

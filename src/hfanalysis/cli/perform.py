@@ -11,11 +11,11 @@ from hfanalysis.cli.exit_status import put, tell
 from hfanalysis.cli.request import Request
 from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.interface import bringing
 from hfanalysis.stages import ASIDE, ORDER, way_to
 from hfanalysis.stages.base import BASE, Context, load_stage
 from hfanalysis.stages.freshness import edited
 from hfanalysis.stages.open_test import open_test
-from hfanalysis.stages.runner import run_to
 from hfanalysis.units import near
 
 _SPINE = ("segment", "calibrate")
@@ -25,15 +25,10 @@ _SPINE = ("segment", "calibrate")
 def bring(name: str, request: Request) -> Context:
     """Bring a stage (or, for "run", all of them) up to date, silently; returns its context."""
     with watch(request.test, request.quiet) as progress:
-        context = open_test(
-            request.root, request.test, request.out, progress=progress, settings=_settings(request.settings)
-        )
-        context = run_to(ORDER[-1] if name == "run" else name, context, force=request.force, whole=name == "run")
-    if name in ("report", "run"):
-        from hfanalysis.report.index import write_index
-
-        write_index(context.out.parent)
-    return context
+        return bringing.bring(
+            name, request.root, request.test, request.out,
+            force=request.force, settings=_settings(request.settings), progress=progress,
+        )  # fmt: skip
 
 
 def stage(name: str, request: Request) -> Context:

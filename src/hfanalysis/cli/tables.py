@@ -83,7 +83,12 @@ def _adopted(name: str, context: Context) -> str:
     product = _MADE_WITH_EFFECTS.get(name)
     if product is None or not context.product(product).is_file():
         return ""
-    return wording.adopted_in_words([AdoptedEffect.from_json(e) for e in context.read_json(product)["effects"]])
+    found = [AdoptedEffect.from_json(e) for e in context.read_json(product)["effects"]]
+    if not found:
+        return ""
+    from hfanalysis.report.names import called
+
+    return wording.adopted_in_words(found, called)
 
 
 _MADE_WITH_EFFECTS = {

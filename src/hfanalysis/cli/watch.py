@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 
-from hfanalysis.progress import Progress, silent
+from hfanalysis.progress import Progress, silent, watching_compiler
 
 
 @contextmanager
@@ -17,5 +18,9 @@ def watch(name: str, quiet: bool) -> Iterator[Progress]:
         return
     from hfanalysis.cli.progress import spinner
 
-    with spinner(name) as progress:
+    with spinner(name) as progress, watching_compiler(partial(_compiles, progress)):
         yield progress
+
+
+def _compiles(progress: Progress, count: int) -> None:
+    progress(f"compiling the numerical code, once ({count} functions)", None)

@@ -79,12 +79,17 @@ def diagnose(
     verdict = verdict_of(found)
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
-    product = _product(found, verdict, proof, catalogue)
+    product = _product(found, verdict, proof, catalogue).but(called=plain_names(effects))
     sentences = story(product)
     if poor_fit(found.named.leftover):
         sentences += shown(subject).sentences
     notes = (*subject.notes, *product.notes)
     return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
+
+
+def plain_names(effects: Mapping[str, Effect]) -> dict[str, str]:
+    """What people call each effect, where it says so."""
+    return {name: effect.plain_name for name, effect in effects.items() if effect.plain_name}
 
 
 def _visible(effects: Mapping[str, Effect], observed: Observed) -> dict[str, Effect]:
@@ -245,4 +250,5 @@ def _decisive(verdict: Verdict, catalogue: Catalogue) -> tuple[str, ...]:
     """What would decide between the names that are left; nothing where none is claimed."""
     left = () if verdict.label == "none" else dict.fromkeys((*verdict.added, *verdict.set90))
     names = [n for n in left if n in catalogue.effects]
-    return tuple(dict.fromkeys(f"{n}: {catalogue.effects[n].decisive}" for n in names if catalogue.effects[n].decisive))
+    told = {n: catalogue.effects[n] for n in names if catalogue.effects[n].decisive}
+    return tuple(dict.fromkeys(f"{effect.plain_name or name}: {effect.decisive}" for name, effect in told.items()))

@@ -167,27 +167,26 @@ def _in_words(found: OpeningTransient, falls: bool, dips: bool) -> str:
     if falls:
         parts.append(
             text(
-                "p_tank falls by {fall} as the valve opens, beyond what it goes on to fall by while liquid flows: at "
-                "rest it was not the pressure of the bulk",
+                "the tank's pressure falls by {fall} as the valve opens, beyond its later fall; at rest it was not "
+                "the bulk's",
                 fall=said(found.fall, "bar", ".1f", found.std, ".1f"),
             )
         )
     if dips:
         parts.append(
             text(
-                "at {lowest:.1f} s p_tank is {dip} below the course of its later fall, and comes back to it: vapor is "
-                "made late (tank_nonequilibrium)",
+                "at {lowest:.1f} s the tank's pressure is {dip} below the course of its later fall; it comes back, so "
+                "vapor is made late",
                 lowest=found.lowest,
                 dip=said(found.dip, "bar", ".1f"),
             )
         )
     if not dips:
         parts.append(
-            "it was that of a hot ullage over a colder bulk (tank_stratification), or vapor is made late "
-            "(tank_nonequilibrium): these channels do not tell which"
+            "it was that of a hot ullage over a colder bulk, or vapor is made late; these channels do not tell which"
         )
     elif falls:
-        parts.append("how much of the fall is a hot ullage's (tank_stratification) these channels do not tell")
+        parts.append("how much of the fall is a hot ullage's these channels do not tell")
     return joined("; ", parts)
 
 
@@ -254,7 +253,7 @@ def open_check_valve(log: TestLog, segments: Segments) -> Sign | None:
     std = float(np.sqrt(2.0) * np.hypot(log["p_tank"].accuracy, log["p_purge"].accuracy))
     words = text(
         "the purge line falls from {opens:.1f} s on, but stays {above} above the tank at the end, {more} more than as "
-        "its check valve opened: nitrogen flows into the tank (n2_purge)",
+        "its check valve opened: nitrogen flows into the tank",
         opens=found.opens,
         above=said(found.above_at_end, "bar", ".1f"),
         more=said(found.more, "bar", ".1f"),

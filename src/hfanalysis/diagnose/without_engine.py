@@ -45,7 +45,7 @@ def channels_alone(subject: Subject, why: str) -> Diagnosis:
         upper_limits={},
         twins=(),
         not_it=(),
-        decisive_measurements=tuple(f"{name}: {effect(name).decisive}" for name in names),
+        decisive_measurements=tuple(f"{effect(name).plain_name}: {effect(name).decisive}" for name in names),
         plausibility={row.name: row.plausibility for row in effects},
         compared=Compared(channels=tuple(sorted(channels))),
         notes=(
@@ -57,6 +57,7 @@ def channels_alone(subject: Subject, why: str) -> Diagnosis:
         runtime_s=NO_TIME,
         seed=0,
         sentences=(*seen.sentences, text("No more can be said without a model to compare with: {why}.", why=why)),
+        called={name: effect(name).plain_name for name in dict.fromkeys([*names, *(row.name for row in effects)])},
     )
 
 

@@ -44,6 +44,7 @@ source = "measured"             # measured | replica | synthetic
 # description = "what was tested, and how it went"
 # date = 2022-04-03
 # stand = "name of the test stand"
+# engine = "name of the engine"   # stands on top of its page
 
 [log]
 {log}

@@ -4,13 +4,23 @@ from __future__ import annotations
 
 from math import sqrt
 
-from hfanalysis.compiled import compiled
+from hfanalysis.compiled import Real, compiled, law
 from hfanalysis.engine.effect import Believable, Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, INJECTOR_FACTOR, IS_LIQUID, P_CHAMBER, P_TANK, term
 
 WEIGHT, GAMMA = range(2)
 LEAST_DROP = 1e-4
 """Relative pressure drop [-] below which the two laws agree."""
+
+
+@law
+def critical_ratio(gamma: Real) -> Real:
+    """p / p_0 [-] at and below which a gas of isentropic exponent ``gamma`` [-] chokes (Sutton and Biblarz, chapter 3).
+
+    >>> round(critical_ratio(1.4), 4)
+    0.5283
+    """
+    return (2.0 / (gamma + 1.0)) ** (gamma / (gamma - 1.0))
 
 
 @compiled
@@ -24,7 +34,7 @@ def expanding_flow(ratio: float, gamma: float) -> float:
     """
     ratio = min(max(ratio, 0.0), 1.0 - LEAST_DROP)
     # at the critical ratio the flow is stationary: holding it there leaves no corner
-    throat = max(ratio, (2.0 / (gamma + 1.0)) ** (gamma / (gamma - 1.0)))
+    throat = max(ratio, critical_ratio(gamma))
     square = gamma / (gamma - 1.0) * (throat ** (2.0 / gamma) - throat ** ((gamma + 1.0) / gamma)) / (1.0 - ratio)
     return sqrt(square)
 

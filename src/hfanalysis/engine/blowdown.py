@@ -161,6 +161,12 @@ class TankAlone:
         equations.c[eq.VOLUME], equations.c[eq.AREA] = volume, area
         return replace(self, equations=equations)
 
+    @property
+    def moving(self) -> Integers:
+        """Places of the states that change while the tank empties."""
+        own = range(len(STATES), self.state.size)
+        return np.array([eq.TANK, eq.TEMPERATURE, eq.NITROGEN, *own], dtype=np.int64)
+
     def run(
         self, time: Array, chamber: Array, loss: Array | None = None, vapor: bool = False, heat: float = 0.0
     ) -> TankRun:
@@ -173,8 +179,7 @@ class TankAlone:
         self.equations.c[HEAT - len(GIVEN)] = heat
         columns = (time, chamber, np.full(np.size(time), np.nan) if loss is None else loss)
         t, p, given = (np.ascontiguousarray(column, dtype=np.float64) for column in columns)
-        moving = np.array([eq.TANK, eq.TEMPERATURE, eq.NITROGEN, *range(len(STATES), self.state.size)], dtype=np.int64)
-        return TankRun(t, *_march(self.equations, moving, self.state, t, p, given, vapor))
+        return TankRun(t, *march(self.equations, self.moving, self.state, t, p, given, vapor))
 
 
 def tank_alone(
@@ -224,10 +229,14 @@ def _step(
 
 
 @compiled
-def _march(
+def march(
     m: Equations, moving: Integers, start: Array, time: Array, chamber: Array, loss: Array, vapor: bool
 ) -> tuple[Array, Array, float]:
-    """States and outputs at every time, and when the liquid was gone."""
+    """States (n, states) and outputs (n, outputs) [SI] at every ``time`` (n,) [s], and when the liquid was gone [s].
+
+    The states ``moving`` go on from ``start`` (states,) [SI] against ``chamber`` pressure and feed ``loss`` [Pa], (n,)
+    each; ``vapor``: there is no liquid.
+    """
     given, y, t_v = m.c[m.c.size - len(GIVEN) :], start.copy(), np.nan
     states, outputs = np.empty((time.size, y.size)), np.empty((time.size, len(OUTPUTS)))
     rates, trial, out = np.zeros((4, y.size)), np.empty(y.size), np.zeros(len(OUTPUTS))

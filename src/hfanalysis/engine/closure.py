@@ -13,7 +13,6 @@ any pressure, and dU/dt = sum mdot h + Qdot leaves Qdot = -d(p V)/dt: over a run
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import exprel
 
 from hfanalysis.arrays import Array
 from hfanalysis.engine.chamber import chamber_volume
@@ -68,5 +67,5 @@ def implied_heat(
     held = z * SPECIFIC_GAS_CONSTANT * temperature * mass_start
     too_small = float(saturation.isentropic_exponent(temperature)) - exponent
     less = float(np.log(mass_end / mass_start))
-    leaves = -less * float(exprel(exponent * less))
+    leaves = -less * (float(np.expm1(exponent * less)) / (exponent * less) if exponent * less else 1.0)
     return float(held * too_small / float(saturation.grueneisen(temperature)) * leaves)

@@ -13,8 +13,13 @@ from hfanalysis.arrays import Array
 RAMP = 1e-3
 """Time [s] in which a thrust that is there from the start rises, and one that is there to the end falls."""
 
-RESOLUTION = 1e-6
-"""Time that engine files resolve [s]. Source: they are written with six digits."""
+RESOLUTION = 6e-4
+"""Least time between two points of an engine file [s]. Source: thrustcurve.org refuses a RASP file whose first point
+or step is below half a millisecond."""
+
+PLUGGED = "P"
+"""The delay of a motor that fires no charge. Source: RASP; OpenRocket reads it so in either format, where a number
+would be the seconds from burn-out to the charge."""
 
 MOST_POINTS = 200
 """Points to which a curve is thinned first; more where the impulse asks for them."""
@@ -180,8 +185,14 @@ def _with_ends(t: Array, force: Array) -> tuple[Array, Array]:
         rise = min(RAMP, 0.5 * float(t[late][0]))
         t, force = np.concatenate(([0.0, rise], t[late])), np.concatenate(([0.0, force[0]], force[late]))
     t = np.round(t, 6)
-    keep = np.concatenate((np.diff(t) >= RESOLUTION / 2, [True]))
-    keep[0] = True
-    t, force = t[keep], force[keep]
-    apart = np.concatenate(([True], np.diff(t) >= RESOLUTION / 2))
-    return t[apart], force[apart]
+    kept = _apart(t)
+    return t[kept], force[kept]
+
+
+def _apart(t: Array) -> list[int]:
+    """Points that are far enough apart for a file, the first and the last among them."""
+    kept = [0]
+    for i in range(1, t.size - 1):
+        if min(t[i] - t[kept[-1]], t[-1] - t[i]) >= RESOLUTION:
+            kept.append(i)
+    return [*kept, t.size - 1]

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from hfanalysis.flight.motor import RAMP, Motor, Points
+from hfanalysis.flight.motor import PLUGGED, RAMP, Motor, Points
 
 __all__ = ["RAMP", "Motor", "constant_thrust", "of_points", "read", "text"]
 
@@ -42,7 +42,7 @@ def text(motor: Motor, points: Sequence[tuple[float, float]], comments: Sequence
     if points[-1][1] != 0.0 or min(thrust for _, thrust in points) < 0.0:
         raise ValueError("an engine file needs thrust that is never negative and ends at zero")
     header = (
-        f"{motor.word} {1e3 * motor.diameter:.1f} {1e3 * motor.length:.1f} P "
+        f"{motor.word} {1e3 * motor.diameter:.1f} {1e3 * motor.length:.1f} {PLUGGED} "
         f"{motor.propellant_mass:.4f} {motor.total_mass:.4f} {Motor(motor.maker, 0, 0, 0, 0).word}"
     )
     lines = [*(f"; {comment}".rstrip() for comment in comments), header]

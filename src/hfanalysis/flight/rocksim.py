@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
-from hfanalysis.flight.motor import Motor, Points, as_written, left_by_thrust, problems
+from hfanalysis.flight.motor import PLUGGED, Motor, Points, as_written, left_by_thrust, problems
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY
 
 
@@ -39,7 +39,7 @@ def _engine(motor: Motor, points: Points, radii: tuple[float, float]) -> dict[st
     return {
         "mfg": motor.maker, "code": motor.name, "Type": "hybrid",
         "dia": f"{1e3 * motor.diameter:.3f}", "len": f"{1e3 * motor.length:.3f}",
-        "initWt": f"{1e3 * motor.total_mass:.3f}", "propWt": f"{1e3 * motor.propellant_mass:.3f}", "delays": "0",
+        "initWt": f"{1e3 * motor.total_mass:.3f}", "propWt": f"{1e3 * motor.propellant_mass:.3f}", "delays": PLUGGED,
         "auto-calc-mass": str(int(points.mass is None)), "auto-calc-cg": str(int(points.center is None)),
         "avgThrust": f"{impulse / burn:.3f}", "peakThrust": f"{points.thrust.max():.3f}",
         "throatDia": f"{2e3 * radii[0]:.3f}", "exitDia": f"{2e3 * radii[1]:.3f}", "Itot": f"{impulse:.3f}",

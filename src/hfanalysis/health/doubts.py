@@ -11,7 +11,6 @@ import numpy as np
 from hfanalysis.health.reasons import Doubt, reasons
 from hfanalysis.health.rests_on import TOGETHER, channels_of, concerns, power_of_time, rests
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.health import HEALTHY, UNUSABLE, Finding, Health
 from hfanalysis.products.model import Part, Product
 from hfanalysis.products.segments import Segments
@@ -22,6 +21,8 @@ P = TypeVar("P", bound=Part)
 NEAR = 1.0
 """[s] about an event in which a stretch may have moved it. Evidence: ignition is late by a second at most, and the
 searches look at less."""
+ONLY_WARNED = "diagnosis.json"
+"""A product whose quantities are not doubted one by one: what it weighs, it weighs with the doubts in."""
 WORSE = (NOT_IDENTIFIABLE, UNPHYSICAL)
 """Verdicts that a doubt does not replace."""
 
@@ -35,7 +36,7 @@ def doubted(product: Product, health: Health) -> Product:
         return product
     if isinstance(product, Segments):
         return _events(product, health)
-    if isinstance(product, Diagnosis):
+    if product.file == ONLY_WARNED:
         return product.but(warnings=tuple(dict.fromkeys((*product.warnings, *health.warnings))))
     together = isinstance(product, Calibration) and product.oxidizer_mass_fitted is not None
     return _part(product, product.file + TOGETHER * together, health)

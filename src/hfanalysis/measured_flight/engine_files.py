@@ -31,12 +31,21 @@ BY_THEMSELVES = "total mass: propellant alone, the empty engine belongs to the r
 
 @dataclass(frozen=True)
 class Export:
-    """A motor, its curve, comments for people, and radii [m] of throat and exit (0: not known)."""
+    """A motor, its curve, comments for people, and radii [m] of throat and exit (0: not known).
+
+    ``static``: the curve as the stand measured it, and what is to be said of it.
+    """
 
     motor: Motor
     points: Points
     comments: tuple[str, ...]
     radii: tuple[float, float]
+    static: tuple[Points, tuple[str, ...]]
+
+    @property
+    def static_eng(self) -> str:
+        """The stand's thrust as a RASP file, for simulators that take thrust to altitude themselves."""
+        return rasp.of_points(self.motor, *self.static)
 
     @property
     def eng(self) -> str:
@@ -86,7 +95,20 @@ def export(launched: MeasuredFlight, definition: TestDefinition, stable: Stabili
     points = points_of(time, thrust, mass, None if isinstance(center, str) else center)
     motor = _motor(launched, definition, float(mass[0]), stable)
     said = (*_comments(launched, definition), *_of_weight(definition, center, stable), _designation(points))
-    return Export(motor, points, said, _radii(definition))
+    return Export(motor, points, said, _radii(definition), _static(launched, definition))
+
+
+def _static(launched: MeasuredFlight, definition: TestDefinition) -> tuple[Points, tuple[str, ...]]:
+    """The thrust of the stand, not that along the flight."""
+    thrust, ambient = launched.firing.thrust, definition.ambient_pressure.value
+    points = points_of(thrust.time, thrust.thrust)
+    said = f"thrust as measured on the stand, purge gas included, at an ambient pressure of {ambient / 1e5:.4f} bar"
+    return points, (_origin(definition), said, _designation(points))
+
+
+def _origin(definition: TestDefinition) -> str:
+    source = {"replica": "REPLICA, generated, not measured", "synthetic": "SYNTHETIC, generated, not measured"}
+    return f"{definition.test.id}: {source.get(definition.test.source, 'measured on the stand')}"
 
 
 def _motor(launched: MeasuredFlight, definition: TestDefinition, burnt: float, stable: StabilityRuns | str) -> Motor:
@@ -127,10 +149,9 @@ def _radii(definition: TestDefinition) -> tuple[float, float]:
 
 
 def _comments(launched: MeasuredFlight, definition: TestDefinition) -> tuple[str, ...]:
-    source = {"replica": "REPLICA, generated, not measured", "synthetic": "SYNTHETIC, generated, not measured"}
     altitude = launched.firing.vehicle.launch_altitude
     geometry = definition.rocket.geometry if definition.rocket is not None else None
-    said = [f"{definition.test.id}: {source.get(definition.test.source, 'measured on the stand')}"]
+    said = [_origin(definition)]
     said += [
         f"thrust {launched.firing.thrust_basis}, {launched.firing.thrust_is}, along the flight from {altitude:.0f} m"
     ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,8 +30,8 @@ from hfanalysis.measured_flight.uncertainty import (
     spread_of,
 )
 from hfanalysis.products import flight as products
+from hfanalysis.products import netcdf
 from hfanalysis.products.budget import Budget
-from hfanalysis.products.hdf5 import created
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.rocket.vehicle import gravity
@@ -43,7 +42,27 @@ LEAST_RAIL_DEPARTURE = 30.48
 """Least speed at the rail's end [m/s]. Source: 100 ft/s, which competitions recommend at least (report, section
 3.2.4)."""
 
-UNITS = dict(zip(TRACE, ("s", "m", "m/s", "m/s^2", "N", "N", "kg", "1"), strict=True))
+ABOUT: dict[str, netcdf.About] = {
+    "time": ("s", "time after ignition"),
+    "altitude": ("m", "altitude above sea level"),
+    "height": ("m", "height above the launch site"),
+    "speed": ("m/s", "speed along the path; falling, downwards is negative"),
+    "acceleration": ("m/s^2", "acceleration along the path"),
+    "thrust": ("N", "thrust"),
+    "drag": ("N", "drag"),
+    "mass": ("kg", "mass of the rocket"),
+    "mach": ("1", "Mach number"),
+    "oxidizer_mass": ("kg", "oxidizer left"),
+    "fuel_mass": ("kg", "fuel left"),
+    "center_of_gravity": ("m", "center of gravity from the nose's tip"),
+    "pitch_inertia": ("kg m^2", "moment of inertia in pitch, about the center of gravity"),
+    "margin_mean": ("1", "static margin in calibers: mean over the gusts"),
+    "margin_std": ("1", "static margin in calibers: standard deviation over the gusts"),
+    "angle_of_attack": ("rad", "angle of attack"),
+}
+"""Unit and name in words of each variable of flight.h5."""
+
+BAND = {"low": "lower end of its band", "median": "median", "high": "upper end of its band"}
 
 
 @dataclass(frozen=True)
@@ -207,25 +226,17 @@ def write_histories(
     path: Path, launched: MeasuredFlight, stable: stability.StabilityRuns | str, provenance: Mapping[str, Any]
 ) -> None:
     """flight.h5: groups ``ascent``, ``bands``, the ways down, ``balance`` and ``stability``, in SI."""
-    with created(path) as file:
-        file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
-        file.attrs["launch_altitude"] = launched.firing.vehicle.launch_altitude
+    level = launched.firing.vehicle.launch_altitude
+    about = {"launch_altitude": level, "launch_altitude_units": "m"}
+    with netcdf.product(path, "flight on the measured thrust", provenance, **about) as file:
         ascent = {name: launched.ascent.column(name) for name in TRACE}
-        _write(file, "ascent", ascent | _drawn_on(launched, ascent["time"]), UNITS | {"height": "m"} | MASSES)
+        _write(file, "ascent", ascent | _drawn_on(launched, ascent["time"]))
         bands = {
-            f"{name}_{side}": band[i]
-            for name, band in launched.dispersion.bands.items()
-            for i, side in enumerate(("low", "median", "high"))
+            f"{name}_{side}": band[i] for name, band in launched.dispersion.bands.items() for i, side in enumerate(BAND)
         }
-        units = {name: {"h": "m", "s": "m/s", "a": "m/s^2"}[name[0]] for name in bands}
-        _write(file, "bands", {"time": launched.dispersion.time} | bands, {"time": "s"} | units)
+        _write(file, "bands", {"time": launched.dispersion.time} | bands)
         for name, leg in _legs(launched).items():
-            columns = {
-                "time": leg.time,
-                "height": leg.altitude - launched.firing.vehicle.launch_altitude,
-                "speed": leg.speed,
-            }
-            _write(file, name, columns, {"time": "s", "height": "m", "speed": "m/s"})
+            _write(file, name, {"time": leg.time, "height": leg.altitude - level, "speed": leg.speed})
         if not isinstance(stable, str):
             _write_stability(file, launched, stable)
 
@@ -234,16 +245,11 @@ def _write_stability(file: Any, launched: MeasuredFlight, stable: stability.Stab
     """Group ``balance`` over the burn, and ``stability/N`` for every wind."""
     weighed = stable.balance
     columns = {"mass": weighed.mass, "center_of_gravity": weighed.center, "pitch_inertia": weighed.inertia}
-    units = {"time": "s", "mass": "kg", "center_of_gravity": "m", "pitch_inertia": "kg m^2"}
-    _write(file, "balance", {"time": launched.firing.curve.time, **columns}, units)
+    _write(file, "balance", {"time": launched.firing.curve.time, **columns})
     for i, margin in enumerate(stable.margins):
         series = {"time": margin.time, "margin_mean": margin.mean, "margin_std": margin.std}
-        units = {"time": "s", "margin_mean": "1", "margin_std": "1", "angle_of_attack": "rad"}
-        _write(file, f"stability/{i}", {**series, "angle_of_attack": margin.attack}, units)
-        file[f"stability/{i}"].attrs["wind"] = margin.wind
-
-
-MASSES = {"oxidizer_mass": "kg", "fuel_mass": "kg"}
+        _write(file, f"stability/{i}", {**series, "angle_of_attack": margin.attack})
+        file[f"stability/{i}"].attrs.update(wind=margin.wind, wind_units="m/s")
 
 
 def _drawn_on(launched: MeasuredFlight, time: Array) -> dict[str, Array]:
@@ -267,8 +273,11 @@ def _legs(launched: MeasuredFlight) -> dict[str, Leg]:
     return {"drogue": down.legs[0], "main": down.legs[1], **legs}
 
 
-def _write(file: Any, name: str, columns: Mapping[str, Array], units: Mapping[str, str]) -> None:
-    group = file.create_group(name)
-    for key, values in columns.items():
-        made = group.create_dataset(key, data=np.asarray(values, dtype=np.float64), track_times=False)
-        made.attrs["units"] = units[key]
+def _write(file: Any, name: str, columns: Mapping[str, Array]) -> None:
+    netcdf.table(file.create_group(name), columns, ABOUT | _banded(columns))
+
+
+def _banded(columns: Mapping[str, Array]) -> dict[str, netcdf.About]:
+    """What the three parts of a band are."""
+    parts = {key: key.rpartition("_") for key in columns if key.rpartition("_")[2] in BAND}
+    return {key: (ABOUT[name][0], f"{ABOUT[name][1]}: {BAND[part]}") for key, (name, _, part) in parts.items()}

@@ -18,10 +18,10 @@ import numpy as np
 from scipy.special import ndtri
 
 from hfanalysis.arrays import Array
+from hfanalysis.assembly.burnt_gas import combustion_of
 from hfanalysis.assembly.calibrated import ASSUMED_EXPONENT
-from hfanalysis.assembly.engine import combustion_of
-from hfanalysis.calibrate.blowdown import EXPONENTS
 from hfanalysis.calibrate.measured_pressures import MeasuredPressures
+from hfanalysis.calibrate.reducing import EXPONENTS
 from hfanalysis.effects.injector_choked_vapor import expanding_flow
 from hfanalysis.engine.grain import USUAL_N, Grain, opened, pace_between
 from hfanalysis.engine.injector import mass_flows

@@ -105,20 +105,11 @@ def write_histories(
     path: Path, histories: Histories, provenance: Mapping[str, Any], also: Callable[[h5py.File], None] | None = None
 ) -> None:
     """Write performance.h5: one time axis, a data set per history, and what ``also`` adds; byte-identical each time."""
-    from hfanalysis.products.hdf5 import FORMAT, created
+    from hfanalysis.products import netcdf
 
-    with created(path, libver=FORMAT, track_order=False) as file:
-        file.attrs["title"] = "histories of a hot fire"
-        file.attrs["Conventions"] = "CF-1.11"
-        file.attrs["absent"] = json.dumps(histories.absent, sort_keys=True)
-        file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
-        time = file.create_dataset("time", data=histories.time, track_times=False)
-        time.make_scale("time")
-        time.attrs.update(units=ABOUT["time"][0], long_name=ABOUT["time"][1])
-        for name in ABOUT:
-            if name in histories.values:
-                data = file.create_dataset(name, data=histories.values[name], track_times=False)
-                data.dims[0].attach_scale(time)
-                data.attrs.update(units=ABOUT[name][0], long_name=ABOUT[name][1])
+    absent = json.dumps(histories.absent, sort_keys=True)
+    with netcdf.product(path, "histories of a hot fire", provenance, absent=absent) as file:
+        there = {name: histories.values[name] for name in ABOUT if name in histories.values}
+        netcdf.table(file, {"time": histories.time} | there, ABOUT)
         if also is not None:
             also(file)

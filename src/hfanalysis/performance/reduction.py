@@ -17,7 +17,7 @@ from hfanalysis.performance.efficiency import Ideal, Spread, above_one, efficien
 from hfanalysis.performance.flows import Flows
 from hfanalysis.performance.load_cell import CellError
 from hfanalysis.performance.measured import Fire, cell_error_of, impulse_to, loaded
-from hfanalysis.performance.specific_impulse import expended, impulses
+from hfanalysis.performance.specific_impulse import expended, impulses, liquid_impulse
 from hfanalysis.performance.standard import standard
 from hfanalysis.performance.tap import narrow, tap_of
 from hfanalysis.performance.thrust import thrust_of
@@ -149,4 +149,7 @@ def _impulses(test: Test) -> dict[str, Quantity]:
     to_purge = Fire(gone.until, min(test.fire.std, 0.02) if test.purge else test.fire.std, test.fire.source)
     masses = loaded(test.log, test.segments, test.definition, test.calibration)
     whole, first = (impulse_to(test.log, thrust, fire, test.definition) for fire in (test.fire, to_purge))
-    return impulses(gone, whole, first, masses)
+    found = impulses(gone, whole, first, masses)
+    to_v = Fire(test.segments.time("t_v") or test.fire.end, test.segments.std("t_v"), "t_v")
+    liquid = liquid_impulse(gone, impulse_to(test.log, thrust, to_v, test.definition))
+    return found | {"specific_impulse_liquid": liquid}

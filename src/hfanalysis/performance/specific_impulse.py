@@ -41,12 +41,14 @@ DIATOMIC = 1.4
 
 @dataclass(frozen=True)
 class Expended:
-    """Mass that left the engine [kg], to ``until`` [s] and over the burn; each with its standard deviation."""
+    """Mass that left the engine [kg], to ``until`` [s], over the burn, and while there was liquid (None where nobody
+    knows how long); each with its standard deviation."""
 
     until: float
     to_purge: Value
     whole: Value
     whole_why: str
+    liquid: Value | None = None
 
 
 def expended(
@@ -54,6 +56,21 @@ def expended(
     nitrogen: Array,
 ) -> Expended:  # fmt: skip
     """By the ``flows``; ``nitrogen`` [kg/s], (n,), comes beside the oxidizer where an adopted purge says so."""
+    found = _expended(log, segments, definition, calibration, flows, fire, nitrogen)
+    gone = segments.time("t_v")
+    if gone is None or not 0.0 < gone < fire.end:
+        return found
+    part = (flows.time >= 0.0) & (flows.time <= gone)
+    passed = float(np.trapezoid((flows.total + nitrogen)[part], flows.time[part]))
+    relative = (found.to_purge.std or 0.0) / found.to_purge.value
+    return replace(found, liquid=Value(passed, passed * relative))
+
+
+def _expended(
+    log: TestLog, segments: Segments, definition: TestDefinition, calibration: Calibration, flows: Flows, fire: Fire,
+    nitrogen: Array,
+) -> Expended:  # fmt: skip
+    """All but that of the liquid phase."""
     purge = segments.time("t_purge")
     until = fire.end if purge is None else min(purge, fire.end)
     rate = calibration.regression_rate_reference
@@ -125,6 +142,14 @@ def impulses(
         "specific_impulse_to_purge": _with(to_purge, said),
         "specific_impulse_loaded": specific_impulse(impulse, *loaded),
     }
+
+
+def liquid_impulse(found: Expended, impulse: Quantity) -> Quantity:
+    """Specific impulse [s] of the liquid phase by its ``impulse`` [N s], beside that of the whole burn."""
+    if found.liquid is None:
+        return Quantity.absent("when the liquid is gone is not known, or it is there to the end")
+    mass = Quantity(found.liquid.value, "kg", found.liquid.std)
+    return _with(specific_impulse(impulse, mass, Quantity(0.0, "kg", 0.0)), "by what passed injector and grain to t_v")
 
 
 def _with(quantity: Quantity, why: str) -> Quantity:

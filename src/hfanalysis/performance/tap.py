@@ -105,7 +105,7 @@ def narrow(tap: str | None, engine: Engine, found: Before, burning: NDArray[np.b
     chokes = ", so that it chokes before the throat does," if ratio < CHOKES else ""
     words = text(
         "the port has {ratio:.2f} of the throat's area at ignition, below {limit:.0f}{chokes} and the head may stand "
-        "up to {most:.0f} % above the nozzle at first, {least:.0f} % at the burn's end ({source}); {reads}",
+        "up to {most:.0f} % above the nozzle at first, {least:.0f} % at the burn's end; by {source}; {reads}",
         ratio=ratio, limit=limit, chokes=chokes, most=float(heads.max()), least=float(heads.min()), source=SOURCE,
         reads=reads[tap],
     )  # fmt: skip

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.signal import medfilt
 
 from hfanalysis.arrays import Array
+from hfanalysis.performance.lag import pressure_lag
 from hfanalysis.performance.measured import EARLY, Fire, bias
 from hfanalysis.performance.thrust import OUT, Thrust, thrust_of
 from hfanalysis.products.segments import Segments
@@ -57,8 +58,9 @@ def transients(log: TestLog, segments: Segments, definition: TestDefinition, fir
     out = chamber.told(segments) if not isinstance(chamber, str) else _absent(OF_CHAMBER, chamber)
     out |= _drops(log, segments, fire)
     if "thrust" not in log:
-        return out | _absent(OF_THRUST, log.lacks("thrust"))
-    return out | _of_thrust(thrust_of(log, segments, definition), log, segments, fire)
+        return out | _absent((*OF_THRUST, "pressure_lag"), log.lacks("thrust"))
+    thrust = thrust_of(log, segments, definition)
+    return out | _of_thrust(thrust, log, segments, fire) | {"pressure_lag": pressure_lag(log, segments, thrust, fire)}
 
 
 OF_CHAMBER = ("ignition_delay", "rise_time", "ignition_overshoot")

@@ -167,6 +167,10 @@ class Compared(Part):
     abrupt_end: Annotated[Quantity | None, Is("time in which the chamber empties without fuel", "s")] = None
 
 
+WITHOUT_NAME = {"none": "nothing", "unknown": "something without a name"}
+"""What people call the two answers that are no effect."""
+
+
 class Diagnosis(Product):
     """What the model lacks; without a model that runs, what the channels show by themselves."""
 
@@ -210,6 +214,15 @@ class Diagnosis(Product):
     runtime_s: Annotated[Quantity, Is("has no value: times stand in run.log", "s")]
     seed: Annotated[int, Is("nothing is drawn: 0", "")]
     sentences: Annotated[tuple[Words, ...], Is("all of it in words")] = ()
+    called: Annotated[Mapping[str, str], Is("what people call every effect of the library, by its name")] = {}
+
+    def plain(self, name: str) -> str:
+        """What people call an effect, an unknown or nothing.
+
+        >>> Diagnosis.plain(Diagnosis.model_construct(called={"n2_purge": "nitrogen into the tank"}), "n2_purge")
+        'nitrogen into the tank'
+        """
+        return self.called.get(name) or WITHOUT_NAME.get(name) or name.replace("_", " ")
 
 
 NO_TIME = Quantity.absent("times stand in run.log, so that products are the same from run to run")

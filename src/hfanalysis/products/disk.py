@@ -29,6 +29,9 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 REFUSED = (errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.EROFS, *FULL)
 """What the system says that does not let us write: something that a person can do something about."""
 
+WINDOWS = os.name == "nt"
+"""Whether this is Windows, where a folder cannot be synchronized and nobody's group owns a file."""
+
 _CHUNK = 1 << 20
 """Bytes read at a time [B]."""
 
@@ -39,8 +42,13 @@ def temporary_path(path: Path) -> Path:
 
 
 def fsync(path: Path) -> None:
-    """Have the file (or the folder's list of names) on the disk before going on."""
-    descriptor = os.open(path, os.O_RDONLY)
+    """Have the file (or the folder's list of names) on the disk before going on.
+
+    Windows opens no folder and takes a file that may be written to; there names are the file system's business.
+    """
+    if WINDOWS and path.is_dir():
+        return
+    descriptor = os.open(path, os.O_RDWR if WINDOWS else os.O_RDONLY)
     try:
         os.fsync(descriptor)
     finally:
@@ -72,6 +80,8 @@ def make_folder(folder: Path) -> None:
 def share(path: Path) -> None:
     """Give a new file or folder to the group of the folder it lies in, where that may write there: who works in one
     ``processed/`` goes on with what another has made."""
+    if not hasattr(os, "geteuid"):  # Windows: what is made in a folder takes on its rights
+        return
     folder, own = path.parent.stat(), path.stat()
     if not folder.st_mode & stat.S_IWGRP or own.st_uid != os.geteuid():
         return

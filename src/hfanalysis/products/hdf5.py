@@ -24,7 +24,7 @@ class _Deferring(io.RawIOBase):
     """A file for HDF5 to write to; after the first failure all goes nowhere, and ``failure`` says what it was."""
 
     def __init__(self, path: Path) -> None:
-        self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC, 0o666)
+        self._file = io.FileIO(path, "w+")
         self._at = 0
         self.failure: OSError | None = None
 
@@ -40,9 +40,9 @@ class _Deferring(io.RawIOBase):
     def readinto(self, target: Any) -> int:
         """What is there; what was lost reads as zeros."""
         view = memoryview(target).cast("B")
-        found = os.pread(self._file, len(view), self._at)
-        view[: len(found)] = found
-        view[len(found) :] = bytes(len(view) - len(found))
+        self._file.seek(self._at)
+        found = self._file.readinto(view) or 0
+        view[found:] = bytes(len(view) - found)
         self._at += len(view)
         return len(view)
 
@@ -52,7 +52,8 @@ class _Deferring(io.RawIOBase):
         done = 0
         while done < len(view) and self.failure is None:
             try:
-                done += os.pwrite(self._file, view[done:], self._at + done)
+                self._file.seek(self._at + done)
+                done += self._file.write(view[done:]) or 0
             except OSError as error:
                 self.failure = error
         self._at += len(view)
@@ -63,7 +64,7 @@ class _Deferring(io.RawIOBase):
         size = self._at if size is None else size
         try:
             if self.failure is None:
-                os.ftruncate(self._file, size)
+                self._file.truncate(size)
         except OSError as error:
             self.failure = error
         return size
@@ -71,11 +72,11 @@ class _Deferring(io.RawIOBase):
     def close(self) -> None:
         """Gives the file back."""
         if not self.closed:
-            os.close(self._file)
+            self._file.close()
         super().close()
 
     def _size(self) -> int:
-        return os.fstat(self._file).st_size
+        return os.fstat(self._file.fileno()).st_size
 
 
 @contextmanager

@@ -7,12 +7,15 @@ from typing import Annotated
 from hfanalysis.products.model import Is, Part, Words
 from hfanalysis.quantity import Quantity
 
+AXIS = "time_reconstructed"
+"""The axis of the group ``reconstructed`` in performance.h5: not "time", which is that of the histories above it."""
+
 
 class Reconstruction(Part):
     """What the fuel did in a window of the burn, by the measurement alone; or why that cannot be had."""
 
     variant: Annotated[
-        str | None, Is("a: assumed c* efficiency; b: one, by the fuel burnt; d: with the throat's course")
+        str | None, Is("a: assumed c* efficiency; b: one, by the fuel burnt; d: with the throat's course by thrust")
     ]
     assumption: Annotated[Words | None, Is("what it rests on")] = None
     reason: Annotated[Words | None, Is("why there is none")] = None

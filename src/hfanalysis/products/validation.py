@@ -31,6 +31,9 @@ class Column(Part):
     specific_impulse_loaded: Annotated[
         Quantity | None, Is("total impulse over the weight of the loaded masses: the report's", "s")
     ] = None
+    specific_impulse_liquid: Annotated[
+        Quantity | None, Is("of the liquid phase, over the weight of what passed injector and grain in it", "s")
+    ] = None
     largest_chamber_pressure: Annotated[
         Quantity | None, Is("largest good sample, which the structure has seen", "Pa")
     ] = None
@@ -38,6 +41,7 @@ class Column(Part):
     ignition_delay: Annotated[Quantity | None, Is("opening to 10 % of the plateau of p_chamber", "s")] = None
     rise_time: Annotated[Quantity | None, Is("10 to 90 % of the plateau of p_chamber", "s")] = None
     ignition_overshoot: Annotated[Quantity | None, Is("largest p_chamber of the ignition over the plateau", "")] = None
+    pressure_lag: Annotated[Quantity | None, Is("of p_chamber behind the thrust", "s")] = None
     action_time: Annotated[Quantity | None, Is("first to last passing of 10 % of the largest thrust", "s")] = None
     burn_time_5_percent: Annotated[Quantity | None, Is("first to last passing of 5 % of the largest thrust", "s")] = (
         None

@@ -63,6 +63,7 @@ class Test(Section):
     source: Literal["measured", "replica", "synthetic"] = "measured"
     description: Text = ""
     stand: Name | None = None
+    engine: Text = ""
 
 
 _EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
@@ -177,7 +178,7 @@ def _no_definition(tests: Path, path: Path) -> str:
     if path.parent.is_dir():
         return f"{path}: not found; expected the test's definition there beside its log"
     names = sorted(p.parent.name for p in tests.glob("*/test.toml"))
-    known = f"; expected one of {', '.join(names)}" if names else f"; {tests} holds no test"
+    known = f"; expected one of {', '.join(names)}" if names else f"; {tests} holds no test (hfa demo writes two)"
     return f"test {path.parent.name!r}: no such folder in {tests}{near(path.parent.name, names) or known}"
 
 

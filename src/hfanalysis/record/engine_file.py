@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator
 
@@ -75,6 +76,11 @@ class EngineFile(EngineStatements):
 def load_engine(path: Path) -> EngineFile:
     """The engine file at ``path``, validated; raises :class:`InputError` naming file, key, found and expected."""
     raw, content = read_toml(path)
+    return engine_of(content, path, raw)
+
+
+def engine_of(content: Mapping[str, Any], path: Path, raw: bytes) -> EngineFile:
+    """The same of what such a file states, by section; ``raw`` [bytes] of the file at ``path`` that it came from."""
     stated = validate(EngineStatements, {"schema": None, **content}, path)
     idle = unused(stated, OF_ENGINES, (), str(path))
     return EngineFile(**vars(stated), path=path, sha256=hashlib.sha256(raw).hexdigest(), warnings=idle)

@@ -12,7 +12,7 @@ from hfanalysis.quantity import Quantity
 from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.report import html
 from hfanalysis.report.diagnosis_charts import READ, with_what
-from hfanalysis.wording.numbers import MINUS, fixed, in_words
+from hfanalysis.wording.numbers import MINUS, fixed, in_words, listed
 from hfanalysis.wording.scales import scale
 
 SHOWN = 0.005
@@ -30,37 +30,72 @@ _CONSTANTS = {
     "temperature": "tank temperature at the start",
 }
 _ARMS = {
-    "same": ("the same data", "there was no gap beyond the noise to close"),
-    "held_out": ("stretches that were held out", "no gap there, or no fit of the rest came to an end"),
+    "same": ("the same data", "there was no misfit beyond the noise"),
+    "held_out": ("stretches that were held out", "no misfit there, or no fit of the rest came to an end"),
     "other_test": ("another test, constants frozen", "no other test of this stand that the model could be fitted to"),
     "placebo": ("placebo: the best wrong effect", "no other effect could be fitted"),
 }
 
 
 def probabilities(product: Diagnosis) -> Markup | None:
-    """Every likely name with its probability, and how plausible its size is; None where no names competed."""
+    """Every name that is likely, first or beside it: its probability, size, whether that can be, and what would
+    decide; None where no names competed.
+    """
     if "none" not in product.posterior:
-        return None
-    posterior, inside = product.posterior, product.set90
-    sizes = {**product.plausibility, **{row.name: row.plausibility for row in product.effects}}
-    ordered = sorted(posterior, key=lambda name: (-posterior[name], name))
-    kept = [name for name in ordered if posterior[name] >= SHOWN or name in inside or name in _ALWAYS]
-    rows = [
-        (
-            Markup("<span>{}</span>").format(name),
-            _probability(posterior[name]),
-            _bar(posterior[name]),
-            Markup('<span class="verdict good"><span aria-hidden="true">✓</span> yes</span>') if name in inside else "",
-            _plausible(sizes[name]) if name in sizes else _MEANINGS.get(name, ""),
-        )
-        for name in kept
-    ]
-    beside = {name for name, p in product.partners.items() if p >= SHOWN}
-    rest = sum(name not in kept and name not in beside for name in ordered)
+        return partners(product)
+    names = _likely(product)
+    rows = [_candidate(name, product) for name in names]
+    rest = sum(name not in names for name in product.posterior if name not in product.partners)
     others = f" {rest} other names are below {SHOWN:g} each." if rest else ""
-    caption = f"Probability of each name.{others} {_trust(product)}"
-    columns = ("name", ">probability", "", "in the 90 % set", "how plausible its size is")
+    held = listed([product.plain(name) for name in product.set90])
+    caption = f"What may be missing. 90 % of the probability of the first holds {held}.{others} {_trust(product)}"
+    columns = ("name", ">probability", "", ">size", "can it be so large?", "what would decide")
     return html.table("Probabilities", caption, columns, rows)
+
+
+def _likely(product: Diagnosis) -> list[str]:
+    """What is named, then what may be, the most probable first; that nothing is, and what has no name, come last."""
+    odds = {name: _odds(name, product) for name in {**product.posterior, **product.partners}}
+    named = [row.name for row in product.effects]
+    kept = [n for n in odds if n not in _ALWAYS and (odds[n] >= SHOWN or n in product.set90) and n not in named]
+    return [*named, *sorted(kept, key=lambda name: (-odds[name], name)), *_ALWAYS]
+
+
+def _odds(name: str, product: Diagnosis) -> float:
+    """The probability of being there, first or beside the first."""
+    return max(product.posterior.get(name, 0.0), product.partners.get(name, 0.0))
+
+
+def _candidate(name: str, product: Diagnosis) -> tuple[Any, ...]:
+    effect = next((row for row in product.effects if row.name == name), None)
+    plausible = effect.plausibility if effect is not None else product.plausibility.get(name)
+    size: Markup | str = ""
+    if effect is not None and effect.parameters:
+        first = next(iter(effect.parameters.values()))
+        size = html.value(first) + Markup("<br>") + Markup('<span class="std">{}</span>').format(html.interval(first))
+    judged = _plausible(plausible) if plausible is not None else _MEANINGS.get(name, "")
+    return (
+        Markup("<span>{}</span>{}").format(product.plain(name), _twins(name, product)),
+        _probability(_odds(name, product)),
+        _bar(_odds(name, product)),
+        size,
+        judged,
+        _decisive(name, product),
+    )
+
+
+def _twins(name: str, product: Diagnosis) -> Markup:
+    """What it is hardly told apart from, and how probable that is."""
+    group = next((group for group in product.twins if name in group), ())
+    twins = [f"{product.plain(other)} ({_probability(_odds(other, product))})" for other in group if other != name]
+    if not twins:
+        return Markup()
+    return Markup('<span class="because">hardly told apart from {}</span>').format(listed(twins))
+
+
+def _decisive(name: str, product: Diagnosis) -> str:
+    lead = f"{product.plain(name)}: "
+    return next((text.removeprefix(lead) for text in product.decisive_measurements if text.startswith(lead)), "")
 
 
 def partners(product: Diagnosis) -> Markup | None:
@@ -69,9 +104,8 @@ def partners(product: Diagnosis) -> Markup | None:
     kept = sorted((n for n, p in found.items() if p >= SHOWN or n in added), key=lambda n: (-found[n], n))
     if not kept:
         return None
-    rows = [(name, _probability(found[name]), _bar(found[name]), "yes" if name in added else "") for name in kept]
-    tried = ", by all sets of effects that were tried" if "none" in product.posterior else ""
-    caption = f"Effects beside {(added or product.set90)[0]}{tried}."
+    rows = [(product.plain(n), _probability(found[n]), _bar(found[n]), "yes" if n in added else "") for n in kept]
+    caption = f"Effects beside {product.plain((added or product.set90)[0])}."
     return html.table("Beside it", caption, ("name", ">probability", "", "added to the model"), rows)
 
 
@@ -81,8 +115,8 @@ def parameters(product: Diagnosis) -> Markup | None:
         return None
     rows = [
         (
-            Markup("<span>{}</span>").format(effect.name),
-            name.replace("_", " "),
+            Markup("<span>{}</span>").format(product.plain(effect.name)),
+            LONG_NAMES.get(name, name.replace("_", " ")),
             html.value(found),
             html.interval(found),
         )
@@ -118,12 +152,12 @@ def _plausible(size: Plausibility) -> Markup:
 def _trust(product: Diagnosis) -> str:
     """What the probabilities rest on."""
     if product.probabilities_from == "raw evidences":
-        return "They are raw evidences, not calibrated on simulated tests."
-    return "They were calibrated on simulated tests." if product.probabilities_from else ""
+        return "Probabilities are raw evidences, not calibrated on simulated tests."
+    return "Probabilities were calibrated on simulated tests." if product.probabilities_from else ""
 
 
 def gaps(product: Diagnosis) -> Markup:
-    """Residual of every channel without and with what is missing, beside the noise."""
+    """Misfit of every channel without and with what is missing, beside the noise."""
     gap = product.gap
     rows = [
         (LONG_NAMES.get(name, name), *(_in_unit(name, size.get(name)) for size in (gap.before, gap.after, gap.noise)))
@@ -131,10 +165,10 @@ def gaps(product: Diagnosis) -> Markup:
     ]
     caption = (
         "Root mean square of measured less model over the burn, beside the noise of the averages that are compared. "
-        f"With it: {with_what(product).removeprefix('with ')}."
+        "Both models were fitted to all channels."
     )
-    columns = ("channel", ">without", ">with it", ">noise")
-    return html.table("Gap", caption, columns, rows)
+    columns = ("channel", ">refitted", ">with the effects", ">noise")
+    return html.table("Misfit", caption, columns, rows)
 
 
 def gaps_by_phase(product: Diagnosis) -> Markup | None:
@@ -153,7 +187,7 @@ def gaps_by_phase(product: Diagnosis) -> Markup | None:
         for phase, size in phases.items()
     ]
     caption = "What is beyond the noise: square root of max(0, rms² − noise²)."
-    columns = ("channel", "phase", ">without", ">with it")
+    columns = ("channel", "phase", ">refitted", ">with the effects")
     return html.table("Gap by phase", caption, columns, rows) if rows else None
 
 
@@ -173,10 +207,10 @@ def proof(product: Diagnosis) -> Markup:
     if free is not None:
         rows.append(("placebo: a free curve of equal freedom", _closed(free), ""))
     caption = (
-        "Part of the gap of all channels that closes. A gap that shrinks on its own data proves no name: it should "
-        "shrink on data that did not name it, and less with a wrong effect."
+        "Part of the misfit of all channels that goes. On its own data that proves no name. It should go on data that "
+        "did not name it, and less of it with a wrong effect."
     )
-    return html.table("Proof", caption, ("on", ">gap closed", ""), rows)
+    return html.table("Proof", caption, ("on", ">misfit gone", ""), rows)
 
 
 def _closed(part: float | None) -> str:
@@ -193,14 +227,14 @@ def constants(product: Diagnosis) -> Iterator[Markup]:
     arm = with_what(product)
     if "m" in without and without["m"].value is not None:
         values = [fixed(side["m"].value or 0.0, 2) for side in (without, better)]
-        said = f"m {values[0]} without, {values[1]} {arm}." if arm else f"m {values[0]}."
+        said = f"m {values[0]} without, {values[1]} with the effects." if arm else f"m {values[0]}."
         yield html.paragraph(Markup("Polytropic exponent of the vapor: <strong>{}</strong>").format(said), "told")
     names = sorted(without, key=lambda name: name != "m")
     rows = [
         (_head(name), html.value(without[name], name), *((html.value(better[name], name),) if arm else ()))
         for name in names
     ]
-    columns = ("constant", ">without", *((">with it",) if arm else ()))
+    columns = ("constant", ">without", *((">with the effects",) if arm else ()))
     yield html.table("Constants", "Fitted to all channels together, ± one standard deviation.", columns, rows)
 
 
@@ -211,7 +245,10 @@ def _head(name: str) -> Markup:
 
 def limits(product: Diagnosis) -> Markup | None:
     """The size below which every effect stays that is not in the model."""
-    rows = [(Markup("<span>{}</span>").format(name), _limit(found)) for name, found in product.upper_limits.items()]
+    rows = [
+        (Markup("<span>{}</span>").format(product.plain(name)), _limit(found))
+        for name, found in product.upper_limits.items()
+    ]
     caption = "Each of these, if it is there at all, is smaller than this with 95 % probability."
     return html.table("Upper limits", caption, ("effect", ">upper limit"), rows) if rows else None
 

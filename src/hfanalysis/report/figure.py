@@ -47,7 +47,7 @@ def figure(chart: Chart, heading: bool = True) -> Markup:
 def _entry(one: Series) -> Markup:
     """A line's name beside a sample of it."""
     shape = {"band": "M0 0h22v10H0Z"}.get(one.kind, "M0 5h22")
-    style = f"{one.kind} {one.style}{' dashed' if one.dashed else ''}"
+    style = f"{one.kind} {one.css}"
     sample = '<svg class="sample" viewBox="0 0 22 10" aria-hidden="true"><path class="{}" d="{}"/></svg>'
     return Markup(f"<li>{sample}<bdi>{{}}</bdi></li>").format(style, shape, one.label)
 

@@ -10,11 +10,15 @@ from markupsafe import Markup, escape
 
 from hfanalysis.health.reasons import Doubt, marked
 from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
+from hfanalysis.report.names import plain
 from hfanalysis.sentences import Quoted, Text
 from hfanalysis.wording.numbers import MINUS, Shown, decimals_for, fixed, in_words, shown, tidy
 from hfanalysis.wording.scales import scale, superscript
 
 _NEGATIVE, _POWER = re.compile(r"(?<![\w.)])-(?=\d)"), re.compile(r"(?<=[A-Za-z)])\^(-?\d)(?![\d.])")
+
+_KEY = re.compile(r"\[[a-z]+(?:[._][a-z_]+)*\](?: [a-z]+(?:_[a-z]+)+)?")
+"""A section of test.toml in a sentence, with a key of it."""
 
 
 def both(si: str, team: str, style: str = "", value: float | None = None, unit: str = "") -> Markup:
@@ -43,6 +47,15 @@ def amount(value: float | None, unit: str, digits: int = 4, difference: bool = F
 
 def switchable(words: str) -> Markup:
     """A sentence of a product as pages are set, the quantities that it knows ready for the other system of units."""
+    return _with_keys(_switchable(plain(words)))
+
+
+def _with_keys(words: Markup) -> Markup:
+    """The text with keys of test.toml set as code; it is escaped already."""
+    return Markup(_KEY.sub(r"<code>\g<0></code>", str(words)))
+
+
+def _switchable(words: str) -> Markup:
     known = words.quoted if isinstance(words, Text) else {}
     pieces = {_set(piece): (piece, quantity) for piece, quantity in known.items() if _converts(piece, quantity)}
     if not pieces:

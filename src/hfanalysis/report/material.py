@@ -18,12 +18,13 @@ from hfanalysis.health.reasons import Doubt, reasons
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.flight import Flight
 from hfanalysis.products.health import Health
-from hfanalysis.products.model import Product
+from hfanalysis.products.model import AdoptedEffect, Product
 from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.products.validation import Validation
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
-from hfanalysis.wording.numbers import adopted_in_words
+from hfanalysis.report.names import called
+from hfanalysis.wording.numbers import EVENT_LABELS, adopted_in_words
 
 P = TypeVar("P", bound=Product)
 _BEFORE, _AFTER = 2.0, 3.0
@@ -89,10 +90,15 @@ class Material:
         return [] if health is None else reasons(health.channels)
 
     @property
-    def adopted(self) -> str:
-        """The adopted effects of the model in a sentence; empty where there are none."""
+    def included(self) -> tuple[AdoptedEffect, ...]:
+        """The adopted effects of the model; empty where there are none."""
         products = (self.get(Validation), self.get(Calibration), self.get(Flight))
-        return adopted_in_words(next((product.effects for product in products if product and product.effects), ()))
+        return next((product.effects for product in products if product and product.effects), ())
+
+    @property
+    def adopted(self) -> str:
+        """The same in a sentence; empty where there are none."""
+        return adopted_in_words(self.included, called)
 
     @property
     def fired(self) -> bool:
@@ -128,10 +134,10 @@ def event_list(material: Material) -> list[Event]:
     segments = material.get(Segments)
     if segments is None or not material.fired:
         return []
-    found = [Event(0.0, segments.t_open.std or 0.0, "t_open")]
+    found = [Event(0.0, segments.t_open.std or 0.0, EVENT_LABELS["t_open"])]
     for name, event in segments.events.items():
         if event.value is not None:
-            found.append(Event(event.value, event.std or 0.0, name))
+            found.append(Event(event.value, event.std or 0.0, EVENT_LABELS.get(name, name)))
     return found
 
 

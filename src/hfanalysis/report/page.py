@@ -16,10 +16,10 @@ from hfanalysis.charts.chart import Chart
 from hfanalysis.charts.style import sheet
 from hfanalysis.products.segments import Segments
 from hfanalysis.report.figure import figure
+from hfanalysis.report.glance import four, key_numbers
 from hfanalysis.report.material import Material
 from hfanalysis.report.payload import as_json, payload
 from hfanalysis.report.sections import Laid, lay_out
-from hfanalysis.report.sections.verdict import key_numbers, sentence
 from hfanalysis.report.spark import spark
 from hfanalysis.wording import numbers as wording
 from hfanalysis.wording.numbers import in_words, listed, shown
@@ -102,7 +102,7 @@ def summary(material: Material) -> dict[str, Any]:
         "kind": kind(material) if material.fired else "no firing found",
         "date": str(test.date or ""),
         "source": test.source,
-        "sentence": sentence(material),
+        "sentence": " ".join(told.words for told in four(material)[:3]),
         "numbers": [[in_words(name), *_in_both(name, quantity)] for name, quantity in numbers.items()],
         "spark": spark(material),
     }

@@ -86,7 +86,8 @@ def _si_span(chart: Chart) -> tuple[float, float]:
 
 
 def _series(chart: Chart, one: Series, most: int, clocks: list[str]) -> dict[str, Any]:
-    out: dict[str, Any] = {"label": one.label, "style": one.style, "kind": one.kind, "dashed": one.dashed}
+    out: dict[str, Any] = {"label": one.label, "style": one.style, "css": one.css, "kind": one.kind}
+    out |= {"faint": one.faint} if one.faint else {}
     if one.kind == "level":
         return out | {"level": float(one.values[0])}
     data = _kept(chart, one.time, one.values, most)

@@ -122,6 +122,7 @@ def _add(axes: Any, chart: Chart, one: Series) -> None:
         axes.fill_between(one.time, *edges, color=color, alpha=0.22, linewidth=0, label=label)
         return
     data = draw.scaled(draw.reduced(chart, one, _BINS), scale)
-    axes.plot(data.time, data.mean, color=color, linewidth=1.3, linestyle="--" if one.dashed else "-", label=label)
+    width = 0.6 if one.faint else 1.3
+    axes.plot(data.time, data.mean, color=color, linewidth=width, linestyle="--" if one.dashed else "-", label=label)
     if data.low is not data.mean:
         axes.fill_between(data.time, data.low, data.high, color=color, alpha=0.22, linewidth=0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 from markupsafe import Markup
@@ -10,6 +11,7 @@ from markupsafe import Markup
 from hfanalysis.charts.chart import LOG_TIME, TIME, Chart, Series
 from hfanalysis.record.log import Channel, Flag
 from hfanalysis.report.material import Material, event_list, phase_list, window
+from hfanalysis.report.names import called
 
 
 def over_time(
@@ -26,6 +28,7 @@ def over_time(
     value_span: tuple[float, float] | None = None,
     difference: bool = False,
     weight: float = 1.0,
+    repeats: bool = False,
 ) -> Chart | None:
     """A chart over the test's phases and events; None where no series has anything to draw.
 
@@ -42,6 +45,7 @@ def over_time(
         value_span: of the value axis, where the data should not set it.
         difference: whether the values are differences.
         weight: of the chart's lines where the page's detail is shared out.
+        repeats: whether another chart of the page shows its lines as well.
     """
     kept = tuple(one for one in series if one.finite)
     if not any(one.kind == "line" for one in kept):
@@ -61,6 +65,7 @@ def over_time(
         value_span,
         difference=difference,
         weight=weight,
+        repeats=repeats,
     )
 
 
@@ -76,7 +81,18 @@ def lines_of(
         time = channel.time - material.opening
         part = (time >= start) & (time <= end)
         left = np.where(lost & ((channel.flags & Flag.DROPOUT) == 0), values, np.nan)[part]
-        yield Series(f"{label or channel.name}, not used", style, time[part], left, dashed=True)
+        yield Series(f"{label or called(channel.name)}, not used", style, time[part], left, dashed=True, faint=True)
+
+
+def broken(material: Material, line: Series) -> Series:
+    """A line that a tank's liquid makes, broken where that is gone: what it reads before says nothing of after."""
+    gone = material.event("t_v")
+    inside = gone is not None and line.time.size and line.time[0] < gone < line.time[-1]
+    if gone is None or not inside:
+        return line
+    at = int(np.searchsorted(line.time, gone, side="right"))
+    upper = None if line.upper is None else np.insert(line.upper, at, np.nan)
+    return replace(line, time=np.insert(line.time, at, gone), values=np.insert(line.values, at, np.nan), upper=upper)
 
 
 def of_channel(
@@ -87,4 +103,4 @@ def of_channel(
     start, end = window(material)
     time = channel.time - material.opening
     part = channel.good & (time >= start) & (time <= end)
-    return Series(label or channel.name, style, time[part], values[part])
+    return Series(label or called(channel.name), style, time[part], values[part])

@@ -53,11 +53,13 @@ def drag_coefficient(mach: float, table: Array) -> float:
     0.41
     """
     last = table.shape[1] - 1
-    if mach <= table[0, 0]:
+    if last == 0 or mach <= table[0, 0]:
         return float(table[1, 0])
     if mach >= table[0, last]:
         return float(table[1, last])
-    i = min(int(np.searchsorted(table[0], mach)), last) - 1
+    i = 0
+    while i < last - 1 and table[0, i + 1] < mach:  # numba's np.searchsorted loads all of scipy.linalg
+        i += 1
     share = (mach - table[0, i]) / (table[0, i + 1] - table[0, i])
     return float(table[1, i] + share * (table[1, i + 1] - table[1, i]))
 

@@ -134,27 +134,52 @@ class _Parabola:
 
 def _parabola(near: Signal, about: float, wide: float, limit: float, noise: Noise) -> _Parabola | None:
     x = near.time - about
-    curve = np.polynomial.Polynomial.fit(x, near.value, 2).convert()
+    middle, half = 0.5 * float(x[0] + x[-1]), 0.5 * float(x[-1] - x[0])
+    powers = np.vander((x - middle) / half, 5, increasing=True)
+    best, left, inverse = _fitted(powers[:, :3], near.value)
+    back = _shifted(middle, half)
+    curve = np.polynomial.Polynomial(back @ best)
     passes = _root(curve, limit, wide)
     if passes is None:
         return None
-    left = near.value - curve(x)
-    more = near.value - np.polynomial.Polynomial.fit(x, near.value, 4)(x)
-    powers = np.vander(x, 3, increasing=True)
-    spread = max(noise.white**2, float(left @ left) / (x.size - 3))
+    _, more, _ = _fitted(powers, near.value)
+    spread = max(noise.white**2, left / (x.size - 3))
     return _Parabola(
         curve,
         about,
         wide,
         about + passes,
-        np.asarray(spread * np.linalg.inv(powers.T @ powers)),
+        np.asarray(spread * back @ inverse @ back.T),
         float(np.sqrt(noise.flicker)),
-        bool(left @ left - more @ more < BENT * (noise.white**2 + BENT_BY_WANDER * x.size * noise.flicker)),
+        bool(left - more < BENT * (noise.white**2 + BENT_BY_WANDER * x.size * noise.flicker)),
     )
 
 
+def _fitted(columns: Array, value: Array) -> tuple[Array, float, Array]:
+    """Coefficients (k,) of the columns (n, k) that fit a value (n,) best, the squares that they leave, and the inverse
+    of the columns' products.
+
+    By the normal equations: powers up to the fourth over -1 to 1 lose three digits of sixteen by them.
+    """
+    inverse = np.linalg.inv(columns.T @ columns)
+    best = inverse @ (columns.T @ value)
+    left = value - columns @ best
+    return best, float(left @ left), inverse
+
+
+def _shifted(middle: float, half: float) -> Array:
+    """From the coefficients of a parabola in (x - middle)/half to those in x, (3, 3)."""
+    m = middle / half
+    return np.array([[1.0, -m, m * m], [0.0, 1.0, -2.0 * m], [0.0, 0.0, 1.0]]) / half ** np.arange(3.0)[:, np.newaxis]
+
+
 def _root(curve: np.polynomial.Polynomial, limit: float, wide: float) -> float | None:
-    roots = (curve - limit).roots()
-    real = roots[np.abs(roots.imag) < 1e-9].real
-    falling = [float(r) for r in real if abs(r) < wide and curve.deriv()(r) < 0.0]
-    return min(falling, key=abs, default=None)
+    """The x [s] at which the parabola falls through the limit, where there is one within ``wide``: the root at which
+    its slope is minus the square root of the discriminant."""
+    c, b, a = float(curve.coef[0]) - limit, float(curve.coef[1]), float(curve.coef[2])
+    inside = b * b - 4.0 * a * c
+    if inside <= 0.0 or (a == 0.0 and b >= 0.0):
+        return None
+    root = float(np.sqrt(inside))
+    found = (-b - root) / (2.0 * a) if b > 0.0 else 2.0 * c / (root - b)
+    return found if abs(found) < wide else None

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hfanalysis.arrays import Array
+from hfanalysis.arrays import Array, Integers
 from hfanalysis.record.signals import Signal
 from hfanalysis.segment.breaks import Break
 from hfanalysis.segment.fade import date_fall
@@ -183,12 +183,12 @@ def _thrust_steps(signals: Mapping[str, Signal], fall: _Fall) -> bool:
 
 
 def _sudden(signals: Mapping[str, Signal], response: Response, t_feed: float, t_v: float | None) -> Sudden | None:
-    best, at = 0.0, None
-    for t in response.time[(response.time > t_feed + 0.2) & (response.time < response.time[-1] - 0.1)]:
-        size = _fall_at(response, float(t), t_v)
-        if size > best:
-            best, at = size, float(t)
-    if at is None or not thrust_falls(signals, (at - WINDOW, at - GAP), (at + GAP, at + WINDOW), 0.03):
+    times = response.time[(response.time > t_feed + 0.2) & (response.time < response.time[-1] - 0.1)]
+    sizes = _falls(response, times, t_v)
+    if not sizes.any():
+        return None
+    at = float(times[np.argmax(sizes)])
+    if not thrust_falls(signals, (at - WINDOW, at - GAP), (at + GAP, at + WINDOW), 0.03):
         return None
     return _dated(signals, at, t_v)
 
@@ -215,25 +215,48 @@ def _goes_out(
     return None
 
 
-def _fall_at(response: Response, t: float, t_v: float | None) -> float:
-    """Size of a sudden fall at t in standard deviations; 0 where it is too small, unclear, or the windows too short."""
-    start, end = t - WINDOW, t + WINDOW
+def _falls(response: Response, times: Array, t_v: float | None) -> Array:
+    """Sizes (n,) of sudden falls at ``times`` (n,) [s] in standard deviations; 0 where one is too small, unclear, or
+    its windows too short."""
+    start, end = times - WINDOW, times + WINDOW
     if t_v is not None:
-        start = max(start, t_v + GAP) if t > t_v else start
-        end = min(end, t_v - GAP) if t < t_v else end
-    a, b, c, d = np.searchsorted(response.time, (start, t - GAP, t + GAP, end))
-    if b - a < 6 or d - c < 4:
-        return 0.0
-    left, right = response.value[a:b], response.value[c:d]
-    x = response.time[a:b] - response.time[a:b].mean()
-    slope = float(x @ left / (x @ x))
-    ahead = float(response.time[c:d].mean() - response.time[a:b].mean())
-    predicted = float(left.mean()) + min(slope, 0.0) * ahead
-    fall = predicted - float(right.mean())
-    scatter = np.hypot(float((left - left.mean() - slope * x).std()), float(right.std()))
-    error = max(scatter, response.noise) * np.sqrt(3.0 / (b - a) + 1.0 / (d - c))
-    clear = fall > max(SUDDEN_FALL * predicted, SMALLEST_FALL, CLEAR_FALL * error)
-    return float(fall / error) if clear else 0.0
+        start = np.where(times > t_v, np.maximum(start, t_v + GAP), start)
+        end = np.where(times < t_v, np.minimum(end, t_v - GAP), end)
+    a, b, c, d = (np.searchsorted(response.time, at) for at in (start, times - GAP, times + GAP, end))
+    sizes, seen = np.zeros(times.size), (b - a >= 6) & (d - c >= 4)
+    a, b, c, d = a[seen], b[seen], c[seen], d[seen]
+    left, right = _Moments.of(response, a, b), _Moments.of(response, c, d)
+    slope = left.mixed / left.times
+    predicted = left.value + np.minimum(slope, 0.0) * (right.time - left.time)
+    fall = predicted - right.value
+    about = np.maximum(left.values - slope * left.mixed, 0.0) / (b - a)
+    scatter = np.sqrt(about + right.values / (d - c))
+    error = np.maximum(scatter, response.noise) * np.sqrt(3.0 / (b - a) + 1.0 / (d - c))
+    clear = fall > np.maximum.reduce([SUDDEN_FALL * predicted, np.full_like(fall, SMALLEST_FALL), CLEAR_FALL * error])
+    sizes[seen] = np.where(clear, fall / np.where(error > 0.0, error, 1.0), 0.0)
+    return sizes
+
+
+@dataclass(frozen=True)
+class _Moments:
+    """Of the response in windows, (k,) each: mean ``time`` and ``value``, and the sums of squares of the times, of the
+    values and of both mixed about them."""
+
+    time: Array
+    value: Array
+    times: Array
+    values: Array
+    mixed: Array
+
+    @classmethod
+    def of(cls, response: Response, first: Integers, end: Integers) -> _Moments:
+        """From the index of the ``first`` of a window to before its ``end``."""
+        t, v = response.time - response.time.mean(), response.value - response.value.mean()
+        count = end - first
+        totals = (np.append(0.0, np.cumsum(one)) for one in (t, v, t * t, v * v, t * v))
+        t1, v1, tt, vv, tv = (total[end] - total[first] for total in totals)
+        spread = (tt - t1 * t1 / count, np.maximum(vv - v1 * v1 / count, 0.0), tv - t1 * v1 / count)
+        return cls(t1 / count + response.time.mean(), v1 / count + response.value.mean(), *spread)
 
 
 def _dated(signals: Mapping[str, Signal], rough: float, t_v: float | None) -> Sudden | None:

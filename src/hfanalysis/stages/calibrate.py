@@ -55,12 +55,14 @@ def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     from hfanalysis.calibrate.facts import held_against
     from hfanalysis.calibrate.fuel_law import contradiction, regress
     from hfanalysis.calibrate.tank import calibrate
-    from hfanalysis.inference.adopted.corrected_log import corrected
     from hfanalysis.products.segments import Segments
 
     segments = context.read(Segments).fired
     log, definition = context.believed()
-    log = corrected(log, segments.t_open.value or 0.0, effects)
+    if effects:
+        from hfanalysis.inference.adopted.corrected_log import corrected
+
+        log = corrected(log, segments.t_open.value or 0.0, effects)
     context.progress("repeating the calibration with drawn inputs", None)
     result = calibrate(log, segments, definition, int(context.parameter("samples")), effects)
     context.progress("fitting the regression", None)

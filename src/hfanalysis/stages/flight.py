@@ -1,7 +1,7 @@
 """flight: the rocket's flight on the measured thrust, with bands, and engine files for flight simulators.
 
 Reads ``ingest.h5``, ``health.json`` and, where they are there, ``segments.json`` and ``calibration.json``; writes
-``flight.json``, ``flight.h5``, ``TEST.eng`` and ``TEST.rse``.
+``flight.json``, ``flight.h5``, ``TEST.eng``, ``TEST_static.eng`` and ``TEST.rse``.
 """
 
 from __future__ import annotations
@@ -36,6 +36,7 @@ def run(context: Context) -> None:
     stable = stability(flown, definition, winds, seeds, found.ascent.end[0] + 5.0, context.progress)
     files = export(found, definition, stable)
     context.scratch("{test}.eng").write_text(files.eng, encoding="utf-8")
+    context.scratch("{test}_static.eng").write_text(files.static_eng, encoding="utf-8")
     context.scratch("{test}.rse").write_text(files.rse, encoding="utf-8")
     context.scratch("{test}_rocketpy.py").write_text(rocketpy(found, definition, stable, files), encoding="utf-8")
     write_histories(context.scratch("flight.h5"), found, stable, context.provenance())
@@ -46,7 +47,7 @@ STAGE = Stage(
     name="flight",
     needs=("ingest", "health", "segment"),
     wants=("calibrate",),
-    products=("flight.json", "flight.h5", "{test}.eng", "{test}.rse", "{test}_rocketpy.py"),
+    products=("flight.json", "flight.h5", "{test}.eng", "{test}_static.eng", "{test}.rse", "{test}_rocketpy.py"),
     run=run,
     parameters={
         "flights": 4000,

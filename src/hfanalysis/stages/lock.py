@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import errno
-import fcntl
 import os
 import tempfile
 from collections.abc import Callable, Iterator
@@ -13,10 +11,9 @@ from pathlib import Path
 
 from hfanalysis.errors import InputError
 from hfanalysis.products.disk import make_folder, share
+from hfanalysis.stages import file_locks
 
 NAME = ".lock"
-_NO_LOCKS = {errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.ENOLCK, errno.EINVAL}
-"""What file systems say that have no locks: some network shares, FUSE, folders of a host in its virtual machine."""
 
 
 @contextlib.contextmanager
@@ -62,13 +59,11 @@ def _open_file(path: Path) -> int:
 def _take(descriptor: int, waiting: Callable[[], None]) -> bool:
     """Wait for the lock; False where the file system has none."""
     try:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+        if not file_locks.attempt(descriptor):
             waiting()
-            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            file_locks.wait(descriptor)
     except OSError as error:
-        if error.errno not in _NO_LOCKS:
+        if error.errno not in file_locks.NO_LOCKS:
             raise
         return False
     return True
@@ -78,7 +73,7 @@ def _instead(folder: Path, waiting: Callable[[], None]) -> int:
     """A locked file among this machine's temporary ones, by the folder's name; other machines do not see it."""
     name = f"hfanalysis-{sha256(str(folder.resolve()).encode()).hexdigest()[:24]}.lock"
     path = Path(tempfile.gettempdir()) / name
-    descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o600)
     if not _take(descriptor, waiting):
         os.close(descriptor)
         raise InputError(f"{folder}: found no locks, nor in {path.parent}; choose another file system with --out DIR")

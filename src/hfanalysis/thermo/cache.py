@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import io
 import os
-import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from hashlib import sha256
@@ -15,6 +14,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.sources import source_digest
+from hfanalysis.users import own_temporary
 
 _SEAL = 32
 """Length of a SHA-256 [B]. Source: definition."""
@@ -26,7 +26,7 @@ def cache_directory() -> Path:
         return Path(os.environ["HFA_CACHE"])
     home = Path(os.path.expanduser("~"))
     base = os.environ.get("XDG_CACHE_HOME") or (home / ".cache" if home.is_absolute() else None)
-    return Path(base) / "hfanalysis" if base else Path(tempfile.gettempdir()) / f"hfanalysis-{os.geteuid()}"
+    return Path(base) / "hfanalysis" if base else own_temporary()
 
 
 def cached(name: str, shape: tuple[int, ...], make: Callable[[], Array]) -> Array:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
 from hfanalysis.arrays import Array
 from hfanalysis.thermo.saturation import Property, Saturation
@@ -73,7 +72,7 @@ def equilibrium_flux(saturation: Saturation, inlet: Throttled, outlet: Array) ->
     volume = (1.0 - quality) * saturation.liquid_volume(t)[0] + quality * saturation.vapor_volume(t)[0]
     end = np.maximum(p[0], outlet)  # of the liquid, before it flashes
     by_liquid = np.maximum(inlet.pressure - end, 0.0) * volume[0]
-    work = by_liquid + cumulative_trapezoid(volume, -p, axis=0, initial=0.0)
+    work = by_liquid + _integrals(volume, -p)
     return np.asarray((np.sqrt(2.0 * np.maximum(work, 0.0)) / volume).max(axis=0))
 
 
@@ -99,6 +98,12 @@ def _entropies(saturation: Saturation, temperature: Array) -> tuple[Array, Array
     nodes = np.linspace(saturation.t_min, saturation.t_max, ENTROPY_NODES)
     by_enthalpy = saturation.energy(Property.LIQUID_ENTHALPY, nodes)[1]
     slope = (by_enthalpy - saturation.liquid_volume(nodes)[0] * saturation.pressure_slope(nodes)) / nodes
-    liquid = np.interp(temperature, nodes, cumulative_trapezoid(slope, nodes, initial=0.0))
+    liquid = np.interp(temperature, nodes, _integrals(slope, nodes))
     h_l, h_v = (saturation.energy(p, temperature)[0] for p in (Property.LIQUID_ENTHALPY, Property.VAPOR_ENTHALPY))
     return liquid, (h_v - h_l) / temperature
+
+
+def _integrals(value: Array, over: Array) -> Array:
+    """From the first on to each, along the first axis, by the trapezoidal rule; of the shape of both."""
+    parts = 0.5 * (value[1:] + value[:-1]) * np.diff(over, axis=0)
+    return np.concatenate([np.zeros_like(parts[:1]), np.cumsum(parts, axis=0)])

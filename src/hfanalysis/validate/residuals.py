@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +20,6 @@ PHASES = ("before", "filling", "liquid", "vapor", "nitrogen")
 """Phases by their number in ``residuals.h5``: before the opening, line filling, liquid, pure vapor, with nitrogen."""
 
 LONG_NAMES = {
-    "time": "time after the valve opening",
     "measured": "measured",
     "model": "model",
     "residual": "measured minus model",
@@ -104,27 +102,19 @@ def gaps(residuals: Sequence[Residual]) -> dict[str, dict[str, PhaseGap]]:
 
 def write_residuals(path: Path, modes: Mapping[str, Sequence[Residual]], provenance: Mapping[str, Any]) -> None:
     """Write residuals.h5: a group per mode and channel, for h5py, xarray and MATLAB; byte-identical each time."""
-    from hfanalysis.products.hdf5 import FORMAT, created
+    from hfanalysis.products import netcdf
 
-    with created(path, libver=FORMAT, track_order=False) as file:
-        file.attrs["Conventions"] = "CF-1.11"
-        file.attrs["title"] = "residuals: measured minus model"
-        file.attrs["provenance"] = json.dumps(provenance, sort_keys=True)
+    with netcdf.product(path, "residuals: measured minus model", provenance) as file:
         for mode, residuals in modes.items():
             for residual in residuals:
                 _write_channel(file.create_group(f"{mode}/{residual.channel}"), residual)
 
 
 def _write_channel(group: Any, residual: Residual) -> None:
-    time = group.create_dataset("time", data=residual.time, track_times=False)
-    time.make_scale("time")
-    time.attrs.update(units="s", long_name=LONG_NAMES["time"])
-    for name in ("measured", "model", "residual", "noise_std"):
-        data = group.create_dataset(name, data=getattr(residual, name), track_times=False)
-        data.dims[0].attach_scale(time)
-        data.attrs.update(units=residual.unit, long_name=f"{residual.channel}: {LONG_NAMES[name]}")
-    phase = group.create_dataset("phase", data=residual.phase, track_times=False)
-    phase.dims[0].attach_scale(time)
-    phase.attrs.update(
-        long_name="phase of the test", flag_values=np.arange(len(PHASES), dtype=np.int8), flag_meanings=" ".join(PHASES)
-    )
+    from hfanalysis.products import netcdf
+
+    netcdf.axis(group, "time", residual.time)
+    for name, words in LONG_NAMES.items():
+        netcdf.variable(group, name, getattr(residual, name), (residual.unit, f"{residual.channel}: {words}"))
+    phase = netcdf.variable(group, "phase", residual.phase, ("1", "phase of the test"))
+    phase.attrs.update(flag_values=np.arange(len(PHASES), dtype=np.int8), flag_meanings=" ".join(PHASES))

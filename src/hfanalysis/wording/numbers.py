@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from hfanalysis.products.model import AdoptedEffect
@@ -58,6 +58,8 @@ NAMES: dict[str, str] = {
     "burn_time_5_percent": "burn time, by 5 % of the thrust",
     "action_time": "action time, by 10 % of the thrust",
     "impulse_liquid": "impulse of the liquid phase",
+    "specific_impulse_liquid": "specific impulse of the liquid phase",
+    "pressure_lag": "lag of the chamber pressure behind the thrust",
     "impulse_vapor": "impulse of the vapor phase",
     "impulse_nitrogen": "impulse from nitrogen on",
     "tail_impulse": "impulse after the liquid",
@@ -95,6 +97,17 @@ NAMES: dict[str, str] = {
 """The quantities of the products, in the order in which they are shown."""
 
 EVENTS = ("t_open", "t_feed", "t_v", "t_purge", "t_fuel_out", "t_fuel_gone", "t_end")
+EVENT_LABELS: dict[str, str] = {
+    "t_open": "opens",
+    "t_feed": "line full",
+    "t_v": "liquid gone",
+    "t_purge": "N₂ enters",
+    "t_fuel_out": "fuel ends",
+    "t_fuel_gone": "fuel gone",
+    "t_end": "p_c low",
+}
+"""What a chart calls the events."""
+
 MASTHEAD = ("C_i", "m", "Z", "K_loss", "p_loss_liquid", "p_loss_vapor", "a", "n", "regression_rate_reference")
 """What a calibration is asked for first."""
 
@@ -220,18 +233,24 @@ def tidy(value: float, digits: int = 4) -> str:
     return rounded(value, f".{digits}g").replace("-", MINUS)
 
 
-def adopted_in_words(effects: Sequence[AdoptedEffect]) -> str:
-    """A sentence about the adopted effects that a product states; empty where it states none."""
+def adopted_in_words(effects: Sequence[AdoptedEffect], called: Callable[[str], str]) -> str:
+    """A sentence about the adopted effects that a product states, as they are ``called``; empty where there are
+    none."""
     if not effects:
         return ""
-    named = [f"{e.name} {_values_in_words(e.parameters)}" for e in effects]
-    return f"With {listed(named)} adopted (engines/{effects[0].file})."
+    named = [effect_in_words(effect, called) for effect in effects]
+    return f"Included in the model: {listed(named)} (engines/{effects[0].file})."
+
+
+def effect_in_words(effect: AdoptedEffect, called: Callable[[str], str]) -> str:
+    """An adopted effect with its size, in the units of people at a stand."""
+    return f"{called(effect.name)}, {_values_in_words(effect.parameters)}"
 
 
 def _values_in_words(parameters: Mapping[str, Quantity]) -> str:
     """The strength of an effect, then what else is stated of it."""
     texts = [(name, _plainly(quantity)) for name, quantity in parameters.items()]
-    others = ", ".join(f"{name} {text}" for name, text in texts[1:])
+    others = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in texts[1:])
     return texts[0][1] + (f" ({others})" if others else "")
 
 

@@ -9,9 +9,11 @@ import h5py
 import numpy as np
 import pytest
 from simulated.mixtures import Burn, World, burn
+from tests.products.cf import check
 
 from hfanalysis.performance.reconstruction.reconstruct import Reconstructed, reconstruct
 from hfanalysis.performance.reconstruction.written import write_reconstructed
+from hfanalysis.products import netcdf
 from hfanalysis.quantity import CONDITIONAL
 from hfanalysis.units import Value
 
@@ -84,8 +86,11 @@ def test_a_gauge_in_doubt_gives_none() -> None:
 
 def test_it_is_written_with_its_bands(tmp_path: Any) -> None:
     found = reconstruct(burn(LEAN, 5).test)
-    with h5py.File(tmp_path / "performance.h5", "w") as file:
+    with netcdf.product(tmp_path / "performance.h5", "reconstructed", {"version": "1"}) as file:
+        netcdf.axis(file, "time", np.arange(5.0))
         write_reconstructed(file, found)
+    check(tmp_path / "performance.h5")
+    with h5py.File(tmp_path / "performance.h5") as file:
         group = file["reconstructed"]
         assert group.attrs["variant"] == "d"
         for name in ("of_ratio", "fuel_flow", "regression_rate", "port_radius", "oxidizer_flux", "c_star",

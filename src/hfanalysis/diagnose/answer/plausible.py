@@ -11,7 +11,8 @@ from math import log
 
 from hfanalysis.engine.effect import Active
 from hfanalysis.products.diagnosis import Plausibility
-from hfanalysis.sentences import text
+from hfanalysis.record.channels import LONG_NAMES
+from hfanalysis.sentences import capitalised, text
 
 STEEPNESS = 3.0
 """Log of the odds lost per squared e-fold beyond the limit."""
@@ -48,6 +49,12 @@ def judged(active: Active) -> Plausibility:
     chosen = _parameter(active)
     size, most = limit.text(active.strengths[chosen]), limit.text(limit.most)
     possible = excess(active) <= 1.0
-    judgment = "{chosen} of {size} is below {most}" if possible else "{chosen} of {size} is beyond {most}: {why}"
-    why = text(judgment, chosen=chosen, size=size, most=most, why=limit.why)
+    judgment = "{chosen} {size} (limit {most})" if possible else "{chosen} {size} is beyond {most}. {why}"
+    why = text(
+        judgment,
+        chosen=LONG_NAMES.get(chosen, chosen.replace("_", " ")),
+        size=size,
+        most=most,
+        why=capitalised(limit.why),
+    )
     return Plausibility(size=size, plausible=possible, why=why)

@@ -6,9 +6,9 @@ from hfanalysis.diagnose.answer.posterior import SET, poor_fit
 from hfanalysis.diagnose.answer.verdict import LIKELIER
 from hfanalysis.inference.unknowns import kind_of
 from hfanalysis.products.diagnosis import Compared, Diagnosis, Gap, NamedEffect, Place
-from hfanalysis.record.channels import unit_of
-from hfanalysis.sentences import joined, said, text
-from hfanalysis.wording.numbers import listed
+from hfanalysis.record.channels import LONG_NAMES, unit_of
+from hfanalysis.sentences import Text, capitalised, joined, said, text
+from hfanalysis.wording.numbers import decimals_for, listed
 
 EQUATIONS = {
     "tank_energy": "the tank's energy",
@@ -23,17 +23,56 @@ EQUATIONS = {
 }
 """Where a model may lack something, in words."""
 
-_BY_UNIT = {
-    ("tank_volume", "kg/s"): "the flow into the tank",
-    ("tank_volume", "Pa"): "the tank's pressure at its temperature",
+_LACKING: dict[tuple[str, str], tuple[str, str]] = {
+    ("tank_energy", "W"): (
+        "{size} of heat enters the tank that the model does not have",
+        "{size} of heat leaves the tank that the model keeps in it",
+    ),
+    ("tank_volume", "kg/s"): (
+        "{size} of gas enters the tank that the model does not have",
+        "{size} leaves the tank that the model keeps in it",
+    ),
+    ("tank_energy", "Pa"): ("the tank's pressure is {size} above the model's", "it is {size} below the model's"),
+    ("tank_volume", "Pa"): (
+        "the tank's pressure is {size} above the model's at its temperature",
+        "the tank's pressure is {size} below the model's at its temperature",
+    ),
+    ("injector", "kg/s"): ("{size} more flows through the injector", "{size} less flows through the injector"),
+    ("injector", "1"): ("{size} more flows through the injector", "{size} less flows through the injector"),
+    ("feed", "Pa"): ("the feed line loses {size} more pressure", "the feed line loses {size} less pressure"),
+    ("grain", "kg/s"): ("the grain gives {size} more fuel", "the grain gives {size} less fuel"),
+    ("grain", "1"): ("the grain gives {size} more fuel", "the grain gives {size} less fuel"),
+    ("chamber_mass", "kg/s"): ("{size} more gas enters the chamber", "{size} less gas enters the chamber"),
+    ("chamber_energy", "W"): ("{size} more heat stays in the burnt gas", "{size} less heat stays in the burnt gas"),
+    ("nozzle", "N"): ("the nozzle gives {size} more thrust", "the nozzle gives {size} less thrust"),
 }
-"""The same where the unit of what is lacking says more."""
+"""What a source says by its equation and unit, where it is above zero and below it. A size takes ``{size}``."""
+
+_NAMED_PLACES: dict[str, tuple[str, str]] = {
+    "tank_leak": ("{size} leaves the tank that the model keeps in it", "{size} of gas enters the tank"),
+    "throat_factor": ("the throat is {size} wider than the model's", "the throat is {size} narrower"),
+    "thrust_factor": ("the nozzle gives {size} more thrust", "the nozzle gives {size} less thrust"),
+    "temperature_factor": ("the burnt gas is {size} hotter", "the burnt gas is {size} colder"),
+}
+"""The same of places whose unit does not tell what they are."""
+
+SIZE = "{size}"
+"""Where a size comes in what a source says."""
+
+LASTING = 0.05
+"""Part of what was compared, from its end, within which what ends there is said to go on."""
 
 LIKELY = 0.1
 """Probability from which on an effect that may be beside the first is mentioned."""
 
 MUCH = 1.3
 """Chi-square per observation from which on more is left than noise that was estimated a little too small."""
+
+PAIR = 2
+"""Names with their probabilities in a sentence."""
+
+AT_A_TIME = 3
+"""Names in a sentence of what it is not."""
 
 LITTLE = 0.2
 """Part of the gap below which its closing is not what speaks for an effect."""
@@ -58,9 +97,9 @@ _UNITS = {"Pa": "bar", "W": "kW", "kg/s": "g/s", "1": "%"}
 
 def story(product: Diagnosis) -> list[str]:
     """The whole verdict, sentence by sentence."""
-    out = [headline(product), *poor_fit_sentence(product), *equation_sentence(product)]
-    out += [place_sentence(row) for row in product.localisation]
-    out += [effect_sentence(row) for row in product.effects]
+    out = [*headlines(product), *poor_fit_sentence(product), *equation_sentence(product)]
+    out += [place_sentence(row, product.compared.end) for row in product.localisation]
+    out += [line for row in product.effects for line in effect_sentences(row, product)]
     out += fade_sentence(product.compared)
     if product.verdict == "none":
         out += left_over(product)
@@ -68,33 +107,54 @@ def story(product: Diagnosis) -> list[str]:
         out += [line for channel in product.gap.before if (line := gap_line(channel, product.gap))]
         out += proof_sentences(product)
     if product.verdict == "unknown" and product.not_it:
-        out.append(f"It is none of these: {', '.join(product.not_it)}.")
-    if product.decisive_measurements:
-        out.append("What would decide: " + "; ".join(product.decisive_measurements) + ".")
+        out += [f"It is not {name}." for name in not_it(product)]
+    out += [f"What would decide: {text}." for text in product.decisive_measurements]
     return out
 
 
+def not_it(product: Diagnosis) -> list[str]:
+    """Effects that it is not, a few at a time, in the words of people."""
+    names = [product.plain(name) for name in product.not_it]
+    return [" nor ".join(names[i : i + AT_A_TIME]) for i in range(0, len(names), AT_A_TIME)]
+
+
 def headline(product: Diagnosis) -> str:
-    """What it is, with its probability."""
+    """What it is, with its probability, in one or a few sentences."""
+    return " ".join(headlines(product))
+
+
+def headlines(product: Diagnosis) -> list[str]:
+    """What it is, with its probability; what cannot be excluded; and what may be beside it."""
     posterior = product.posterior
     label = product.effects[0].name if product.effects else product.verdict
-    others = [f"{n} ({posterior[n]:.2f})" for n in product.set90 if n != label]
+    others = [f"{product.plain(n)} ({posterior[n]:.2f})" for n in product.set90 if n != label]
+    doubt = [f"{capitalised(listed(others))} cannot be excluded."] if others else []
     if product.verdict == "none":
-        likeliest = max(posterior, key=lambda name: (posterior[name], name))
-        if likeliest == "none" or posterior[likeliest] < LIKELIER * posterior["none"]:
-            return f"Nothing is missing from the model that these channels can show (none {posterior['none']:.2f})."
-        return (
-            f"Nothing is claimed to be missing: {likeliest} ({posterior[likeliest]:.2f}) is more probable than none "
-            f"({posterior['none']:.2f}), but too little in the data speaks for it."
-        )
-    doubt = f"; {listed(others)} cannot be excluded" if others else ""
+        return _nothing(product)
     if product.verdict == "unknown":
-        return f"Something is missing that is not in the library (unknown {posterior['unknown']:.2f}){doubt}."
+        return [
+            f"Something is missing that has no name in the library (probability {posterior['unknown']:.2f}).",
+            *doubt,
+        ]
     named = [row.name for row in product.effects]
-    names = listed([f"{row.name} ({row.probability:.2f})" for row in product.effects])
-    beside = [f"{n} ({p:.2f})" for n, p in product.partners.items() if n not in named and p >= LIKELY]
-    either = f"; in place of what is beside it: {', '.join(beside)}" if beside else ""
-    return f"The model lacks {names}{doubt}{either}."
+    names = [f"{product.plain(row.name)} ({row.probability:.2f})" for row in product.effects]
+    further = [f"Beside that: {listed(names[i : i + PAIR])}." for i in range(PAIR, len(names), PAIR)]
+    beside = [f"{product.plain(n)} ({p:.2f})" for n, p in product.partners.items() if n not in named and p >= LIKELY]
+    either = [f"In place of what stands beside it may be {' or '.join(beside)}."] if beside else []
+    return [f"Missing from the model, with probability: {listed(names[:PAIR])}.", *further, *doubt, *either]
+
+
+def _nothing(product: Diagnosis) -> list[str]:
+    posterior = product.posterior
+    likeliest = max(posterior, key=lambda name: (posterior[name], name))
+    if likeliest == "none" or posterior[likeliest] < LIKELIER * posterior["none"]:
+        probability = f"probability that nothing is: {posterior['none']:.2f}"
+        return [f"Nothing is missing from the model that these channels can show ({probability})."]
+    name = capitalised(product.plain(likeliest))
+    return [
+        "Nothing is claimed to be missing, for too little in the data speaks for it.",
+        f"{name} ({posterior[likeliest]:.2f}) is more probable, though, than nothing ({posterior['none']:.2f}).",
+    ]
 
 
 def poor_fit_sentence(product: Diagnosis) -> list[str]:
@@ -104,12 +164,14 @@ def poor_fit_sentence(product: Diagnosis) -> list[str]:
         return []
     named = [row for row in product.tried if not row.unknown]
     best = max(named, key=lambda row: row.log_evidence, default=None)
-    closest = f" ({listed(best.names)})" if best is not None and best.log_evidence > 0.0 else ""
+    known = best is not None and best.log_evidence > 0.0
+    closest = f" ({listed(list(map(product.plain, best.names)))})" if best is not None and known else ""
     return [
-        f"No model comes near this test: the best with names{closest} leaves a chi-square of {left:.1f} per "
-        "observation, more than any simulated test by which probabilities were fitted. A stated value or a channel may "
-        "be wrong, or more may be missing than the library has; names have no more than the part that is described, "
-        "and none is excluded."
+        "No model comes near this test.",
+        f"The best with names{closest} leaves a chi-square of {left:.1f} per observation.",
+        "That is more than any simulated test left by which probabilities were fitted.",
+        "A stated value or a channel may be wrong, or more may be missing than the library has.",
+        "Names have no more than the part that is described, and none is excluded.",
     ]
 
 
@@ -128,38 +190,75 @@ def left_over(product: Diagnosis) -> list[str]:
         return []
     worst = max(gap.before, key=lambda channel: gap.before[channel] / gap.noise[channel])
     return [
-        f"More is left than the noise, though: chi-square {chi_square:.1f} per observation, most of it in {worst}. "
-        "Neither a listed effect nor a source that is steady, or comes and goes, explains it; an oscillation might."
+        f"More is left than the noise, though: chi-square {chi_square:.1f} per observation, "
+        f"most of it in {called(worst)}.",
+        "Neither a listed effect nor a source that is steady, or comes and goes, explains it; an oscillation might.",
     ]
 
 
-def place_sentence(row: Place) -> str:
-    """Where, from when to when and how much."""
-    unit, value, std = _UNITS.get(row.source.unit, row.source.unit), row.source.value or 0.0, row.source.std or 0.0
-    where = _BY_UNIT.get((row.equation, row.source.unit), EQUATIONS[row.equation])
-    where += f" ({row.channel})" if row.channel else ""
+def called(channel: str) -> str:
+    """A channel in words."""
+    return LONG_NAMES.get(channel, channel.replace("_", " "))
+
+
+def place_sentence(row: Place, last: float | None = None) -> str:
+    """Where, from when to when and how much; ``last``: when what was compared ends [s after the opening]."""
+    unit, value = _UNITS.get(row.source.unit, row.source.unit), row.source.value or 0.0
     left = " Beside what is named, this is still open." if row.beside else ""
     if (kind := kind_of(row)) is not None:
         known = row.known_by(kind.known_by)
         assert known is not None
+        where = EQUATIONS[row.equation] + (f" ({called(row.channel)})" if row.channel else "")
         return joined("", [kind.words(row, known, where, unit), left])
+    swing = row.rms.value or 0.0 if row.rms is not None else 0.0
+    uneven = abs(value) < UNEVEN * swing
+    size = said(swing, unit) if uneven else _sized(abs(value), row.source.std or 0.0, unit)
+    mostly = "" if row.phase in ("", "purge") and not uneven else f" Most of it is in the {row.phase} phase."
+    what = f"{_where(row)} goes up and down by {SIZE} (rms)" if uneven else _lacking(row)
+    before, _, after = what.partition(SIZE)
+    return joined("", [f"{_span(row, last)} {before}", size, f"{after}.{mostly}{left}"])
+
+
+def _sized(value: float, std: float, unit: str) -> Text:
+    """A size [SI] with its deviation, in a ``unit``, to two digits of the deviation."""
+    of_one = float(said(1.0, unit, ".17g").split()[0])
+    form = f".{min(8, decimals_for(of_one * value, of_one * std))}f"
+    return said(value, unit, form, std, form)
+
+
+def _where(row: Place) -> str:
+    return called(row.channel) if row.channel else EQUATIONS.get(row.equation, row.equation)
+
+
+def _lacking(row: Place) -> str:
+    """What a source says, with a place for its size."""
+    below = (row.source.value or 0.0) < 0.0
+    if row.channel:
+        return f"{called(row.channel)} reads {SIZE} too {'little' if below else 'much'}"
+    known = _NAMED_PLACES.get(row.site) or _LACKING.get((row.equation, row.source.unit))
+    if known:
+        return known[below]
+    return f"{EQUATIONS.get(row.equation, row.equation)} is {SIZE} {'below' if below else 'above'} the model's"
+
+
+def _span(row: Place, last: float | None) -> str:
+    """From when to when; that it goes on where nothing is compared after it."""
     start, end = row.t_start.value or 0.0, row.t_end.value or 0.0
     digits = 1 if end - start > BRIEF else 2
     low, _ = row.t_start.interval or (start, start)
-    latest = " s (at the latest)" if start - low > GRADUAL * (row.t_start.std or 0.0) else ""
-    span = f"From {start:.{digits}f}{latest} to {end:.{digits}f} s {where}"
-    swing = row.rms.value or 0.0 if row.rms is not None else 0.0
-    uneven = abs(value) < UNEVEN * swing
-    size = said(swing, unit) if uneven else said(value, unit, ".3g", std)
-    does = "goes up and down by {size} (rms; " if uneven else "differs by {size} on average ("
-    return text(span + " " + does + "mostly in the {phase} phase).{left}", size=size, phase=row.phase, left=left)
+    latest = " (at the latest)" if start - low > GRADUAL * (row.t_start.std or 0.0) else ""
+    if last is not None and end >= (1.0 - LASTING) * last:
+        return f"From {start:.{digits}f} s{latest} on"
+    return f"From {start:.{digits}f} s{latest} to {end:.{digits}f} s"
 
 
-def effect_sentence(row: NamedEffect) -> str:
+def effect_sentences(row: NamedEffect, product: Diagnosis) -> list[str]:
     """What a named effect is, and whether it can be so large."""
-    size = row.plausibility
-    judged = "" if size.plausible is not False else " That is hard to believe: take the name with care."
-    return text("{name}: {meaning}; {why}.{judged}", name=row.name, meaning=row.meaning, why=size.why, judged=judged)
+    size, name = row.plausibility, capitalised(product.plain(row.name))
+    if size.plausible is None:
+        return [f"{name}: {row.meaning}.", joined("", [capitalised(size.why), "."])]
+    judged = "plausible" if size.plausible else "hard to believe, so take the name with care"
+    return [f"{name}: {row.meaning}.", text("Its size is {judged}: {why}.", judged=judged, why=size.why)]
 
 
 def fade_sentence(compared: Compared) -> list[str]:
@@ -170,42 +269,45 @@ def fade_sentence(compared: Compared) -> list[str]:
     if seconds < SLOW_FADE * abrupt:
         return []
     return [
-        f"As the fuel ends chamber pressure and thrust fall within {seconds:.0f} ms; a chamber of this volume empties "
-        f"within {abrupt:.0f} ms."
+        f"As the fuel ends chamber pressure and thrust fall within {seconds:.0f} ms.",
+        f"A chamber of this volume empties within {abrupt:.0f} ms.",
     ]
 
 
 def gap_line(channel: str, gap: Gap) -> str:
-    """Residual of a channel without and with the effects, and its noise."""
+    """Misfit of a channel without and with the effects, and its noise."""
     unit = _UNITS.get(unit_of(channel), unit_of(channel))
     return text(
-        "{channel}: rms {before} without, {after} with it; noise {noise}.",
-        channel=channel,
-        before=said(gap.before[channel], unit),
-        after=said(gap.after[channel], unit),
+        "{channel} misfit: {before} refitted, {after} with the effects; noise {noise}.",
+        channel=capitalised(called(channel)),
+        before=said(gap.before[channel], unit, ".2g"),
+        after=said(gap.after[channel], unit, ".2g"),
         noise=said(gap.noise[channel], unit, ".2g"),
     )
 
 
+_ARMS = {
+    "same": "{part} of the misfit goes on the data that named it.",
+    "held_out": "{part} goes on stretches that were held out.",
+    "other_test": "{part} goes on another test, with the constants as found here.",
+    "placebo": "The best wrong effect takes away {part}.",
+}
+
+
 def proof_sentences(product: Diagnosis) -> list[str]:
-    """How much of the gap closes, and on which data; how an effect can be named though little of it does."""
-    arms = {
-        "same": "of the gap closes on the data that named it",
-        "held_out": "on stretches that were held out",
-        "other_test": "on another test, with the constants as found here",
-        "placebo": "with the best wrong effect",
-    }
+    """How much of the misfit goes, and on which data; how an effect can be named though little of it does."""
     found = product.gap.closed_fraction
-    closed = ((getattr(found, arm), text) for arm, text in arms.items())
-    parts = [f"{100.0 * part:.0f} % {text}" for part, text in closed if part is not None]
+    closed = ((getattr(found, arm), words) for arm, words in _ARMS.items())
+    said = [words.format(part=f"{100.0 * part:.0f} %") for part, words in closed if part is not None]
     same, placebo = found.same, found.placebo
     if placebo is not None and placebo < 0.0:
-        parts[-1] = f"the best wrong effect widens it by {-100.0 * placebo:.0f} %"
-    said = [", ".join(parts) + "."] if parts else []
+        said[-1] = f"The best wrong effect adds {-100.0 * placebo:.0f} % to it."
     if same is not None and placebo is not None and same >= LITTLE and same - placebo < BEYOND_PLACEBO:
-        said.append("A wrong effect closes about as much: the gap that closes proves nothing here.")
+        said.append("A wrong effect takes away about as much: that the misfit goes proves nothing here.")
     if product.effects and (same is None or same < LITTLE):
-        where = "No channel is off by more than its noise" if same is None else "The gap that is left is another one"
-        what = "smaller than the noise of single means, or in instants and the filling of the line"
-        said.append(f"{where}: what names the effect is {what}, where no gap is measured.")
+        where = "No channel is off by more than its noise" if same is None else "The misfit that is left is another one"
+        said += [
+            f"{where}.",
+            "What names the effect is smaller than the noise of single means, or in instants and the line's filling.",
+        ]
     return said

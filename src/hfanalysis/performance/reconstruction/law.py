@@ -6,10 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
+from hfanalysis.performance.reconstruction.posterior import CHANGE
 from hfanalysis.quantity import Quantity
 
 SPREAD = 1.25
 """Largest over smallest flux from which a and n are told. Source: over less, n is the slope of a point."""
+
+NO_MORE = 0.7
+"""Part of the standard deviation taken beforehand from which on a firing says nothing of n. Source: by choice: half of
+the variance is then the firing's."""
 
 POINTS = 5
 """Moments at which O/F has to be told. Source: by choice."""
@@ -28,6 +33,10 @@ def exponent_and_factor(
     from_middle = x - x.mean(axis=0)
     slope = np.sum(from_middle * y, axis=0) / np.sum(from_middle**2, axis=0)
     offset = y.mean(axis=0) - slope * x.mean(axis=0)
+    beforehand = CHANGE / float(np.log(usual.max() / usual.min()))
+    if float(np.std(slope)) > NO_MORE * beforehand:
+        reason = f"the firing tells n no better than what is taken of it beforehand, +/- {beforehand:.2f}"
+        return Quantity.absent(reason), Quantity.absent(reason)
     why = "along the path of one firing, its errors in common"
     factors = np.exp(offset)
     ends = tuple(float(x) for x in np.quantile(factors, (0.025, 0.975)))

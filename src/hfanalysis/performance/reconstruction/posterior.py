@@ -54,6 +54,14 @@ that fluctuates."""
 UNLIKELY = 14.0
 """Difference of the logarithm of a probability from which a pair of ends is left out. Source: one in a million."""
 
+COARSE = 10.0
+"""Times the noise with which a first course is found, from which samples are judged. Source: by choice: a wild sample
+pulls no more than its neighbors do."""
+
+WILD = 10.0
+"""Times the median miss of all samples beside that course, from which on one is wild. Source: by choice: no spread of
+errors of one kind reaches that far."""
+
 TAILS = 4.0
 """Degrees of freedom of a sample's error. Source: by choice, of robust fits (Lange et al., JASA 84, 881 (1989))."""
 
@@ -93,7 +101,7 @@ class _Linear:
 class _Problem:
     """Unknowns: the waves of ln OF (PATHS, with what lies between two of ENDS), errors, ln efficiency."""
 
-    def __init__(self, inputs: Inputs, theory: Theory, left: Array | None = None) -> None:
+    def __init__(self, inputs: Inputs, theory: Theory, louder: Array | float = 1.0) -> None:
         self.inputs, share = inputs, inputs.share
         width = (ENDS[1] - ENDS[0]) / np.sqrt(12.0)
         k = np.arange(1, WAVES + 1)
@@ -109,9 +117,7 @@ class _Problem:
         usual = inputs.efficiency[0] * theory.at(theory.c_star, inputs.pressure, np.full(share.size, 7.0))
         passed = (inputs.pressure * inputs.throat + usual * inputs.stored) / inputs.oxidizer
         self.right = np.log(passed / inputs.efficiency[0])
-        self.noise = np.hypot(inputs.white, ROUGH)
-        if left is not None:  # what is slow and no error of an input has to be noise, some samples' more than others'
-            self.noise = self.noise * max(1.0, float(np.sqrt(np.mean(left**2)))) * np.sqrt(1.0 + left**2 / TAILS)
+        self.noise = louder * np.hypot(inputs.white, ROUGH)
 
     def solve(self, line: Array, unknown: Array | None = None) -> _Linear:
         """About the courses ``line`` (pairs, n), with the waves of ``unknown`` (pairs, k) where they are known."""
@@ -154,7 +160,7 @@ class _Problem:
     def missed(self, x: Array, unknown: Array) -> Array:
         """What one course ``x`` (n,) leaves of the pressure, over its noise (n,)."""
         rest = self.right - self._left(x[None])[0][0] - self.fixed @ unknown[self.waves.shape[1] :]
-        return np.asarray(rest / self.noise)
+        return np.asarray(rest / np.hypot(self.inputs.white, ROUGH))
 
 
 def _steps(time: Array) -> Array:
@@ -182,23 +188,37 @@ def courses(inputs: Inputs, theory: Theory) -> Courses:
     near = np.abs(last - first - inputs.usual[-1]) < 3.0 * CHANGE
     first, last = first[near], last[near]
     lines = first[:, None] * (1.0 - inputs.share) + last[:, None] * inputs.share + inputs.bent(inputs.usual)
-    problem = _Problem(inputs, theory)
-    lines, found, probability = _likely(problem, lines)
-    best = int(probability.argmax())
-    miss = problem.missed(lines[best] + problem.waves @ found.mean[best, :PATHS], found.mean[best])
-    problem = _Problem(inputs, theory, miss)
+    wild = _left_by_best(_Problem(inputs, theory, COARSE), lines)
+    louder = np.where(np.abs(wild) > WILD * max(1.0, float(np.median(np.abs(wild)))), COARSE**2, 1.0)
+    left = _left_by_best(_Problem(inputs, theory, louder), lines) / louder
+    # what is slow and no error of an input has to be noise, some samples' more than others'
+    louder = louder * max(1.0, float(np.sqrt(np.mean(left**2)))) * np.sqrt(1.0 + left**2 / TAILS)
+    problem = _Problem(inputs, theory, louder)
     return _drawn(problem, *_likely(problem, lines))
+
+
+def _left_by_best(problem: _Problem, lines: Array) -> Array:
+    """What the likeliest of the courses about ``lines`` (pairs, n) leaves (n,), over the samples' own noise."""
+    found, probability = _weighed(problem, lines)
+    best = int(probability.argmax())
+    return problem.missed(lines[best] + problem.waves @ found.mean[best, :PATHS], found.mean[best])
+
+
+def _weighed(problem: _Problem, lines: Array) -> tuple[_Linear, Array]:
+    """What is known with each of the ``lines`` (pairs, n), and the logarithm of its probability (pairs,)."""
+    found = problem.solve(lines)
+    return found, found.probability + _before(problem.inputs, lines)
 
 
 def _likely(problem: _Problem, lines: Array) -> tuple[Array, _Linear, Array]:
     """The lines that are not UNLIKELY, and what is known of each."""
-    found = problem.solve(lines)
+    found, probability = _weighed(problem, lines)
     for _ in range(ROUNDS):
-        probability = found.probability + _before(problem.inputs, lines)
         kept = probability > probability.max() - UNLIKELY
-        lines = lines[kept]
+        lines, probability = lines[kept], probability[kept]
         found = problem.solve(lines, found.mean[kept])
-    return lines, found, found.probability + _before(problem.inputs, lines)
+        probability = found.probability + _before(problem.inputs, lines)
+    return lines, found, probability
 
 
 def _before(inputs: Inputs, lines: Array) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.assembly.engine import combustion_of
+from hfanalysis.assembly.burnt_gas import combustion_of
 from hfanalysis.engine.nozzle import characteristic_velocity, expand_along
 from hfanalysis.thermo.shifting import shifting
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hfanalysis.performance.reconstruction.reconstruct import Reconstructed
+from hfanalysis.products.reconstruction import AXIS
 
 if TYPE_CHECKING:
     import h5py
@@ -14,7 +15,7 @@ UNITS = {
     "fuel_flow": ("kg/s", "fuel mass flow"),
     "regression_rate": ("m/s", "regression rate of the fuel"),
     "port_radius": ("m", "radius of the port"),
-    "oxidizer_flux": ("kg m-2 s-1", "oxidizer mass flux in the port"),
+    "oxidizer_flux": ("kg/(m^2 s)", "oxidizer mass flux in the port"),
     "c_star": ("m/s", "characteristic velocity"),
     "c_star_efficiency": ("1", "characteristic velocity over that of shifting equilibrium"),
     "throat_radius": ("m", "radius of the throat"),
@@ -27,20 +28,17 @@ PARTS = "", ", lower end of its 95 % interval", ", upper end of its 95 % interva
 
 def write_reconstructed(file: h5py.File, found: Reconstructed) -> None:
     """The group ``reconstructed`` of performance.h5; nothing where there is no reconstruction."""
+    from hfanalysis.products import netcdf
+
     if not found.histories:
         return
     group = file.create_group("reconstructed")
     group.attrs["variant"] = str(found.product.variant)
     group.attrs["assumption"] = str(found.product.assumption)
-    time = group.create_dataset("time", data=found.time, track_times=False)
-    time.make_scale("time")
-    time.attrs.update(units="s", long_name="time after the valve opening")
+    netcdf.axis(group, AXIS, found.time)
     for name, parts in found.histories.items():
         unit, words = UNITS[name]
         for suffix, said, values in zip(("", "_low95", "_high95"), PARTS, parts, strict=True):
-            data = group.create_dataset(name + suffix, data=values, track_times=False)
-            data.dims[0].attach_scale(time)
-            data.attrs.update(units=unit, long_name=f"{words}{said}")
-    told = group.create_dataset("told", data=found.told, track_times=False)
-    told.dims[0].attach_scale(time)
-    told.attrs.update(units="1", long_name="1 where O/F does not hang on the last per cent of the pressure")
+            netcdf.variable(group, name + suffix, values, (unit, f"{words}{said}"), AXIS)
+    about = ("1", "1 where O/F does not hang on the last per cent of the pressure")
+    netcdf.variable(group, "told", found.told, about, AXIS)

@@ -10,8 +10,11 @@ function element(parent, name, attributes, text) {
   return made;
 }
 
-function margins(width) {
-  return width < WIDE ? { left: 46, right: 10, top: 56, bottom: 46 } : { left: 58, right: 116, top: 56, bottom: 46 };
+// The names at the lines' ends take what they need, as in the static chart.
+function margins(width, chart) {
+  if (width < WIDE) return { left: 46, right: 10, top: 56, bottom: 46 };
+  const names = chart.series.filter((one) => one.kind === "line").map((one) => 30 + 6.6 * one.label.length);
+  return { left: 58, right: clamp(Math.max(...names), 116, 250), top: 56, bottom: 46 };
 }
 
 function shownUnit(chart) {
@@ -24,8 +27,9 @@ function valueSpan(chart, start, end) {
   const whole = start <= chart.span[0] && end >= chart.span[1];
   if (whole && chart.series.every((one) => one.shown)) return chart.values;
   let low = Infinity, high = -Infinity;
+  const believed = chart.series.some((one) => one.shown && one.kind === "line" && !one.faint);
   for (const one of chart.series) {
-    if (!one.shown || one.kind === "level") continue;
+    if (!one.shown || one.kind === "level" || (one.faint && believed)) continue;
     const [bottom, top] = extent(one, start, end);
     low = Math.min(low, bottom);
     high = Math.max(high, top);
@@ -37,7 +41,7 @@ function valueSpan(chart, start, end) {
 }
 
 function draw(chart, width, start, end) {
-  const m = margins(width), height = chart.height, unit = shownUnit(chart);
+  const m = margins(width, chart), height = chart.height, unit = shownUnit(chart);
   const [bottom, top] = valueSpan(chart, start, end).map(unit.of);
   const x = linear(start, end, m.left, width - m.right);
   const y = linear(bottom, top, height - m.bottom, m.top);
@@ -121,7 +125,7 @@ function drawEvents(chart, svg) {
 }
 
 function drawSeries(chart, svg, one) {
-  const { x, y, unit } = chart.place, style = one.style + (one.dashed ? " dashed" : "");
+  const { x, y, unit } = chart.place, style = one.css;
   if (one.kind === "level") {
     const at = y(unit.of(one.level));
     if (at >= y.to && at <= y.from) element(svg, "path", { class: "level " + style, d: `M${x.from} ${at}H${x.to}` });
@@ -227,8 +231,8 @@ function nameEnds(chart, svg) {
     ends[i].at = Math.min(ends[i].at, i === ends.length - 1 ? height - m.bottom : ends[i + 1].at - 15);
   }
   for (const { at, one } of ends) {
-    element(svg, "path", { class: `line ${one.style}${one.dashed ? " dashed" : ""}`, d: `M${x.to + 8} ${at}h12` });
-    const name = one.label.length > 13 ? one.label.slice(0, 12) + "\u2026" : one.label;
+    element(svg, "path", { class: `line ${one.css}`, d: `M${x.to + 8} ${at}h12` });
+    const name = one.label.length > 33 ? one.label.slice(0, 32) + "\u2026" : one.label;
     element(svg, "text", { class: "end-name", x: x.to + 25, y: at + 4, "text-anchor": "start" }, name);
   }
 }

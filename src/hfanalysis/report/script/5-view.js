@@ -86,7 +86,7 @@ function isFolded(chart) {
 }
 
 function drawForPaper() {
-  for (const chart of charts) refresh(chart, 960);
+  for (const chart of charts) refresh(chart, chart.frame.closest(".beside") ? 560 : 960);
 }
 
 function refresh(chart, width) {

@@ -93,6 +93,6 @@ def _laid(key: str, section: Section, material: Material) -> Laid:
 
 
 def charts(material: Material) -> Iterator[Chart]:
-    """All charts of the page."""
+    """All charts of the page, each line once."""
     for laid in lay_out(material):
-        yield from laid.charts
+        yield from (chart for chart in laid.charts if not chart.repeats)

@@ -12,6 +12,7 @@ from hfanalysis.products.flight import Flight
 from hfanalysis.products.validation import Validation
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
+from hfanalysis.report.names import plain
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.wording.numbers import in_words
 
@@ -39,7 +40,7 @@ def _rows(made: Made) -> Iterator[tuple[Any, ...]]:
         html.amount(made.budget.random, unit, 2, True),
     )  # fmt: skip
     for name, share in shares.items():
-        yield (*head, f"{100.0 * share:.1f} %", name)
+        yield (*head, f"{100.0 * share:.1f} %", plain(name))
         head = ("",) * len(head)
 
 

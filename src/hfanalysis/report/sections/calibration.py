@@ -13,8 +13,8 @@ from hfanalysis.report.sections import Block, Section
 from hfanalysis.wording.numbers import ordered
 
 _CAPTION = (
-    "One standard deviation and the 95 % interval: noise, stated accuracies, masses and phase times together, and what "
-    "is off in every repetition alike: volume, holes, the table of nitrous oxide, the line's content."
+    "One standard deviation and the 95 % interval. They hold noise, stated accuracies, masses and phase times. They "
+    "also hold what is off in every repetition alike: volume, holes, the table of nitrous oxide, the line's content."
 )
 
 
@@ -34,4 +34,4 @@ def _row(name: str, quantity: Quantity, material: Material) -> tuple[Any, ...]:
     return html.symbol_and_words(name), *number, html.verdict(quantity.verdict or ""), remark
 
 
-SECTION = Section("Calibration", 70, ("calibration",), render)
+SECTION = Section("Calibration", 70, ("calibration",), render, folded=True)

@@ -6,46 +6,56 @@ from collections.abc import Iterable, Iterator
 
 from markupsafe import Markup
 
+from hfanalysis.diagnose.answer.words import headlines, place_sentence, poor_fit_sentence
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.diagnosis import Diagnosis
+from hfanalysis.record.channels import LONG_NAMES
 from hfanalysis.report import diagnosis_charts as charts
 from hfanalysis.report import diagnosis_tables as tables
 from hfanalysis.report import html
+from hfanalysis.report.equation_map import equation_map
+from hfanalysis.report.glance import included
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.sentences import capitalised, joined
+from hfanalysis.wording.numbers import listed
 
 _SHARED = ("segments", "calibration")
 """Products without which there is no diagnosis: their absence is told once."""
 
 
 def render(material: Material) -> Iterator[Block]:
-    """The story in words, its numbers and pictures, and what is looked up, behind folds."""
+    """The story: what is missing, its course, every channel with it, and the proof; what is looked up, behind folds."""
     product = material.get(Diagnosis)
     if product is None:
         yield _absent(material)
         return
-    yield from _story(product)
+    yield from _story(material, product)
     yield tables.probabilities(product)
-    yield tables.partners(product)
-    yield tables.parameters(product)
-    yield from charts.sources(material, product)
-    yield from _gap(material, product)
-    yield from tables.constants(product)
+    yield from _pairs(charts.sources(material, product))
+    yield from _proof(material, product)
+    yield from _pairs(charts.channels(material, product))
+    yield from _folded("What is left of each channel", _left(material, product))
+    yield from _folded("Constants with and without it", [tables.parameters(product), *tables.constants(product)])
     yield from _unfound(product)
+    yield equation_map(material, product)
     yield from _folded("Equation by equation", [*charts.weak_form(material, product), _unasked(product)], _WEAK)
-    yield from _remarks(product)
+    yield from _folded("What was compared, and all of it in words", _remarks(product))
+
+
+def _pairs(drawn: Iterable[Block]) -> Iterator[Block]:
+    """Charts beside each other where the screen has room."""
+    kept = [chart for chart in drawn if chart is not None]
+    if kept:
+        yield Markup('<div class="beside">')
+        yield from kept
+        yield Markup("</div>")
 
 
 _WEAK = (
-    "Each governing equation averaged over short stretches, with the measured channels put in and the base "
-    "calibration: what it lacks, without running the model. Axes fit the usual band; a wider one leaves the chart."
+    "Each governing equation averaged over short stretches, with the measured channels and the base calibration put "
+    "in. What it lacks shows without running the model. Axes fit the usual band; a wider one leaves the chart."
 )
-
-
-def headline(product: Diagnosis) -> str:
-    """The verdict in a sentence; empty where the product has none."""
-    return next(iter(product.sentences), "")
 
 
 def _absent(material: Material) -> Markup:
@@ -57,39 +67,43 @@ def _absent(material: Material) -> Markup:
     return words.format(html.switchable(reason))
 
 
-def _story(product: Diagnosis) -> Iterator[Markup]:
-    yield html.paragraph(html.switchable(headline(product)), "lead diagnosed")
-    yield html.bullets(map(html.switchable, product.sentences[1:]), "told")
-    untold = [text for text in product.decisive_measurements if not _told(product, text)]
-    if untold:
-        yield html.paragraph("What would decide:")
-        yield html.bullets(map(html.switchable, untold), "said")
-    for group in product.twins:
-        if not set(group) & set(product.not_it):
-            yield html.paragraph(f"These channels hardly tell apart: {', '.join(group)}.")
+def _story(material: Material, product: Diagnosis) -> Iterator[Markup]:
+    """What is missing, or included by now, and what it is."""
+    if words := included(material):
+        yield html.paragraph(html.switchable(words), "lead diagnosed")
+    lead = list(product.sentences[:1]) if product.constants is None else headlines(product)
+    yield html.paragraph(html.switchable(joined(" ", lead)), "told" if words else "lead diagnosed")
+    said = [line for line in product.sentences if line not in lead] if product.constants is None else []
+    said = said or [f"{capitalised(product.plain(row.name))}: {row.meaning}." for row in product.effects]
+    if not product.effects and product.constants is not None:
+        said += [place_sentence(row, product.compared.end) for row in product.localisation]
+    yield html.bullets(map(html.switchable, [*poor_fit_sentence(product), *said]), "told")
 
 
-def _told(product: Diagnosis, text: str) -> bool:
-    return any(text in sentence for sentence in product.sentences)
+def _proof(material: Material, product: Diagnosis) -> Iterator[Block]:
+    """How much of the misfit goes, and on which data; nothing where no model ran."""
+    if not product.gap.before:
+        return
+    if charts.with_what(product):
+        yield tables.proof(product)
+    else:
+        yield html.paragraph("Nothing is claimed to be missing, so there is no misfit to explain and nothing to prove.")
 
 
-def _gap(material: Material, product: Diagnosis) -> Iterator[Block]:
-    """The residual of every channel without and with what is missing, and the proof; nothing where no model ran."""
+def _left(material: Material, product: Diagnosis) -> Iterator[Block]:
+    """The residual of every channel, its size, and that by phase."""
     if not product.gap.before:
         return
     yield from charts.residuals(material, product)
-    if not charts.with_what(product):
-        yield html.paragraph("Nothing is claimed to be missing, so there is no gap to close and nothing to prove.")
-        return
-    yield tables.gaps(product)
-    yield from _folded("Gap by phase", [tables.gaps_by_phase(product)])
-    yield tables.proof(product)
+    if charts.with_what(product):
+        yield tables.gaps(product)
+        yield tables.gaps_by_phase(product)
 
 
 def _unfound(product: Diagnosis) -> Iterator[Block]:
     """What was looked for and not found."""
-    names = ", ".join(product.not_it)
-    excluded = html.paragraph(f"Tried, and not it: {names}.") if names else None
+    names = [product.plain(name) for name in product.not_it]
+    excluded = html.paragraph("Tried, and not it:") + html.bullets(names, "said") if names else None
     yield from _folded("What was not found", [excluded, tables.limits(product)])
 
 
@@ -113,14 +127,15 @@ def _folded(head: str, blocks: Iterable[Block], words: str = "") -> Iterator[Blo
 
 
 def _remarks(product: Diagnosis) -> Iterator[Markup]:
-    """What was compared, and what to bear in mind."""
+    """All of it in sentences, what was compared, and what to bear in mind."""
+    yield html.bullets(map(html.switchable, product.sentences), "said")
     for text in product.warnings:
         yield Markup('<p class="absent"><strong>Warning:</strong> {}</p>').format(html.switchable(text))
     compared = product.compared
     said = list(map(_sentence, product.notes))
     if compared.start is not None and compared.end is not None:
         span = f"from {html.seconds(compared.start)} to {html.seconds(compared.end)}"
-        said.insert(0, f"Compared: {', '.join(compared.channels)}, {span}.")
+        said.insert(0, f"Compared: {listed([LONG_NAMES.get(c, c) for c in compared.channels])}, {span}.")
     if said:
         yield html.bullets(map(html.switchable, said), "said")
 
@@ -129,4 +144,4 @@ def _sentence(text: str) -> str:
     return joined("", [capitalised(text), "."])
 
 
-SECTION = Section("Diagnosis", 58, (), render)
+SECTION = Section("What the model lacks", 11, (), render)

@@ -19,21 +19,27 @@ from hfanalysis.report.sections import Block, Section
 from hfanalysis.wording.numbers import in_words, ordered
 
 _CURVES = {"height": ("Height above ground", "m"), "speed": ("Speed", "m/s"), "acceleration": ("Acceleration", "m/s^2")}
+_WAYS_DOWN = (
+    ("drogue", "under the drogue", "p_purge"),
+    ("main", "under the main", "p_fill"),
+    ("ballistic", "without parachutes", "p_chamber"),
+)
+"""Groups of flight.h5 after the apogee, what they are called, and their colors."""
 _SIGNS = {"passed": "good", "failed": "bad"}
 _TIME = "time of flight [s]"
 
-_GEOMETRY = (
-    "add [rocket.geometry] to test.toml with nose, body, fins, structure, tank_position and chamber_position, and see "
-    "that [tank] has its inner_diameter and [grain] its length and outer_radius"
+_GEOMETRY = Markup(
+    " Add it to test.toml with <code>nose, body, fins, structure, tank_position, chamber_position</code>. Tank and "
+    "grain need their sizes, too."
 )
 
 
 def render(material: Material) -> Iterator[Block]:
     """The numbers with their bands, the checks, the way up, and the margin."""
     product = material.need(Flight)
-    caption = (
+    caption = html.switchable(
         f"Thrust {product.thrust_basis}, {product.thrust}. One standard deviation and 95 % interval from flights that "
-        f"differ in what is uncertain: {product.band_covers}."
+        f"differ in what is uncertain. That is {product.band_covers}."
     )
     columns = ("quantity", ">value", ">95 % interval", "remark")
     found = ordered(product.flown) | ordered(product.stability.quantities)
@@ -65,17 +71,27 @@ def _curve(material: Material, name: str, title: str, unit: str) -> Chart | None
     if name not in ascent:
         return None
     time, values = ascent["time"].values, ascent[name].values
-    series = [Series(name, "p_tank", time, values)]
+    series = [Series("ascent", "p_tank", time, values)]
     if f"{name}_low" in bands:
         low, high = (bands[f"{name}_{side}"].values for side in ("low", "high"))
         series.insert(0, Series("95 % of the flights", "p_tank", bands["time"].values, low, "band", high))
+    ways_down = list(_down(material, name))
     caption: str | Markup = ""
     limit = _rail_limit(material)
     if name == "speed" and limit is not None:
         series.append(Series("least at the rail's end", "zero", time[[0, -1]], np.full(2, limit), "level"))
         caption = Markup("Dashed: the {} that a rocket should have when it leaves the rail.")
         caption = caption.format(html.amount(limit, "m/s"))
-    return _over_flight(material, f"flight-{name}", (title, name, unit), series, around([time]), caption)
+    span = around([line.time for line in (*series[:2], *ways_down)])
+    return _over_flight(material, f"flight-{name}", (title, name, unit), [*series, *ways_down], span, caption)
+
+
+def _down(material: Material, name: str) -> Iterator[Series]:
+    """The ways down beside the way up: under the parachutes, and without them."""
+    for group, label, style in _WAYS_DOWN:
+        table = material.table("flight", group)
+        if name in table:
+            yield Series(label, style, table["time"].values, table[name].values, dashed=group == "ballistic")
 
 
 def _rail_limit(material: Material) -> float | None:
@@ -164,8 +180,9 @@ def _without_margin(stability: Stability) -> Markup | None:
     reason = stability.margin_at_rail_departure.reason
     if not reason:
         return None
-    add = _GEOMETRY if "[rocket.geometry]" in reason else "state it in test.toml" if "not given" in reason else ""
-    return html.paragraph(f"No static margin is drawn: {reason}{f'; {add}' if add else ''}.")
+    stated = Markup(" State it in test.toml.") if "not given" in reason else Markup()
+    add = _GEOMETRY if "[rocket.geometry]" in reason else stated
+    return html.paragraph(html.switchable(f"No static margin is drawn: {reason}.") + add)
 
 
-SECTION = Section("Flight", 78, ("flight",), render)
+SECTION = Section("Flight", 78, ("flight",), render, folded=True)

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.charts.chart import Chart, Series, around
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.sections.regression import flows_absent
-from hfanalysis.report.time_charts import over_time
+from hfanalysis.report.time_charts import broken, over_time
 from hfanalysis.thermo.constants import OXIDIZER_MOLAR_MASS
 
 MOLES_TO_KG = 1e-3 * OXIDIZER_MOLAR_MASS
@@ -42,28 +42,26 @@ def lines(material: Material) -> Iterator[Series]:
     table = material.table("performance")
     for name, label, style in (("oxidizer_flow", "oxidizer", "p_tank"), ("fuel_flow", "fuel", "p_run")):
         if name in table:
-            yield Series(label, style, table["time"].values, table[name].values)
+            yield broken(material, Series(label, style, table["time"].values, table[name].values))
     found = _history(material, "flow")
     if found is not None and "oxidizer_flow" not in table:
-        yield Series("oxidizer", "p_tank", found[0], found[1])
+        yield broken(material, Series("oxidizer", "p_tank", found[0], found[1]))
 
 
 def _flows(material: Material) -> Chart | None:
     found = list(lines(material))
-    span = around([one.time for one in found]) if found else None
     caption = "Oxidizer through the calibrated injector, from the measured pressure drop"
     caption += "; fuel from the regression of the grain." if any(one.label == "fuel" for one in found) else "."
-    return over_time(material, "flow", "Flow", ("flow", "kg/s"), found, caption, span=span, height=280.0)
+    return over_time(material, "flow", "Flow", ("mass flow", "kg/s"), found, caption, height=280.0)
 
 
 def _ratio(material: Material) -> Chart | None:
     table = material.table("performance")
     if "of_ratio" not in table:
         return None
-    line = Series("O/F", "thrust", table["time"].values, table["of_ratio"].values)
+    line = broken(material, Series("O/F", "thrust", table["time"].values, table["of_ratio"].values))
     caption = "Mass of oxidizer per mass of fuel, instant by instant."
-    span = around([line.time])
-    return over_time(material, "of-ratio", "Mixture ratio", ("O/F", ""), [line], caption, span=span, height=240.0)
+    return over_time(material, "of-ratio", "Mixture ratio", ("O/F by mass", ""), [line], caption, height=240.0)
 
 
 def _content(material: Material) -> Chart | None:
@@ -76,8 +74,7 @@ def _content(material: Material) -> Chart | None:
         Series("vapor", "m_tank", time, vapor * MOLES_TO_KG),
     ]
     caption = "From the loaded mass, less what the calibrated injector passed, at the measured pressure."
-    axis, span = ("mass", "kg"), around([time])
-    return over_time(material, "tank-content", "Oxidizer in the tank", axis, series, caption, span=span, height=240.0)
+    return over_time(material, "tank-content", "Oxidizer in the tank", ("mass", "kg"), series, caption, height=240.0)
 
 
-SECTION = Section("Flow", 50, (), render)
+SECTION = Section("Flow", 50, (), render, folded=True)

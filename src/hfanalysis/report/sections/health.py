@@ -11,6 +11,7 @@ from hfanalysis.health.reasons import Doubt
 from hfanalysis.products.health import HEALTHY, KINDS, SUSPECT, Finding, Health
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
+from hfanalysis.report.names import called
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.wording.numbers import listed
 
@@ -56,7 +57,7 @@ def _row(number: int, doubt: Doubt) -> tuple[Any, ...]:
     cure = Markup("<code>{}</code>").format(finding.cure) if finding.cure else Markup("–")
     verdict = _badge(finding.verdict) + (Markup(" overruled") if finding.overruled else Markup())
     return (
-        listed(list(doubt.channels)),
+        listed(list(map(called, doubt.channels))),
         verdict,
         KINDS.get(finding.kind, finding.kind),
         _when(finding),
@@ -72,4 +73,4 @@ def _when(finding: Finding) -> str:
     return f"{' … '.join(ends)} s".strip()
 
 
-SECTION = Section("Health of the channels", 12, ("health",), render)
+SECTION = Section("Health of the channels", 12, ("health",), render, folded=True)

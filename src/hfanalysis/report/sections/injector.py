@@ -39,9 +39,10 @@ def _drop(material: Material) -> Chart | None:
     if not part.any() or not good.any():
         return None
     behind = np.interp(run.time[part], chamber.time[good], chamber.values[good])
-    drop = Series("p_run − p_chamber", "p_run", time[part], run.values[part] - behind)
+    drop = Series("run line less chamber", "p_run", time[part], run.values[part] - behind)
     caption = "Run line less chamber pressure: what drives the flow, and what keeps the chamber from pushing back."
-    return over_time(material, "injector-drop", "Pressure drop across the injector", ("drop", "Pa"), [drop], caption)
+    title, axis = "Pressure drop across the injector", ("pressure drop", "Pa")
+    return over_time(material, "injector-drop", title, axis, [drop], caption)
 
 
 def _coefficient(material: Material) -> Chart | None:
@@ -55,7 +56,7 @@ def _coefficient(material: Material) -> Chart | None:
         material,
         "injector-coefficient",
         "Injector coefficient over time",
-        ("C_i", ""),
+        ("injector coefficient C_i", ""),
         list(_series(time, value, std, quantity)),
         _caption(quantity),
         span=around([time]),
@@ -73,7 +74,9 @@ def _inlet(material: Material) -> Markup | None:
         (html.symbol_and_words(name), html.value(q, name), html.interval(q, name), html.judged(q, material.reasons))
         for name, q in (calibration.inlet.quantities | dict(calibration.C_d)).items()
     ]
-    return html.table("What reaches the injector", _INLET, ("quantity", ">value", ">95 % interval", "how"), rows)
+    table = html.table("What reaches the injector", _INLET, ("quantity", ">value", ">95 % interval", "how"), rows)
+    fold = '<details class="more"><summary><h3>What reaches the injector</h3></summary>{}</details>'
+    return Markup(fold).format(table)
 
 
 _INLET = (

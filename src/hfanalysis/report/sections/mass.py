@@ -20,4 +20,4 @@ def render(material: Material) -> Iterator[Block]:
     yield over_time(material, "tank-mass", "Tank mass", ("mass", "kg"), cell(material, channel), words, height=260.0)
 
 
-SECTION = Section("Tank mass", 45, (), render)
+SECTION = Section("Tank mass", 45, (), render, folded=True)

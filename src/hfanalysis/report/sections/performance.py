@@ -75,4 +75,4 @@ def _share(measured: float | None, model: float | None) -> str:
     return f"{text} %" if text.startswith(MINUS) or text == "0.0" else f"+{text} %"
 
 
-SECTION = Section("Performance", 15, ("validation",), render)
+SECTION = Section("Performance", 15, ("validation",), render, folded=True)

@@ -53,4 +53,4 @@ def _row(name: str, quantity: Quantity, by_hand: bool, material: Material) -> tu
     return html.symbol(name), in_words(name), html.value(quantity), html.interval(quantity), why
 
 
-SECTION = Section("Phases", 20, ("segments",), render)
+SECTION = Section("Phases", 20, ("segments",), render, folded=True)

@@ -20,14 +20,14 @@ _OF_EACH = ("code", "parameters")
 
 def render(material: Material) -> Iterator[Block]:
     """Hashes, versions and settings, behind a fold."""
-    rows = list(_entries(material))
+    rows: list[tuple[str | Markup, Markup]] = list(_entries(material))
     if material.adopted:
         rows.insert(0, ("adopted effects", Markup("{}").format(material.adopted)))
     caption = "SHA-256 of the files, versions and parameters behind every number on this page."
     yield html.table("Provenance", caption, ("what", "is"), rows)
 
 
-def _entries(material: Material) -> Iterator[tuple[str, Markup]]:
+def _entries(material: Material) -> Iterator[tuple[Markup, Markup]]:
     """Each fact once, from the last product that states it."""
     seen = set()
     for product in _LAST:
@@ -36,7 +36,7 @@ def _entries(material: Material) -> Iterator[tuple[str, Markup]]:
             name = f"{product}: {key}" if key.startswith(_OF_EACH) else key
             if name not in seen:
                 seen.add(name)
-                yield name, Markup("<code>{}</code>").format(text)
+                yield Markup("<code>{}</code>").format(name), Markup("<code>{}</code>").format(text)
 
 
 def flat(data: Mapping[str, Any], before: str = "") -> list[tuple[str, str]]:

@@ -8,24 +8,26 @@ import numpy as np
 from markupsafe import Markup
 
 from hfanalysis.arrays import Array
-from hfanalysis.charts.chart import Chart, Series, around
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.reconstruction import Reconstruction
+from hfanalysis.products.diagnosis import Diagnosis
+from hfanalysis.products.reconstruction import AXIS, Reconstruction
 from hfanalysis.products.validation import Validation
 from hfanalysis.quantity import Quantity
 from hfanalysis.report import html
+from hfanalysis.report.beside_names import sentences
 from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.time_charts import over_time
+from hfanalysis.report.time_charts import broken, over_time
 from hfanalysis.wording.numbers import tidy
 from hfanalysis.wording.scales import SLOW
 
 _CHARTS = (
-    ("of_ratio", "Oxidizer to fuel ratio", ("ratio", ""), "p_chamber"),
-    ("regression_rate", "Regression rate", ("rate", SLOW), "p_run"),
-    ("c_star_efficiency", "c* efficiency", ("efficiency", ""), "thrust"),
-    ("throat_radius", "Throat radius", ("radius", "m"), "p_tank"),
+    ("of_ratio", "Oxidizer to fuel ratio", ("O/F by mass", ""), "p_chamber"),
+    ("regression_rate", "Regression rate", ("regression rate", SLOW), "p_run"),
+    ("c_star_efficiency", "c* efficiency", ("c* efficiency", ""), "thrust"),
+    ("throat_radius", "Throat radius", ("throat radius", "m"), "p_tank"),
 )
 """History, title, axis, color."""
 
@@ -41,20 +43,33 @@ def render(material: Material) -> Iterator[Block]:
         yield html.paragraph(f"It is not the only course: {found.other}.")
     if found.told is not None and found.told < 1.0:
         yield html.paragraph(
-            f"In {tidy(100.0 * (1.0 - found.told), 2)} % of the window O/F is not told, and not drawn: a per cent of "
-            "chamber pressure is ten per cent of O/F or more, two courses fit, or the band is wider than 1.5 times."
+            f"In {tidy(100.0 * (1.0 - found.told), 2)} % of the window O/F is not told, and not drawn. There a per "
+            "cent of chamber pressure is ten per cent of O/F or more, or two courses fit. Or the band is wider than "
+            "1.5 times."
         )
     table = material.table("performance", "reconstructed")
     # an efficiency that was assumed, and a throat that nobody measured, are no findings to draw
     for name, title, axis, style in _CHARTS if found.variant != "a" else _CHARTS[:2]:
         yield _chart(material, table, name, title, axis, style)
     yield _law(found, material.get(Calibration))
+    diagnosis = material.get(Diagnosis)
+    if diagnosis is not None:
+        for said in sentences(found, _beside(material, table), diagnosis):
+            yield html.paragraph(said[0].upper() + said[1:])
+
+
+def _beside(material: Material, table: Table) -> dict[str, Array]:
+    """Histories of the reconstruction, and the chamber's pressure at their times."""
+    whole = material.table("performance")
+    found = {name: table[name].values for name in table}
+    pressure = np.interp(found["time"], whole["time"].values, whole["p_chamber"].values)
+    return found | {"p_chamber": pressure}
 
 
 def _chart(material: Material, table: Table, name: str, title: str, axis: tuple[str, str], style: str) -> Chart | None:
     if name not in table:
         return None
-    time = table["time"].values
+    time = table[AXIS].values
     told = table["told"].values > 0.5 if name in ("of_ratio", "regression_rate") else np.ones(time.size, dtype=bool)
 
     def where(values: Array) -> Array:
@@ -68,7 +83,8 @@ def _chart(material: Material, table: Table, name: str, title: str, axis: tuple[
     if not lines[1].finite:
         return None
     key = f"reconstructed-{name.replace('_', '-')}"
-    return over_time(material, key, title, axis, lines, "", span=around([time]), height=240.0, with_zero=False)
+    drawn = [broken(material, line) for line in lines]
+    return over_time(material, key, title, axis, drawn, "", height=240.0, with_zero=False)
 
 
 def _law(found: Reconstruction, calibration: Calibration | None) -> Markup | None:
@@ -82,7 +98,7 @@ def _law(found: Reconstruction, calibration: Calibration | None) -> Markup | Non
         return html.paragraph(f"{said}.")
     agree = _overlap(n, fitted)
     words = "agrees with" if agree else "does not agree with"
-    rests = "" if agree else ": one rests on the fuel burnt and one c* efficiency, the other on the law and ideal gas"
+    rests = "" if agree else ": one rests on the fuel and one c* efficiency that drifts, the other on ideal combustion"
     return html.paragraph(f"{said}; that {words} {_said(fitted)}, fitted to burn time and chamber pressure{rests}.")
 
 
@@ -97,4 +113,4 @@ def _overlap(one: Quantity, other: Quantity) -> bool:
     return one.interval[0] <= other.interval[1] and other.interval[0] <= one.interval[1]
 
 
-SECTION = Section("Reconstruction", 32, ("validation", "performance"), render)
+SECTION = Section("Reconstruction", 32, ("validation", "performance"), render, folded=True)

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 
 from markupsafe import Markup
 
-from hfanalysis.charts.chart import Chart, Series, around
+from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import Calibration, RegressionBasis
 from hfanalysis.products.validation import Validation
 from hfanalysis.report import html
 from hfanalysis.report.material import Material, Table
 from hfanalysis.report.sections import Block, Section
-from hfanalysis.report.time_charts import over_time
+from hfanalysis.report.time_charts import broken, over_time
 from hfanalysis.wording.scales import SLOW
 
 _LAW = ("a", "n", "regression_rate_reference")
@@ -48,13 +48,14 @@ def _drawn(
 ) -> Chart | None:
     if not lines:
         return None
-    span = around([lines[0].time])
-    return over_time(material, key, title, axis, lines, caption, span=span, height=260.0, with_zero=with_zero)
+    broken_lines = [broken(material, line) for line in lines]
+    return over_time(material, key, title, axis, broken_lines, caption, height=260.0, with_zero=with_zero)
 
 
 def _rate(material: Material) -> Chart | None:
     lines = _line(material.table("performance"), "regression_rate", "regression rate", "p_run")
-    return _drawn(material, "regression", "Regression rate", ("rate", SLOW), lines, "Of the grain's burning surface.")
+    axis, caption = ("regression rate", SLOW), "Of the grain's burning surface."
+    return _drawn(material, "regression", "Regression rate", axis, lines, caption)
 
 
 def _law(material: Material) -> Markup | None:
@@ -91,9 +92,9 @@ def _efficiencies(material: Material) -> Chart | None:
     caption = (
         "Of shifting equilibrium, the field's reference and the most that the gas can give, and of frozen flow, the "
         "model's. C_F = F/(p_c A_t) judges the nozzle, while it flows full; it needs no flow. c* judges the combustion "
-        "by its course. Its level of frozen flow is close to 1 while liquid flows, because a and n were fitted to this "
-        "chamber pressure with that gas, as said above; after t_v it judges the calibrated tank's "
-        f"flow of vapor as much as the combustion.{_until_nitrogen(material)}"
+        "by its course. Its level of frozen flow is close to 1 while liquid flows: a and n were fitted to this chamber "
+        "pressure with that gas. Once the liquid is gone it judges the calibrated tank's flow of vapor as much as the "
+        f"combustion.{_until_nitrogen(material)}"
     )
     return _drawn(material, "efficiencies", "Efficiencies", ("efficiency", ""), lines, caption, with_zero=False)
 
@@ -102,7 +103,7 @@ def _velocity(material: Material) -> Chart | None:
     lines = _line(material.table("performance"), "c_star", "c*", "p_chamber")
     caption = (
         "c* = p_c A_t over the flow of oxidizer and fuel. Oxidizer: the injector's flow on the measured pressures "
-        f"until t_v, then that of the calibrated tank. Fuel: by a and n.{_until_nitrogen(material)}"
+        f"until the liquid is gone, then that of the calibrated tank. Fuel: by a and n.{_until_nitrogen(material)}"
     )
     return _drawn(material, "c-star", "Characteristic velocity", ("c*", "m/s"), lines, caption)
 
@@ -112,9 +113,9 @@ def _until_nitrogen(material: Material) -> str:
     if material.event("t_purge") is None:
         return ""
     return (
-        " c* ends at t_purge: from there on nitrogen passes the throat, which neither flow counts, and the ratio would "
-        "rise above 1 whatever burns."
+        " It ends where nitrogen enters, which neither flow counts: with it in the throat the ratio would rise above 1 "
+        "whatever burns."
     )
 
 
-SECTION = Section("Regression and efficiencies", 55, (), render)
+SECTION = Section("Regression and efficiencies", 55, (), render, folded=True)

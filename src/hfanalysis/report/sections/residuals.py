@@ -104,7 +104,12 @@ def _gaps(validation: Validation) -> Markup | None:
     caption = "Root mean square and mean of measured less model, beside the noise of a sample."
     columns = ("mode", "channel", "phase", ">rms", ">bias", ">noise")
     rows = [
-        (in_words(mode), channel, phase, *(html.amount(size, g.unit, 3, True) for size in (g.rms, g.bias, g.noise)))
+        (
+            in_words(mode),
+            LONG_NAMES.get(channel, channel),
+            phase,
+            *(html.amount(size, g.unit, 3, True) for size in (g.rms, g.bias, g.noise)),
+        )
         for mode, channels in validation.gap.items()
         for channel, phases in channels.items()
         for phase, g in phases.items()

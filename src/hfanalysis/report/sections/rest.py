@@ -32,4 +32,4 @@ def _finding(name: str, found: Quantity) -> Markup:
     return Markup("{} {}").format(html.value(found, name), html.remark(found, ()))
 
 
-SECTION = Section("The tank at rest", 75, ("calibration",), render)
+SECTION = Section("The tank at rest", 75, ("calibration",), render, folded=True)

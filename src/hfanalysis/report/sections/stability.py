@@ -113,4 +113,4 @@ def _png(decibels: np.ndarray[Any, np.dtype[np.float64]]) -> str:
     return base64.b64encode(out.getvalue()).decode("ascii")
 
 
-SECTION = Section("Stability", 33, ("validation",), render)
+SECTION = Section("Stability", 33, ("validation",), render, folded=True)

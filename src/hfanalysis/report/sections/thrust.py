@@ -13,6 +13,7 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.record.log import Channel
 from hfanalysis.report import html
 from hfanalysis.report.material import Material
+from hfanalysis.report.names import called
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.time_charts import lines_of, of_channel, over_time
 
@@ -31,7 +32,9 @@ def cell(material: Material, channel: Channel) -> Iterator[Series]:
     """A weighed or pushed cell: as logged, where a zero was taken off, and corrected."""
     if channel.raw is not None:
         yield of_channel(material, channel, "as logged", "raw", raw=True)
-    yield from lines_of(material, channel, "corrected" if channel.raw is not None else channel.name, channel.name)
+    yield from lines_of(
+        material, channel, "corrected" if channel.raw is not None else called(channel.name), channel.name
+    )
 
 
 def about_zero(material: Material, channel: Channel) -> Markup:
@@ -61,4 +64,4 @@ def beyond(material: Material, channel: Channel) -> Markup:
     return Markup(" A few readings lie outside the chart, as far as {}.").format(ends) if wild else Markup()
 
 
-SECTION = Section("Thrust", 40, (), render)
+SECTION = Section("Thrust", 40, (), render, folded=True)

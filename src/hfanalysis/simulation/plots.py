@@ -13,8 +13,8 @@ from hfanalysis.charts import svg
 from hfanalysis.charts.colors import STYLES
 from hfanalysis.charts.envelope import Envelope
 from hfanalysis.charts.style import sheet
-from hfanalysis.design.steady import SteadyEngine
-from hfanalysis.simulate.study import FlowPoint, MixturePoint
+from hfanalysis.simulation.study import FlowPoint, MixturePoint
+from hfanalysis.steady_design.steady import SteadyEngine
 
 _ALONE = "svg { font-family: system-ui, sans-serif; background: var(--paper); }"
 

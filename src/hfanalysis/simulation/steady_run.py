@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hfanalysis.assembly import engine as build
-from hfanalysis.design import steady
-from hfanalysis.design.steady import Requirement, SteadyEngine
 from hfanalysis.engine.grain import Grain
 from hfanalysis.errors import InputError
 from hfanalysis.flight import constant_thrust
@@ -14,7 +12,9 @@ from hfanalysis.products.engines import Designed, Optimum
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.simulate import heading
+from hfanalysis.simulation import heading
+from hfanalysis.steady_design import steady
+from hfanalysis.steady_design.steady import Requirement, SteadyEngine
 from hfanalysis.thermo.combustion import restart
 
 COMMAND = "hfa design"

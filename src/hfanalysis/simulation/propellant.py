@@ -12,7 +12,7 @@ from hfanalysis.engine.unsteady import Engine
 from hfanalysis.flight.ascent import NOT_FROM_PAD
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import Needs
-from hfanalysis.simulate.flown import ascend
+from hfanalysis.simulation.flown import ascend
 
 LOAD_STEP = 1.15
 """Factor by which the load is raised or lowered until the target lies between two apogees [-]."""

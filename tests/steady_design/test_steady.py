@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
-from hfanalysis.design.steady import Requirement, SteadyEngine, design, fuel_for_apogee, ideal_specific_impulse
 from hfanalysis.engine.grain import Grain
 from hfanalysis.flight.constant_thrust import Vehicle, apogee
+from hfanalysis.steady_design.steady import Requirement, SteadyEngine, design, fuel_for_apogee, ideal_specific_impulse
 
 ROCKET = Vehicle(52.5, 0.529, 19478e-6, radians(6.0), 1402.0)
 GRAIN = Grain(0.610, 0.039497, 900.0, 1.32e-4, 0.555)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hfanalysis.design.sizing import DipTube, TankSize, size_for_length, size_for_ullage
+from hfanalysis.steady_design.sizing import DipTube, TankSize, size_for_length, size_for_ullage
 from hfanalysis.thermo.nitrous import saturation
 
 TUBE = DipTube(6.35e-3, 4.572e-3)

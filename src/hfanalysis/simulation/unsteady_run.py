@@ -14,7 +14,7 @@ from hfanalysis.products.engines import Simulated
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, gravity
-from hfanalysis.simulate import flown, heading, propellant
+from hfanalysis.simulation import flown, heading, propellant
 
 COMMAND = "hfa simulate"
 

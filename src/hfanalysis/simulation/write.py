@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.design.steady import SteadyEngine
 from hfanalysis.flight import rasp
 from hfanalysis.products.disk import atomic, write_json
 from hfanalysis.record.engine_file import EngineFile
-from hfanalysis.simulate import plots, study
-from hfanalysis.simulate.steady_run import DesignRun
-from hfanalysis.simulate.study import FlowPoint, MixturePoint
-from hfanalysis.simulate.unsteady_run import Simulation
+from hfanalysis.simulation import plots, study
+from hfanalysis.simulation.steady_run import DesignRun
+from hfanalysis.simulation.study import FlowPoint, MixturePoint
+from hfanalysis.simulation.unsteady_run import Simulation
+from hfanalysis.steady_design.steady import SteadyEngine
 
 STATES = {
     "tank_mass": "kg",

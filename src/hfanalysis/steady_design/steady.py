@@ -9,8 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import pi, sqrt
 
-from scipy.optimize import brentq
-
 from hfanalysis.engine.grain import Grain
 from hfanalysis.engine.nozzle import (
     SUPERSONIC,
@@ -22,6 +20,7 @@ from hfanalysis.engine.nozzle import (
     pressure_ratio,
 )
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY, Vehicle, apogee, gravity
+from hfanalysis.roots import root_between
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY, Gas, equilibrium
 
 
@@ -121,7 +120,7 @@ def fuel_for_apogee(requirement: Requirement, grain: Grain, vehicle: Vehicle, ta
 
     if miss(full) < 0.0:
         raise ValueError(f"no grain in this casing reaches {target:.0f} m; a full one ends {-miss(full):.0f} m below")
-    return float(brentq(miss, 1e-3 * full, full, xtol=1e-7))
+    return root_between(lambda mass, _: miss(mass))(None, 1e-3 * full, full, 1e-7)
 
 
 @dataclass(frozen=True)

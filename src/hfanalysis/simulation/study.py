@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hfanalysis.design.steady import Requirement, SteadyEngine, ideal_specific_impulse
-from hfanalysis.simulate.steady_run import Task, solve
+from hfanalysis.simulation.steady_run import Task, solve
+from hfanalysis.steady_design.steady import Requirement, SteadyEngine, ideal_specific_impulse
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
 
 FLOWS = np.linspace(0.4, 1.6, 13)
