@@ -195,3 +195,16 @@ def test_channels_of_their_own_have_little_in_common() -> None:
     apart = {name: size * rng.standard_normal(BLOCKS) for name, size in (("p_chamber", 1.0), ("thrust", 2.0))}
     found = oscillation(apart, np.ones(BLOCKS), np.ones(BLOCKS, dtype=bool), {"p_chamber": 0.1, "thrust": 0.1})
     assert abs(found["p_chamber", "thrust"][0, 0]) < 0.1
+
+
+def test_half_a_second_of_quiet_that_shows_no_wander_is_no_sign_of_none() -> None:
+    """A sensor that wanders at 2 kHz: what its half second of quiet says of seconds is within what it says it knows."""
+    rate, of = 2000.0, []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        time = np.arange(-0.5, 0.5, 1.0 / rate)
+        slow = noise(rng, time.size, rate, 0.0, 1.0 / np.log(20.0 / BLOCK))
+        of.append(wander_of(signal("p_purge", time, 30.0 + slow + 0.5 * rng.standard_normal(time.size)), BLOCK))
+    off = np.log([over_seconds(wander) / WANDERING[1] for wander in of])
+    assert all(wander.variances.all() for wander in of)
+    assert float(np.sqrt(np.mean(np.square(off)))) < 1.7 * of[0].unsure

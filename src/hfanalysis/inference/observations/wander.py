@@ -49,6 +49,11 @@ NARROW = 1e-3
 FEWEST_BLOCKS = 60
 """Blocks of quiet time from which on it is analysed."""
 
+UNSEEN = float(np.exp(USUAL[0] + 0.5 * USUAL[1] ** 2))
+"""Variance of a process over that of a block's white noise [-] where the quiet time is too short to show it: the mean
+over what sensors usually have (USUAL). Evidence: while it was nothing, half a second of quiet that showed no wander
+meant that there is none (test_noise.py)."""
+
 MOST_BLOCKS = 6000
 """Blocks of it that are analysed at most, the last ones."""
 
@@ -56,6 +61,9 @@ UNSURE, LEAST_UNSURE = 0.65, 0.15
 """Standard deviation of the log of the slow noise's amplitude after a second of quiet, which falls with the root of its
 length, and what no length takes away: a spectrum is not quite of any form that is thought of. Evidence: simulated
 sensors hold it (tests/inference/observations/test_noise.py)."""
+
+SHORTEST_QUIET = 0.4
+"""Seconds of quiet below which it is known no worse than beforehand: half the deviation of USUAL, of an amplitude."""
 
 STILL = 1e-9
 """Part of a reading by which it has to move to have a spectrum: a coarse converter may stand on one count."""
@@ -121,7 +129,8 @@ def wander_of(signal: Signal, block: float) -> Wander:
     white = float(noise.white * np.sqrt(min(noise.step / block, 1.0)))
     still = float(np.ptp(blocks.value)) <= STILL * float(np.abs(blocks.value).max()) if blocks.time.size else True
     if blocks.time.size < FEWEST_BLOCKS or still:
-        return Wander(np.full(TIMES.size, noise.flicker * np.log(3.0)), white)
+        wander = max(noise.flicker * np.log(3.0), UNSEEN * white**2)
+        return Wander(np.full(TIMES.size, wander), white, unsure_after(blocks.time.size * block))
     values = blocks.value[-MOST_BLOCKS:]
     return _fitted(values - values.mean(), float(np.median(np.diff(blocks.time))), white, noise.flicker)
 
@@ -130,9 +139,9 @@ def unsure_after(seconds: float) -> float:
     """Standard deviation of the log of the slow noise's amplitude where the quiet time lasts so long [s].
 
     >>> [round(unsure_after(s), 2) for s in (0.5, 4.0, 60.0)]
-    [0.67, 0.36, 0.17]
+    [0.93, 0.36, 0.17]
     """
-    return float(np.hypot(LEAST_UNSURE, UNSURE / np.sqrt(max(seconds, 1.0))))
+    return float(np.hypot(LEAST_UNSURE, UNSURE / np.sqrt(max(seconds, SHORTEST_QUIET))))
 
 
 def _fitted(values: Array, step: float, white: float, flicker: float) -> Wander:
