@@ -19,6 +19,7 @@ SOURCE = {"mean": "mean", "low90": "lower end of its 90 % band", "high90": "uppe
 """Of a source, in words."""
 
 RESIDUAL = {
+    "measured": "measured",
     "before": "measured minus the model without what was found",
     "after": "measured minus the model with what was found",
     "noise_std": "standard deviation of a sample's noise",
