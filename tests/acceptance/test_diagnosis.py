@@ -53,7 +53,7 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = make_root(tmp_path_factory.mktemp("stand"), effect("nozzle_throat_erosion").at(rate=RATE))
     done = hfa(made, "diagnose", "T1")
     assert done.returncode == 0, done.stderr
-    assert "The model lacks nozzle_throat_erosion" in done.stdout
+    assert "Missing from the model, with probability: throat that erodes" in done.stdout
     return made
 
 

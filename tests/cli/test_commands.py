@@ -19,6 +19,7 @@ from tests.inference.adopted.firing import make_root
 import hfanalysis
 from hfanalysis.cli import perform as performing
 from hfanalysis.errors import AbsentError
+from hfanalysis.interface import bringing
 
 REPOSITORY = Path(__file__).parents[2]
 
@@ -183,7 +184,7 @@ def test_a_log_without_what_was_asked_ends_with_three(run: Run, root: Path, monk
     def absent(*_: object, **__: object) -> None:
         raise AbsentError("the log holds no firing")
 
-    monkeypatch.setattr(performing, "run_to", absent)
+    monkeypatch.setattr(bringing, "run_to", absent)
     ended = run("calibrate", "HF5", "--root", root)
     assert (ended.status, ended.out) == (3, "")
     *warned, last = ended.err.splitlines()
@@ -196,7 +197,7 @@ def test_ctrl_c_ends_without_a_traceback(run: Run, root: Path, monkeypatch: pyte
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(performing, "run_to", interrupted)
+    monkeypatch.setattr(bringing, "run_to", interrupted)
     ended = run("calibrate", "HF5", "--root", root)
     assert ended.status == 130
     assert "Traceback" not in ended.err

@@ -7,7 +7,7 @@ import pytest
 from tests.products.filled import filled
 
 from hfanalysis.products.diagnosis import Constants, Diagnosis, NamedEffect
-from hfanalysis.products.reconstruction import Reconstruction
+from hfanalysis.products.reconstruction import AXIS, Reconstruction
 from hfanalysis.quantity import Quantity
 from hfanalysis.report.beside_names import sentences
 
@@ -21,7 +21,7 @@ def said(name: str, parameters: dict[str, Quantity], found: Reconstruction) -> l
     effect = filled(NamedEffect, {"name": name, "parameters": parameters})
     constants = Constants.model_validate({"without": {}, "with": {"a": Quantity(LAW[0]), "n": Quantity(LAW[1])}})
     diagnosis = filled(Diagnosis, {"effects": (effect,), "constants": constants})
-    histories = {"time": TIME, "p_chamber": np.full(51, 20e5), "oxidizer_flux": FLUX,
+    histories = {AXIS: TIME, "p_chamber": np.full(51, 20e5), "oxidizer_flux": FLUX,
                  "regression_rate_low95": 0.97 * RATE, "regression_rate_high95": 1.03 * RATE}  # fmt: skip
     return list(sentences(found, histories, diagnosis))
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.products.diagnosis import Diagnosis, NamedEffect
-from hfanalysis.products.reconstruction import Reconstruction
+from hfanalysis.products.reconstruction import AXIS, Reconstruction
 from hfanalysis.sentences import text
 from hfanalysis.wording.numbers import tidy
 
@@ -55,7 +55,7 @@ def _throat(effect: NamedEffect, found: Reconstruction, histories: Histories, *_
     change = found.throat_radius_change
     if change is None or change.interval is None or rate is None or heating is None or exponent is None:
         return None
-    time = histories["time"]
+    time = histories[AXIS]
     heated = time**2 / (time**2 + (heating.value or 0.0) ** 2)
     pressed = (histories["p_chamber"] / 20e5) ** (exponent.value or 0.0)
     grown = [r * float(np.trapezoid(heated * pressed, time)) for r in rate.interval or (rate.value or 0.0,) * 2]

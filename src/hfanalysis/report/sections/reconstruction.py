@@ -62,7 +62,7 @@ def _beside(material: Material, table: Table) -> dict[str, Array]:
     """Histories of the reconstruction, and the chamber's pressure at their times."""
     whole = material.table("performance")
     found = {name: table[name].values for name in table}
-    pressure = np.interp(found["time"], whole["time"].values, whole["p_chamber"].values)
+    pressure = np.interp(found[AXIS], whole["time"].values, whole["p_chamber"].values)
     return found | {"p_chamber": pressure}
 
 
