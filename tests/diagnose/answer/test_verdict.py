@@ -263,7 +263,7 @@ def test_an_effect_of_a_team_is_judged_by_what_it_says_itself() -> None:
     assert excess(silent) == 0.0
     assert judged(silent).plausible is None
     spoken = replace(effect("tank_heat"), name="of_a_team", believable=Believable("power", 500.0, "no pump", "W"))
-    assert judged(spoken.at(power=600.0)).why == "power of 600 W is beyond 500 W: no pump"
+    assert judged(spoken.at(power=600.0)).why == "power 600 W is beyond 500 W. No pump"
 
 
 def test_what_is_believable_is_of_a_strength_and_every_effect_has_a_plain_name() -> None:
