@@ -35,20 +35,21 @@ __all__ = [
 ]
 
 _PLACES = {
-    "Firing": "hfanalysis.interface.firing",
-    "open": "hfanalysis.interface.firing",
-    "firing": "hfanalysis.interface.made",
-    "simulate": "hfanalysis.interface.engines",
-    "design": "hfanalysis.interface.engines",
-    "Quantity": "hfanalysis.quantity",
+    "Firing": "interface.firing",
+    "open": "interface.firing",
+    "firing": "interface.made",
+    "simulate": "interface.engines",
+    "design": "interface.engines",
+    "Quantity": "quantity",
 }
-"""Where the names are that are loaded when they are asked for: importing the package takes no time."""
+"""Where in the package the names are that are loaded when they are asked for: importing it takes no time. No module of
+the package asks for one, so that none rests on all of them."""
 
 
 def __getattr__(name: str) -> Any:
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(_PLACES[name]), name)
+    return getattr(importlib.import_module(f".{_PLACES[name]}", __name__), name)
 
 
 def __dir__() -> list[str]:
