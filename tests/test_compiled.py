@@ -52,7 +52,7 @@ def written(folder: Path) -> Path:
     package = folder / "thrust"
     package.mkdir()
     (package / "__init__.py").touch()
-    for name in ("compiled.py", "sources.py", "remembered.py", "progress.py"):
+    for name in ("compiled.py", "sources.py", "remembered.py", "progress.py", "users.py"):
         (package / name).write_text((PACKAGE / name).read_text("utf-8").replace("hfanalysis.", "thrust."))
     (package / "nozzle.py").write_text(CALLER)
     (package / "gas.py").write_text(CALLED)
