@@ -100,13 +100,7 @@ LOGS ?= ../shared/real_tests
 real-logs: $(STAMP) ## logs of other teams by hfa new, their facts and hfa run: docs/real-logs.md; LOGS=FOLDER
 	$(BIN)/python -m benchmarks.real_logs --logs '$(LOGS)' --write docs/real-logs.md $(FLAGS)
 
-phases-reconstruction: $(STAMP) ## mixtures reconstructed beside known ones: into docs/validation.md; goes on where stopped
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.reconstruction --write docs/validation.md $(FLAGS)
-
-oscillations: $(STAMP) ## oscillations found beside known ones, begin and end: into docs/validation.md; goes on where stopped
-	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.oscillations --write docs/validation.md $(FLAGS)
-
-coverage: $(STAMP) ## how often the intervals of the phases hold, on simulated logs: into docs/phases.md; goes on where stopped
+phases-coverage: $(STAMP) ## how often the intervals of the phases hold, on simulated logs: into docs/phases.md; goes on where stopped
 	$(BIN)/python -m benchmarks.phase_coverage --write $(FLAGS)
 
 flown-thrust: $(STAMP) ## flights without the stand's nitrogen and of a separated flow, beside the truth: docs/flight.md

@@ -25,7 +25,9 @@ from hfanalysis.stages.runner import run_to
 from hfanalysis.units import Value
 
 ROOT = Path(__file__).parents[2]
-LABELS = {"schema", "engine.description", "engine.stand", "test.date", "test.description", "feed.p_loss"}
+LABELS = {"schema", "engine.description", "engine.stand", "feed.p_loss"} | {
+    f"test.{key}" for key in ("date", "description", "engine")
+}
 """What only people read, or the reader of the file itself; and what it refuses."""
 
 GEOMETRY = """

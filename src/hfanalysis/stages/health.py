@@ -14,7 +14,7 @@ def run(context: Context) -> None:
     """Judge every channel by itself, then with each other, last against the other tests of the stand."""
     from hfanalysis.health.judge import judge
     from hfanalysis.record.log import read_log
-    from hfanalysis.stages.stand import sisters
+    from hfanalysis.stages.sisters import sisters
 
     context.write(judge(read_log(context.product("ingest.h5")), context.definition, sisters(context)))
 

@@ -53,7 +53,7 @@ def _cut(sentence: str, cuts: tuple[str, ...] = _CUTS) -> str:
     """A sentence of too many words in as many as it has parts; what stands in brackets stays whole.
 
     >>> _cut("one " * 20 + "(a; b); p_c " + "two " * 10)[-60:]
-    'one one one (a; b). p_c two two two two two two two two two two '
+    'one one (a; b). p_c two two two two two two two two two two '
     """
     if len(sentence.split()) <= MOST_WORDS or not cuts:
         return sentence

@@ -110,7 +110,7 @@ def among_twins(
     >>> round(told["a"], 2)
     0.89
     >>> round(among_twins({"a": 0.99, "b": 0.01}, {"a": 90.0, "b": 8.7}, {"a": ("b",)}, 0.8)["a"], 2)
-    1.0
+    0.99
     """
     names = sorted((n for n in posterior if kind(n) == "named"), key=lambda n: -posterior[n])
     out, first = dict(posterior), names[0] if names else ""
