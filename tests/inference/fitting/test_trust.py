@@ -68,7 +68,7 @@ def test_a_damped_step_is_as_long_as_the_region_is_wide(seed: int, part: float, 
     whole = bounded_step(gradient, curvature, box, LEAST_DAMPING)
     radius = part * length_of(whole, curvature)
     step = step_within(radius, gradient, curvature, box)
-    if part >= 1.0:
+    if part >= 1.0 or not whole.any():  # in a corner that leads nowhere down, there is no step
         assert (step == whole).all()
     else:
         assert 0.9 * radius < length_of(step, curvature) <= radius
