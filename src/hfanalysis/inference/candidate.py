@@ -101,8 +101,13 @@ class Bench:
 
         None where it cannot be run.
         """
+        coarse = self.compared(hypothesis)
+        return None if coarse is None else self.told(coarse)
+
+    def compared(self, hypothesis: Hypothesis) -> Candidate | None:
+        """As :meth:`settled`, to be compared with others: its numbers are not told."""
         coarse = attempted(hypothesis, self.at(COARSEST), np.zeros(hypothesis.size), SHORT)
-        return None if coarse is None else self.told(self.judged(candidate((), coarse, COARSEST)))
+        return None if coarse is None else self.converged(self.judged(candidate((), coarse, COARSEST)))
 
     def judged(self, found: Candidate) -> Candidate:
         """A candidate at the form that makes the data most probable: finer or coarser as long as that helps.
@@ -167,9 +172,9 @@ class Bench:
         again = self._gone_on(found, form, SHORT)
         return None if again is None else candidate(found.names, again, form, found.source)
 
-    def converged(self, found: Candidate) -> Candidate:
-        """The candidate, its fit gone on with until it has converged, or as far as LONGEST steps lead."""
-        again = None if found.fit.converged else self._gone_on(found, found.form, LONGEST)
+    def converged(self, found: Candidate, most: int = LONGEST) -> Candidate:
+        """The candidate, its fit gone on with until it has converged, or as far as at ``most`` so many steps lead."""
+        again = None if found.fit.converged else self._gone_on(found, found.form, most)
         return found if again is None else _with_fit(found, again)
 
     def told(self, found: Candidate) -> Candidate:
@@ -181,6 +186,13 @@ class Bench:
             return _with_fit(near, brought_to_end(near.fit, self.at(near.form)))
         except (ValueError, ArithmeticError):
             return near
+
+    def reach(self, found: Candidate) -> float:
+        """The log evidence that a candidate has at its form, or would have if the slopes where it is now hold."""
+        if found.fit.converged:
+            return found.log_evidence
+        observed = self.at(found.form)
+        return found.log_evidence + max(promised(found.fit, observed, observed) - found.fit.log_evidence, 0.0)
 
     def _gone_on(self, found: Candidate, form: Form, most: int) -> Fit | None:
         """The candidate's fit, gone on with at a form; None where that cannot be run."""

@@ -69,7 +69,7 @@ def _placebo(found: Naming, chosen: Candidate) -> Candidate | None:
 def _elsewhere(chosen: Candidate, other: OtherTest) -> diagnosis.OtherTest | None:
     """The other test without and with the effects, their constants frozen and its own free."""
     observed, bench = other.observed, Bench(other.observed)
-    without, explained = (bench.settled(h) for h in (other.hypothesis, frozen(other.hypothesis, chosen.fit)))
+    without, explained = (bench.compared(h) for h in (other.hypothesis, frozen(other.hypothesis, chosen.fit)))
     if without is None or explained is None:
         return None
     base, after = without.fit, explained.fit

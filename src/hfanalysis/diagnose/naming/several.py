@@ -13,7 +13,16 @@ from hfanalysis.diagnose.naming.fading import fades, fading_fit
 from hfanalysis.diagnose.naming.score import score_tests
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.slack import slack_gain
-from hfanalysis.inference.candidate import TOO_FAR_BEHIND, Bench, Candidate, attempted, candidate, more_probable
+from hfanalysis.inference.candidate import (
+    LONG,
+    SHORT,
+    TOO_FAR_BEHIND,
+    Bench,
+    Candidate,
+    attempted,
+    candidate,
+    more_probable,
+)
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.predict import predict
 from hfanalysis.inference.fitting.threads import each
@@ -35,8 +44,13 @@ PARTNERS = 4
 MOST_EFFECTS = 4
 """Effects that a set has at most."""
 
+Pairs = dict[tuple[tuple[str, ...], float], list[Candidate]]
+"""What was found with a further effect beside a candidate, by its names and its log evidence [natural log]."""
 
-def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[list[Candidate], list[Candidate]]:
+
+def sets_of(
+    base: Candidate, singles: list[Candidate], search: Search, pairs: Pairs | None = None
+) -> tuple[list[Candidate], list[Candidate]]:
     """The singles and sets of several effects, with the evidence that they have with slack; each the best first.
 
     Forward from the best two, dropping what is no longer needed. A further effect has to make the data more probable
@@ -50,9 +64,10 @@ def sets_of(base: Candidate, singles: list[Candidate], search: Search) -> tuple[
     found: list[Candidate] = []
     for size in range(2, MOST_EFFECTS + 1):
         search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
-        grown = sorted(_partners(front, search, tried), key=lambda c: -c.log_evidence)
+        at_hand: Pairs = pairs if size == 2 and pairs is not None else {}
+        grown = sorted(_partners(front, search, tried, at_hand), key=lambda c: -c.log_evidence)
         if size == 2 and (better := _shown_the_way(grown[:2], singles, bench)):
-            return sets_of(base, _best_each([*better, *singles]), search)
+            return sets_of(base, _best_each([*better, *singles]), search, at_hand)
         best = [c for c in each(lambda c: dropped(c, bench), grown[:2]) if len(c.names) > 1]
         loose = _loosened([*best, *grown], bench)
         front = [c for c, free in zip(best, loose, strict=False) if free.log_evidence > _of_subsets(c, known)][:1]
@@ -114,36 +129,44 @@ def _best_each(candidates: list[Candidate]) -> list[Candidate]:
     return list(best.values())
 
 
-def _partners(front: list[Candidate], search: Search, tried: set[frozenset[str]]) -> list[Candidate]:
-    """Each parent with each of the few effects that a score test asks for or that fade, at the form that suits them."""
-    bench, jobs = search.bench, list[tuple[Candidate, str, tuple[Hypothesis, Array] | None]]()
+def _partners(front: list[Candidate], search: Search, tried: set[frozenset[str]], pairs: Pairs) -> list[Candidate]:
+    """Each parent with each of the few effects that a score test asks for or that fade, at the form that suits them;
+    those of parents that ``pairs`` has are at hand, the others are kept there."""
+    found = list[Candidate]()
     for parent in front:
-        names = [
-            n for n in search.catalogue.effects if frozenset((*parent.names, n)) not in tried and n not in parent.names
-        ]
-        asked = _asked(parent, [bench.at(form) for form in parent.form.either_finer or [parent.form]], search, names)
-        wanted = [*asked, *(n for n in names if n not in asked and fades(search, n))]
-        tried |= {frozenset((*parent.names, name)) for name in wanted}
-        jobs += [(parent, name, asked.get(name)) for name in wanted]
+        key = parent.names, parent.log_evidence
+        if key not in pairs:
+            pairs[key] = _beside(parent, search, tried)
+        tried |= {frozenset(c.names) for c in pairs[key]}
+        found += pairs[key]
+    return found
 
-    def grown(job: tuple[Candidate, str, tuple[Hypothesis, Array] | None]) -> Candidate | None:
-        parent, name, asked_from = job
-        observed = bench.at(parent.form)
-        if asked_from is None:
-            found = fading_fit(parent.fit, search, name, observed)
+
+def _beside(parent: Candidate, search: Search, tried: set[frozenset[str]]) -> list[Candidate]:
+    """One parent with each of its partners in sets that were not ``tried``, which take up what is tried here."""
+    bench, observed = search.bench, search.bench.at(parent.form)
+    effects = search.catalogue.effects
+    names = [n for n in effects if frozenset((*parent.names, n)) not in tried and n not in parent.names]
+    asked = _asked(parent, [bench.at(form) for form in parent.form.either_finer or [parent.form]], search, names)
+    wanted = [*asked, *(n for n in names if n not in asked and fades(search, n))]
+    tried |= {frozenset((*parent.names, name)) for name in wanted}
+
+    def grown(name: str) -> Candidate | None:
+        if name in asked:
+            found = attempted(asked[name][0], observed, asked[name][1], SHORT)
         else:
-            found = attempted(asked_from[0], observed, asked_from[1])
+            found = fading_fit(parent.fit, search, name, observed)
         return None if found is None else candidate((*parent.names, name), found, parent.form)
 
-    return each(bench.judged, _in_the_running([c for c in each(grown, jobs) if c is not None]))
+    started = _in_the_running([c for c in each(grown, wanted) if c is not None], bench)
+    return each(bench.judged, _in_the_running(each(partial(bench.converged, most=LONG - SHORT), started), bench))
 
 
-def _in_the_running(grown: list[Candidate]) -> list[Candidate]:
-    """Those that are not far behind the best with the same parent, whose form they share."""
-    top = dict[tuple[str, ...], float]()
-    for c in grown:
-        top[c.names[:-1]] = max(c.log_evidence, top.get(c.names[:-1], -np.inf))
-    return [c for c in grown if c.log_evidence > top[c.names[:-1]] - TOO_FAR_BEHIND]
+def _in_the_running(grown: list[Candidate], bench: Bench) -> list[Candidate]:
+    """Those that are not, and do not promise to stay, far behind the best; all have the same parent, whose form they
+    share."""
+    least = max((c.log_evidence for c in grown), default=0.0) - TOO_FAR_BEHIND
+    return [c for c in grown if bench.reach(c) > least]
 
 
 def _asked(

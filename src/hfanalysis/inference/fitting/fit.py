@@ -28,6 +28,9 @@ half a percent of it. Source: the log of a normal density falls by half the squa
 NEAR, LAST_STEPS = 0.5, 12
 """Log probability that steps by slopes alone may promise, and steps in which a fit comes to its end by them."""
 
+MOST_TO_AND_FRO = 3
+"""Such steps one after the other of which none promises half of the least that one has promised."""
+
 STEEPEST = 1e8
 """Standard deviations of an observation per one of a parameter beyond which a slope is none."""
 
@@ -170,20 +173,21 @@ def brought_to_end(found: Fit, observed: Observed, most: int = ITERATIONS) -> Fi
     """
     hypothesis, x = found.hypothesis, found.x
     here = predict(hypothesis, observed, x, tangents=True, accuracy=FINE)
-    for within in (CONVERGED, ENDED):
-        if (ended := _by_slopes(hypothesis, observed, x, here)) is not None:
-            return ended
-        near = _fitted(hypothesis, observed, x, here, most, within, FINE)
-        x, here = near.x, with_slopes(hypothesis, observed, near.x, Prediction(near.residual, None, near.burnt))
-    return _by_slopes(hypothesis, observed, x, here) or near
+    if (ended := _by_slopes(hypothesis, observed, x, here)) is not None:
+        return ended
+    near = _fitted(hypothesis, observed, x, here, most, ENDED, FINE)
+    here = with_slopes(hypothesis, observed, near.x, Prediction(near.residual, None, near.burnt))
+    return _by_slopes(hypothesis, observed, near.x, here) or near
 
 
 def _by_slopes(hypothesis: Hypothesis, observed: Observed, x: Array, here: Prediction) -> Fit | None:
     """The fit to whose end whole steps by the slopes lead from ``x``; None where they lead elsewhere.
 
-    Where much is left open the squares of slopes are not the curvature: it is learnt on the way.
+    Where much is left open the squares of slopes are not the curvature: it is learnt on the way. Where that does not
+    lead to an end either, the steps go to and fro.
     """
     curvature, step, before = None, np.zeros(x.size), np.zeros(x.size)
+    least, to_and_fro = np.inf, 0
     for _ in range(LAST_STEPS):
         if not usable(here):
             return None
@@ -197,7 +201,8 @@ def _by_slopes(hypothesis: Hypothesis, observed: Observed, x: Array, here: Predi
         promise = -float(gradient @ step + 0.5 * step @ curvature @ step)
         if promise < ENDED:
             return _fit_at(hypothesis, observed, x, here, ENDED)
-        if promise > NEAR:
+        least, to_and_fro = (promise, 0) if promise < 0.5 * least else (least, to_and_fro + 1)
+        if promise > NEAR or to_and_fro > MOST_TO_AND_FRO:
             return None
         here, x = predict(hypothesis, observed, x + step, tangents=True, accuracy=FINE), x + step
     return None

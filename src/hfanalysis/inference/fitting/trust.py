@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
+from hfanalysis.compiled import compiled, inner
+from hfanalysis.engine.rosenbrock import factorize, substitute
 
 LONGEST_STRIDE = 2.0
 """Standard deviations of its prior that a parameter moves at a time. Evidence: where a whole step was shortened for one
@@ -49,14 +51,20 @@ def step_within(radius: float, gradient: Array, curvature: Array, box: tuple[Arr
     Damping is relative to the curvature's diagonal. It is the step in its box that is measured: where some parameters
     come to rest at their bounds, the others may go the farther for it.
     """
-    step = bounded_step(gradient, curvature, box, LEAST_DAMPING)
-    if length_of(step, curvature) <= radius:
+    return _step_within(radius, gradient, curvature, *box)
+
+
+@compiled(nogil=True)
+def _step_within(radius: float, gradient: Array, curvature: Array, least: Array, most: Array) -> Array:
+    units = np.sqrt(np.diag(curvature))
+    step = _bounded_step(gradient, curvature, least, most, LEAST_DAMPING)
+    if np.sqrt(np.sum((units * step) ** 2)) <= radius:
         return step
     low, high = np.log(LEAST_DAMPING), np.log(MOST_DAMPING)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        tried = bounded_step(gradient, curvature, box, float(np.exp(middle)))
-        if length_of(tried, curvature) > radius:
+        tried = _bounded_step(gradient, curvature, least, most, np.exp(middle))
+        if np.sqrt(np.sum((units * tried) ** 2)) > radius:
             low = middle
         else:
             high, step = middle, tried
@@ -69,47 +77,77 @@ def bounded_step(gradient: Array, curvature: Array, box: tuple[Array, Array], da
     By active sets: whatever reaches a side on the way stays there and the others go on without it; once they are at
     rest, what is drawn back inside most is set free again. All the way it is downhill.
     """
-    curvature = curvature + damping * np.diag(curvature.diagonal())
-    free, step = np.ones(gradient.size, dtype=bool), np.zeros(gradient.size)
-    for _ in range(MOST_CHANGES * gradient.size):
+    return np.asarray(_bounded_step(gradient, curvature, *box, damping))
+
+
+@compiled(nogil=True)
+def _bounded_step(gradient: Array, curvature: Array, least: Array, most: Array, damping: float) -> Array:
+    size = gradient.size
+    damped = curvature.copy()
+    for i in range(size):
+        damped[i, i] += damping * curvature[i, i]
+    free, step, part = np.ones(size, dtype=np.bool_), np.zeros(size), np.zeros(size)
+    for _ in range(MOST_CHANGES * size):
         if free.any():
-            part = _go_on(step, free, gradient, curvature, box)
+            _go_on(step, free, gradient, damped, least, most, part)
             if part.min() < 1.0:
-                free &= part > part.min()
+                nearest = part.min()
+                for i in range(size):
+                    free[i] = free[i] and part[i] > nearest
                 continue
-        back = _drawn_back(step, free, gradient, curvature, box)
-        if back is None:
+        back = _drawn_back(step, free, gradient, damped, least, most)
+        if back < 0:
             break
         free[back] = True
-    return np.asarray(np.clip(step, *box))
+    return np.minimum(np.maximum(step, least), most)
 
 
-def _go_on(step: Array, free: NDArray[np.bool_], gradient: Array, curvature: Array, box: tuple[Array, Array]) -> Array:
+@inner
+def _go_on(
+    step: Array, free: NDArray[np.bool_], gradient: Array, curvature: Array, least: Array, most: Array, part: Array
+) -> None:
     """Lengthen a step, in place, by what is free of it: to the lowest point, or to the first side of the box.
 
-    Returns the parts of the way (parameters,) after which each comes to its side.
+    ``part`` (parameters,): the parts of the way after which each comes to its side.
     """
-    least, most = box
-    onward = np.zeros(gradient.size)
-    pull = gradient[free] + curvature[free] @ step
-    onward[free] = -np.linalg.solve(curvature[np.ix_(free, free)], pull)
-    room = np.where(onward > 0.0, most, least) - step
-    with np.errstate(over="ignore"):  # what hardly moves never comes to its side
-        part = np.divide(room, onward, out=np.full(step.size, np.inf), where=onward != 0.0)
-    step += min(1.0, max(float(part.min()), 0.0)) * onward
-    return np.asarray(part)
+    places = np.flatnonzero(free)
+    onward, matrix = np.zeros(places.size), np.zeros((places.size, places.size))
+    for k in range(places.size):
+        onward[k] = -gradient[places[k]]
+        for j in range(step.size):
+            onward[k] -= curvature[places[k], j] * step[j]
+        for j in range(places.size):
+            matrix[k, j] = curvature[places[k], places[j]]
+    pivots = np.zeros(places.size, dtype=np.int64)
+    factorize(matrix, pivots)
+    substitute(matrix, pivots, onward)
+    part[:] = np.inf
+    for k in range(places.size):
+        i = places[k]
+        if onward[k] != 0.0:  # what hardly moves never comes to its side
+            part[i] = ((most[i] if onward[k] > 0.0 else least[i]) - step[i]) / onward[k]
+    way = min(1.0, max(part.min(), 0.0))
+    for k in range(places.size):
+        step[places[k]] += way * onward[k]
 
 
+@inner
 def _drawn_back(
-    step: Array, free: NDArray[np.bool_], gradient: Array, curvature: Array, box: tuple[Array, Array]
-) -> int | None:
-    """Which parameter at a side of the box is drawn back inside most, None if none is."""
-    least, most = box
-    units = np.sqrt(curvature.diagonal())
-    slope = (gradient + curvature @ step) / units
-    inward = np.where(free | (least == most), 0.0, np.where(step - least < most - step, -slope, slope))
-    back = int(np.argmax(inward))
-    return back if inward[back] > AT_REST * float(np.abs(gradient / units).max()) else None
+    step: Array, free: NDArray[np.bool_], gradient: Array, curvature: Array, least: Array, most: Array
+) -> int:
+    """Which parameter at a side of the box is drawn back inside most, -1 if none is."""
+    back, strongest, steepest = -1, 0.0, 0.0
+    for i in range(step.size):
+        unit = np.sqrt(curvature[i, i])
+        steepest = max(steepest, abs(gradient[i]) / unit)
+        if not free[i] and least[i] != most[i]:
+            slope = gradient[i]
+            for j in range(step.size):
+                slope += curvature[i, j] * step[j]
+            inward = (-slope if step[i] - least[i] < most[i] - step[i] else slope) / unit
+            if inward > strongest:
+                back, strongest = i, inward
+    return back if strongest > AT_REST * steepest else -1
 
 
 def learnt(curvature: Array, step: Array, change: Array) -> Array:
