@@ -52,7 +52,7 @@ def test_the_drift_of_the_cell_that_does_not_return_to_zero_is_taken_off(tmp_pat
 @pytest.mark.parametrize(
     ("test", "faults"),
     [
-        ("MRT-HF3.1", ["thrust zero off", "thrust and p_chamber scale off"]),
+        ("MRT-HF3.1", ["thrust zero off", "thrust and chamber pressure scale off"]),
         ("MRT-HF3.4", ["thrust zero off"]),
     ],
 )

@@ -111,6 +111,6 @@ EFFECT = Effect(
     twins=(),
     decisive="a flow meter, or the pressure of the nitrogen bottle over time",
     believable=Believable(
-        "area", 6e-5, "60 mm^2 are a bore of 9 mm, that of a pipe of 3/8 inch", unit="mm^2", factor=1e6
+        "area", 4.7e-5, "47 mm^2 are the bore of a tube of 3/8 inch, 7.75 mm", unit="mm^2", factor=1e6
     ),
 )

@@ -49,8 +49,8 @@ EFFECT = Effect(
     decisive="a thermocouple in the tank's liquid, which stays warmer than saturation while the boiling lags",
     believable=Believable(
         "depth",
-        15e5,
-        "15 bar below saturation are liquid that is 13 K too warm and does not boil",
+        14e5,
+        "14 bar below saturation at 20 degC is as far as a liquid can be superheated (Lienhard 1976)",
         unit="bar",
         factor=1e-5,
     ),

@@ -19,7 +19,6 @@ from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted.effects import read_adopted
 from hfanalysis.products.diagnosis import Diagnosis
 from hfanalysis.products.disk import write_json
-from hfanalysis.report.names import called
 from hfanalysis.stages.base import Context
 from hfanalysis.stages.open_test import open_test
 
@@ -83,9 +82,9 @@ def test_for_a_stand_it_is_adopted_for_all_its_tests(root: Path) -> None:
     ],
 )
 def test_what_is_not_named_is_not_adopted(root: Path, diagnosis: dict[str, Any]) -> None:
-    last = {"unknown": "something without a name"}.get(diagnosis["set90"][-1], called(diagnosis["set90"][-1]))
-    with pytest.raises(AbsentError, match=f"nothing to adopt.*{diagnosis['verdict']}.*{last}"):
-        adopt(opened(root), filled(Diagnosis, diagnosis))
+    found = filled(Diagnosis, diagnosis)
+    with pytest.raises(AbsentError, match=f"nothing to adopt.*{found.verdict}.*{found.plain(found.set90[-1])}"):
+        adopt(opened(root), found)
     assert not (root / "engines" / "T1.effects.toml").exists()
 
 
