@@ -184,7 +184,12 @@ Quick = Annotated[
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Print what every stage found, and every warning.")]
 
 
-def _run(request: Request, quick: Quick = False, verbose: Verbose = False) -> None:
+Check = Annotated[bool, typer.Option("--check", help="End with status 4 where a rule of limits.toml is broken.")]
+
+
+def _run(request: Request, quick: Quick = False, verbose: Verbose = False, check: Check = False) -> None:
+    if quick and check:
+        raise InputError("found --quick and --check together; expected one of the two: the rules are of the whole run")
     if quick:
         from hfanalysis.cli import quick as at_stand
 
@@ -192,7 +197,11 @@ def _run(request: Request, quick: Quick = False, verbose: Verbose = False) -> No
     else:
         from hfanalysis.cli import perform
 
-        perform.stage(RUN, replace(request, verbose=verbose))
+        context = perform.stage(RUN, replace(request, verbose=verbose))
+        if check:
+            from hfanalysis.cli import limits
+
+            limits.check(context)
 
 
 _WITH_OPTIONS: dict[str, Callable[..., None]] = {
