@@ -15,7 +15,7 @@ from hfanalysis.errors import InputError
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.steady_design import sizing, steady
+from hfanalysis.steady_design import injector, sizing, steady
 from hfanalysis.thermo import atmosphere, combustion
 from hfanalysis.thermo.nitrous import saturation
 from hfanalysis.thermo.saturation import Property, Saturation
@@ -145,15 +145,29 @@ def _dip_tube(needs: Needs) -> sizing.DipTube:
 def feed(needs: Needs, volume: float) -> FeedSystem:
     """Feed line and injector on a tank of that ``volume`` [m^3]. Raises InputError where the file does not say
     enough."""
-    injector, line = needs.file.injector, needs.file.feed
-    key = "hole_area (or hole_diameter)" if injector.holes is not None else "holes"
-    area = needs.value(injector.area, "injector", key).value * needs.value(injector.C_i, "injector", "C_i").value
+    stated, line = needs.file.injector, needs.file.feed
+    key = "hole_area (or hole_diameter)" if stated.holes is not None else "holes"
+    area = needs.value(stated.area, "injector", key).value * needs.value(stated.C_i, "injector", "C_i").value
     if not area > 0.0:
         raise InputError(f"{needs.file.where('injector', 'C_i')}: found 0; expected a number that is more than zero")
     if line.K_loss is not None:
         return FeedSystem(volume, area, loss_factor=line.K_loss.value)
     loss = needs.value(line.p_loss, "feed", "p_loss (or K_loss)").value
     return FeedSystem(volume, area, constant_losses=(loss, loss))
+
+
+def line_loss(file: EngineFile) -> injector.Line:
+    """What the feed line of the file loses; nothing where it does not say."""
+    stated = file.feed
+    if stated.K_loss is not None:
+        return injector.Line(factor=stated.K_loss.value)
+    return injector.Line(stated.p_loss.value if stated.p_loss else 0.0)
+
+
+def saturated(needs: Needs) -> injector.Saturated:
+    """Pressure [Pa] and density [kg/m^3] of the liquid in the tank; InputError where its temperature does not say."""
+    t, source = temperature(needs), properties(needs.file)
+    return injector.Saturated(float(source.pressure(t)), float(source.liquid_density(t)))
 
 
 def vehicle(file: EngineFile) -> Vehicle | str:

@@ -12,7 +12,7 @@ from hfanalysis.products.engines import Designed, Optimum
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.simulation import heading
+from hfanalysis.simulation import heading, warned
 from hfanalysis.steady_design import steady
 from hfanalysis.steady_design.steady import Requirement, SteadyEngine
 from hfanalysis.thermo.combustion import restart
@@ -65,6 +65,8 @@ def design(file: EngineFile) -> DesignRun:
     try:
         engine = solve(task)
         best = steady.optimum(task.requirement)
+        port = task.grain.port_radius(engine.fuel_mass)
+        heard = warned.of_design(needs, task.requirement, port, engine, best)
     except (ValueError, ArithmeticError) as error:
         raise InputError(f"{file.where('design')}: {error}") from None
     product = Designed.from_json(
@@ -74,6 +76,7 @@ def design(file: EngineFile) -> DesignRun:
             **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
             **_flown(file, task, engine),
             "optimum": Optimum(of_ratio=Quantity(best.of_ratio), specific_impulse=Quantity(best.specific_impulse, "s")),
+            "cautions": heard,
             "warnings": file.warnings,
             "provenance": heading.provenance(file),
         }

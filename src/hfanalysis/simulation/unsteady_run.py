@@ -10,11 +10,11 @@ from hfanalysis.engine import closure, unsteady
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
 from hfanalysis.flight import summary
-from hfanalysis.products.engines import Simulated
+from hfanalysis.products.engines import Simulated, SimulatedFlight
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, gravity
-from hfanalysis.simulation import flown, heading, propellant
+from hfanalysis.simulation import flown, heading, propellant, warned
 
 COMMAND = "hfa simulate"
 
@@ -42,14 +42,16 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
     engine = build.engine(needs, tank)
     burnt = run(file, engine, until)
     hot = burnt.chamber_temperature()
+    flight = SimulatedFlight.from_json(_flight(file, engine, burnt))
     product = Simulated.from_json(
         {
             **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
             **_engine(engine, burnt, hot),
             **_loaded(file, engine, burnt),
             **_tank(tank),
-            "flight": _flight(file, engine, burnt),
+            "flight": flight,
             **_propellant(needs, engine),
+            "cautions": warned.of_burn(engine, burnt, flight),
             "warnings": [*file.warnings, *_warnings(burnt)],
             "provenance": heading.provenance(file),
         }
