@@ -37,10 +37,10 @@ def test_what_lies_beyond_its_limit_is_drawn_and_nothing_else(name: str) -> None
 @pytest.mark.parametrize("name", DRAWN)
 def test_a_sentence_has_value_limit_and_source(name: str) -> None:
     (caution,) = DRAWN[name][0]
-    assert caution.source in caution.words
-    assert caution.value != caution.limit
-    assert sum(character.isdigit() for character in caution.words) >= 2
-    assert caution.to_json().keys() == {"name", "value", "limit", "unit", "source", "words"}
+    assert caution.source in caution.text
+    assert caution.value.value != caution.limit
+    assert sum(character.isdigit() for character in caution.text) >= 2
+    assert caution.to_json().keys() == {"name", "value", "limit", "source", "text"}
 
 
 def test_no_number_is_no_warning() -> None:
@@ -54,5 +54,5 @@ def test_the_triple_point_is_where_the_properties_begin() -> None:
 
 def test_a_mixture_has_too_much_of_one_side() -> None:
     (rich,), (lean,) = cautions.mixture(3.0, 6.3, 0.14, "impulse"), cautions.mixture(14.0, 6.3, 0.08, "impulse")
-    assert rich.words.endswith("too much fuel")
-    assert lean.words.endswith("too much oxidizer")
+    assert rich.text.endswith("too much fuel")
+    assert lean.text.endswith("too much oxidizer")

@@ -61,6 +61,6 @@ def _show(product: Simulated | Designed, as_json: bool, quiet: bool) -> None:
         from hfanalysis.cli import tables
 
         tables.show_engine(product)
-    cautions = () if as_json else (caution.words for caution in product.cautions)  # JSON has them
-    for warning in (*cautions, *product.warnings):
+    beyond = () if as_json else (found.text for found in product.beyond)  # JSON has them
+    for warning in (*beyond, *product.warnings):
         tell(f"warning: {warning}")

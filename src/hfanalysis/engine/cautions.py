@@ -9,10 +9,11 @@ from __future__ import annotations
 from hfanalysis.engine.injector import SMALL_DROP
 from hfanalysis.engine.nozzle import mach_at_area, pressure_ratio
 from hfanalysis.engine.separation import separation_pressure
-from hfanalysis.products.engines import Caution
+from hfanalysis.products.beyond import Beyond
+from hfanalysis.quantity import Quantity
 from hfanalysis.sentences import said, text
 
-Cautions = tuple[Caution, ...]
+Cautions = tuple[Beyond, ...]
 
 LEAST_STIFFNESS = 0.2
 """Injector pressure drop over chamber pressure [-] from which on the flow hardly follows the chamber. Source: Humble,
@@ -165,5 +166,5 @@ def oxidizer_flux(flux: float) -> Cautions:
     return (_caution("oxidizer_flux", flux, MOST_FLUX, "kg/(m^2 s)", _TEXTBOOK, words),)
 
 
-def _caution(name: str, value: float, limit: float, unit: str, source: str, words: str) -> Caution:
-    return Caution(name=name, value=float(value), limit=float(limit), unit=unit, source=source, words=words)
+def _caution(name: str, value: float, limit: float, unit: str, source: str, words: str) -> Beyond:
+    return Beyond(name=name, value=Quantity(float(value), unit), limit=float(limit), source=source, text=words)

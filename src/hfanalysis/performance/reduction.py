@@ -21,10 +21,11 @@ from hfanalysis.performance.specific_impulse import expended, impulses, liquid_i
 from hfanalysis.performance.standard import standard
 from hfanalysis.performance.tap import narrow, tap_of
 from hfanalysis.performance.thrust import thrust_of
+from hfanalysis.products.beyond import Beyond
 from hfanalysis.products.budget import Budget
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
-from hfanalysis.products.validation import Balance, Beyond, Efficiencies, Finding, Standard
+from hfanalysis.products.validation import Balance, Efficiencies, Finding, Standard
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
+from hfanalysis.products.beyond import Beyond
 from hfanalysis.products.flight import FlightNumbers
-from hfanalysis.products.model import Is, Part, Warnings, Words
+from hfanalysis.products.model import Is, Part, Warnings
 from hfanalysis.quantity import Quantity
 
 
@@ -17,20 +18,6 @@ class Enthalpy(Part):
     std: Annotated[float | None, Is("not known", "J/kg")] = None
     ci95: Annotated[tuple[float, float] | None, Is("not known", "J/kg")] = None
     of: Annotated[str, Is("what it is that of")]
-
-
-class Caution(Part):
-    """What an engineer would warn of: a value beyond its limit."""
-
-    name: Annotated[str, Is("of the rule")]
-    value: Annotated[float, Is("found", "as unit says")]
-    limit: Annotated[float, Is("that it does not keep", "as unit says")]
-    unit: Annotated[str, Is("SI; empty for a pure number")]
-    source: Annotated[str, Is("of the limit")]
-    words: Annotated[Words, Is("value, limit and source in a sentence")]
-
-
-Cautions = Annotated[tuple[Caution, ...], Is("what an engineer would warn of")]
 
 
 class EngineHead(Part):
@@ -83,7 +70,7 @@ class Simulated(EngineHead):
     tank_volume: Annotated[Quantity, Is("of the tank", "m^3")]
     flight: Annotated[SimulatedFlight, Is("of its rocket")]
     propellant_for_target_apogee: Annotated[Load | None, Is("load for [design] target_apogee")] = None
-    cautions: Cautions = ()
+    beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
     warnings: Warnings
     provenance: Annotated[dict[str, Any], Is("version, and files by SHA-256")]
 
@@ -115,6 +102,6 @@ class Designed(EngineHead):
     pad_thrust_to_weight: Annotated[Quantity, Is("peak thrust over wet weight", "")]
     apogee: Annotated[Quantity, Is("of its rocket, above ground", "m")]
     optimum: Annotated[Optimum, Is("the best mixture")]
-    cautions: Cautions = ()
+    beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
     warnings: Warnings
     provenance: Annotated[dict[str, Any], Is("version, and files by SHA-256")]

@@ -76,7 +76,7 @@ def design(file: EngineFile) -> DesignRun:
             **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
             **_flown(file, task, engine),
             "optimum": Optimum(of_ratio=Quantity(best.of_ratio), specific_impulse=Quantity(best.specific_impulse, "s")),
-            "cautions": heard,
+            "beyond": heard,
             "warnings": file.warnings,
             "provenance": heading.provenance(file),
         }

@@ -51,7 +51,7 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
             **_tank(tank),
             "flight": flight,
             **_propellant(needs, engine),
-            "cautions": warned.of_burn(engine, burnt, flight),
+            "beyond": warned.of_burn(engine, burnt, flight),
             "warnings": [*file.warnings, *_warnings(burnt)],
             "provenance": heading.provenance(file),
         }

@@ -15,7 +15,8 @@ from hfanalysis.engine.grain import oxidizer_flux
 from hfanalysis.engine.nozzle import characteristic_velocity
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.flight import constant_thrust
-from hfanalysis.products.engines import Caution, SimulatedFlight
+from hfanalysis.products.beyond import Beyond
+from hfanalysis.products.engines import SimulatedFlight
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.steady_design import steady
@@ -38,7 +39,7 @@ def of_burn(engine: Engine, burnt: Burn, flight: SimulatedFlight) -> Cautions:
     return tuple(_of_burn(engine, burnt, flight))
 
 
-def _of_burn(engine: Engine, burnt: Burn, flight: SimulatedFlight) -> Iterator[Caution]:
+def _of_burn(engine: Engine, burnt: Burn, flight: SimulatedFlight) -> Iterator[Beyond]:
     chamber = burnt.output("chamber_pressure")
     lit = np.arange(chamber.size) >= int(np.argmax(chamber >= RISEN * chamber.max()))
     burning = lit & (burnt.time <= burnt.burn_time)
