@@ -27,11 +27,19 @@ _STANDARD = 101_325.0
 
 @dataclass(frozen=True)
 class TankBuilt:
-    """A tank's volume [m^3], and its lengths [m] where the file says enough (``reason``: what is lacking)."""
+    """A tank's volume [m^3], and its lengths [m] where the file says enough (``reason``: what is lacking).
+
+    Without a dip tube (not ``dipped``) it is a plain cylinder.
+    """
 
     volume: float
     size: sizing.TankSize | None
     reason: str = ""
+
+    @property
+    def dipped(self) -> bool:
+        """Whether its dip tube has a length."""
+        return self.size is not None and not self.reason
 
 
 @dataclass(frozen=True)
@@ -86,13 +94,14 @@ def site_altitude(file: EngineFile) -> float:
     return atmosphere.altitude_of(pressure.value if pressure else _STANDARD)
 
 
-def tank(needs: Needs) -> TankBuilt:
-    """The tank [m^3] from its volume, length or ullage, holding the file's oxidizer [kg] as saturated liquid and vapor.
+def tank(needs: Needs, load: float | None = None) -> TankBuilt:
+    """The tank [m^3] from its volume, length or ullage, holding the file's oxidizer, or another ``load`` [kg], as
+    saturated liquid and vapor.
 
     Raises InputError where it does not hold that much, or where the file does not say enough.
     """
     t, source, stated = temperature(needs), properties(needs.file), needs.file.tank
-    mass = needs.value(stated.oxidizer_mass, "tank", "oxidizer_mass").value
+    mass = needs.value(stated.oxidizer_mass, "tank", "oxidizer_mass").value if load is None else load
     try:
         built = _volume(needs, source, mass, t) if stated.volume is not None else _sized(needs, source, mass, t)
     except ValueError as error:
@@ -110,13 +119,13 @@ def tank(needs: Needs) -> TankBuilt:
 def _volume(needs: Needs, source: Saturation, mass: float, t: float) -> TankBuilt:
     stated = needs.file.tank
     volume = needs.value(stated.volume, "tank", "volume").value
-    if stated.inner_diameter is None or stated.dip_tube is None:
-        return TankBuilt(volume, None, "tank.inner_diameter and tank.dip_tube are not both given")
+    if stated.inner_diameter is None:
+        return TankBuilt(volume, None, "tank.inner_diameter is not given")
     v_l, v_v = float(source.liquid_volume(t)[0]), float(source.vapor_volume(t)[0])
     liquid = (mass * v_v - volume) / (v_v - v_l) * v_l
     if not 0.0 < liquid < volume:
         return TankBuilt(volume, None, "the tank is not saturated")
-    return TankBuilt(volume, _for_ullage(needs, source, mass, t, volume / liquid - 1.0))
+    return TankBuilt(volume, _for_ullage(needs, source, mass, t, volume / liquid - 1.0), _undipped(needs))
 
 
 def _sized(needs: Needs, source: Saturation, mass: float, t: float) -> TankBuilt:
@@ -124,10 +133,10 @@ def _sized(needs: Needs, source: Saturation, mass: float, t: float) -> TankBuilt
     if stated.length is None:
         ullage = needs.value(stated.ullage, "tank", "volume (or length, or ullage)").value
         size = _for_ullage(needs, source, mass, t, ullage)
-        return TankBuilt(size.volume, size)
+        return TankBuilt(size.volume, size, _undipped(needs))
     diameter = needs.value(stated.inner_diameter, "tank", "inner_diameter").value
     size = sizing.size_for_length(source, mass, t, diameter, _dip_tube(needs), stated.length.value)
-    return TankBuilt(size.volume, size)
+    return TankBuilt(size.volume, size, _undipped(needs))
 
 
 def _for_ullage(needs: Needs, source: Saturation, mass: float, t: float, ullage: float) -> sizing.TankSize:
@@ -135,8 +144,15 @@ def _for_ullage(needs: Needs, source: Saturation, mass: float, t: float, ullage:
     return sizing.size_for_ullage(source, mass, t, diameter, _dip_tube(needs), ullage)
 
 
+def _undipped(needs: Needs) -> str:
+    return "" if needs.file.tank.dip_tube is not None else "tank.dip_tube is not given"
+
+
 def _dip_tube(needs: Needs) -> sizing.DipTube:
-    tube = needs.value(needs.file.tank.dip_tube, "tank", "dip_tube")
+    """As stated; one without section where there is none."""
+    tube = needs.file.tank.dip_tube
+    if tube is None:
+        return sizing.DipTube(0.0, 0.0)
     if needs.file.tank.inner_diameter is not None and tube.outer_diameter.value >= needs.file.tank.inner_diameter.value:
         raise InputError(f"{needs.file.where('tank', 'dip_tube')}: it is wider than the tank")
     return sizing.DipTube(tube.outer_diameter.value, tube.inner_diameter.value)

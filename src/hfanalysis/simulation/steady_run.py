@@ -12,7 +12,7 @@ from hfanalysis.products.engines import Designed, Optimum
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.simulation import heading, warned
+from hfanalysis.simulation import heading, sized, warned
 from hfanalysis.steady_design import steady
 from hfanalysis.steady_design.steady import Requirement, SteadyEngine
 from hfanalysis.thermo.combustion import restart
@@ -74,6 +74,10 @@ def design(file: EngineFile) -> DesignRun:
             **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
             "fuel_mass_from": "grain.mass" if task.target is None else "design.target_apogee",
             **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
+            "port_radius": Quantity(port, "m"),
+            "grain_length": Quantity(task.grain.length, "m"),
+            **sized.injector(needs, task.requirement),
+            **sized.tank(needs, engine.oxidizer_mass),
             **_flown(file, task, engine),
             "optimum": Optimum(of_ratio=Quantity(best.of_ratio), specific_impulse=Quantity(best.specific_impulse, "s")),
             "beyond": heard,

@@ -45,3 +45,27 @@ def injector_area(tank: Saturated, line: Line, flow: float, chamber: float) -> f
         bars = f"{chamber / 1e5:.4g} bar: the tank holds {(drop + chamber) / 1e5:.4g} bar behind its feed line"
         raise ValueError(f"no injector lets {flow:.3g} kg/s into a chamber of {bars}")
     return flow / sqrt(2.0 * tank.density * drop)
+
+
+@dataclass(frozen=True)
+class Holes:
+    """How many holes, and the area of one [m^2]."""
+
+    count: int
+    area: float
+
+
+def holes_for(area: float, discharge: float, hole: float | None, count: int | None) -> Holes:
+    """Holes for C_i N_i A_i = ``area`` [m^2] with C_i ``discharge`` [-].
+
+    As many of ``hole`` [m^2] as come nearest, one at least; without it, ``count`` of the area that meets it. Raises
+    ValueError where neither is given.
+
+    >>> holes_for(3.786e-5, 1.0, 3.79e-6, None)
+    Holes(count=10, area=3.79e-06)
+    """
+    if hole is not None:
+        return Holes(max(1, round(area / (discharge * hole))), hole)
+    if count is None:
+        raise ValueError("neither the holes' area nor their number is given")
+    return Holes(count, area / (discharge * count))
