@@ -61,7 +61,7 @@ def text(file: EngineFile, run: DesignRun, out: Path) -> str:
         f"Tank: {tank.volume * 1e3:.4g} L{f', {tank.size.length * 1e3:.4g} mm long' if tank.size else ''}.",
         "A burn of the same load falls short of a steady design: the tank cools, and vapor is left in it.",
     )
-    return "".join(f"# {line}\n" for line in lines) + _tables(merged(content, found, old, new), found)
+    return "".join(f"# {line}\n" for line in lines) + toml(merged(content, found, old, new), found)
 
 
 def solved(file: EngineFile, run: DesignRun) -> Solved:
@@ -97,14 +97,14 @@ def _said(value: float, unit: str) -> str:
     return f"{value:.9g} {unit}"
 
 
-def _tables(content: Mapping[str, Any], found: Solved, above: tuple[str, ...] = ()) -> str:
-    """Keys of a table, then the tables in it."""
+def toml(content: Mapping[str, Any], found: Solved, above: tuple[str, ...] = ()) -> str:
+    """The ``content`` of a table as TOML: its keys, those ``found`` marked, then the tables in it."""
     own = {key: value for key, value in content.items() if not isinstance(value, Mapping)}
     inner = {key: value for key, value in content.items() if isinstance(value, Mapping)}
     head = [f"[{'.'.join(map(_key, above))}]"] if above and (own or not inner) else []
     lines = [*head, *(_line(key, value, (*above, key) in found) for key, value in own.items())]
     parts = ["\n".join(lines) + "\n"] if lines else []
-    return "".join([*parts, *(_tables(value, found, (*above, key)) for key, value in inner.items())])
+    return "".join([*parts, *(toml(value, found, (*above, key)) for key, value in inner.items())])
 
 
 def _line(key: str, value: Any, marked: bool) -> str:
@@ -120,4 +120,8 @@ def _value(value: Any) -> str:
         return str(value).lower()
     if isinstance(value, str):
         return quoted(value)
-    return f"[{', '.join(map(_value, value))}]" if isinstance(value, list) else repr(value)
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(key)} = {_value(part)}" for key, part in value.items()) + " }"
+    return repr(value)

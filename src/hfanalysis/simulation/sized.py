@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from hfanalysis.assembly import engine as build
+from hfanalysis.assembly import tank as held
 from hfanalysis.errors import InputError
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import Needs
@@ -19,7 +20,7 @@ def area(needs: Needs, asked: Requirement) -> float:
     """C_i N_i A_i [m^2] of the design. Raises InputError where the tank does not say, or does not hold enough."""
     try:
         return injector_area(
-            build.saturated(needs), build.line_loss(needs.file), asked.oxidizer_flow, asked.chamber_pressure
+            held.saturated(needs), build.line_loss(needs.file), asked.oxidizer_flow, asked.chamber_pressure
         )
     except ValueError as error:
         raise InputError(f"{needs.file.where('design', 'chamber_pressure')}: {error}") from None
@@ -52,12 +53,12 @@ def injector(needs: Needs, asked: Requirement) -> dict[str, Quantity]:
 def tank(needs: Needs, mass: float) -> dict[str, Quantity]:
     """The tank for a load ``mass`` [kg], by the file's ullage, length or volume; why, where it cannot be had."""
     try:
-        return of_tank(build.tank(needs, mass))
+        return of_tank(held.tank(needs, mass))
     except InputError as error:
         return {name: _absent(needs, error) for name in TANK}
 
 
-def of_tank(built: build.TankBuilt) -> dict[str, Quantity]:
+def of_tank(built: held.TankBuilt) -> dict[str, Quantity]:
     """Lengths [m] and volume [m^3] of a tank."""
     size = built.size
     return {

@@ -9,6 +9,7 @@ import numpy as np
 
 from hfanalysis.arrays import Mask
 from hfanalysis.assembly import engine as build
+from hfanalysis.assembly import tank
 from hfanalysis.engine import cautions
 from hfanalysis.engine.cautions import Cautions
 from hfanalysis.engine.grain import oxidizer_flux
@@ -114,7 +115,7 @@ def _of_feed(needs: Needs, asked: Requirement) -> Cautions:
     """What the tank has left before the injector; a file without the tank's temperature does not say."""
     if needs.file.tank.temperature is None:
         return ()
-    held = behind_line(build.saturated(needs), build.line_loss(needs.file), asked.oxidizer_flow)
+    held = behind_line(tank.saturated(needs), build.line_loss(needs.file), asked.oxidizer_flow)
     above = cautions.beyond_tank(asked.chamber_pressure, held)
     return above or cautions.stiffness(held / asked.chamber_pressure - 1.0)
 
