@@ -10,7 +10,7 @@ from hfanalysis.engine import closure, unsteady
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
 from hfanalysis.flight import summary
-from hfanalysis.products.engines import Simulated, SimulatedFlight
+from hfanalysis.products.engines import Simulated
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, gravity
@@ -42,7 +42,7 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
     engine = build.engine(needs, tank)
     burnt = run(file, engine, until)
     hot = burnt.chamber_temperature()
-    flight = SimulatedFlight.from_json(_flight(file, engine, burnt))
+    flight = _flight(file, engine, burnt)
     product = Simulated.from_json(
         {
             **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import pi
 
 import numpy as np
@@ -17,7 +17,7 @@ from hfanalysis.engine.nozzle import characteristic_velocity
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.flight import constant_thrust
 from hfanalysis.products.beyond import Beyond
-from hfanalysis.products.engines import SimulatedFlight
+from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import Vehicle
 from hfanalysis.steady_design import steady
@@ -35,12 +35,12 @@ RISEN = 0.9
 ignition itself passes through every pressure, in milliseconds."""
 
 
-def of_burn(engine: Engine, burnt: Burn, flight: SimulatedFlight) -> Cautions:
-    """Of a simulated burn and the flight on it."""
+def of_burn(engine: Engine, burnt: Burn, flight: Mapping[str, Quantity]) -> Cautions:
+    """Of a simulated burn and the quantities of the flight on it [SI]."""
     return tuple(_of_burn(engine, burnt, flight))
 
 
-def _of_burn(engine: Engine, burnt: Burn, flight: SimulatedFlight) -> Iterator[Beyond]:
+def _of_burn(engine: Engine, burnt: Burn, flight: Mapping[str, Quantity]) -> Iterator[Beyond]:
     chamber = burnt.output("chamber_pressure")
     before_end = burnt.time <= burnt.burn_time
     lit = np.arange(chamber.size) >= int(np.argmax(chamber >= RISEN * chamber[before_end].max()))
@@ -58,10 +58,9 @@ def _of_burn(engine: Engine, burnt: Burn, flight: SimulatedFlight) -> Iterator[B
     if burnt.fuel_out and burnt.liquid_out is None:
         density = float(engine.saturation.vapor_density(burnt.state("tank_temperature")[burning][-1]))
         yield from cautions.left_over(float(burnt.state("tank_mass")[burning][-1]), engine.feed.volume * density)
-    if flight.rail_departure_velocity.value is not None:
-        yield from cautions.rail_speed(flight.rail_departure_velocity.value)
-    if flight.pad_thrust_to_weight.value is not None:
-        yield from cautions.thrust_to_weight(flight.pad_thrust_to_weight.value)
+    speed, ratio = flight["rail_departure_velocity"].value, flight["pad_thrust_to_weight"].value
+    yield from cautions.rail_speed(speed) if speed is not None else ()
+    yield from cautions.thrust_to_weight(ratio) if ratio is not None else ()
 
 
 def _of_mixture(engine: Engine, burnt: Burn, burning: Mask) -> Cautions:
