@@ -21,11 +21,12 @@ Henry and Larson, Space Propulsion Analysis and Design, 1995: 20 % of the chambe
 Biblarz, Rocket Propulsion Elements: 15 to 30 %."""
 
 LEAST_RAIL_SPEED = 30.48
-"""Least speed at the end of the rail [m/s]. Source: 100 ft/s, Spaceport America Cup, Design, Test and Evaluation Guide; the report,
-section 3.2.4, cites it."""
+"""Least speed at the end of the rail [m/s]. Source: 100 ft/s, Spaceport America Cup, Design, Test and
+Evaluation Guide; the report, section 3.2.4, cites it."""
 
 LEAST_THRUST_TO_WEIGHT = 5.0
-"""Least thrust over weight on the pad [-]. Source: Spaceport America Cup, Design, Test and Evaluation Guide, 5.18.2: 5:1."""
+"""Least thrust over weight on the pad [-]. Source: Spaceport America Cup, Design, Test and Evaluation
+Guide, 5.18.2: 5:1."""
 
 TRIPLE_POINT = 182.33
 """Of nitrous oxide [K], below which there is no liquid and vapor turns solid. Source: Lemmon and Span, J. Chem. Eng.
