@@ -285,13 +285,32 @@ def _simulate(
         engines.simulate(engine, out, as_json, quiet, until)
 
 
+HandOver = Annotated[
+    Path | None,
+    typer.Option("--hand-over", metavar="OUT.toml", help="Also write the solved engine, for hfa simulate; a new file."),
+]
+Flows = Annotated[list[str] | None, typer.Option("--flow", metavar='"2.5 kg/s"', help="Of the study; several.")]
+Lengths = Annotated[list[str] | None, typer.Option("--length", metavar='"610 mm"', help="Of the study; several.")]
+Pressures = Annotated[list[str] | None, typer.Option("--pressure", metavar='"400 psi"', help="Of the study; several.")]
+
+
 @app.command("design")
-def _design(engine: EngineToml, as_json: EngineJson = False, out: Folder = None, quiet: Quiet = False) -> None:
+def _design(
+    engine: EngineToml,
+    as_json: EngineJson = False,
+    out: Folder = None,
+    hand_over: HandOver = None,
+    flow: Flows = None,
+    length: Lengths = None,
+    pressure: Pressures = None,
+    quiet: Quiet = False,
+) -> None:
     """Steady-state design of an engine; with --out also the parametric study and a .eng file."""
     with plain_exit():
         from hfanalysis.cli import engines
 
-        engines.design(engine, out, as_json, quiet)
+        study = {"flow": flow or [], "length": length or [], "pressure": pressure or []}
+        engines.design(engine, out, as_json, quiet, study, hand_over)
 
 
 @app.command("regression")
