@@ -262,7 +262,7 @@ def test_every_section_is_left_out_with_its_reason(tmp_path: Path) -> None:
         material(tmp_path), calibration="no liquid phase", validation="no liquid phase", residuals="no model"
     )
     for laid in lay_out(replace(bare, log=TestLog({}), stores={})):
-        assert laid.blocks or laid.absent
+        assert laid.blocks or laid.absent or dict(sections())[laid.key].unasked
     reasons = {laid.key: laid.absent for laid in lay_out(bare)}
     assert reasons["calibration"] == "no liquid phase"
     assert reasons["residuals"] == "no model"
@@ -427,6 +427,8 @@ def test_the_index_lists_every_test() -> None:
             "spark": {"path": "M0 0L1 1", "of": HOSTILE, "style": HOSTILE},
             "href": "a%3C/report.html",
             "compared": [(HOSTILE, "a%3C/compare_b.html")],
+            "limits": [("broken", HOSTILE)],
+            "kept": 2,
         }
     ]
     text = render("index.html.j2", rows=rows, campaign="")
