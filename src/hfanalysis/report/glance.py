@@ -199,8 +199,10 @@ def following(material: Material) -> str:
         return f"Write the cure of {cure} into test.toml (hfa health {test} --apply), if the finding is right."
     if included(material):
         return "Weigh, measure and fire again: the next test shows whether what is included holds there."
-    if product is None:
+    if product is None and not material.has("validation"):
         return f"State what is missing in test.toml, then run hfa run {test}: without it no model can be tried."
+    if product is None:
+        return f"Run hfa diagnose {test}, which takes minutes: it looks for what the model lacks."
     decisive = next(iter(product.decisive_measurements), "").partition(": ")[2].partition(";")[0]
     if product.verdict == "named" and product.effects and product.constants is not None:
         return f"Decide with {decisive}; or include it on what is known: hfa diagnose {test} --apply."

@@ -65,7 +65,7 @@ def _judged(rule: Rule, material: Material) -> Judged:
     states = {_state(found, limit) for limit in limits}
     state = next(s for s in (BROKEN, OPEN, KEPT) if s in states)
     rest = "; its 95 % interval holds the limit" if state == OPEN else ""
-    return Judged(state, name, f"{has}, limit {' and '.join(dict.fromkeys(limit.words for limit in limits))}{rest}")
+    return Judged(state, name, f"{has}; {' and '.join(dict.fromkeys(limit.words for limit in limits))}{rest}")
 
 
 def _state(found: Quantity, limit: Limit) -> str:
@@ -80,12 +80,12 @@ def _limits(rule: Rule, found: Quantity, material: Material) -> Iterator[Limit]:
     for key, text, above in (("min", rule.min, True), ("max", rule.max, False)):
         if text is not None:
             at = parse_as(text, found.unit, f"{FILE}, {rule.quantity}.{key}")
-            yield Limit(at, above, f"{key} {text}")
+            yield Limit(at, above, f"{'at least' if above else 'at most'} {text}")
     last = _last(rule.quantity, material) if rule.within is not None else None
     if rule.within is not None and last is not None and last.value is not None:
         share = parse(rule.within, "dimensionless", f"{FILE}, {rule.quantity}.within").value
         was = shown(replace(last, std=None, ci95=None), name=rule.quantity).with_unit
-        words = f"{rule.within} of {was} last time"
+        words = f"within {rule.within} of {was} last time"
         yield Limit(last.value - share * abs(last.value), True, words)
         yield Limit(last.value + share * abs(last.value), False, words)
 
