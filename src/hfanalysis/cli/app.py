@@ -285,6 +285,29 @@ def _design(engine: EngineToml, as_json: EngineJson = False, out: Folder = None,
         engines.design(engine, out, as_json, quiet)
 
 
+@app.command("engine")
+def _engine(
+    test: Test,
+    of: Annotated[
+        str | None, typer.Option("--of", metavar="STAND", help="Constants and effects of this stand.")
+    ] = None,
+    flight: Annotated[
+        bool, typer.Option("--flight", help="In its rocket: without what is of the stand alone.")
+    ] = False,
+    out: Annotated[Path | None, typer.Option(metavar="FILE", help="Instead of ROOT/engines/TEST.toml.")] = None,
+    root: Root = Path(),
+    quiet: Quiet = False,
+    trust_effects: Trust = False,
+) -> None:
+    """Write the engine file of a calibrated test, for simulate: geometry as stated, constants and effects as found."""
+    with plain_exit():
+        from hfanalysis.cli import engine_of
+
+        test, root = named(test, root)
+        ask(root, trust_effects)
+        engine_of.engine(Request(test, root, None, False, False, quiet), of, flight, out)
+
+
 @app.command("regression")
 def _regression(
     tests: Annotated[list[str], typer.Argument(metavar="TEST OTHER…", help="Tests of one fuel; at least two.")],
