@@ -147,6 +147,8 @@ def test_only_what_it_wrote_is_written_over(found: OfTest, tmp_path: Path) -> No
     with pytest.raises(InputError, match="did not write"):
         write(path, written)
     assert path.read_text() == "schema = 1\n"
+    with pytest.raises(InputError, match="cannot be written"):
+        write(tmp_path, written)
 
 
 @pytest.mark.parametrize(

@@ -20,11 +20,20 @@ from hfanalysis.inference.adopted.effects import Adopted
 from hfanalysis.interface import predicting
 from hfanalysis.interface.bringing import bring
 from hfanalysis.products.disk import read_json, sha256_file
-from hfanalysis.products.prediction import Foretold, Prediction
+from hfanalysis.products.prediction import Foretold, Origin, Prediction
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.planned import PlannedTest, load_planned
 from hfanalysis.record.written import table_lines
-from hfanalysis.simulation.foretelling import PRIOR_SCATTER, QUANTITIES, Base, changes, outcomes, planned, scatter_of
+from hfanalysis.simulation.foretelling import (
+    PRIOR_SCATTER,
+    QUANTITIES,
+    Base,
+    changes,
+    outcomes,
+    planned,
+    scatter_of,
+    to_mean,
+)
 from hfanalysis.simulation.predict import misses_of, predict, score
 from hfanalysis.units import Value
 
@@ -78,13 +87,14 @@ def test_holes_load_and_temperature_are_those_of_the_plan(root: Path, base: Base
     engine = planned(load_planned(plan_of(root, "HF5", "20 degC")), base).stand
     own = base.found.full.engine
     assert engine.feed.area == pytest.approx(own.feed.area * 22 / 18)
-    assert (engine.oxidizer_mass, engine.temperature) == (8.35, pytest.approx(293.15))
+    assert engine.oxidizer_mass == 8.35
+    assert engine.temperature == pytest.approx(293.15)
     assert (engine.a, engine.n, engine.polytropic_exponent) == (own.a, own.n, own.polytropic_exponent)
 
 
 def test_draws_have_the_errors_of_the_constants_together(plan: PlannedTest, base: Base) -> None:
     none = {name: found.but(drawn=0.0) for name, found in scatter_of([base]).items()}
-    drawn = list(changes(base, planned(plan, base), none, 4000, 3))
+    drawn = list(changes(base, planned(plan, base), none, 4000, 3, to_mean([base])[0]))
     joint = base.found.joint
     std = dict(zip(joint.names, joint.std, strict=True))
     area, n, ln_a = (np.array(x) for x in zip(*((log(c.area), c.n, log(c.a)) for c in drawn), strict=True))
@@ -103,11 +113,14 @@ def test_scatter_between_tests_is_a_prior_until_three_tell_it(base: Base) -> Non
     one, two = scatter_of([base])["C_i"], scatter_of([base, base])["C_i"]
     assert (one.std, one.freedom) == (PRIOR_SCATTER, None)
     assert one.drawn == pytest.approx(PRIOR_SCATTER * sqrt(2.0))
-    assert two.drawn == pytest.approx(PRIOR_SCATTER)
+    assert two.drawn == pytest.approx(PRIOR_SCATTER * sqrt(1.5))
     assert "NFPA 1125" in one.source
     three = scatter_of([with_c(0.2), with_c(0.25), with_c(0.3)])["C_i"]
     assert three.std == pytest.approx(np.std(np.log([0.2, 0.25, 0.3]), ddof=1))
-    assert (three.drawn, three.freedom) == (pytest.approx(three.std * sqrt(2.0 / 3.0)), 2)
+    assert three.drawn == pytest.approx(three.std * sqrt(4.0 / 3.0))
+    assert three.freedom == 2
+    shifts = [shift["C_i"] for shift in to_mean([with_c(0.2), with_c(0.3)])]
+    assert shifts == pytest.approx([0.5 * log(1.5), -0.5 * log(1.5)])
 
 
 def test_effects_are_drawn_within_their_bounds(plan: PlannedTest, base: Base) -> None:
@@ -115,7 +128,7 @@ def test_effects_are_drawn_within_their_bounds(plan: PlannedTest, base: Base) ->
     adopted = Adopted((heat,), {"tank_heat": {"power": Value(900.0, 2000.0)}})
     other = replace(base, found=replace(base.found, adopted=adopted))
     own = planned(plan, other)
-    drawn = [c.effects[0].named for c in changes(other, own, scatter_of([other]), 300, 1)]
+    drawn = [c.effects[0].named for c in changes(other, own, scatter_of([other]), 300, 1, to_mean([other])[0])]
     assert own.stand.effects == (heat,)
     assert min(d["power"] for d in drawn) == 0.0
     assert np.std([d["power"] for d in drawn]) > 800.0
@@ -124,7 +137,7 @@ def test_effects_are_drawn_within_their_bounds(plan: PlannedTest, base: Base) ->
 
 
 def test_bands_hold_what_the_model_says_and_widen_by_what_it_missed(plan: PlannedTest, base: Base) -> None:
-    origins = {"HF4": predicting.Origin(raw={"log.csv": "x"}, test_toml="y", products={}, effects=())}
+    origins = {"HF4": Origin(raw={"log.csv": "x"}, test_toml="y", products={}, effects=())}
     found = predict(plan, [base], origins, draws=100)
     impulse = found.predicted["total_impulse"]
     assert impulse.low is not None
@@ -207,12 +220,9 @@ def test_holds_and_errors() -> None:
         notes=(), plan="", made_from={}, hfanalysis="0",
     )  # fmt: skip
 
-    def at(t_v: Quantity) -> tuple[bool | None, float | None]:
-        found = score(made, "", "N", {}, {"t_v": t_v}, {}).scored["t_v"]
-        return found.holds, found.error
-
-    assert at(Quantity(8.0, "s")) == (False, pytest.approx(0.25))
-    assert at(Quantity(11.0, "s")) == (True, pytest.approx(-1.0 / 11.0))
+    early, last = (score(made, "", "N", {}, {"t_v": Quantity(t, "s")}, {}).scored["t_v"] for t in (8.0, 11.0))
+    assert (early.holds, last.holds) == (False, True)
+    assert (early.error, last.error) == pytest.approx((0.25, -1.0 / 11.0))
     found = score(made, "", "N", {}, {"t_v": Quantity(10.0, "s"), "apogee": Quantity(900.0, "m")}, {})
     assert (found.held, found.of, found.scored["apogee"].holds) == (1, 1, None)
     assert found.mean_error == {"predicted": 0.0, "as_last_time": pytest.approx(0.2)}
@@ -236,3 +246,20 @@ def test_a_plan_at_fault_is_refused(root: Path, base: Base, old: str, new: str, 
     path.write_text(text.replace(old, new))
     with pytest.raises(InputError, match=words):
         planned(load_planned(path), base)
+
+
+@pytest.mark.parametrize("tests", [1, 2, 3, 5])
+def test_bands_by_the_scatter_hold_nine_of_ten_further_tests(base: Base, tests: int) -> None:
+    """C_i of tests about one mean, and of a further one: how often it is in the band about those that are known."""
+    rng = np.random.default_rng(7)
+    spread = PRIOR_SCATTER if tests < 3 else 0.15
+    known, new = 0.25 * np.exp(spread * rng.standard_normal((600, tests))), spread * rng.standard_normal(600)
+    held = []
+    for values, further in zip(known, new, strict=True):
+        found = [base.found.calibration.but(C_i=Quantity(float(value), "", 0.01)) for value in values]
+        bases = [replace(base, found=replace(base.found, calibration=calibration)) for calibration in found]
+        scatter, shift = scatter_of(bases)["C_i"], to_mean(bases)[0]["C_i"]
+        drawn = rng.standard_normal(400) if scatter.freedom is None else rng.standard_t(scatter.freedom, 400)
+        low, high = log(values[0] / 0.25) + shift + scatter.drawn * np.quantile(drawn, (0.05, 0.95))
+        held.append(low <= further <= high)
+    assert np.mean(held) == pytest.approx(0.90, abs=0.035)

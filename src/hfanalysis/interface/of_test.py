@@ -9,17 +9,53 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted import file_for
 from hfanalysis.inference.adopted.effects import Adopted, read_adopted, read_effects
 from hfanalysis.inference.full_run import run_full
+from hfanalysis.interface.bringing import bring
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.campaign import Campaign, CommonLaw, StandRow
 from hfanalysis.products.disk import read_json
 from hfanalysis.products.segments import Segments
+from hfanalysis.progress import Progress, silent
 from hfanalysis.quantity import Quantity
-from hfanalysis.simulation.of_test import OfTest
+from hfanalysis.simulation.commented import write
+from hfanalysis.simulation.of_test import OfTest, text_of
 from hfanalysis.stages.base import Context, load_stage
 from hfanalysis.stages.open_test import PROCESSED
 
+ENGINES = "engines"
+"""Where in a root engine files are."""
+
 CONSTANTS = ("C_i", "K_loss", "m", "a", "n")
 """What a campaign has of a stand."""
+
+
+def engine_file(
+    test: str,
+    root: str | Path = ".",
+    *,
+    stand: str | None = None,
+    flight: bool = False,
+    out: str | Path | None = None,
+    progress: Progress = silent,
+) -> tuple[Path, tuple[str, ...]]:
+    """Write the engine file of a calibrated test, as ``hfa engine``; returns it and what is left out, in words.
+
+    Args:
+        test: its name.
+        root: the folder that holds ``raw_tests/``.
+        stand: whose constants and effects it has; else the test's own.
+        flight: without what is of the stand alone.
+        out: the file, instead of ``root/engines/TEST.toml``.
+        progress: told what is being done.
+
+    Raises:
+        InputError: a file is there that was not written so, or was changed since.
+        AbsentError: the test has no engine that runs, or none that can be.
+    """
+    context = bring("validate", Path(root), test, progress=progress)
+    path = Path(out) if out is not None else Path(root) / ENGINES / f"{test}{'.flight' if flight else ''}.toml"
+    written = text_of(engine_of_test(context, stand), path.absolute(), flight)
+    write(path, written.text)
+    return path, written.left_out
 
 
 def engine_of_test(context: Context, stand: str | None = None) -> OfTest:

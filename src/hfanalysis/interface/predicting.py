@@ -9,7 +9,7 @@ from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.interface.bringing import bring
 from hfanalysis.interface.of_test import engine_of_test
 from hfanalysis.products.calibration import Calibration
-from hfanalysis.products.disk import atomic, read_json, sha256_file, to_json
+from hfanalysis.products.disk import fsync, make_folder, read_json, sha256_file, temporary_path, to_json
 from hfanalysis.products.flight import Flight
 from hfanalysis.products.prediction import Origin, Prediction, Score
 from hfanalysis.products.segments import Segments
@@ -29,6 +29,9 @@ FOLDER = "predictions"
 ON_THE_DAY = ".day"
 """What the name of a prediction ends in that was made with the temperature of the day."""
 
+THERE = "{path}: is there already; a prediction is never written over: give the test another id"
+"""How another prediction of the same name is refused."""
+
 READ = ("segments.json", "base_calibration.json", "calibration.json", "validation.json", "flight.json")
 """Products of a test that a prediction reads."""
 
@@ -36,36 +39,61 @@ BASE = "base_calibration.json"
 
 
 def predict(
-    plan: Path,
+    plan: str | Path,
     tests: Sequence[str],
-    root: Path,
+    root: str | Path = ".",
     *,
     temperature: str | None = None,
     draws: int = model.DRAWS,
     progress: Progress = silent,
 ) -> tuple[Path, str]:
-    """Freeze what a planned test will measure; returns the file and its SHA-256.
+    """Freeze what a planned test will measure, as ``hfa predict``; returns the file and its SHA-256.
 
-    Raises InputError where there is one of that name already: none is ever written over.
+    Args:
+        plan: a test.toml without its log.
+        tests: fired tests, the last of which is "last time".
+        root: the folder that holds ``raw_tests/``; the prediction goes to ``root/predictions/``.
+        temperature: of the tank on the day, with its unit; the prediction's name then ends in ``.day``.
+        draws: engines drawn.
+        progress: told what is being done.
+
+    Raises:
+        InputError: there is one of that name already, for none is ever written over; or the plan is at fault.
+        AbsentError: a test has no engine that runs.
     """
-    stated = load_planned(plan)
+    stated, root = load_planned(Path(plan)), Path(root)
     path = _path(root, stated.test.id + (ON_THE_DAY if temperature is not None else ""))
     if path.exists():
-        raise InputError(f"{path}: is there already; a prediction is never written over: give the test another id")
+        raise InputError(THERE.format(path=path))
     contexts = [_brought(root, test, progress) for test in tests]
     bases = [_base(context) for context in contexts]
     origins = {context.id: _origin(context, base) for context, base in zip(contexts, bases, strict=True)}
     found = model.predict(stated, bases, origins, temperature, draws)
-    with atomic(path) as scratch:
-        scratch.write_text(to_json(found), encoding="utf-8")
+    _freeze(path, to_json(found))
     return path, sha256_file(path)
 
 
-def score(name: str, root: Path, test: str | None = None, *, progress: Progress = silent) -> Score:
-    """Lay a frozen prediction over its test (default: of the same id).
+def _freeze(path: Path, text: str) -> None:
+    """Write it whole, unless another has been quicker: then InputError, and what is there stays."""
+    make_folder(path.parent)
+    scratch = temporary_path(path)
+    try:
+        scratch.write_text(text, encoding="utf-8")
+        fsync(scratch)
+        path.hardlink_to(scratch)
+    except FileExistsError:
+        raise InputError(THERE.format(path=path)) from None
+    finally:
+        scratch.unlink(missing_ok=True)
 
-    Raises InputError where there is no such prediction, or the test's log is among its inputs.
+
+def score(name: str, root: str | Path = ".", test: str | None = None, *, progress: Progress = silent) -> Score:
+    """Lay a frozen prediction over its ``test`` (default: of the same id), as ``hfa score``.
+
+    Raises InputError where there is no such prediction, or the test's log is among its inputs; AbsentError where
+    nothing can be compared.
     """
+    root = Path(root)
     path = _path(root, name)
     if not path.is_file():
         raise InputError(f"{path}: not found; hfa predict writes it, before the test is fired")

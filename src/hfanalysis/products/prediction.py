@@ -24,7 +24,7 @@ class Scatter(Part):
     """How far tests of one stand differ in a constant."""
 
     std: Annotated[float, Is("relative standard deviation from test to test", "")]
-    drawn: Annotated[float, Is("the same about the tests that the constants are from", "")]
+    drawn: Annotated[float, Is("the same about the mean of the tests that the constants are from", "")]
     freedom: Annotated[int | None, Is("degrees of freedom where it is of the tests; null: a prior", "")]
     source: Annotated[str, Is("where it is from")]
 

@@ -46,11 +46,15 @@ def marked(body: str) -> str:
 
 
 def write(path: Path, text: str) -> None:
-    """Write it whole or not at all. Raises InputError for a file there that no such text is, or that was changed."""
-    if path.exists() and not _own(path):
-        raise InputError(f"{path}: found a file that hfa engine did not write, or that was changed since; move it away")
-    with atomic(path) as scratch:
-        scratch.write_text(text, encoding="utf-8")
+    """Write it whole or not at all. Raises InputError for a file there that no such text is, or that was changed, and
+    where nothing can be written."""
+    try:
+        if path.exists() and not _own(path):
+            raise InputError(f"{path}: found a file that this command did not write, or changed since; move it away")
+        with atomic(path) as scratch:
+            scratch.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror}); expected a file's name") from None
 
 
 def _own(path: Path) -> bool:

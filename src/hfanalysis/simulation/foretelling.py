@@ -38,6 +38,9 @@ PRIOR_SCATTER = 0.067
 than FEWEST tests tell. Source: NFPA 1125 certifies no motor whose total impulse differs by more among its firings; that
 C_i and the rate share it is by choice. No test or replica of this package was used for it."""
 
+RATE = "regression rate"
+"""What scatters beside C_i."""
+
 FEWEST = 3
 """Tests from which on their own scatter is taken. Source: by choice; of two, one number tells the deviation."""
 
@@ -105,8 +108,8 @@ def _content(plan: PlannedTest, base: Base, calibration: Calibration, temperatur
 def scatter_of(bases: Sequence[Base]) -> dict[str, Scatter]:
     """How far tests of the stand differ in C_i and in the regression rate, one relative standard deviation each.
 
-    About tests of which each draw takes one, what the next one differs by has s sqrt(2/k) in addition: the spread of
-    k tests and this together have the s^2 (1 + 1/k) of a further one about their mean.
+    A further test differs from the mean of k tests by s sqrt(1 + 1/k), which is what is drawn; s that is of these tests
+    has Student's distribution with k - 1 degrees of freedom.
     """
     return {name: _scatter(values) for name, values in _logs(bases).items()}
 
@@ -118,7 +121,7 @@ def _scatter(values: list[float]) -> Scatter:
         source = f"a prior: NFPA 1125's limit on the impulse of a motor's firings; {k} of {FEWEST} tests are there"
     else:
         std, freedom, source = float(np.std(values, ddof=1)), k - 1, f"of the {k} tests"
-    return Scatter(std=std, drawn=std * sqrt(2.0 / k), freedom=freedom, source=source)
+    return Scatter(std=std, drawn=std * sqrt(1.0 + 1.0 / k), freedom=freedom, source=source)
 
 
 def _logs(bases: Sequence[Base]) -> dict[str, list[float]]:
@@ -129,7 +132,7 @@ def _logs(bases: Sequence[Base]) -> dict[str, list[float]]:
     flux = sum(known) / len(known) if known else 0.0
     return {
         "C_i": [log(c.C_i.value or 1.0) for c in found],
-        "regression rate": [log(c.a.value or 1.0) + (c.n.value or 0.0) * flux for c in found],
+        RATE: [log(c.a.value or 1.0) + (c.n.value or 0.0) * flux for c in found],
     }
 
 
@@ -165,8 +168,17 @@ class Change:
         )
 
 
-def changes(base: Base, plan: Planned, scatter: Mapping[str, Scatter], count: int, seed: int) -> Iterator[Change]:
-    """``count`` draws over the errors of the test's constants together, the plan's own, effects and scatter."""
+def to_mean(bases: Sequence[Base]) -> list[dict[str, float]]:
+    """ln of what takes each test's C_i and regression rate to the mean of all [-], by name."""
+    logs = _logs(bases)
+    return [{name: float(np.mean(own)) - own[i] for name, own in logs.items()} for i in range(len(bases))]
+
+
+def changes(
+    base: Base, plan: Planned, scatter: Mapping[str, Scatter], count: int, seed: int, shift: Mapping[str, float]
+) -> Iterator[Change]:
+    """``count`` draws over the errors of the test's constants together, the plan's own, effects and scatter; ``shift``:
+    as :func:`to_mean` has it of this test."""
     rng = np.random.default_rng(seed)
     joint, engine, file = base.found.joint, base.found.full.engine, plan.file
     correlation = np.array(joint.correlation).reshape(len(joint.names), -1)
@@ -176,8 +188,8 @@ def changes(base: Base, plan: Planned, scatter: Mapping[str, Scatter], count: in
         ln_a = off.get("ln_a", off.get("a", 0.0) / engine.a)
         own_throat = _relative(file.nozzle.throat_radius) * rng.standard_normal()
         yield Change(
-            area=exp(off.get("flow_area", 0.0) / engine.feed.area + _between(scatter["C_i"], rng)),
-            a=exp(ln_a + _between(scatter["regression rate"], rng)),
+            area=exp(off.get("flow_area", 0.0) / engine.feed.area + shift["C_i"] + _between(scatter["C_i"], rng)),
+            a=exp(ln_a + shift[RATE] + _between(scatter[RATE], rng)),
             throat=exp(2.0 * own_throat or off.get("throat_area", 0.0) / engine.throat_area),
             fuel=exp(_relative(file.grain.mass) * rng.standard_normal()),
             loss=off.get("K_loss", 0.0),

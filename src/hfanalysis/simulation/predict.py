@@ -17,15 +17,15 @@ from hfanalysis.products.prediction import Foretold, Origin, Prediction, Score, 
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.planned import PlannedTest
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.simulation.foretelling import QUANTITIES, Base, Planned, changes, outcomes, planned, scatter_of
+from hfanalysis.simulation.foretelling import QUANTITIES, Base, Planned, changes, outcomes, planned, scatter_of, to_mean
 from hfanalysis.version import __version__
 
 BAND = 0.90
 """Share of the draws within a band [-]. Source: by choice, as is usual of forecasts."""
 
 DRAWS = 400
-"""Engines drawn. Evidence: docs/predict.md: with another seed the ends of HF5's bands from HF4 move by less than a tenth
-of their width."""
+"""Engines drawn. Evidence: docs/predict.md: with another seed the ends of HF5's bands from HF4 move by less than a
+tenth of their width."""
 
 ENOUGH = 0.9
 """Share of the draws that have to have a quantity for a band of it [-]. Source: by choice, as the band's."""
@@ -44,8 +44,9 @@ def predict(
 ) -> Prediction:
     """Bands of what ``plan`` will measure.
 
-    Every draw takes one of the tests in turn: its constants off by what is known of their errors together, the plan's
-    load and temperature off by their own, and by how far tests of one stand differ. Then comes how far the model was
+    Every draw takes one of the tests in turn: its constants off by what is known of their errors together, C_i and the
+    regression rate moved to the mean of the tests and off by how far tests of one stand differ, the plan's load and
+    temperature off by their own. Then comes how far the model was
     off in those tests. Raises InputError where the plan or the tests do not fit.
     """
     _check(plan, bases, origins)
@@ -91,9 +92,9 @@ def _check(plan: PlannedTest, bases: Sequence[Base], origins: Mapping[str, Origi
 def _drawn(plan: PlannedTest, bases: Sequence[Base], plans: Sequence[Planned], draws: int, seed: int) -> Array:
     """Outcomes of all draws, (draws, quantities); each test has its share of them."""
     scatter, stands, flying = scatter_of(bases), list[Engine](), list[Engine]()
-    for i, (base, own) in enumerate(zip(bases, plans, strict=True)):
+    for i, (base, own, shift) in enumerate(zip(bases, plans, to_mean(bases), strict=True)):
         count = len(range(i, draws, len(bases)))
-        for change in changes(base, own, scatter, count, seed + i):
+        for change in changes(base, own, scatter, count, seed + i, shift):
             stands.append(change.of(own.stand))
             flying += [change.of(own.flying)] if own.flying is not None else []
     return outcomes(stands, flying, _rail(plan))
