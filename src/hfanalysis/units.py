@@ -224,6 +224,25 @@ def parse(text: str | float | int, dimension: str, where: str) -> Value:
     return Value(value, _spread(spread, spread_unit or unit, value, dimension, where))
 
 
+def parse_as(text: str | float | int, unit: str, where: str) -> float:
+    """A value [``unit``, one of SI as products have it] from a text with any unit of that kind.
+
+    Raises :class:`InputError` as :func:`parse`.
+
+    >>> parse_as("40 bar", "Pa", "limit"), parse_as("9 kN s", "N s", "limit")
+    (4000000.0, 9000.0)
+    """
+    dimension = next((name for name, d in DIMENSIONS.items() if unit in (d.si, d.si if d.si != "1" else "")), None)
+    if dimension is not None:
+        return parse(text, dimension, where).value
+    found = re.match(rf"^\s*({_NUMBER})\s*(\S.*)$", text) if isinstance(text, str) else None
+    given = _pint_unit(found[2]) if found else None
+    wanted = _pint_unit(unit)
+    if found is None or given is None or wanted is None or given.dimensionality != wanted.dimensionality:
+        raise InputError(f"{where}: found {text!r}; expected a number with a unit such as '1 {unit}'")
+    return float(_registry().Quantity(float(found[1]), given).to(wanted).magnitude)
+
+
 def _split(text: str, dimension: str, where: str) -> tuple[float, str, float | None, str]:
     """Number, unit, spread and the spread's own unit ("" where it has none)."""
     found = _SPREAD.match(_BRACKETED.sub(r"\1", text))

@@ -203,7 +203,7 @@ def test_simulate_writes_histories_and_plots(run: Run, tmp_path: Path) -> None:
 def test_design_writes_the_study_and_an_engine_file(run: Run, tmp_path: Path) -> None:
     out = run("design", MAELSTROM, "--json", "--out", tmp_path)[1]
     assert (tmp_path / "design.json").read_text() == out
-    assert len(list(tmp_path.glob("*.svg"))) == 4
+    assert len(list(tmp_path.glob("*.svg"))) == 5
     for plot in tmp_path.glob("*.svg"):
         assert ET.parse(plot).getroot().tag.endswith("svg")
     for name, rows in (("study_flow_length.csv", 39), ("study_mixture.csv", 324)):
@@ -231,7 +231,7 @@ def test_products_are_the_same_from_run_to_run(run: Run, tmp_path: Path) -> None
         for name in ("one", "two"):
             run(command, MAELSTROM, "-q", "--out", tmp_path / name / command)
     files = [path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*.*")]
-    assert len(files) == 12
+    assert len(files) == 13
     assert all((tmp_path / "one" / f).read_bytes() == (tmp_path / "two" / f).read_bytes() for f in files)
 
 

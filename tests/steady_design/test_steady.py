@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
 from hfanalysis.engine.grain import Grain
-from hfanalysis.flight.constant_thrust import Vehicle, apogee
+from hfanalysis.flight.constant_thrust import Vehicle, apogee, rail_speed
 from hfanalysis.steady_design.steady import Requirement, SteadyEngine, design, fuel_for_apogee, ideal_specific_impulse
 
 ROCKET = Vehicle(52.5, 0.529, 19478e-6, radians(6.0), 1402.0)
@@ -143,3 +143,11 @@ def test_the_throat_passes_the_flow(engine: SteadyEngine) -> None:
     velocity = 27.579e5 * pi * engine.throat_radius**2 / engine.propellant_flow
     assert velocity == pytest.approx(27.579e5 * pi * 0.02329**2 / (7.524 / 2.441), rel=0.002)
     assert sqrt(2.0) * 1000.0 < velocity < 1700.0
+
+
+def test_the_speed_at_the_rails_end_is_that_of_a_constant_acceleration(engine: SteadyEngine) -> None:
+    """v^2 = 2 (F/m - g cos 6 deg) L, but for the propellant that is gone by then (1 kg of 60) and the drag (5 N)."""
+    mass = ROCKET.dry_mass + engine.oxidizer_mass + engine.fuel_mass
+    expected = sqrt(2.0 * (engine.thrust / mass - 9.80 * 0.9945) * 6.05)
+    found = rail_speed(ROCKET, engine.thrust, engine.propellant_flow, engine.burn_time, 6.05)
+    assert found == pytest.approx(expected, rel=0.01)

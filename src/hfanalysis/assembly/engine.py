@@ -3,35 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import isfinite, pi
+from math import pi
 
 from hfanalysis.assembly import rocket
 from hfanalysis.assembly.burnt_gas import combustion_of
+from hfanalysis.assembly.tank import TankBuilt, properties, temperature
+from hfanalysis.assembly.tank import tank as tank
 from hfanalysis.engine import unsteady
 from hfanalysis.engine.feed_line import FeedSystem
 from hfanalysis.engine.grain import Grain
-from hfanalysis.engine.tank import split
 from hfanalysis.errors import InputError
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.parachute import Parachute
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.steady_design import sizing, steady
+from hfanalysis.steady_design import injector, steady
 from hfanalysis.thermo import atmosphere, combustion
-from hfanalysis.thermo.nitrous import saturation
-from hfanalysis.thermo.saturation import Property, Saturation
+from hfanalysis.thermo.saturation import Property
 from hfanalysis.units import Value
 
 _STANDARD = 101_325.0
 """Ambient pressure [Pa] where none is stated. Source: standard atmosphere."""
-
-
-@dataclass(frozen=True)
-class TankBuilt:
-    """A tank's volume [m^3], and its lengths [m] where the file says enough (``reason``: what is lacking)."""
-
-    volume: float
-    size: sizing.TankSize | None
-    reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -40,23 +31,6 @@ class OxidizerEnthalpy:
 
     value: float
     of: str
-
-
-def properties(file: EngineFile) -> Saturation:
-    """The saturation properties that the file asks for."""
-    return saturation(file.model.properties)
-
-
-def temperature(needs: Needs) -> float:
-    """The tank's initial temperature [K]; InputError where the liquid has no saturated state there."""
-    found = needs.value(needs.file.tank.temperature, "tank", "temperature").value
-    source = properties(needs.file)
-    if not isfinite(float(source.pressure(found))):
-        raise InputError(
-            f"{needs.file.where('tank', 'temperature')}: found {found:.2f} K; expected {source.t_min:.1f} to "
-            f"{source.t_max:.1f} K, where {source.source} knows saturated nitrous oxide"
-        )
-    return found
 
 
 def oxidizer_enthalpy(needs: Needs) -> OxidizerEnthalpy:
@@ -86,74 +60,26 @@ def site_altitude(file: EngineFile) -> float:
     return atmosphere.altitude_of(pressure.value if pressure else _STANDARD)
 
 
-def tank(needs: Needs) -> TankBuilt:
-    """The tank [m^3] from its volume, length or ullage, holding the file's oxidizer [kg] as saturated liquid and vapor.
-
-    Raises InputError where it does not hold that much, or where the file does not say enough.
-    """
-    t, source, stated = temperature(needs), properties(needs.file), needs.file.tank
-    mass = needs.value(stated.oxidizer_mass, "tank", "oxidizer_mass").value
-    try:
-        built = _volume(needs, source, mass, t) if stated.volume is not None else _sized(needs, source, mass, t)
-    except ValueError as error:
-        raise InputError(f"{needs.file.where('tank')}: {error}") from None
-    held = split(source, built.volume, mass, t)
-    if held.liquid <= 0.0 or held.vapor < 0.0:
-        least, most = (built.volume * float(d(t)) for d in (source.vapor_density, source.liquid_density))
-        raise InputError(
-            f"{needs.file.where('tank', 'oxidizer_mass')}: found {mass:.4g} kg; expected {least:.4g} to {most:.4g} kg, "
-            f"what {built.volume * 1e3:.4g} L hold as liquid and vapor at {t:.2f} K"
-        )
-    return built
-
-
-def _volume(needs: Needs, source: Saturation, mass: float, t: float) -> TankBuilt:
-    stated = needs.file.tank
-    volume = needs.value(stated.volume, "tank", "volume").value
-    if stated.inner_diameter is None or stated.dip_tube is None:
-        return TankBuilt(volume, None, "tank.inner_diameter and tank.dip_tube are not both given")
-    v_l, v_v = float(source.liquid_volume(t)[0]), float(source.vapor_volume(t)[0])
-    liquid = (mass * v_v - volume) / (v_v - v_l) * v_l
-    if not 0.0 < liquid < volume:
-        return TankBuilt(volume, None, "the tank is not saturated")
-    return TankBuilt(volume, _for_ullage(needs, source, mass, t, volume / liquid - 1.0))
-
-
-def _sized(needs: Needs, source: Saturation, mass: float, t: float) -> TankBuilt:
-    stated = needs.file.tank
-    if stated.length is None:
-        ullage = needs.value(stated.ullage, "tank", "volume (or length, or ullage)").value
-        size = _for_ullage(needs, source, mass, t, ullage)
-        return TankBuilt(size.volume, size)
-    diameter = needs.value(stated.inner_diameter, "tank", "inner_diameter").value
-    size = sizing.size_for_length(source, mass, t, diameter, _dip_tube(needs), stated.length.value)
-    return TankBuilt(size.volume, size)
-
-
-def _for_ullage(needs: Needs, source: Saturation, mass: float, t: float, ullage: float) -> sizing.TankSize:
-    diameter = needs.value(needs.file.tank.inner_diameter, "tank", "inner_diameter").value
-    return sizing.size_for_ullage(source, mass, t, diameter, _dip_tube(needs), ullage)
-
-
-def _dip_tube(needs: Needs) -> sizing.DipTube:
-    tube = needs.value(needs.file.tank.dip_tube, "tank", "dip_tube")
-    if needs.file.tank.inner_diameter is not None and tube.outer_diameter.value >= needs.file.tank.inner_diameter.value:
-        raise InputError(f"{needs.file.where('tank', 'dip_tube')}: it is wider than the tank")
-    return sizing.DipTube(tube.outer_diameter.value, tube.inner_diameter.value)
-
-
 def feed(needs: Needs, volume: float) -> FeedSystem:
     """Feed line and injector on a tank of that ``volume`` [m^3]. Raises InputError where the file does not say
     enough."""
-    injector, line = needs.file.injector, needs.file.feed
-    key = "hole_area (or hole_diameter)" if injector.holes is not None else "holes"
-    area = needs.value(injector.area, "injector", key).value * needs.value(injector.C_i, "injector", "C_i").value
+    stated, line = needs.file.injector, needs.file.feed
+    key = "hole_area (or hole_diameter)" if stated.holes is not None else "holes"
+    area = needs.value(stated.area, "injector", key).value * needs.value(stated.C_i, "injector", "C_i").value
     if not area > 0.0:
         raise InputError(f"{needs.file.where('injector', 'C_i')}: found 0; expected a number that is more than zero")
     if line.K_loss is not None:
         return FeedSystem(volume, area, loss_factor=line.K_loss.value)
     loss = needs.value(line.p_loss, "feed", "p_loss (or K_loss)").value
     return FeedSystem(volume, area, constant_losses=(loss, loss))
+
+
+def line_loss(file: EngineFile) -> injector.Line:
+    """What the feed line of the file loses; nothing where it does not say."""
+    stated = file.feed
+    if stated.K_loss is not None:
+        return injector.Line(factor=stated.K_loss.value)
+    return injector.Line(stated.p_loss.value if stated.p_loss else 0.0)
 
 
 def vehicle(file: EngineFile) -> Vehicle | str:

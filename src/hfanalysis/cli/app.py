@@ -184,7 +184,12 @@ Quick = Annotated[
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Print what every stage found, and every warning.")]
 
 
-def _run(request: Request, quick: Quick = False, verbose: Verbose = False) -> None:
+Check = Annotated[bool, typer.Option("--check", help="End with status 4 where a rule of limits.toml is broken.")]
+
+
+def _run(request: Request, quick: Quick = False, verbose: Verbose = False, check: Check = False) -> None:
+    if quick and check:
+        raise InputError("found --quick and --check together; expected one of the two: the rules are of the whole run")
     if quick:
         from hfanalysis.cli import quick as at_stand
 
@@ -192,7 +197,11 @@ def _run(request: Request, quick: Quick = False, verbose: Verbose = False) -> No
     else:
         from hfanalysis.cli import perform
 
-        perform.stage(RUN, replace(request, verbose=verbose))
+        context = perform.stage(RUN, replace(request, verbose=verbose))
+        if check:
+            from hfanalysis.cli import limits
+
+            limits.check(context)
 
 
 _WITH_OPTIONS: dict[str, Callable[..., None]] = {
@@ -276,13 +285,32 @@ def _simulate(
         engines.simulate(engine, out, as_json, quiet, until)
 
 
+HandOver = Annotated[
+    Path | None,
+    typer.Option("--hand-over", metavar="OUT.toml", help="Also write the solved engine, for hfa simulate; a new file."),
+]
+Flows = Annotated[list[str] | None, typer.Option("--flow", metavar='"2.5 kg/s"', help="Of the study; several.")]
+Lengths = Annotated[list[str] | None, typer.Option("--length", metavar='"610 mm"', help="Of the study; several.")]
+Pressures = Annotated[list[str] | None, typer.Option("--pressure", metavar='"400 psi"', help="Of the study; several.")]
+
+
 @app.command("design")
-def _design(engine: EngineToml, as_json: EngineJson = False, out: Folder = None, quiet: Quiet = False) -> None:
+def _design(
+    engine: EngineToml,
+    as_json: EngineJson = False,
+    out: Folder = None,
+    hand_over: HandOver = None,
+    flow: Flows = None,
+    length: Lengths = None,
+    pressure: Pressures = None,
+    quiet: Quiet = False,
+) -> None:
     """Steady-state design of an engine; with --out also the parametric study and a .eng file."""
     with plain_exit():
         from hfanalysis.cli import engines
 
-        engines.design(engine, out, as_json, quiet)
+        study = {"flow": flow or [], "length": length or [], "pressure": pressure or []}
+        engines.design(engine, out, as_json, quiet, study, hand_over)
 
 
 @app.command("engine")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,9 @@ from hfanalysis.record.engine_file import load_engine
 
 if TYPE_CHECKING:
     from hfanalysis.products.engines import Designed, Simulated
+
+NOTHING: Mapping[str, Sequence[str]] = {}
+"""Of a study, where nobody says what it is to go through."""
 
 
 def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: float | None = None) -> None:
@@ -33,16 +36,27 @@ def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: fl
     _show(found.product, as_json, quiet)
 
 
-def design(path: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
-    """The steady design of the engine file at ``path``; with its parametric study to ``out`` where that is given."""
+def design(path: Path, out: Path | None, as_json: bool, quiet: bool, given: Mapping[str, Sequence[str]] = NOTHING,
+           engine: Path | None = None) -> None:  # fmt: skip
+    """The steady design of the engine file at ``path``; with its parametric study to ``out`` where that is given.
+
+    ``given``: flows, lengths and pressures of the study, with their units; ``engine``: the engine file to write.
+    """
     file = load_engine(path)
     with watch(file.engine.id, quiet):
-        from hfanalysis.simulation import steady_run, write
+        from hfanalysis.simulation import hand_over, steady_run, study, write
 
+        ranges = study.ranges_of(given)
+        if out is None and ranges != study.USUAL:
+            raise InputError("--flow, --length, --pressure: are of the study that --out writes; expected --out, too")
+        if engine is not None:
+            hand_over.refuse_taken(engine)
         found = steady_run.design(file)
+        if engine is not None:
+            hand_over.write(engine, file, found)
         if out is not None:
             with _writing(out):
-                write.design(out, file, found)
+                write.design(out, file, found, ranges)
     _show(found.product, as_json, quiet)
 
 
@@ -61,5 +75,6 @@ def _show(product: Simulated | Designed, as_json: bool, quiet: bool) -> None:
         from hfanalysis.cli import tables
 
         tables.show_engine(product)
-    for warning in product.warnings:
+    beyond = () if as_json else (found.text for found in product.beyond)  # JSON has them
+    for warning in (*beyond, *product.warnings):
         tell(f"warning: {warning}")

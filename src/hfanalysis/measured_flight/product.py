@@ -11,6 +11,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly.rocket import drag_from
+from hfanalysis.engine.cautions import LEAST_RAIL_SPEED
 from hfanalysis.errors import AbsentError
 from hfanalysis.flight import summary
 from hfanalysis.flight.ascent import LIFT_OFF, THRUST_BIAS, THRUST_DRIFT, THRUST_SCALE, TRACE, Ascent, ascend
@@ -37,10 +38,6 @@ from hfanalysis.record.rocket import Rocket
 from hfanalysis.rocket.vehicle import gravity
 
 Progress = Callable[[str, float | None], None]
-
-LEAST_RAIL_DEPARTURE = 30.48
-"""Least speed at the rail's end [m/s]. Source: 100 ft/s, which competitions recommend at least (report, section
-3.2.4)."""
 
 ABOUT: dict[str, netcdf.About] = {
     "time": ("s", "time after ignition"),
@@ -217,9 +214,9 @@ def rail_check(speed: Quantity) -> products.Check:
     result, why = "unknown", str(speed.reason)
     if speed.value is not None:
         low, high = speed.interval or (speed.value, speed.value)
-        result = "passed" if low >= LEAST_RAIL_DEPARTURE else "failed" if high < LEAST_RAIL_DEPARTURE else "unknown"
+        result = "passed" if low >= LEAST_RAIL_SPEED else "failed" if high < LEAST_RAIL_SPEED else "unknown"
         why = f"{speed.value:.1f} m/s, 95 % from {low:.1f} to {high:.1f}"
-    return products.Check(limit=LEAST_RAIL_DEPARTURE, unit="m/s", side="at least", result=result, why=why)
+    return products.Check(limit=LEAST_RAIL_SPEED, unit="m/s", side="at least", result=result, why=why)
 
 
 def write_histories(

@@ -21,10 +21,12 @@ from hfanalysis.performance.specific_impulse import expended, impulses, liquid_i
 from hfanalysis.performance.standard import standard
 from hfanalysis.performance.tap import narrow, tap_of
 from hfanalysis.performance.thrust import thrust_of
+from hfanalysis.performance.warned import of_injector, of_nozzle
+from hfanalysis.products.beyond import Beyond
 from hfanalysis.products.budget import Budget
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
-from hfanalysis.products.validation import Balance, Beyond, Efficiencies, Finding, Standard
+from hfanalysis.products.validation import Balance, Efficiencies, Finding, Standard
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
@@ -119,7 +121,11 @@ def _of_chamber(
     """What needs the chamber's pressure."""
     judged = means(ratios, found, part, spread)
     closed = balance(test.flows, test.measured, test.engine, test.ambient, test.fire, test.purge, found, of_masses)
-    beyond = list(narrow(tap_of(test.definition), test.engine, found.before, found.burning))
+    beyond = [
+        *narrow(tap_of(test.definition), test.engine, found.before, found.burning),
+        *of_injector(test.log, test.segments, test.flows.time, found.pressure, part),
+        *of_nozzle(test.engine, test.flows, found, test.ambient, part),
+    ]
     return {
         "balance": closed,
         "efficiencies": judged,

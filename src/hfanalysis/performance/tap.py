@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from hfanalysis.arrays import Array
 from hfanalysis.engine.port import heads_over_nozzle, stagnation_over_static
 from hfanalysis.engine.unsteady import Engine
-from hfanalysis.products.validation import Beyond
+from hfanalysis.products.beyond import Beyond
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.sentences import text

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
+from hfanalysis.products.beyond import Beyond
 from hfanalysis.products.flight import FlightNumbers
 from hfanalysis.products.model import Is, Part, Warnings
 from hfanalysis.quantity import Quantity
@@ -69,6 +70,7 @@ class Simulated(EngineHead):
     tank_volume: Annotated[Quantity, Is("of the tank", "m^3")]
     flight: Annotated[SimulatedFlight, Is("of its rocket")]
     propellant_for_target_apogee: Annotated[Load | None, Is("load for [design] target_apogee")] = None
+    beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
     warnings: Warnings
     provenance: Annotated[dict[str, Any], Is("version, and files by SHA-256")]
 
@@ -96,9 +98,18 @@ class Designed(EngineHead):
     exit_radius: Annotated[Quantity, Is("of the nozzle", "m")]
     total_impulse: Annotated[Quantity, Is("thrust times burn time", "N s")]
     specific_impulse: Annotated[Quantity, Is("total impulse over the weight of the propellant", "s")]
+    port_radius: Annotated[Quantity, Is("of the grain, before it burns", "m")]
+    grain_length: Annotated[Quantity, Is("of the grain", "m")]
+    injector_area: Annotated[Quantity, Is("C_i N_i A_i that lets the oxidizer through", "m^2")]
+    injector_holes: Annotated[Quantity, Is("of the stated area, or as many as stated", "")]
+    injector_hole_area: Annotated[Quantity, Is("of one hole", "m^2")]
+    tank_length: Annotated[Quantity, Is("of the tank, for the load", "m")]
+    dip_tube_length: Annotated[Quantity, Is("of its dip tube", "m")]
+    tank_volume: Annotated[Quantity, Is("of the tank, for the load", "m^3")]
     wet_mass: Annotated[Quantity, Is("of the rocket on its pad", "kg")]
     pad_thrust_to_weight: Annotated[Quantity, Is("peak thrust over wet weight", "")]
     apogee: Annotated[Quantity, Is("of its rocket, above ground", "m")]
     optimum: Annotated[Optimum, Is("the best mixture")]
+    beyond: Annotated[tuple[Beyond, ...], Is("warnings with value, limit and source")] = ()
     warnings: Warnings
     provenance: Annotated[dict[str, Any], Is("version, and files by SHA-256")]

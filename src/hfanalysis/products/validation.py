@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
+from hfanalysis.products.beyond import Beyond
 from hfanalysis.products.budget import MADE_OF, Budget
 from hfanalysis.products.model import Adopted, Is, Notes, Part, Product, Warnings, Words
 from hfanalysis.products.reconstruction import Reconstruction
@@ -110,16 +111,6 @@ class Standard(Part):
     sea_level_thrust_coefficient: Annotated[Quantity, Is("the same at 101325 Pa", "")]
     characteristic_length: Annotated[Quantity, Is("L*: chamber over throat, at ignition", "m")]
     characteristic_length_end: Annotated[Quantity, Is("L* when the burn ends", "m")]
-
-
-class Beyond(Part):
-    """A value that is beyond what the model or the usual practice stands for."""
-
-    name: Annotated[str, Is("of the value")]
-    value: Annotated[Quantity, Is("as it is")]
-    limit: Annotated[float, Is("beyond which it is warned of", "of the value")]
-    source: Annotated[str, Is("of the limit")]
-    text: Annotated[Words, Is("the warning")]
 
 
 class Closure(Part):

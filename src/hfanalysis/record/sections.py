@@ -128,9 +128,14 @@ class Injector(Section):
         self._not_both("hole_area", "hole_diameter")
 
     @property
+    def hole(self) -> Value | None:
+        """Area of one hole [m^2]; None where it is not known."""
+        return _circle(self.hole_diameter) if self.hole_diameter else self.hole_area
+
+    @property
     def area(self) -> Value | None:
         """Area of all holes together [m^2]; None where it is not known."""
-        one = _circle(self.hole_diameter) if self.hole_diameter else self.hole_area
+        one = self.hole
         if self.holes is None or one is None:
             return None
         return Value(self.holes * one.value, None if one.std is None else self.holes * one.std)

@@ -14,7 +14,7 @@ _HEAD = 64_000
 """Characters from the start of a page within which its summary ends [characters]."""
 
 _EMPTY: dict[str, Any] = {"kind": "", "date": "", "source": "measured", "sentence": "", "numbers": [], "spark": {},
-                          "compared": []}  # fmt: skip
+                          "compared": [], "limits": [], "kept": 0}  # fmt: skip
 
 
 def write_index(folder: Path) -> Path:

@@ -23,6 +23,7 @@ from hfanalysis.products.model import AdoptedEffect, Product
 from hfanalysis.products.segments import EVENTS, Segments
 from hfanalysis.products.validation import Validation
 from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.limits import Rule
 from hfanalysis.record.log import TestLog
 from hfanalysis.report.names import called
 from hfanalysis.wording.numbers import EVENT_LABELS, adopted_in_words
@@ -56,11 +57,21 @@ class Last:
 
 
 @dataclass(frozen=True)
+class Notes:
+    """What the team wrote that day, in Markdown, and its photos: their names and their JPEG, small and without what a
+    camera writes beside a picture."""
+
+    text: str = ""
+    photos: tuple[tuple[str, bytes], ...] = ()
+
+
+@dataclass(frozen=True)
 class Material:
     """All that the page shows.
 
     ``products``: the JSON products by the name of their file without its ending (``"calibration"``); ``stores``: the
-    HDF5 products likewise; ``absent``: by the same names, why one is not there.
+    HDF5 products likewise; ``absent``: by the same names, why one is not there; ``rules``: the team's own limits;
+    ``notes``: what the team wrote and photographed that day.
     """
 
     definition: TestDefinition
@@ -69,6 +80,8 @@ class Material:
     stores: Mapping[str, Store] = field(default_factory=dict)
     absent: Mapping[str, str] = field(default_factory=dict)
     last: Last | None = None
+    rules: tuple[Rule, ...] = ()
+    notes: Notes = Notes()
 
     def get(self, kind: type[P]) -> P | None:
         """A JSON product; None where there is none."""

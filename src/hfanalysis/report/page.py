@@ -17,6 +17,7 @@ from hfanalysis.charts.style import sheet
 from hfanalysis.products.segments import Segments
 from hfanalysis.report.figure import figure
 from hfanalysis.report.glance import four, key_numbers
+from hfanalysis.report.limits import KEPT, judged
 from hfanalysis.report.material import Material
 from hfanalysis.report.payload import as_json, payload
 from hfanalysis.report.sections import Laid, lay_out
@@ -81,7 +82,7 @@ def absences(laid: Sequence[Laid]) -> list[tuple[str, str]]:
     """What is not on the page and why: sections that lack the same thing together."""
     by_reason: dict[str, list[str]] = {}
     for section in laid:
-        if not section.blocks:
+        if not section.blocks and section.absent:
             by_reason.setdefault(section.absent, []).append(section.title)
     return [(listed(titles), reason) for reason, titles in by_reason.items()]
 
@@ -104,6 +105,8 @@ def summary(material: Material) -> dict[str, Any]:
         "source": test.source,
         "sentence": " ".join(told.words for told in four(material)[:3]),
         "numbers": [[in_words(name), *_in_both(name, quantity)] for name, quantity in numbers.items()],
+        "limits": [[one.state, one.name] for one in judged(material) if one.state != KEPT],
+        "kept": sum(one.state == KEPT for one in judged(material)),
         "spark": spark(material),
     }
 

@@ -53,6 +53,11 @@ def study(flows: Sequence[FlowPoint], mixtures: Sequence[MixturePoint]) -> Itera
         curves = _by_length(flows, key, factor, fixed and key != "exit_radius")
         title = f"{key.replace('_', ' ').capitalize()} against oxidizer flow and grain length"
         yield f"{key}_flow_length.svg", chart(title, "oxidizer flow [kg/s]", label, curves, with_zero=False)
+    if fixed:
+        ideal = _by_length(flows, "specific_impulse", 1.0, False)
+        title = "Specific impulse expanded to ambient, against oxidizer flow and grain length"
+        labels = "oxidizer flow [kg/s]", "specific impulse [s]"
+        yield "specific_impulse_ideal_flow_length.svg", chart(title, *labels, ideal, with_zero=False)
     title = "Specific impulse expanded to ambient, against O/F and chamber pressure"
     curves = list(_by_pressure(mixtures))
     yield "specific_impulse_mixture.svg", chart(title, "O/F", "specific impulse [s]", curves, with_zero=False)

@@ -12,7 +12,7 @@ from hfanalysis.products.engines import Designed, Optimum
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import Vehicle
-from hfanalysis.simulation import heading
+from hfanalysis.simulation import heading, sized, warned
 from hfanalysis.steady_design import steady
 from hfanalysis.steady_design.steady import Requirement, SteadyEngine
 from hfanalysis.thermo.combustion import restart
@@ -65,6 +65,8 @@ def design(file: EngineFile) -> DesignRun:
     try:
         engine = solve(task)
         best = steady.optimum(task.requirement)
+        port = task.grain.port_radius(engine.fuel_mass)
+        heard = warned.of_design(needs, task.requirement, port, engine, best)
     except (ValueError, ArithmeticError) as error:
         raise InputError(f"{file.where('design')}: {error}") from None
     product = Designed.from_json(
@@ -72,8 +74,13 @@ def design(file: EngineFile) -> DesignRun:
             **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
             "fuel_mass_from": "grain.mass" if task.target is None else "design.target_apogee",
             **{name: Quantity(float(getattr(engine, name)), unit) for name, unit in UNITS.items()},
+            "port_radius": Quantity(port, "m"),
+            "grain_length": Quantity(task.grain.length, "m"),
+            **sized.injector(needs, task.requirement),
+            **sized.tank(needs, engine.oxidizer_mass),
             **_flown(file, task, engine),
             "optimum": Optimum(of_ratio=Quantity(best.of_ratio), specific_impulse=Quantity(best.specific_impulse, "s")),
+            "beyond": heard,
             "warnings": file.warnings,
             "provenance": heading.provenance(file),
         }

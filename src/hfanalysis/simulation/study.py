@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hfanalysis.errors import InputError
 from hfanalysis.simulation.steady_run import Task, solve
 from hfanalysis.steady_design.steady import Requirement, SteadyEngine, ideal_specific_impulse
 from hfanalysis.thermo.combustion import PROPEP_OXIDIZER_ENTHALPY
+from hfanalysis.units import parse
 
 FLOWS = np.linspace(0.4, 1.6, 13)
 """Oxidizer flows, over the design's [-]."""
@@ -46,13 +48,54 @@ class MixturePoint:
     specific_impulse_propep: float
 
 
-def over_flow_and_length(task: Task) -> list[FlowPoint]:
+@dataclass(frozen=True)
+class Ranges:
+    """What a study goes through: oxidizer ``flows`` [kg/s], grain ``lengths`` [m], chamber ``pressures`` [Pa].
+
+    Where one has none, it is FLOWS, LENGTHS or PRESSURES times the design's.
+    """
+
+    flows: tuple[float, ...] = ()
+    lengths: tuple[float, ...] = ()
+    pressures: tuple[float, ...] = ()
+
+    def flows_of(self, task: Task) -> tuple[float, ...]:
+        """Oxidizer flows [kg/s]."""
+        return self.flows or tuple(task.requirement.oxidizer_flow * float(flow) for flow in FLOWS)
+
+    def lengths_of(self, task: Task) -> tuple[float, ...]:
+        """Grain lengths [m]."""
+        return self.lengths or tuple(task.grain.length * length for length in LENGTHS)
+
+    def pressures_of(self, requirement: Requirement) -> tuple[float, ...]:
+        """Chamber pressures [Pa]."""
+        return self.pressures or tuple(requirement.chamber_pressure * factor for factor in PRESSURES)
+
+
+USUAL = Ranges()
+"""Those of the report's study, about the design. Source: by definition."""
+
+_DIMENSIONS = {"flow": "mass_flow", "length": "length", "pressure": "pressure"}
+
+
+def ranges_of(given: Mapping[str, Sequence[str]]) -> Ranges:
+    """The ranges by "flow", "length" and "pressure", each a list of values with their units.
+
+    Raises InputError for a value without its unit, or one that is not more than zero.
+    """
+    return Ranges(*(_values(name, given.get(name, ())) for name in _DIMENSIONS))
+
+
+def _values(name: str, texts: Sequence[str]) -> tuple[float, ...]:
+    found = tuple(sorted({parse(text, _DIMENSIONS[name], f"--{name}").value for text in texts}))
+    if found and found[0] <= 0.0:
+        raise InputError(f"--{name}: found {found[0]:g}; expected more than zero")
+    return found
+
+
+def over_flow_and_length(task: Task, ranges: Ranges = USUAL) -> list[FlowPoint]:
     """Engines over oxidizer flow and grain length, each with the fuel for the target apogee (or the fuel stated)."""
-    return [
-        _flow_point(task, task.grain.length * length, task.requirement.oxidizer_flow * float(flow))
-        for length in LENGTHS
-        for flow in FLOWS
-    ]
+    return [_flow_point(task, length, flow) for length in ranges.lengths_of(task) for flow in ranges.flows_of(task)]
 
 
 def _flow_point(task: Task, length: float, flow: float) -> FlowPoint:
@@ -76,10 +119,9 @@ def _solved(task: Task) -> tuple[SteadyEngine | None, str]:
         return None, str(error)
 
 
-def over_mixture(requirement: Requirement) -> Iterator[MixturePoint]:
+def over_mixture(requirement: Requirement, ranges: Ranges = USUAL) -> Iterator[MixturePoint]:
     """Ideal specific impulse over O/F and chamber pressure, with the design's oxidizer enthalpy and with PROPEP's."""
-    for factor in PRESSURES:
-        pressure = requirement.chamber_pressure * factor
+    for pressure in ranges.pressures_of(requirement):
         if pressure <= requirement.ambient:
             continue
         here = replace(requirement, chamber_pressure=pressure)

@@ -17,7 +17,7 @@ from hfanalysis.products.engines import Simulated
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
 from hfanalysis.rocket.vehicle import STANDARD_GRAVITY, Vehicle, gravity
-from hfanalysis.simulation import flown, heading, propellant
+from hfanalysis.simulation import flown, heading, propellant, sized, warned
 
 COMMAND = "hfa simulate"
 
@@ -45,14 +45,16 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
     engine = replace(build.engine(needs, tank), effects=_effects(file))
     burnt = run(file, engine, until)
     hot = burnt.chamber_temperature()
+    flight = _flight(file, engine, burnt)
     product = Simulated.from_json(
         {
             **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
             **_engine(engine, burnt, hot),
             **_loaded(file, engine, burnt),
-            **_tank(tank),
-            "flight": _flight(file, engine, burnt),
+            **sized.of_tank(tank),
+            "flight": flight,
             **_propellant(needs, engine),
+            "beyond": warned.of_burn(engine, burnt, flight),
             "warnings": [*file.warnings, *_warnings(burnt)],
             "provenance": heading.provenance(file),
         }
@@ -126,15 +128,6 @@ def _loaded(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity
     mass = file.rocket.dry_mass.value + engine.oxidizer_mass + engine.fuel_mass
     weight = mass * gravity(build.launch_altitude(file))
     return {"wet_mass": Quantity(mass, "kg"), "pad_thrust_to_weight": Quantity(peak_thrust(burnt) / weight)}
-
-
-def _tank(tank: build.TankBuilt) -> dict[str, Quantity]:
-    size = tank.size
-    return {
-        "tank_length": Quantity(size.length, "m") if size else Quantity.absent(tank.reason),
-        "dip_tube_length": Quantity(size.dip_tube_length, "m") if size else Quantity.absent(tank.reason),
-        "tank_volume": Quantity(tank.volume, "m^3"),
-    }
 
 
 def _flight(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity]:

@@ -60,11 +60,11 @@ def histories(simulation: Simulation) -> dict[str, Array]:
     }
 
 
-def design(out: Path, file: EngineFile, designed: DesignRun) -> None:
+def design(out: Path, file: EngineFile, designed: DesignRun, ranges: study.Ranges = study.USUAL) -> None:
     """design.json, the study's two tables and their plots, and ID.eng of the constant thrust."""
     write_json(out / "design.json", designed.product)
-    flows = study.over_flow_and_length(designed.task)
-    mixtures = list(study.over_mixture(designed.task.requirement))
+    flows = study.over_flow_and_length(designed.task, ranges)
+    mixtures = list(study.over_mixture(designed.task.requirement, ranges))
     write_table(out / "study_flow_length.csv", FLOW_COLUMNS, map(_flow_row, flows))
     write_table(out / "study_mixture.csv", MIXTURE_COLUMNS, map(_mixture_row, mixtures))
     for name, text in plots.study(flows, mixtures):

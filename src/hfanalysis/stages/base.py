@@ -19,7 +19,8 @@ smallest value of those that have one) and ``adopts``
 ``tries_effects`` (True for one that looks through the whole library: a team's own effects are its input), ``runs``
 (stages that this one runs itself, on other tests: what their code and that of the stages before them says is part of
 what it rests on, as everything is that the module imports) ``others`` (the other tests that this one reads the raw
-files of: they are its input, too) and ``beside`` (finished products of other tests that it reads where they are there).
+files of: they are its input, too) and ``beside`` (finished products of other tests, and
+what a team has laid there of its own, that it reads where they are there).
 """
 
 from __future__ import annotations

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from hfanalysis.products.disk import read_json
 from hfanalysis.products.kinds import KINDS
-from hfanalysis.report.material import Last, Material, read_store
+from hfanalysis.record.limits import read_limits
+from hfanalysis.record.team_notes import read_notes
+from hfanalysis.report.limits import known_quantities
+from hfanalysis.report.material import Last, Material, Notes, read_store
 from hfanalysis.stages.base import BASE, Context, load_stage
 from hfanalysis.stages.stand import before, of_before
 
@@ -23,7 +26,9 @@ def load(context: Context) -> Material:
                 products[path.stem] = context.read(KINDS[path.name])
             elif path.suffix == ".h5" and path.name != _LOG:
                 stores[path.stem] = read_store(path)
-    return Material(context.definition, context.marked(), products, stores, absent, last=_last(context))
+    rules = read_limits(context.root, context.definition.test.stand, known_quantities())
+    notes = Notes(*read_notes(context.definition.folder))
+    return Material(context.definition, context.marked(), products, stores, absent, _last(context), rules, notes)
 
 
 def _last(context: Context) -> Last | None:

@@ -39,6 +39,7 @@ class Section:
         needs: the products without which it has nothing to show (``"calibration"``, ``"residuals"``).
         render: what it shows; may raise :class:`AbsentError` with the reason why it has nothing to show.
         folded: whether the page opens with it closed: what is looked up, not read.
+        unasked: whether nobody misses it where it has nothing to show, so that the page does not say so.
     """
 
     title: str
@@ -46,6 +47,7 @@ class Section:
     needs: tuple[str, ...]
     render: Callable[[Material], Iterable[Block]]
     folded: bool = False
+    unasked: bool = False
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,7 @@ def _laid(key: str, section: Section, material: Material) -> Laid:
         blocks = tuple(block for block in section.render(material) if block is not None)
     except AbsentError as error:
         return replace(out, absent=str(error))
-    return replace(out, blocks=blocks) if blocks else replace(out, absent="there is nothing to draw")
+    return replace(out, blocks=blocks, absent="" if blocks or section.unasked else "there is nothing to draw")
 
 
 def charts(material: Material) -> Iterator[Chart]:

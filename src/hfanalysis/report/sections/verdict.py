@@ -15,6 +15,7 @@ from hfanalysis.quantity import DOUBTED, Quantity
 from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.report import html
 from hfanalysis.report.glance import Against, against_last, four, key_numbers, motor_class, sensors_then
+from hfanalysis.report.limits import BROKEN, KEPT, OPEN, judged
 from hfanalysis.report.material import Material
 from hfanalysis.report.sections import Block, Section
 from hfanalysis.report.time_charts import lines_of, over_time
@@ -34,7 +35,8 @@ _HEIGHT = 250.0
 
 
 def render(material: Material) -> Iterator[Block]:
-    """The sentences beside the numbers, and the charts below them."""
+    """The team's own limits, the sentences beside the numbers, and the charts below them."""
+    yield _limits(material)
     yield Markup('<div class="glance">')
     yield _sentences(material)
     yield _numbers(key_numbers(material), material)
@@ -46,6 +48,20 @@ def render(material: Material) -> Iterator[Block]:
     for stage, reason in absence_reasons(material).items():
         absent = Markup('<p class="absent"><strong>{}:</strong> {}</p>')
         yield absent.format(stage, html.switchable(reason))
+
+
+_MARKS = {KEPT: ("good", "keeps"), BROKEN: ("bad", "breaks"), OPEN: ("", "open")}
+"""How a rule's outcome is shown: by color, and by a word."""
+
+
+def _limits(material: Material) -> Markup | None:
+    """What the team's own rules say, what is broken first; nothing without any."""
+    found = sorted(judged(material), key=lambda one: (BROKEN, OPEN, KEPT).index(one.state))
+    if not found:
+        return None
+    item = Markup('<li><span class="verdict {}">{}</span> {}: {}</li>')
+    items = (item.format(*_MARKS[one.state], one.name, html.switchable(one.words)) for one in found)
+    return Markup('<ul class="limits" aria-label="The team\'s own limits">{}</ul>').format(Markup().join(items))
 
 
 def glance_charts(material: Material) -> list[Chart]:
