@@ -13,6 +13,7 @@ from hfanalysis.products.effects import EffectLibrary
 from hfanalysis.products.engines import Designed, Simulated
 from hfanalysis.products.kinds import KINDS
 from hfanalysis.products.model import Is, Part, Product
+from hfanalysis.products.prediction import Prediction, Score
 from hfanalysis.products.quick import QuickLook
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
@@ -20,7 +21,7 @@ PAGE, SCHEMAS = DOCS / "products.md", DOCS / "schemas"
 BLOCK = re.compile(
     r"(<!-- fields of (?P<file>\S+) \(written by `make readme`\) -->\n).*?(<!-- end of fields -->)", re.DOTALL
 )
-OTHERS = (Campaign, Simulated, Designed, EffectLibrary, QuickLook)
+OTHERS = (Campaign, Simulated, Designed, EffectLibrary, QuickLook, Prediction, Score)
 """What commands write or print that is no product of a stage."""
 ALL: dict[str, type[Part]] = {**KINDS, **{kind.file: kind for kind in OTHERS}}
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from hfanalysis.interface.engines import design, simulate
     from hfanalysis.interface.firing import Firing, open
     from hfanalysis.interface.made import firing
+    from hfanalysis.interface.of_test import engine_file
+    from hfanalysis.interface.predicting import predict, score
     from hfanalysis.quantity import Quantity
 
 __all__ = [
@@ -28,9 +30,12 @@ __all__ = [
     "Quantity",
     "__version__",
     "design",
+    "engine_file",
     "firing",
     "load_residuals",
     "open",
+    "predict",
+    "score",
     "simulate",
 ]
 
@@ -40,6 +45,9 @@ _PLACES = {
     "firing": "interface.made",
     "simulate": "interface.engines",
     "design": "interface.engines",
+    "engine_file": "interface.of_test",
+    "predict": "interface.predicting",
+    "score": "interface.predicting",
     "Quantity": "quantity",
 }
 """Where in the package the names are that are loaded when they are asked for: importing it takes no time. No module of

@@ -313,6 +313,67 @@ def _design(
         engines.design(engine, out, as_json, quiet, study, hand_over)
 
 
+@app.command("engine")
+def _engine(
+    test: Test,
+    of: Annotated[
+        str | None, typer.Option("--of", metavar="STAND", help="Constants and effects of this stand.")
+    ] = None,
+    flight: Annotated[
+        bool, typer.Option("--flight", help="In its rocket: without what is of the stand alone.")
+    ] = False,
+    out: Annotated[Path | None, typer.Option(metavar="FILE", help="Instead of ROOT/engines/TEST.toml.")] = None,
+    root: Root = Path(),
+    quiet: Quiet = False,
+    trust_effects: Trust = False,
+) -> None:
+    """Write the engine file of a calibrated test, for simulate: geometry as stated, constants and effects as found."""
+    with plain_exit():
+        from hfanalysis.cli import engine_of
+
+        test, root = named(test, root)
+        ask(root, trust_effects)
+        engine_of.engine(Request(test, root, None, False, False, quiet), of, flight, out)
+
+
+@app.command("predict")
+def _predict(
+    plan: Annotated[Path, typer.Argument(metavar="NEXT.toml", help="A test.toml without its log: as planned.")],
+    tests: Annotated[list[str], typer.Option("--from", metavar="TEST", help="A fired test; again for every other.")],
+    root: Root = Path(),
+    temperature: Annotated[
+        str | None, typer.Option(metavar="VALUE", help="The tank's on the day, as '18 degC': NEXT.day.json.")
+    ] = None,
+    draws: Annotated[int, typer.Option(min=20, help="Engines drawn.")] = 400,
+    as_json: EngineJson = False,
+    quiet: Quiet = False,
+    trust_effects: Trust = False,
+) -> None:
+    """Freeze what a planned test will measure, with 90 % bands: predictions/NEXT.json, never written over."""
+    with plain_exit():
+        from hfanalysis.cli import predict
+
+        ask(root, trust_effects)
+        predict.predict(plan, tests, root, temperature, draws, as_json, quiet)
+
+
+@app.command("score")
+def _score(
+    name: Annotated[str, typer.Argument(metavar="NEXT", help="Name of a prediction.")],
+    test: Annotated[str | None, typer.Option(metavar="TEST", help="The fired test, if it has another name.")] = None,
+    root: Root = Path(),
+    as_json: EngineJson = False,
+    quiet: Quiet = False,
+    trust_effects: Trust = False,
+) -> None:
+    """Lay a fired test over its prediction: which bands hold, and the errors beside those of two rivals."""
+    with plain_exit():
+        from hfanalysis.cli import predict
+
+        ask(root, trust_effects)
+        predict.score(name, test, root, as_json, quiet)
+
+
 @app.command("regression")
 def _regression(
     tests: Annotated[list[str], typer.Argument(metavar="TEST OTHER…", help="Tests of one fuel; at least two.")],

@@ -139,6 +139,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 EFFECT = Effect(
     name="feed_line_fill",
     plain_name="feed line that fills first",
+    stand_only="the stand's long feed line",
     equation="feed",
     meaning="the feed line is filled when the valve opens, and gives away what it holds as the pressure falls",
     reference="report, section 4.1 and phase 1 of its hot fires: the run line's pressure rises until the line is full. "

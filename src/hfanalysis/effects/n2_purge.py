@@ -72,6 +72,7 @@ def _line(times: Array, channels: Channels, values: Mapping[str, float]) -> dict
 EFFECT = Effect(
     name="n2_purge",
     plain_name="nitrogen into the tank",
+    stand_only="the stand's purge line",
     equation="tank_volume",
     meaning="nitrogen enters the tank through the purge line's check valve",
     reference="report, section 4.2.2: the valve opens when the tank is below the purge line by its cracking pressure; "

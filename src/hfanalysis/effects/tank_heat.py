@@ -21,6 +21,7 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
 EFFECT = Effect(
     name="tank_heat",
     plain_name="heat into the tank",
+    stand_only="the stand's heating blankets",
     equation="tank_energy",
     meaning="the oxidizer in the tank receives heat from outside, the less the longer",
     reference="dU/dt = -mdot h + Qdot: the report's eq. 3.7 with a source; section 4.1: two blankets of 500 W, turned "

@@ -91,8 +91,9 @@ class Effect:
     ends; how fast the fire goes out is compared beside the channels. ``reads``: sites that others set and its term
     asks for; it comes after them. ``far_starts``: strengths [SI] from which a fit starts besides, where calibrated
     constants take the effect's place so well that a small one leads elsewhere. ``plain_name``: what people call it who
-    do not know the code; ``believable``: the largest size that can be on a stand. An effect of the engine may have a
-    distortion besides, where a channel that no equation has shows it.
+    do not know the code; ``believable``: the largest size that can be on a stand; ``stand_only``: what of the stand it
+    is of, where the engine does not have it in flight. An effect of the engine may have a distortion besides, where a
+    channel that no equation has shows it.
     """
 
     name: str
@@ -115,6 +116,7 @@ class Effect:
     far_starts: tuple[float, ...] = ()
     plain_name: str = ""
     believable: Believable | None = None
+    stand_only: str = ""
 
     def __post_init__(self) -> None:
         if self.equation not in EQUATIONS:

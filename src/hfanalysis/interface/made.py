@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -15,6 +13,7 @@ from numpy.typing import ArrayLike
 from hfanalysis.errors import InputError
 from hfanalysis.interface.firing import Firing
 from hfanalysis.products.disk import atomic, make_folder
+from hfanalysis.record.written import table_lines
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -23,8 +22,6 @@ TIME = "time"
 """The column with the time stamps."""
 
 LOG = "log.parquet"
-
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def firing(
@@ -107,30 +104,4 @@ def _document(name: str, kind: str, units: Mapping[str, str], about: Mapping[str
     rest = {key: part for key, part in about.items() if key not in ("test", "log", "channels")}
     yield "schema = 1"
     for key, part in {"test": test, "log": log, "channels": channels, **rest}.items():
-        yield from _section(part, key)
-
-
-def _section(part: Mapping[str, Any], *names: str) -> Iterator[str]:
-    """A table of TOML, and those within it."""
-    plain = {key: value for key, value in part.items() if not isinstance(value, Mapping) or key == TIME}
-    if plain or not part:
-        yield f"\n[{'.'.join(map(_key, names))}]"
-    yield from (f"{_key(key)} = {_value(value)}" for key, value in plain.items())
-    for key, value in part.items():
-        if key not in plain:
-            yield from _section(value, *names, key)
-
-
-def _key(name: str) -> str:
-    return name if _BARE.fullmatch(name) else json.dumps(name, ensure_ascii=False)
-
-
-def _value(value: Any) -> str:
-    """JSON's strings, numbers and lists are TOML's; a table within a line is not."""
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_key(key)} = {_value(part)}" for key, part in value.items()) + " }"
-    if isinstance(value, list | tuple):
-        return f"[{', '.join(map(_value, value))}]"
-    if hasattr(value, "isoformat"):
-        return str(value.isoformat())
-    return json.dumps(value.item() if hasattr(value, "item") else value, ensure_ascii=False)
+        yield from table_lines(part, key, inline=(TIME,))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
-from pydantic import GetJsonSchemaHandler, SerializerFunctionWrapHandler, model_serializer
+from pydantic import GetJsonSchemaHandler, SerializerFunctionWrapHandler, model_serializer, model_validator
 from pydantic_core import CoreSchema
 
 from hfanalysis.products.calibration import FuelLaw
@@ -53,6 +54,15 @@ class Together(Part):
     between: Annotated[float | None, Is("how far the tests differ beyond what each states", "of the mean")] = None
     agreement: Annotated[Agreement | None, Is("of the tests")] = None
     tests: Annotated[tuple[str, ...], Is("in it: those that identify the number")] = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_flat(cls, given: Any) -> Any:
+        """The inverse of how it is written."""
+        if not isinstance(given, Mapping) or "mean" in given:
+            return given
+        own = {name: part for name, part in given.items() if name in cls.model_fields}
+        return own | {"mean": {name: part for name, part in given.items() if name not in own}}
 
     @model_serializer(mode="wrap")
     def _flat(self, as_usual: SerializerFunctionWrapHandler) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -17,6 +17,7 @@ from hfanalysis.record.rocket import Rocket
 from hfanalysis.record.schema import Refused, Section, section
 from hfanalysis.record.sections import (
     Chamber,
+    CovarianceSection,
     DesignSection,
     EngineSection,
     Feed,
@@ -38,7 +39,10 @@ TANK_SIZES = ("volume", "length", "ullage")
 
 @section
 class EngineStatements(Section):
-    """The whole of an engine file; sections that are not stated have no key."""
+    """The whole of an engine file; sections that are not stated have no key.
+
+    ``effects``: by name, their parameters as files of adopted effects have them, [effects.tank_heat].
+    """
 
     engine: EngineSection
     schema: Annotated[int, BeforeValidator(check_version)]
@@ -53,6 +57,8 @@ class EngineStatements(Section):
     site: Site = Site()
     rocket: Rocket | None = None
     design: DesignSection = DesignSection()
+    effects: dict[str, dict[str, Any]] = field(default_factory=dict)
+    covariance: CovarianceSection | None = None
 
     def check(self) -> None:
         given = [key for key in TANK_SIZES if getattr(self.tank, key) is not None]

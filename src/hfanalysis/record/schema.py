@@ -182,6 +182,7 @@ YesOrNo = Annotated[bool, Field(strict=True)]
 Count = Annotated[int, Field(strict=True, ge=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0.0)]
+NotNegative = Annotated[Number, Field(ge=0.0)]
 Column = Annotated[str | int, BeforeValidator(_column)]
 ListOf = Annotated[tuple[T, ...], Field(min_length=1)]
 

@@ -17,8 +17,11 @@ from hfanalysis.record.schema import (
     Duration,
     Factor,
     Length,
+    ListOf,
     Mass,
     Name,
+    NotNegative,
+    Number,
     PressureDifference,
     Refused,
     Remainder,
@@ -230,6 +233,22 @@ class EngineSection(Section):
     id: Name
     description: Text = ""
     stand: Name | None = None
+
+
+@section
+class CovarianceSection(Section):
+    """[covariance] of an engine file: errors of its constants together; standard deviations [SI], correlation."""
+
+    names: ListOf[Text]
+    std: ListOf[NotNegative]
+    correlation: ListOf[ListOf[Number]]
+
+    def check(self) -> None:
+        size = len(self.names)
+        if len(self.std) != size:
+            raise Refused(f"found {len(self.std)} numbers; expected one for each of the {size} names", "std")
+        if [len(row) for row in self.correlation] != [size] * size:
+            raise Refused(f"expected {size} rows of {size} numbers, as there are names", "correlation")
 
 
 @section

@@ -10,6 +10,7 @@ from hfanalysis.record.schema import Section
 from hfanalysis.units import Value
 
 OF_ENGINES = frozenset({
+    "covariance.names", "covariance.std", "covariance.correlation",
     "model.nozzle", "purge.cracking_pressure", "site.launch_temperature", "site.launch_pressure",
     "rocket.drag_uncertainty", "rocket.shot_to_shot", "rocket.wind_speed", "rocket.casing_diameter",
     "rocket.casing_length", "rocket.geometry.structure.mass",

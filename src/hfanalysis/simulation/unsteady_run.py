@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly import engine as build
+from hfanalysis.effects import library
 from hfanalysis.engine import closure, unsteady
+from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
 from hfanalysis.flight import summary
+from hfanalysis.inference.adopted.effects import effects_in
 from hfanalysis.products.engines import Simulated
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
@@ -39,7 +42,7 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
     """
     needs = Needs(file, COMMAND)
     tank = build.tank(needs)
-    engine = build.engine(needs, tank)
+    engine = replace(build.engine(needs, tank), effects=_effects(file))
     burnt = run(file, engine, until)
     hot = burnt.chamber_temperature()
     flight = _flight(file, engine, burnt)
@@ -57,6 +60,13 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
         }
     )
     return Simulation(engine, burnt, hot, product)
+
+
+def _effects(file: EngineFile) -> tuple[Active, ...]:
+    """What [effects] states beside the base model; InputError for what cannot be."""
+    if not file.effects:
+        return ()
+    return effects_in(file.effects, file.path, library()).acting
 
 
 def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:

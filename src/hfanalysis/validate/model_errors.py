@@ -25,13 +25,18 @@ SINGULAR = 1e-9
 
 def changes(engine: Engine, calibration: Calibration) -> list[dict[str, float]]:
     """The engine's fields [SI] as each column of the factor has them."""
-    joint = _with_law(calibration.joint or _apart(engine, calibration), calibration)
+    joint = together(engine, calibration)
     kept = [i for i, name in enumerate(joint.names) if joint.std[i] > 0.0 and _has(engine, name)]
     names = [joint.names[i] for i in kept]
     std, correlation = np.array(joint.std)[kept], np.array(joint.correlation).reshape(len(joint.std), -1)
     inner = correlation[np.ix_(kept, kept)]
-    factor = _factor(inner) * std[:, None]
+    factor = lower_factor(inner) * std[:, None]
     return [{FIELDS[n]: _moved(engine, n, x) for n, x in zip(names, column, strict=True) if x} for column in factor.T]
+
+
+def together(engine: Engine, calibration: Calibration) -> Joint:
+    """Errors [SI] of all the constants that an engine of this calibration takes, with those of its regression law."""
+    return _with_law(calibration.joint or _apart(engine, calibration), calibration)
 
 
 def _has(engine: Engine, name: str) -> bool:
@@ -47,7 +52,7 @@ def _moved(engine: Engine, name: str, by: float) -> float:
     return float(own + by)
 
 
-def _factor(correlation: Array) -> Array:
+def lower_factor(correlation: Array) -> Array:
     """Lower factor (n, n) of a correlation matrix, whatever rounding has done to it."""
     values, vectors = np.linalg.eigh(correlation)
     near = (vectors * np.maximum(values, SINGULAR)) @ vectors.T

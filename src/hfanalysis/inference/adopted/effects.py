@@ -73,9 +73,25 @@ def read_adopted(root: Path, definition: Any) -> Adopted:
 def read_effects(path: Path, known: Mapping[str, Effect]) -> Adopted:
     """The effects of one file; those there can be are ``known``. Raises InputError as :func:`read_adopted`. Values come
     out in SI."""
-    _, content = read_toml(path)
+    return effects_in(read_toml(path)[1], path, known)
+
+
+def effects_in(content: Mapping[str, Any], path: Path, known: Mapping[str, Effect]) -> Adopted:
+    """The effects that tables of the file at ``path`` state, by name. Raises InputError as :func:`read_adopted`. Values
+    come out in SI."""
     stated = {name: _values(path, name, table, known) for name, table in sorted(content.items())}
     return _adopted(stated, known, path.name)
+
+
+def tables(adopted: Adopted) -> dict[str, dict[str, str]]:
+    """The same the other way: of every effect, all its parameters [SI] in full, with +/- where stated."""
+    return {active.effect.name: _table(active, adopted) for active in adopted.effects}
+
+
+def _table(active: Active, adopted: Adopted) -> dict[str, str]:
+    stated = (adopted.stated or {}).get(active.effect.name, {})
+    values = {name: stated.get(name, Value(value)) for name, value in active.named.items()}
+    return {p.name: _text(values[p.name], p.unit) for p in active.effect.parameters}
 
 
 def _values(path: Path, name: str, table: Any, known: Mapping[str, Effect]) -> dict[str, Value]:

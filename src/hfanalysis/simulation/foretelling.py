@@ -1,0 +1,253 @@
+"""Engines of a planned test, drawn over what is not known of it, and what they would measure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import exp, log, sqrt
+from typing import Any
+
+import numpy as np
+
+from hfanalysis.arrays import Array
+from hfanalysis.assembly import engine as build
+from hfanalysis.assembly.calibrated import exponent, loss_factor
+from hfanalysis.engine.batch import burn_many
+from hfanalysis.engine.effect import Active
+from hfanalysis.engine.unsteady import Burn, Engine
+from hfanalysis.inference.adopted.effects import Adopted
+from hfanalysis.inference.full_run import LONGEST_BURN
+from hfanalysis.products.calibration import Calibration
+from hfanalysis.products.prediction import Scatter
+from hfanalysis.quantity import Quantity
+from hfanalysis.record.engine_file import EngineFile, Needs, engine_of
+from hfanalysis.record.planned import PlannedTest
+from hfanalysis.simulation import flown
+from hfanalysis.simulation.of_test import OfTest
+from hfanalysis.units import Value
+from hfanalysis.validate.model_errors import lower_factor
+
+COMMAND = "hfa predict"
+
+QUANTITIES = {"total_impulse": "N s", "peak_thrust": "N", "peak_chamber_pressure": "Pa", "t_v": "s", "burn_time": "s",
+              "apogee": "m"}  # fmt: skip
+"""What is predicted, with units."""
+
+PRIOR_SCATTER = 0.067
+"""Relative standard deviation, from one test of a stand to the next, of C_i and of the regression rate [-], where fewer
+than FEWEST tests tell. Source: NFPA 1125 certifies no motor whose total impulse differs by more among its firings; that
+C_i and the rate share it is by choice. No test or replica of this package was used for it."""
+
+RATE = "regression rate"
+"""What scatters beside C_i."""
+
+FEWEST = 3
+"""Tests from which on their own scatter is taken. Source: by choice; of two, one number tells the deviation."""
+
+
+@dataclass(frozen=True)
+class Base:
+    """A test that is predicted from: its engine, its calibration without effects, and what was measured."""
+
+    found: OfTest
+    without: Calibration
+    measured: Mapping[str, Quantity]
+
+    @property
+    def name(self) -> str:
+        """The test's."""
+        return self.found.definition.test.id
+
+
+@dataclass(frozen=True)
+class Planned:
+    """The engines of a planned test by the constants of one test: on its stand, and in its rocket where it has one."""
+
+    stand: Engine
+    flying: Engine | None
+    file: EngineFile
+
+
+def planned(plan: PlannedTest, base: Base, effects: bool = True, temperature: str | None = None) -> Planned:
+    """The planned geometry, load and ``temperature`` (default: the plan's) with the constants of a test.
+
+    Raises InputError where the plan lacks what the model needs.
+    """
+    calibration = base.found.calibration if effects else base.without
+    acting = base.found.adopted.acting if effects else ()
+    content = _content(plan, base, calibration, temperature)
+    file = engine_of(content, plan.path, b"")
+    there = [replace(_built(file), effects=tuple(acting))]
+    if "rocket" in plan.content:
+        there.append(replace(_built(engine_of({**content, "rocket": plan.content["rocket"]}, plan.path, b"")),
+                             effects=tuple(acting)))  # fmt: skip
+    flying = there[-1] if there[-1].vehicle is not None else None
+    return Planned(there[0], flying, file)
+
+
+def _built(file: EngineFile) -> Engine:
+    needs = Needs(file, COMMAND)
+    return build.engine(needs, build.tank(needs))
+
+
+def _content(plan: PlannedTest, base: Base, calibration: Calibration, temperature: str | None) -> dict[str, Any]:
+    """What an engine file of the planned test would state."""
+    own = {name: dict(plan.content.get(name, {})) for name in ("tank", "injector", "grain", "chamber", "nozzle")}
+    if temperature is not None:
+        own["tank"]["temperature"] = temperature
+    own["tank"]["polytropic_exponent"] = exponent(calibration)[0]
+    own["injector"]["C_i"] = calibration.C_i.value
+    own["grain"] |= {"a": calibration.a.value, "n": calibration.n.value}
+    about = base.found.definition.model
+    model = {"conventions": about.conventions, "properties": about.properties}
+    site = {"site": plan.content["site"]} if "site" in plan.content else {}
+    loss = f"{loss_factor(calibration)!r} 1/m^4"
+    return {"schema": 1, "engine": {"id": plan.test.id}, "model": model, "feed": {"K_loss": loss}, **own, **site}
+
+
+def scatter_of(bases: Sequence[Base]) -> dict[str, Scatter]:
+    """How far tests of the stand differ in C_i and in the regression rate, one relative standard deviation each.
+
+    A further test differs from the mean of k tests by s sqrt(1 + 1/k), which is what is drawn; s that is of these tests
+    has Student's distribution with k - 1 degrees of freedom.
+    """
+    return {name: _scatter(values) for name, values in _logs(bases).items()}
+
+
+def _scatter(values: list[float]) -> Scatter:
+    k = len(values)
+    if k < FEWEST:
+        std, freedom = PRIOR_SCATTER, None
+        source = f"a prior: NFPA 1125's limit on the impulse of a motor's firings; {k} of {FEWEST} tests are there"
+    else:
+        std, freedom, source = float(np.std(values, ddof=1)), k - 1, f"of the {k} tests"
+    return Scatter(std=std, drawn=std * sqrt(1.0 + 1.0 / k), freedom=freedom, source=source)
+
+
+def _logs(bases: Sequence[Base]) -> dict[str, list[float]]:
+    """ln C_i, and ln of the rate at one flux, of every test."""
+    found = [base.found.calibration for base in bases]
+    fluxes = [c.regression.reference_flux for c in found]
+    known = [log(flux.value) for flux in fluxes if flux is not None and flux.value]
+    flux = sum(known) / len(known) if known else 0.0
+    return {
+        "C_i": [log(c.C_i.value or 1.0) for c in found],
+        RATE: [log(c.a.value or 1.0) + (c.n.value or 0.0) * flux for c in found],
+    }
+
+
+@dataclass(frozen=True)
+class Change:
+    """How one drawn engine differs: factors [-] of area, a, throat and fuel; additions to the others [SI]."""
+
+    area: float
+    a: float
+    throat: float
+    fuel: float
+    loss: float
+    m: float
+    n: float
+    oxidizer: float
+    temperature: float
+    effects: tuple[Active, ...]
+
+    def of(self, engine: Engine) -> Engine:
+        """An engine so changed."""
+        feed, m = engine.feed, engine.polytropic_exponent
+        return replace(
+            engine,
+            feed=replace(feed, area=feed.area * self.area, loss_factor=max(feed.loss_factor + self.loss, 0.0)),
+            polytropic_exponent=None if m is None else m + self.m,
+            a=engine.a * self.a,
+            n=engine.n + self.n,
+            throat_area=engine.throat_area * self.throat,
+            fuel_mass=engine.fuel_mass * self.fuel,
+            oxidizer_mass=engine.oxidizer_mass + self.oxidizer,
+            temperature=engine.temperature + self.temperature,
+            effects=self.effects,
+        )
+
+
+def to_mean(bases: Sequence[Base]) -> list[dict[str, float]]:
+    """ln of what takes each test's C_i and regression rate to the mean of all [-], by name."""
+    logs = _logs(bases)
+    return [{name: float(np.mean(own)) - own[i] for name, own in logs.items()} for i in range(len(bases))]
+
+
+def changes(
+    base: Base, plan: Planned, scatter: Mapping[str, Scatter], count: int, seed: int, shift: Mapping[str, float]
+) -> Iterator[Change]:
+    """``count`` draws over the errors of the test's constants together, the plan's own, effects and scatter; ``shift``:
+    as :func:`to_mean` has it of this test."""
+    rng = np.random.default_rng(seed)
+    joint, engine, file = base.found.joint, base.found.full.engine, plan.file
+    correlation = np.array(joint.correlation).reshape(len(joint.names), -1)
+    factor = lower_factor(correlation) * np.array(joint.std)[:, None]
+    for _ in range(count):
+        off = dict(zip(joint.names, factor @ rng.standard_normal(len(joint.names)), strict=True))
+        ln_a = off.get("ln_a", off.get("a", 0.0) / engine.a)
+        own_throat = _relative(file.nozzle.throat_radius) * rng.standard_normal()
+        yield Change(
+            area=exp(off.get("flow_area", 0.0) / engine.feed.area + shift["C_i"] + _between(scatter["C_i"], rng)),
+            a=exp(ln_a + shift[RATE] + _between(scatter[RATE], rng)),
+            throat=exp(2.0 * own_throat or off.get("throat_area", 0.0) / engine.throat_area),
+            fuel=exp(_relative(file.grain.mass) * rng.standard_normal()),
+            loss=off.get("K_loss", 0.0),
+            m=off.get("m", 0.0),
+            n=off.get("n", 0.0),
+            oxidizer=_std(file.tank.oxidizer_mass) * rng.standard_normal(),
+            temperature=_std(file.tank.temperature) * rng.standard_normal(),
+            effects=_effects(base.found.adopted, plan.stand.effects, rng),
+        )
+
+
+def _between(scatter: Scatter, rng: np.random.Generator) -> float:
+    normal = rng.standard_normal() if scatter.freedom is None else rng.standard_t(scatter.freedom)
+    return float(scatter.drawn * normal)
+
+
+def _std(value: Value | None) -> float:
+    return 0.0 if value is None or value.std is None else value.std
+
+
+def _relative(value: Value | None) -> float:
+    return 0.0 if value is None or value.std is None else value.std / value.value
+
+
+def _effects(adopted: Adopted, acting: Sequence[Active], rng: np.random.Generator) -> tuple[Active, ...]:
+    """Effects with their parameters off by what is stated of them, within their bounds."""
+    return tuple(_moved(active, (adopted.stated or {}).get(active.effect.name, {}), rng) for active in acting)
+
+
+def _moved(active: Active, stated: Mapping[str, Value], rng: np.random.Generator) -> Active:
+    values = [
+        float(np.clip(value + _std(stated.get(p.name)) * rng.standard_normal(), p.low, p.high))
+        for p, value in zip(active.effect.parameters, active.values, strict=True)
+    ]
+    return Active(active.effect, tuple(values))
+
+
+def outcomes(stands: Sequence[Engine], flying: Sequence[Engine], rail: float | None) -> Array:
+    """What each engine would measure, (n, 6) in the order of QUANTITIES; NaN where it cannot be had.
+
+    ``flying``: the same engines in their rocket, none where there is no rocket; ``rail`` [m].
+    """
+    burns = burn_many(stands, longest=LONGEST_BURN)
+    flights = burn_many(flying, longest=LONGEST_BURN) if flying else ["no rocket"] * len(stands)
+    apogees = [_apogee(e, b, rail) for e, b in zip(flying or stands, flights, strict=True)]
+    return np.array([(*_burnt(b), apogee) for b, apogee in zip(burns, apogees, strict=True)])
+
+
+def _burnt(burnt: Burn | str) -> tuple[float, ...]:
+    if isinstance(burnt, str):
+        return (np.nan,) * (len(QUANTITIES) - 1)
+    peaks = [float(burnt.output(name).max()) for name in ("thrust", "chamber_pressure")]
+    t_v = np.nan if burnt.liquid_out is None else burnt.liquid_out
+    return float(burnt.state("impulse")[-1]), *peaks, t_v, burnt.burn_time if burnt.fuel_out else np.nan
+
+
+def _apogee(engine: Engine, burnt: Burn | str, rail: float | None) -> float:
+    if isinstance(burnt, str):
+        return float("nan")
+    found = flown.flight(engine, burnt, rail, "not asked for")["apogee"].value
+    return float("nan") if found is None else found
