@@ -13,7 +13,7 @@ from tests.cli.run import Run
 from tests.cli.test_engines import MAELSTROM, changed
 
 from hfanalysis.record.engine_file import load_engine
-from hfanalysis.simulation.hand_over import toml
+from hfanalysis.record.written import table_lines
 
 
 def product(run: Run, *arguments: object) -> dict[str, Any]:
@@ -182,4 +182,4 @@ def test_tables_read_back_as_they_are() -> None:
         "empty": {},
         "only": {"inner": {"deep": {"n": -0.1}}},
     }
-    assert tomllib.loads(toml(content, {})) == content
+    assert tomllib.loads("\n".join(table_lines(content))) == content

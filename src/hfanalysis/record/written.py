@@ -10,15 +10,26 @@ from typing import Any
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def table_lines(part: Mapping[str, Any], *names: str, inline: Container[str] = ()) -> Iterator[str]:
-    """A table of TOML under its ``names``, and those within it; tables called as in ``inline`` stay on their line."""
+def table_lines(
+    part: Mapping[str, Any],
+    *names: str,
+    inline: Container[str] = (),
+    remarks: Mapping[tuple[str, ...], str] | None = None,
+) -> Iterator[str]:
+    """A table of TOML under its ``names``, and those within it; tables called as in ``inline`` stay on their line.
+
+    ``remarks``: by the names down to a key, what is said behind it.
+    """
+    said = remarks or {}
     plain = {key: value for key, value in part.items() if not isinstance(value, Mapping) or key in inline}
-    if plain or not part:
+    if names and (plain or not part):
         yield f"\n[{'.'.join(map(key_text, names))}]"
-    yield from (f"{key_text(key)} = {value_text(value)}" for key, value in plain.items())
+    for key, value in plain.items():
+        remark = said.get((*names, key))
+        yield f"{key_text(key)} = {value_text(value)}{f'   # {remark}' if remark else ''}"
     for key, value in part.items():
         if key not in plain:
-            yield from table_lines(value, *names, key, inline=inline)
+            yield from table_lines(value, *names, key, inline=inline, remarks=remarks)
 
 
 def key_text(name: str) -> str:

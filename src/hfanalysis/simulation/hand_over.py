@@ -4,24 +4,22 @@ from __future__ import annotations
 
 import copy
 import os
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from hfanalysis.assembly import engine as build
-from hfanalysis.drafting.document import plain, quoted
+from hfanalysis.drafting.document import plain
 from hfanalysis.errors import InputError
 from hfanalysis.products.disk import atomic
 from hfanalysis.record.document import read_toml
 from hfanalysis.record.engine_file import EngineFile, Needs, engine_of
+from hfanalysis.record.written import table_lines
 from hfanalysis.simulation import sized
 from hfanalysis.simulation.steady_run import COMMAND, DesignRun
 from hfanalysis.version import __version__
 
 RUNS = "hfa simulate"
-
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 Solved = dict[tuple[str, str], Any]
 """What a design has found, by section and key."""
@@ -61,7 +59,8 @@ def text(file: EngineFile, run: DesignRun, out: Path) -> str:
         f"Tank: {tank.volume * 1e3:.4g} L{f', {tank.size.length * 1e3:.4g} mm long' if tank.size else ''}.",
         "A burn of the same load falls short of a steady design: the tank cools, and vapor is left in it.",
     )
-    return "".join(f"# {line}\n" for line in lines) + toml(merged(content, found, old, new), found)
+    tables = table_lines(merged(content, found, old, new), remarks=dict.fromkeys(found, "solved"))
+    return "".join(f"# {line}\n" for line in lines) + "\n".join(tables) + "\n"
 
 
 def solved(file: EngineFile, run: DesignRun) -> Solved:
@@ -95,33 +94,3 @@ def merged(content: Mapping[str, Any], found: Solved, old: Path, new: Path) -> d
 
 def _said(value: float, unit: str) -> str:
     return f"{value:.9g} {unit}"
-
-
-def toml(content: Mapping[str, Any], found: Solved, above: tuple[str, ...] = ()) -> str:
-    """The ``content`` of a table as TOML: its keys, those ``found`` marked, then the tables in it."""
-    own = {key: value for key, value in content.items() if not isinstance(value, Mapping)}
-    inner = {key: value for key, value in content.items() if isinstance(value, Mapping)}
-    head = [f"[{'.'.join(map(_key, above))}]"] if above and (own or not inner) else []
-    lines = [*head, *(_line(key, value, (*above, key) in found) for key, value in own.items())]
-    parts = ["\n".join(lines) + "\n"] if lines else []
-    return "".join([*parts, *(toml(value, found, (*above, key)) for key, value in inner.items())])
-
-
-def _line(key: str, value: Any, marked: bool) -> str:
-    return f"{_key(key)} = {_value(value)}{'   # solved' if marked else ''}"
-
-
-def _key(name: str) -> str:
-    return name if _BARE.fullmatch(name) else quoted(name)
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return quoted(value)
-    if isinstance(value, list):
-        return f"[{', '.join(map(_value, value))}]"
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_key(key)} = {_value(part)}" for key, part in value.items()) + " }"
-    return repr(value)
