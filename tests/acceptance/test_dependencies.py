@@ -11,7 +11,12 @@ import pytest
 from hfanalysis.sources import PACKAGE, libraries
 
 REPOSITORY = Path(__file__).parents[2]
-COMES_WITH = {"pydantic_core": "pydantic", "python_calamine": "python-calamine"}
+COMES_WITH = {
+    "PIL": "pillow",
+    "markdown_it": "markdown-it-py",
+    "pydantic_core": "pydantic",
+    "python_calamine": "python-calamine",
+}
 """Imported modules that come in a distribution of another name."""
 BY_NAME = {"h5netcdf"}
 """Required, and loaded by xarray, which is told its name."""
