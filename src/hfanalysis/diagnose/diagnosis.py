@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hfanalysis.diagnose.answer.at_limit import at_limit
-from hfanalysis.diagnose.answer.plausible import judged
+from hfanalysis.diagnose.answer.effect_source import acting_in
+from hfanalysis.diagnose.answer.plausible import judged, sized
 from hfanalysis.diagnose.answer.posterior import poor_fit, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
-from hfanalysis.diagnose.answer.standing import acting_in
 from hfanalysis.diagnose.answer.too_small import without_the_small
 from hfanalysis.diagnose.answer.verdict import (
     Verdict,
@@ -36,6 +36,7 @@ from hfanalysis.engine.effect import Effect
 from hfanalysis.inference import gap
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fade import abrupt
+from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import TABLE, Hypothesis
 from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.subject import Subject
@@ -146,7 +147,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         unsure = (*unsure, f"the search did not converge: {why}; take names with care")
     return Diagnosis(
         verdict=verdict.label,
-        effects=effects_product(verdict),
+        effects=effects_product(verdict, observed),
         set90=tuple(verdict.set90),
         posterior=verdict.posterior,
         partners=verdict.partners,
@@ -242,11 +243,13 @@ def _constants(found: Naming, verdict: Verdict) -> Constants:
 
 
 def _plausibility(found: Naming, chosen: Candidate) -> dict[str, Plausibility]:
+    def of(fitted: Fit, name: str) -> Plausibility:
+        return judged(sized(fitted, name, found.bench.observed))
+
     out: dict[str, Plausibility] = {}
     for candidate in found.singles:
-        name = candidate.names[0]
-        out.setdefault(name, judged(acting_in(candidate.fit)[name]))
-    return out | {name: judged(active) for name, active in acting_in(chosen.fit).items()}
+        out.setdefault(candidate.names[0], of(candidate.fit, candidate.names[0]))
+    return out | {name: of(chosen.fit, name) for name in acting_in(chosen.fit)}
 
 
 def _course(verdict: Verdict, found: Naming) -> list[str]:

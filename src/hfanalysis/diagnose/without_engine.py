@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hfanalysis.diagnose.answer.plausible import judged
+from hfanalysis.diagnose.answer.plausible import judged, size_of
 from hfanalysis.diagnose.answer.posterior import scale
 from hfanalysis.diagnose.model_free import SHIFTS, ShownByChannels, Sign, shown
 from hfanalysis.effects import effect
@@ -100,7 +100,7 @@ def _drift(subject: Subject) -> NamedEffect:
         equation="sensor",
         meaning=effect(DRIFT).meaning,
         parameters={"drift": size},
-        plausibility=judged(effect(DRIFT).at(drift=size.value or 0.0)),
+        plausibility=judged(size_of(effect(DRIFT).at(drift=size.value or 0.0))),
     )
 
 

@@ -43,6 +43,11 @@ EFFECT = Effect(
     twins=("tank_wall_heat_capacity",),
     decisive="a thermocouple on the tank's wall, and the blankets' current",
     believable=Believable(
-        "power", 3000.0, "a stand's heating blankets draw some hundred watts each", unit="kW", factor=1e-3
+        "power",
+        1e4,
+        "a stand's heating blankets draw some hundred watts each, and 22 kg of aluminum that are 10 K warmer than the "
+        "oxidizer hold 10 kW for 20 s",
+        unit="kW",
+        factor=1e-3,
     ),
 )

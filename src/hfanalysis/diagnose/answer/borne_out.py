@@ -2,8 +2,8 @@
 
 Whatever is claimed, its likeliest rival (a placebo) and a free curve are fitted to a part of the data and asked for the
 rest. A fit to all of it promises to explain so much more of each stretch than the base model does, given the others;
-fits to the rest keep a part of that, and the evidence counts as far as it is kept. What is claimed is what has most of
-that evidence: more than the rival, and more than the curve.
+fits to the rest keep a part of that, and what they do not keep is taken from the evidence. What is claimed is what has
+most of that evidence: more than the rival, and more than the curve.
 """
 
 from __future__ import annotations
@@ -20,6 +20,11 @@ SPARE = 3.0
 """Log probability [natural log] by which what is kept may be less than what was promised. Source: a fit to half of the
 data has twice the variance; each parameter that an effect has, of which there are one to four, costs a half per
 stretch for it."""
+
+REACH = 2.0
+"""Times what stretches lose of a promise that can be lost of the evidence. Source: choice; given the others on both
+sides, stretches tell little of what is slow, and where they tell less than half of the evidence, what noise takes of
+their promise says little of the other part."""
 
 ROUNDS = 8
 """Times that something is asked: what is claimed, what that has as its part, and what comes near it then."""
@@ -63,8 +68,8 @@ Told = Mapping[tuple[str, ...], Foretold | None]
 def _counted(
     found: Naming, one: Candidate, before: Foretold, told: Told, all_of_it: Mapping[tuple[str, ...], float]
 ) -> Naming:
-    """The same after a candidate was asked: it has as much of its evidence as it keeps of its promise, beyond the base
-    model, or of a set beyond its largest part that was asked before.
+    """The same after a candidate was asked: its evidence is less by what it does not keep of its promise, beyond the
+    base model, or of a set beyond its largest part that was asked before.
 
     Other sets with that part keep no more of what they have beyond it, until they are asked. ``all_of_it``: the
     evidence [natural log] of each as it was.
@@ -76,23 +81,20 @@ def _counted(
         return found
     of_part = None if part is None else told.get(part.key)
     beyond, rest = (found.base, before) if part is None or of_part is None else (part, of_part)
-    share, names = _part(there, rest), set(beyond.names)
+    kept, promised, names = there.rest - rest.rest, there.all - rest.all, set(beyond.names)
 
     def lessened(c: Candidate) -> Candidate:
         alike = bool(names) and c.key not in told and names < set(c.names) and not c.unknown
         if c.key != one.key and not alike:
             return c
         further = max(all_of_it[c.key] - all_of_it[beyond.key], 0.0)
-        return replace(c, log_evidence=min(all_of_it[c.key], beyond.log_evidence + share * further))
+        left = beyond.log_evidence + further - broken(kept, promised, further)
+        return replace(c, log_evidence=min(all_of_it[c.key], left))
 
     def each_of(candidates: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
         return tuple(sorted(map(lessened, candidates), key=lambda c: -c.log_evidence))
 
     return replace(found, singles=each_of(found.singles), sets=each_of(found.sets), unknown=each_of(found.unknown))
-
-
-def _part(there: Foretold, before: Foretold) -> float:
-    return part_kept(there.rest - before.rest, there.all - before.all)
 
 
 def _largest_part(one: Candidate, found: Naming) -> Candidate | None:
@@ -101,13 +103,19 @@ def _largest_part(one: Candidate, found: Naming) -> Candidate | None:
     return max(parts, key=lambda c: c.log_evidence, default=None) if not one.unknown else None
 
 
-def part_kept(gain: float, promised: float) -> float:
-    """The part [-] of a promise that is kept, both in log probability; all of it within SPARE.
+def broken(gain: float, promised: float, evidence: float) -> float:
+    """What of an ``evidence`` is lost since a promise was not kept, all in log probability [natural log]; nothing where
+    it was kept within SPARE.
 
-    >>> part_kept(20.0, 22.0), part_kept(7.0, 40.0), part_kept(-30.0, 5.0)
-    (1.0, 0.25, 0.0)
+    As large a part of the evidence as of the promise, and no more than REACH times what was lost of the promise.
+
+    >>> broken(20.0, 22.0, 25.0), broken(7.0, 40.0, 40.0), broken(-30.0, 5.0, 20.0)
+    (0.0, 30.0, 20.0)
+    >>> broken(0.5, 4.5, 300.0)
+    2.0
     """
-    return min(max((gain + SPARE) / max(promised, SPARE), 0.0), 1.0)
+    lost, promised = max(promised - gain - SPARE, 0.0), max(promised, SPARE)
+    return min(lost * min(evidence / promised, REACH), evidence)
 
 
 def _contenders(found: Naming, claim: Claim) -> list[Candidate]:

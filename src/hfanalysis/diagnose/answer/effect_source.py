@@ -19,6 +19,7 @@ from hfanalysis.engine.unsteady import burn, constants
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.predict import aligned, last_regression, misread, with_spare_fuel
 from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.unknown import has_name
 from hfanalysis.record.channels import unit_of
 
 POINTS = 120
@@ -67,12 +68,18 @@ class Acting:
     channel: str | None = None
 
 
+def acting_in(found: Fit) -> dict[str, Active]:
+    """The effects of a fit by their names, without unknown sources."""
+    acting = found.burnt.steps.engine.effects
+    return {active.effect.name: active for active in acting if has_name(active.effect)}
+
+
 def acting(found: Fit, name: str, observed: Observed) -> Acting:
     """The source over time [s after the opening] that an effect of a fit is, in the unit of its equation (UNITS).
 
     Its band holds what is uncertain of all constants of the fit, at the states of its run, and of the effect's shape.
     """
-    active = next(a for a in found.burnt.steps.engine.effects if a.effect.name == name)
+    active = acting_in(found)[name]
     time = np.linspace(0.0, observed.last, POINTS)
     if active.effect.of_sensor:
         return _sensor(found, active, observed)
@@ -85,8 +92,15 @@ def acting(found: Fit, name: str, observed: Observed) -> Acting:
     if active.effect.fading_web is not None:
         mean = course.beside_a_sudden_end(mean)
         std = np.hypot(std, FADE_ERROR * np.abs(mean))
-    unit = "Pa" if active.effect.sites == ("tank_pressure",) else UNITS[active.effect.equation]
-    return Acting(active.effect.equation, unit, time, mean, _with_shape(mean, std))
+    return Acting(active.effect.equation, unit_of_source(active.effect), time, mean, _with_shape(mean, std))
+
+
+def unit_of_source(effect: Effect) -> str:
+    """The unit of the source that an effect is; of a sensor's that of the channel that it is of, "" where it may be of
+    several."""
+    if effect.of_sensor:
+        return unit_of(effect.sites[0]) if len(effect.sites) == 1 else ""
+    return "Pa" if effect.sites == ("tank_pressure",) else UNITS[effect.equation]
 
 
 def _with_shape(mean: Array, std: Array) -> Array:

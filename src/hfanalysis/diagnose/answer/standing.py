@@ -10,15 +10,13 @@ from math import exp
 
 import numpy as np
 
-from hfanalysis.diagnose.answer.plausible import IMPOSSIBLE, excess, impossible
+from hfanalysis.diagnose.answer.plausible import IMPOSSIBLE, sized
 from hfanalysis.diagnose.answer.posterior import kind
-from hfanalysis.engine.effect import Active
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.bounds import on_bounds
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.gap import noise_of, root_mean_square
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.inference.unknown import has_name
 from hfanalysis.record.channels import LONG_NAMES, unit_of
 from hfanalysis.sentences import said, text
 
@@ -39,12 +37,6 @@ ASKED = ("p_tank", "p_run", "p_chamber", "thrust")
 """Channels that show the engine's own state; a purge line follows the tank through a valve that nobody has a law of."""
 
 SHOWN = {"Pa": "bar"}
-
-
-def acting_in(found: Fit) -> dict[str, Active]:
-    """The effects of a fit by their names, without unknown sources."""
-    acting = found.burnt.steps.engine.effects
-    return {active.effect.name: active for active in acting if has_name(active.effect)}
 
 
 def against(found: Candidate, observed: Observed) -> tuple[str, ...]:
@@ -68,18 +60,18 @@ def missed(found: Fit, observed: Observed) -> tuple[str, ...]:
     )
 
 
-def believed_share(active: Active) -> float:
-    """Part [-] of its probability that a name keeps by its size: all that can be believed, less beyond as the square
-    of how far; next to nothing where it is impossible."""
-    if impossible(active):
-        return exp(-IMPOSSIBLE)
-    return 1.0 / max(excess(active), 1.0) ** 2
+def believed_share(found: Candidate, name: str, observed: Observed) -> float:
+    """Part [-] of its probability that a name of a candidate keeps by its size: all that can be believed, less beyond
+    as the square of how far; next to nothing where it is impossible."""
+    judging = sized(found.fit, name, observed)
+    if judging is None:
+        return 1.0
+    return exp(-IMPOSSIBLE) if judging.impossible else 1.0 / max(judging.excess, 1.0) ** 2
 
 
 def share_of(found: Candidate, observed: Observed) -> float:
     """Part [-] of its probability that the first name of a candidate keeps."""
-    first = acting_in(found.fit).get(found.names[0])
-    return (1.0 if first is None else believed_share(first)) * (KEPT if against(found, observed) else 1.0)
+    return believed_share(found, found.names[0], observed) * (KEPT if against(found, observed) else 1.0)
 
 
 def withheld(posterior: Mapping[str, float], behind: Mapping[str, Candidate], observed: Observed) -> dict[str, float]:
@@ -123,11 +115,38 @@ def among_twins(
 def shared(out: dict[str, float], first: str, twin: str, apart: float, explained: float, heat: float) -> None:
     """Let a name share its probability in ``out`` with its twin, that is ``apart`` from it in log evidence, of what it
     has ``explained`` [both natural log]; ``heat``: temperature [-] of other evidences."""
-    warm = float(np.hypot(heat, LAWS * np.sqrt(max(explained, 0.0))))
-    least = 1.0 / (1.0 + exp(min(max(apart / warm, 0.0), 500.0)))
+    least = less_likely(apart, explained, heat)
     both = out[first] + out.get(twin, 0.0)
     out[twin] = max(out.get(twin, 0.0), least * both)
     out[first] = both - out[twin]
+
+
+def less_likely(apart: float, explained: float, heat: float) -> float:
+    """Probability [-] of what is ``apart`` behind an explanation, where errors of the laws of what was ``explained``
+    may be why [both natural log]; ``heat``: temperature [-] of other evidences.
+
+    >>> round(less_likely(4.8, 13.5, 0.8), 2), round(less_likely(80.0, 13.5, 0.8), 2)
+    (0.11, 0.0)
+    """
+    warm = float(np.hypot(heat, LAWS * np.sqrt(max(explained, 0.0))))
+    return 1.0 / (1.0 + exp(min(max(apart / warm, 0.0), 500.0)))
+
+
+def by_laws(
+    partners: Mapping[str, float], chosen: Candidate, base: Candidate, others: Sequence[Candidate], heat: float
+) -> dict[str, float]:
+    """The probabilities of names beside the first, none above what is left where the law of the others gets wrong what
+    that name explains.
+
+    ``others``: all explanations by names; ``heat``: temperature [-] of other evidences.
+    """
+    out = dict(partners)
+    for name in chosen.names[1:]:
+        less = [c.log_evidence for c in others if set(c.names) < set(chosen.names) and name not in c.names]
+        if name in out and less:
+            explained = max(less) - base.log_evidence
+            out[name] = min(out[name], 1.0 - less_likely(chosen.log_evidence - max(less), explained, heat))
+    return out
 
 
 def among_partners(

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import prod
 
 import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.diagnose.answer.borne_out import borne_out
-from hfanalysis.diagnose.answer.effect_source import Acting, acting
+from hfanalysis.diagnose.answer.effect_source import Acting, acting, acting_in
 from hfanalysis.diagnose.answer.limits import limits
-from hfanalysis.diagnose.answer.plausible import judged, lost
+from hfanalysis.diagnose.answer.plausible import judged, sized
 from hfanalysis.diagnose.answer.posterior import (
     LEAST_EVIDENCE,
     SET,
@@ -23,11 +24,12 @@ from hfanalysis.diagnose.answer.posterior import (
     weights_of,
 )
 from hfanalysis.diagnose.answer.standing import (
-    acting_in,
     against,
     among_partners,
     among_twins,
     believed_share,
+    by_laws,
+    less_likely,
     withheld,
 )
 from hfanalysis.diagnose.answer.where import elsewhere, likeliest_of, likeliest_source
@@ -35,6 +37,7 @@ from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.engine.effect import Parameter
 from hfanalysis.inference.candidate import Candidate
+from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.unknown import History
 from hfanalysis.products.diagnosis import NamedEffect, Place, SourceHistory
 from hfanalysis.quantity import NORMAL_95, Quantity
@@ -96,8 +99,8 @@ def verdict_of(found: Naming, twins: Mapping[str, tuple[str, ...]] = NO_TWINS) -
     """
     weighed = replace(
         found,
-        singles=tuple(_believed(c) for c in found.singles),
-        sets=tuple(_believed(c) for c in found.sets),
+        singles=tuple(_believed(c, found.bench.observed) for c in found.singles),
+        sets=tuple(_believed(c, found.bench.observed) for c in found.sets),
     )
     weighed = borne_out(weighed, _by_evidence)
     evidences, apart = evidences_of(weighed), elsewhere(weighed)
@@ -132,13 +135,13 @@ def _with_doubts(
         return _verdict(found, kept, evidences, twins)
     chosen = _chosen(found, top)
     beside = [c for c in found.unknown if c.names[:-1] == chosen.names and c.names[:-1]]
-    doubts = against(chosen, found.bench.observed) or (_size_of(chosen),)
+    doubts = against(chosen, found.bench.observed) or (_size_of(chosen, found.bench.observed),)
     return Verdict("unknown", kept, evidences, smallest_set(kept), next(iter(beside), chosen), doubts=doubts)
 
 
-def _size_of(chosen: Candidate) -> str:
+def _size_of(chosen: Candidate, observed: Observed) -> str:
     """What is to be said of the size of a candidate's first effect."""
-    return judged(acting_in(chosen.fit)[chosen.names[0]]).why
+    return judged(sized(chosen.fit, chosen.names[0], observed)).why
 
 
 def _verdict(
@@ -154,18 +157,23 @@ def _verdict(
     if top in ("none", "unknown"):
         return Verdict(top, posterior, evidences, set90, chosen)
     heat = scale().heat(found.named.leftover)
-    partners = among_partners(partners_of(top, found), chosen, (*found.singles, *found.sets), twins, heat)
-    partners = _believed_partners(partners, chosen)
+    others = (*found.singles, *found.sets)
+    partners = by_laws(partners_of(top, found), chosen, found.base, others, heat)
+    partners = among_partners(partners, chosen, others, twins, heat)
+    observed = found.bench.observed
+    partners = {n: p * believed_share(chosen, n, observed) for n, p in partners.items()}
+    chosen = _likeliest_beside(partners, chosen, others)
     rivals = [name for name in set90 if name not in (top, "none")]
     sure = posterior[top] >= NAMED_FROM and not rivals and all(partners[n] >= SET for n in chosen.names[1:])
     beside = {name: posterior[top] * p for name, p in partners.items()}
     return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
 
 
-def _believed_partners(partners: Mapping[str, float], chosen: Candidate) -> dict[str, float]:
-    """Probabilities of names beside the first by what can be of their sizes, as the first's own."""
-    acting_there = acting_in(chosen.fit)
-    return {n: p * (believed_share(acting_there[n]) if n in acting_there else 1.0) for n, p in partners.items()}
+def _likeliest_beside(partners: Mapping[str, float], chosen: Candidate, others: Sequence[Candidate]) -> Candidate:
+    """The set of as many effects with the same first whose other names are the most probable: a twin may be more so
+    than the one with which the data are more probable, by its size."""
+    alike = [c for c in others if c.names[0] == chosen.names[0] and len(c.names) == len(chosen.names)]
+    return max(alike, key=lambda c: (prod(partners.get(n, 0.0) for n in c.names[1:]), c.log_evidence), default=chosen)
 
 
 def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], poor: bool = False) -> str:
@@ -180,9 +188,10 @@ def _claimed(posterior: Mapping[str, float], evidences: Mapping[str, float], poo
     return top if posterior["none"] < CLAIM and evidences[top] >= LEAST_EVIDENCE else "none"
 
 
-def _believed(candidate: Candidate) -> Candidate:
+def _believed(candidate: Candidate, observed: Observed) -> Candidate:
     """The candidate with what impossible sizes cost it."""
-    cost = sum(lost(active) for name, active in acting_in(candidate.fit).items() if name in candidate.names)
+    sizes = (sized(candidate.fit, name, observed) for name in candidate.names)
+    cost = sum(size.lost for size in sizes if size is not None)
     return replace(candidate, log_evidence=candidate.log_evidence - cost)
 
 
@@ -197,12 +206,21 @@ def _chosen(found: Naming, top: str) -> Candidate:
     named = [c for c in (*found.singles, *found.sets) if c.names[0] == top]
     best = max(named, key=lambda c: c.log_evidence)
     weights = weights_of(named, found)
-    while sum(w for c, w in zip(named, weights, strict=True) if len(c.names) < len(best.names)) >= FEWER:
-        best = max((c for c in named if len(c.names) < len(best.names)), key=lambda c: c.log_evidence)
-    return best
+    while True:
+        less = [(c, w) for c, w in zip(named, weights, strict=True) if len(c.names) < len(best.names)]
+        least = max((c for c, _ in less), key=lambda c: c.log_evidence, default=None)
+        if least is None or max(sum(w for _, w in less), _behind(least, best, found)) < FEWER:
+            return best
+        best = least
 
 
-def effects_product(verdict: Verdict) -> tuple[NamedEffect, ...]:
+def _behind(fewer: Candidate, best: Candidate, found: Naming) -> float:
+    """Probability [-] of fewer effects, whose laws may get wrong what the best explains beyond them."""
+    explained, heat = fewer.log_evidence - found.base.log_evidence, scale().heat(found.named.leftover)
+    return less_likely(best.log_evidence - fewer.log_evidence, explained, heat)
+
+
+def effects_product(verdict: Verdict, observed: Observed) -> tuple[NamedEffect, ...]:
     """What was added to the model: name, probability [-], equation, parameters in their SI units, and how large that
     is."""
     if verdict.label not in ("named", "ambiguous"):
@@ -224,7 +242,7 @@ def effects_product(verdict: Verdict) -> tuple[NamedEffect, ...]:
                 equation=active.effect.equation,
                 meaning=active.effect.meaning,
                 parameters=parameters,
-                plausibility=judged(active),
+                plausibility=judged(sized(found, name, observed)),
             )
         )
     return tuple(out)
