@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from hfanalysis.diagnose.answer.plausible import judged, lost
+from hfanalysis.diagnose.answer.plausible import judged, size_of
 from hfanalysis.effects import effect, library
 
 SIZES = {
-    "tank_heat": ("power", 1.5e3, 6e3),  # three heating blankets of 500 W; an instant water heater
+    "tank_heat": ("power", 5e3, 20e3),  # 10 kg of aluminum give 11 K away in 20 s; 45 kg of it do
     "tank_wall_heat_capacity": ("capacity", 12 * 900.0, 60 * 900.0),  # 12 kg of aluminum; 60 kg of it round 20 L
     "tank_nonequilibrium": ("depth", 5e5, 20e5),  # Zimmerman's cold flows; half of the tank's pressure
     "tank_stratification": ("excess", 6.0, 25.0),  # a tank in the sun; from a cool cellar to beyond the critical point
@@ -45,13 +45,13 @@ def test_sizes_that_stands_have_are_believed_and_those_that_none_has_are_not(nam
     assert parameter in [p.name for p in effect(name).parameters]
     for sign in (1.0, -1.0):
         can_be = sign > 0.0 or name not in ONE_SIGN
-        assert judged(effect(name).at(**{parameter: sign * possible})).plausible is can_be
-        assert (lost(effect(name).at(**{parameter: sign * possible})) == 0.0) is can_be
-        assert judged(effect(name).at(**{parameter: sign * impossible})).plausible is False
-        assert lost(effect(name).at(**{parameter: sign * impossible})) > 1.0
+        assert judged(size_of(effect(name).at(**{parameter: sign * possible}))).plausible is can_be
+        assert (size_of(effect(name).at(**{parameter: sign * possible})).lost == 0.0) is can_be
+        assert judged(size_of(effect(name).at(**{parameter: sign * impossible}))).plausible is False
+        assert size_of(effect(name).at(**{parameter: sign * impossible})).lost > 1.0
 
 
 def test_a_size_of_ten_times_the_believable_is_as_good_as_excluded() -> None:
     """The odds are a million to one against it, and no size costs more than some millions to one."""
-    assert 13.0 < lost(effect("nozzle_throat_erosion").at(rate=4e-3)) < 17.0
-    assert lost(effect("nozzle_throat_erosion").at(rate=4.0)) < 17.0
+    assert 13.0 < size_of(effect("nozzle_throat_erosion").at(rate=4e-3)).lost < 17.0
+    assert size_of(effect("nozzle_throat_erosion").at(rate=4.0)).lost < 17.0

@@ -9,7 +9,7 @@ from tests.diagnose.answer.test_verdict import eroded, probable
 from tests.inference import made
 from tests.products.filled import filled
 
-from hfanalysis.diagnose.answer.plausible import judged
+from hfanalysis.diagnose.answer.plausible import judged, size_of
 from hfanalysis.diagnose.answer.verdict import effects_product, places, verdict_of
 from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import (
@@ -45,7 +45,7 @@ def product(label: str, **more: Any) -> Diagnosis:
         "by_equation": by_equation(verdict.posterior, found),
         "posterior": {"unknown": 0.97, "none": 0.03} if label == "unknown" else verdict.posterior,
         "set90": ["unknown"] if label == "unknown" else verdict.set90,
-        "effects": effects_product(verdict) if label in ("named", "ambiguous") else [],
+        "effects": effects_product(verdict, eroded().bench.observed) if label in ("named", "ambiguous") else [],
         "localisation": places(verdict, found) if label != "none" else [],
         "compared": {"chi_square": 0.9},
         "leftover": 0.9,
@@ -135,12 +135,12 @@ def test_a_fire_that_dies_slowly_is_said_beside_what_an_empty_chamber_takes(seco
 
 
 def test_an_impossible_size_is_said() -> None:
-    row = effects_product(verdict_of(eroded()))[0]
+    row = effects_product(verdict_of(eroded()), eroded().bench.observed)[0]
     given = product("named")
     said = " ".join(effect_sentences(row, given))
     assert "Its size is plausible: rate " in said
     assert "(limit 0.4 mm/s)." in said
-    unlikely = row.but(plausibility=judged(effect("nozzle_throat_erosion").at(rate=2e-3)))
+    unlikely = row.but(plausibility=judged(size_of(effect("nozzle_throat_erosion").at(rate=2e-3))))
     said = " ".join(effect_sentences(unlikely, given))
     assert "hard to believe" in said
     assert "2 mm/s is beyond 0.4 mm/s" in said

@@ -8,7 +8,7 @@ of the name. Where an effect's strength and what it does are of one unit, the mo
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import log
+from math import exp, log
 
 import numpy as np
 
@@ -58,6 +58,12 @@ class Size:
         """Log of the odds that an effect loses by its size [natural log]."""
         by_size = 0.0 if self.excess <= 1.0 else min(STEEPNESS * log(self.excess) ** 2 + 1.0, MOST_LOST)
         return max(by_size, IMPOSSIBLE) if self.impossible else by_size
+
+    @property
+    def kept(self) -> float:
+        """Part [-] of its probability that a name keeps by its size: all that can be believed, less beyond as the
+        square of how far; next to nothing where it is impossible."""
+        return exp(-IMPOSSIBLE) if self.impossible else 1.0 / max(self.excess, 1.0) ** 2
 
 
 def size_of(active: Active) -> Size | None:

@@ -10,7 +10,7 @@ from math import exp
 
 import numpy as np
 
-from hfanalysis.diagnose.answer.plausible import IMPOSSIBLE, sized
+from hfanalysis.diagnose.answer.plausible import sized
 from hfanalysis.diagnose.answer.posterior import kind
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.bounds import on_bounds
@@ -61,12 +61,9 @@ def missed(found: Fit, observed: Observed) -> tuple[str, ...]:
 
 
 def believed_share(found: Candidate, name: str, observed: Observed) -> float:
-    """Part [-] of its probability that a name of a candidate keeps by its size: all that can be believed, less beyond
-    as the square of how far; next to nothing where it is impossible."""
-    judging = sized(found.fit, name, observed)
-    if judging is None:
-        return 1.0
-    return exp(-IMPOSSIBLE) if judging.impossible else 1.0 / max(judging.excess, 1.0) ** 2
+    """Part [-] of its probability that a name of a candidate keeps by its size."""
+    size = sized(found.fit, name, observed)
+    return 1.0 if size is None else size.kept
 
 
 def share_of(found: Candidate, observed: Observed) -> float:

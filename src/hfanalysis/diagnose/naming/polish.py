@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.diagnose.naming.base_model import FROM_EXPONENTS, SAME
+from hfanalysis.diagnose.naming.base_model import FROM_EXPONENTS, NEARLY, SAME, same_valley
 from hfanalysis.inference.candidate import SHORT, Bench, Candidate, attempted, candidate, followed
 from hfanalysis.inference.fitting.form import Form
 from hfanalysis.inference.fitting.threads import each
@@ -65,7 +65,23 @@ def deepest(named: Candidate, others: Iterable[Candidate], bench: Bench, exponen
         starts += [partial(_at, named, form, named.fit.x, bench, exponent) for form, exponent in which]
     besides = named.log_evidence - candidate(named.names, named.fit, named.form, named.source).log_evidence
     tried = [found for found in each(lambda one: one(), starts) if found is not None]
-    return _deeper(named, [replace(c, log_evidence=c.log_evidence + besides) for c in tried], bench)
+    return _deeper_or_usual(named, [replace(c, log_evidence=c.log_evidence + besides) for c in tried], bench)
+
+
+def _deeper_or_usual(named: Candidate, tried: Sequence[Candidate], bench: Bench) -> Candidate:
+    """The deepest of a named explanation and what was tried in its place, each brought to its end; of valleys that are
+    as deep as it the one whose n is nearest to what is known of fuels, or the last digits would decide."""
+    valleys = [named]
+    least = max((named, *tried), key=lambda c: c.log_evidence).log_evidence - NEARLY
+    for one in sorted(tried, key=lambda c: -c.log_evidence):
+        if one.log_evidence > least and not any(same_valley(one.fit, other.fit) for other in valleys):
+            valleys.append(bench.told(bench.judged(one)))
+    deepest_of = max(valleys, key=lambda c: c.log_evidence)
+    alike = [c for c in valleys if c.log_evidence > deepest_of.log_evidence - DEEPER]
+    if "n" not in named.fit.hypothesis.names:
+        return deepest_of
+    place = named.fit.hypothesis.names.index("n")
+    return min(alike, key=lambda c: abs(float(c.fit.x[place])))
 
 
 def _at(named: Candidate, form: Form, x: Array, bench: Bench, exponent: float | None = None) -> Candidate | None:
