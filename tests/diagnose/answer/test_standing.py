@@ -73,7 +73,7 @@ def test_a_name_beside_the_first_is_not_what_the_first_s_law_may_get_wrong(
     base, first = eroded().base, eroded().singles[0]
     one = replace(first, log_evidence=base.log_evidence + alone)
     both = replace(first, names=(*first.names, "load_cell_drift"), log_evidence=one.log_evidence + gain)
-    told = by_laws({"load_cell_drift": 0.99}, both, base, (one, both), 0.8)
+    told = by_laws({"load_cell_drift": 0.99}, first.names[0], base, (one, both), 0.8)
     assert (told["load_cell_drift"] >= SET) == sure
 
 

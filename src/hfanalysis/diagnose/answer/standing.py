@@ -130,19 +130,21 @@ def less_likely(apart: float, explained: float, heat: float) -> float:
 
 
 def by_laws(
-    partners: Mapping[str, float], chosen: Candidate, base: Candidate, others: Sequence[Candidate], heat: float
+    partners: Mapping[str, float], first: str, base: Candidate, others: Sequence[Candidate], heat: float
 ) -> dict[str, float]:
-    """The probabilities of names beside the first, none above what is left where the law of the others gets wrong what
-    that name explains.
+    """The probabilities of names beside the ``first``, none above what is left where the law of the others gets wrong
+    what that name explains.
 
     ``others``: all explanations by names; ``heat``: temperature [-] of other evidences.
     """
     out = dict(partners)
-    for name in chosen.names[1:]:
-        less = [c.log_evidence for c in others if set(c.names) < set(chosen.names) and name not in c.names]
-        if name in out and less:
-            explained = max(less) - base.log_evidence
-            out[name] = min(out[name], 1.0 - less_likely(chosen.log_evidence - max(less), explained, heat))
+    for name in partners:
+        sets = [c for c in others if {first, name} <= set(c.names)]
+        best = max(sets, key=lambda c: c.log_evidence, default=base)
+        less = [c.log_evidence for c in others if set(c.names) < set(best.names) and name not in c.names]
+        if less:
+            behind = less_likely(best.log_evidence - max(less), max(less) - base.log_evidence, heat)
+            out[name] = min(out[name], 1.0 - behind)
     return out
 
 

@@ -158,7 +158,7 @@ def _verdict(
         return Verdict(top, posterior, evidences, set90, chosen)
     heat = scale().heat(found.named.leftover)
     others = (*found.singles, *found.sets)
-    partners = by_laws(partners_of(top, found), chosen, found.base, others, heat)
+    partners = by_laws(partners_of(top, found), top, found.base, others, heat)
     partners = among_partners(partners, chosen, others, twins, heat)
     observed = found.bench.observed
     partners = {n: p * believed_share(chosen, n, observed) for n, p in partners.items()}
