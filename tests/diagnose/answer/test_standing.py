@@ -194,6 +194,20 @@ def test_a_name_beside_the_first_has_to_be_borne_out_itself(monkeypatch: pytest.
     assert best.singles[0].log_evidence == first.log_evidence
 
 
+def test_beside_the_first_a_twin_of_a_size_that_can_be_is_chosen_over_one_of_a_size_that_cannot() -> None:
+    """The data are more probable with the one whose size is three times what can be believed."""
+    first, test = eroded().singles[0], eroded().bench.observed
+    large = replace(too_large(), names=("tank_heat", "nozzle_throat_erosion"), log_evidence=first.log_evidence + 4.0)
+    usual = replace(first, names=("tank_heat", "combustion_efficiency"))
+    kept = {
+        n: verdict_module._size_beside(n, "tank_heat", (large, usual), test) for n in (large.names[1], usual.names[1])
+    }
+    assert kept == pytest.approx({"nozzle_throat_erosion": 1.0 / 9.0, "combustion_efficiency": 1.0})
+    partners = {"nozzle_throat_erosion": 0.7 * kept["nozzle_throat_erosion"], "combustion_efficiency": 0.3}
+    assert verdict_module._likeliest_beside(partners, large, (large, usual)) is usual
+    assert verdict_module._likeliest_beside({**partners, "nozzle_throat_erosion": 0.7}, usual, (large, usual)) is large
+
+
 def test_twins_beside_the_first_are_told_together_too() -> None:
     first = eroded().singles[0]
     sets = tuple(

@@ -129,6 +129,11 @@ def less_likely(apart: float, explained: float, heat: float) -> float:
     return 1.0 / (1.0 + exp(min(max(apart / warm, 0.0), 500.0)))
 
 
+def best_with(first: str, name: str, others: Sequence[Candidate]) -> Candidate | None:
+    """The most probable explanation that has both names."""
+    return max((c for c in others if {first, name} <= set(c.names)), key=lambda c: c.log_evidence, default=None)
+
+
 def by_laws(
     partners: Mapping[str, float], first: str, base: Candidate, others: Sequence[Candidate], heat: float
 ) -> dict[str, float]:
@@ -139,8 +144,7 @@ def by_laws(
     """
     out = dict(partners)
     for name in partners:
-        sets = [c for c in others if {first, name} <= set(c.names)]
-        best = max(sets, key=lambda c: c.log_evidence, default=base)
+        best = best_with(first, name, others) or base
         less = [c.log_evidence for c in others if set(c.names) < set(best.names) and name not in c.names]
         if less:
             behind = less_likely(best.log_evidence - max(less), max(less) - base.log_evidence, heat)

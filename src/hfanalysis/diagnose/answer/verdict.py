@@ -28,6 +28,7 @@ from hfanalysis.diagnose.answer.standing import (
     among_partners,
     among_twins,
     believed_share,
+    best_with,
     by_laws,
     less_likely,
     withheld,
@@ -160,13 +161,18 @@ def _verdict(
     others = (*found.singles, *found.sets)
     partners = by_laws(partners_of(top, found), top, found.base, others, heat)
     partners = among_partners(partners, chosen, others, twins, heat)
-    observed = found.bench.observed
-    partners = {n: p * believed_share(chosen, n, observed) for n, p in partners.items()}
+    partners = {n: p * _size_beside(n, top, others, found.bench.observed) for n, p in partners.items()}
     chosen = _likeliest_beside(partners, chosen, others)
     rivals = [name for name in set90 if name not in (top, "none")]
     sure = posterior[top] >= NAMED_FROM and not rivals and all(partners[n] >= SET for n in chosen.names[1:])
     beside = {name: posterior[top] * p for name, p in partners.items()}
     return Verdict("named" if sure else "ambiguous", posterior, evidences, set90, chosen, beside)
+
+
+def _size_beside(name: str, first: str, others: Sequence[Candidate], observed: Observed) -> float:
+    """Part [-] of its probability that a name beside the first keeps by its size, in the best set that has both."""
+    best = best_with(first, name, others)
+    return 1.0 if best is None else believed_share(best, name, observed)
 
 
 def _likeliest_beside(partners: Mapping[str, float], chosen: Candidate, others: Sequence[Candidate]) -> Candidate:

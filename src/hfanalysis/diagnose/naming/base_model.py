@@ -44,7 +44,7 @@ def base_model(hypothesis: Hypothesis, bench: Bench) -> tuple[Candidate, list[Ca
         start = first.fit.x.copy()
         start[place] = exponent
         other = followed(hypothesis, slice(place, place + 1), bench.at(first.form), start)
-        if other is None or same_valley(other, first.fit):
+        if other is None or _same(other, first.fit):
             continue
         found = candidate((), other, first.form)
         if found.log_evidence > first.log_evidence - NEARLY:
@@ -60,7 +60,7 @@ def _elsewhere(base: Candidate, seen: list[Candidate], bench: Bench) -> list[Can
     valleys: list[Candidate] = []
     for one in sorted((c for c in ended if c is not None), key=lambda c: -c.log_evidence):
         far = one.log_evidence < base.log_evidence - FAR_BEHIND
-        if not far and not any(same_valley(one.fit, other.fit) for other in (base, *valleys)):
+        if not far and not any(_same(one.fit, other.fit) for other in (base, *valleys)):
             valleys.append(one)
     return valleys
 
@@ -71,6 +71,6 @@ def _ended(found: Candidate, base: Candidate, bench: Bench) -> Candidate | None:
     return None if there is None else bench.converged(there)
 
 
-def same_valley(one: Fit, other: Fit) -> bool:
+def _same(one: Fit, other: Fit) -> bool:
     """Whether two fits are in the same valley."""
     return bool(np.abs(one.x - other.x).max() < SAME)

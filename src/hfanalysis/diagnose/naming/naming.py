@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from hfanalysis.diagnose.naming.base_model import base_model
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.freeform import unknown_sources
-from hfanalysis.diagnose.naming.polish import ROUNDS, deepest, polished
+from hfanalysis.diagnose.naming.polish import ROUNDS, polished
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import sets_of
 from hfanalysis.diagnose.naming.singles import singles_of
@@ -74,29 +74,15 @@ def name_effects(
     base, valleys = base_model(hypothesis, bench)
     base, valleys, singles = _from_the_deepest(base, valleys, search)
     singles, sets = sets_of(base, singles, search)
-    named, singles, sets = _deepest_named(base, singles, sets, bench)
+    named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
     unknown = unknown_sources(base, valleys, named, bench)
-    named, singles, sets = _deepest_named(base, singles, sets, bench, unknown)
     told, base = base, polished(base, (*sets, *unknown), bench)
     best = max(c.log_evidence for c in (named, *unknown))
     singles, sets, unknown = (_told(some, best, bench) for some in (singles, sets, unknown))
     equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     risen = base.log_evidence - told.log_evidence
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations, risen=risen)
-
-
-def _deepest_named(
-    base: Candidate, singles: list[Candidate], sets: list[Candidate], bench: Bench, more: Sequence[Candidate] = ()
-) -> tuple[Candidate, list[Candidate], list[Candidate]]:
-    """The best explanation by names in its deepest valley, as it is reached from others and from ``more``, and the
-    single effects and sets with it in its place."""
-    best = max((base, *singles, *sets), key=lambda c: c.log_evidence)
-    if best is base:
-        return base, singles, sets
-    found = deepest(best, more or (*singles, *sets), bench, exponents=not more)
-    singles, sets = ([found if c is best else c for c in some] for some in (singles, sets))
-    return found, singles, sets
 
 
 def _from_the_deepest(
