@@ -12,15 +12,9 @@ from hfanalysis.diagnose.answer.effect_source import acting_in
 from hfanalysis.diagnose.answer.plausible import judged, sized
 from hfanalysis.diagnose.answer.posterior import poor_fit, scale
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
-from hfanalysis.diagnose.answer.too_small import without_the_small
-from hfanalysis.diagnose.answer.verdict import (
-    Verdict,
-    effects_product,
-    likeliest_place,
-    places,
-    upper_limits,
-    verdict_of,
-)
+from hfanalysis.diagnose.answer.source_places import likeliest_place, places
+from hfanalysis.diagnose.answer.too_small import with_parts, without_small_sources, without_the_small
+from hfanalysis.diagnose.answer.verdict import Verdict, effects_product, upper_limits, verdict_of
 from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import story
 from hfanalysis.diagnose.model_free import shown
@@ -49,6 +43,7 @@ from hfanalysis.products.diagnosis import (
     FormError,
     Gap,
     GapByPhase,
+    Place,
     Plausibility,
     Tried,
 )
@@ -78,9 +73,9 @@ def diagnose(
     """
     hypothesis, observed = subject.compared()
     catalogue = Catalogue(_visible(effects, observed), subject.stated())
-    found = name_effects(hypothesis, observed, catalogue, progress, settings)
+    found = without_small_sources(name_effects(hypothesis, observed, catalogue, progress, settings))
     verdict = verdict_of(found, {name: effect.twins for name, effect in catalogue.effects.items()})
-    verdict, small = without_the_small(verdict, places(verdict, found), found)
+    verdict, small = without_the_small(verdict, sized_places(verdict, found), found)
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
     product = _product(found, verdict, proof, catalogue)
@@ -95,6 +90,11 @@ def diagnose(
         sentences += shown(subject).sentences
     notes = (*subject.notes, *product.notes)
     return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
+
+
+def sized_places(verdict: Verdict, found: Naming) -> tuple[Place, ...]:
+    """Where and when the model lacks what, and which part that is of what goes through its equation."""
+    return with_parts(places(verdict, found), verdict.chosen.fit.burnt, found.bench.observed)
 
 
 def _with_calibrated(found: Gap, naming: Naming, hypothesis: Hypothesis, subject: Subject) -> Gap:
@@ -156,7 +156,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         unknown_elsewhere=verdict.elsewhere,
         tried=tuple(_tried(c, found, verdict.held_out) for c in (*found.singles, *found.sets, *found.unknown)),
         leftover=found.named.leftover,
-        localisation=places(verdict, found),
+        localisation=sized_places(verdict, found),
         likeliest_place=likeliest_place(verdict, found, equations),
         gap=_gap(found.base, chosen, proof, observed),
         upper_limits=upper_limits(verdict, found, catalogue),

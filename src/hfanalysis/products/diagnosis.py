@@ -59,6 +59,9 @@ class Place(Part):
     rms: Annotated[Quantity | None, Is("its root mean square between the two")] = None
     channel: Annotated[str | None, Is("the sensor that it is of")]
     significance: Annotated[float, Is("gain of log evidence by it", "")]
+    part: Annotated[float | None, Is(
+        "its largest size over what goes through its equation, or over the largest reading of its sensor", ""
+    )] = None  # fmt: skip
     history: Annotated[SourceHistory | None, Is("over time")] = None
     beside: Annotated[bool, Is("whether it is open beside what is named")] = False
 

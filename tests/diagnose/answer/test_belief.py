@@ -38,6 +38,7 @@ def test_a_second_effect_is_claimed_unless_one_alone_has_a_third_of_the_probabil
     fit: Any = None
     single, pair = Candidate(("tank_heat",), fit, 10.0), Candidate(("tank_heat", "n2_purge"), fit, 11.0)
     monkeypatch.setattr(verdict, "weights_of", lambda named, _: [alone, 1.0 - alone])
-    monkeypatch.setattr(verdict, "_behind", lambda *_: 0.0)  # errors of the first's law aside
-    found = SimpleNamespace(singles=(single,), sets=(pair,), base=None)
+    monkeypatch.setattr(verdict, "left_by_laws", lambda *_: 0.0)  # errors of the first's law aside
+    named = SimpleNamespace(leftover=1.0)
+    found = SimpleNamespace(singles=(single,), sets=(pair,), base=None, named=named)
     assert _chosen(cast(Naming, found), "tank_heat").names == names

@@ -17,7 +17,16 @@ from hfanalysis.diagnose.answer.at_limit import NEAR, at_limit
 from hfanalysis.diagnose.answer.borne_out import borne_out, broken
 from hfanalysis.diagnose.answer.plausible import IMPOSSIBLE, judged, size_of, sized
 from hfanalysis.diagnose.answer.posterior import SET
-from hfanalysis.diagnose.answer.standing import KEPT, among_twins, by_laws, missed
+from hfanalysis.diagnose.answer.standing import (
+    KEPT,
+    among_partners,
+    among_twins,
+    beside_a_curve,
+    by_laws,
+    left_open,
+    missed,
+    withheld,
+)
 from hfanalysis.diagnose.answer.verdict import CLAIM, NAMED_FROM, Verdict, effects_product, verdict_of
 from hfanalysis.diagnose.answer.words import doubts_sentences, headline
 from hfanalysis.diagnose.naming.polish import DEEPER, NotConvergedError, assert_converged, not_converged
@@ -65,15 +74,20 @@ def test_a_drift_is_judged_by_what_it_comes_to_and_not_by_where_it_would_end() -
     assert "at its largest" in str(judged(found).why)
 
 
-@pytest.mark.parametrize(("gain", "alone", "sure"), [(6.0, 60.0, False), (60.0, 60.0, True), (6.0, 1.0, True)])
+@pytest.mark.parametrize(
+    ("gain", "alone", "near", "sure"),
+    [(6.0, 60.0, False, False), (60.0, 60.0, True, True), (6.0, 1.0, False, True),
+     (60.0, 500.0, False, True), (60.0, 500.0, True, False), (150.0, 500.0, True, True)],
+)  # fmt: skip
 def test_a_name_beside_the_first_is_not_what_the_first_s_law_may_get_wrong(
-    gain: float, alone: float, sure: bool
+    gain: float, alone: float, near: bool, sure: bool
 ) -> None:
-    """Six beside sixty are what an error of the law explains; beside one they are not."""
+    """Six beside sixty are what an error of the law explains, beside one they are not; sixty beside five hundred are
+    what its course may be wrong by where both act at one place."""
     base, first = eroded().base, eroded().singles[0]
     one = replace(first, log_evidence=base.log_evidence + alone)
     both = replace(first, names=(*first.names, "load_cell_drift"), log_evidence=one.log_evidence + gain)
-    told = by_laws({"load_cell_drift": 0.99}, first.names[0], base, (one, both), 0.8)
+    told = by_laws({"load_cell_drift": 0.99}, first.names[0], base, (one, both), 0.8, lambda *_: near)
     assert (told["load_cell_drift"] >= SET) == sure
 
 
@@ -83,6 +97,48 @@ def too_large() -> Candidate:
     worn = replace(single.fit.burnt.steps.engine, effects=(effect("nozzle_throat_erosion").at(rate=1.2e-3),))
     steps = replace(single.fit.burnt.steps, engine=worn)
     return replace(single, fit=replace(single.fit, burnt=replace(single.fit.burnt, steps=steps)))
+
+
+@pytest.mark.parametrize(
+    ("name", "curve", "elsewhere", "sure"),
+    [(191.0, 213.0, None, False), (97.0, 113.0, None, False), (69.0, 78.0, None, False),
+     (69.0, 140.0, None, True), (191.0, 213.0, 213.0, True), (20.0, 213.0, None, True)],
+)  # fmt: skip
+def test_a_free_curve_that_explains_little_more_than_a_name_is_not_surely_something_else(
+    name: float, curve: float, elsewhere: float | None, sure: bool
+) -> None:
+    """It follows what the law gets wrong; in another equation, or where it explains far more, it is something else."""
+    before = {"none": 0.0, "tank_heat": 0.001, "feed_line_fill": 0.0, "unknown": 0.999}
+    evidences = {"none": 0.0, "tank_heat": name, "feed_line_fill": 5.0, "unknown": curve}
+    after = beside_a_curve(before, evidences, elsewhere, 0.8)
+    assert (after["unknown"] > 0.9) == sure
+    assert sum(after.values()) == pytest.approx(1.0)
+    assert after["feed_line_fill"] == 0.0
+
+
+@pytest.mark.parametrize("evidences", [{"none": 0.0, "unknown": 9.0}, {"none": 0.0, "a": -5.0, "unknown": 9.0},
+                                       {"none": 0.0, "a": 12.0, "unknown": 9.0}])  # fmt: skip
+def test_where_no_name_comes_before_a_curve_nothing_is_shared(evidences: dict[str, float]) -> None:
+    before = dict.fromkeys(evidences, 1.0 / len(evidences))
+    assert beside_a_curve(before, evidences, None, 0.8) == before
+
+
+@pytest.mark.parametrize(
+    ("gaps", "open_"), [((5.0, 4.0), True), ((5.0, 2.0), False), ((1.5, 0.9), False), ((0.3, 0.3), False)]
+)
+def test_a_name_that_closes_little_of_the_gap_is_not_the_whole_story(
+    gaps: tuple[float, float], open_: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where what is left is more than noise; a gap within the noise cannot be closed, and tells nothing."""
+    base, one, observed = eroded().base, eroded().singles[0], eroded().bench.observed
+    told = {id(base.fit): gaps[0], id(one.fit): gaps[1]}
+    monkeypatch.setattr(standing, "total_gap", lambda fit, _: told[id(fit)])
+    said = left_open(one, base, observed)
+    assert bool(said) == open_
+    assert all("20 % of the gap between model and test closes" in why for why in said)
+    probable = {"none": 0.0, one.names[0]: 0.99, "unknown": 0.01}
+    kept = withheld(probable, {one.names[0]: one}, base, observed)
+    assert (kept[one.names[0]] < 0.5) == open_
 
 
 def test_a_size_beyond_belief_is_not_stated_at_99_percent_but_unknown_beside_the_name() -> None:
@@ -206,6 +262,15 @@ def test_beside_the_first_a_twin_of_a_size_that_can_be_is_chosen_over_one_of_a_s
     partners = {"nozzle_throat_erosion": 0.7 * kept["nozzle_throat_erosion"], "combustion_efficiency": 0.3}
     assert verdict_module._likeliest_beside(partners, large, (large, usual)) is usual
     assert verdict_module._likeliest_beside({**partners, "nozzle_throat_erosion": 0.7}, usual, (large, usual)) is large
+
+
+def test_a_twin_that_is_named_already_takes_nothing_from_the_other() -> None:
+    """Two twins may both be there: then neither stands in the place of the other."""
+    base, first = eroded().base, eroded().singles[0]
+    one = replace(first, names=("tank_nonequilibrium",), log_evidence=base.log_evidence + 500.0)
+    both = replace(first, names=("tank_nonequilibrium", "tank_stratification"), log_evidence=one.log_evidence + 90.0)
+    twins = {"tank_stratification": ("tank_nonequilibrium",)}
+    assert among_partners({"tank_stratification": 0.98}, both, (one, both), twins, 0.8) == {"tank_stratification": 0.98}
 
 
 def test_twins_beside_the_first_are_told_together_too() -> None:

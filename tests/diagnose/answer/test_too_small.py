@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 import pytest
 from tests.diagnose.answer.test_verdict import eroded
 
-from hfanalysis.diagnose.answer.too_small import MATTERS, OF_NITROGEN, least_of, part_of, too_small, without_the_small
-from hfanalysis.diagnose.answer.verdict import places, verdict_of
-from hfanalysis.diagnose.answer.words import headline
+from hfanalysis.diagnose.answer.source_places import places
+from hfanalysis.diagnose.answer.too_small import (
+    MATTERS,
+    OF_NITROGEN,
+    least_of,
+    too_small,
+    with_parts,
+    without_small_sources,
+    without_the_small,
+)
+from hfanalysis.diagnose.answer.verdict import verdict_of
+from hfanalysis.diagnose.answer.words import headline, place_sentence
+from hfanalysis.engine.unsteady import Burn
+from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.observations.observed import Observed
+from hfanalysis.inference.places import SourcePlace
+from hfanalysis.inference.unknown import History, Unknown
 from hfanalysis.products.diagnosis import Diagnosis, Place
 
 
@@ -19,16 +34,24 @@ def row(factor: float = 1.0, **changed: object) -> Place:
     (found,) = places(verdict_of(eroded()), eroded())
     assert found.history is not None
     mean = tuple((factor * np.asarray(found.history.mean)).tolist())
-    return found.but(history=found.history.but(mean=mean), **changed)
+    (sized,) = with_parts([found.but(history=found.history.but(mean=mean), **changed)], burnt(), observed())
+    return sized
+
+
+def burnt() -> Burn:
+    return eroded().singles[0].fit.burnt
+
+
+def observed() -> Observed:
+    return eroded().bench.observed
 
 
 def test_a_loss_of_thrust_is_a_part_of_the_thrust() -> None:
-    burnt = eroded().singles[0].fit.burnt
-    history = row().history
+    history, part = row().history, row().part
     assert history is not None
-    part = part_of(row(), burnt, eroded().bench.observed)
-    assert part == pytest.approx(np.abs(history.mean).max() / burnt.output("thrust").max())
-    assert part > 10.0 * MATTERS
+    assert part is not None
+    assert part == pytest.approx(np.abs(history.mean).max() / burnt().output("thrust").max())
+    assert part > 2.0 * MATTERS
 
 
 @pytest.mark.parametrize(("factor", "label"), [(1.0, "named"), (1e-3, "none")])
@@ -50,24 +73,31 @@ def test_of_two_that_are_claimed_only_the_small_one_is_called_so() -> None:
 
 
 def test_of_a_sensor_it_is_a_part_of_what_it_reads() -> None:
-    observed = eroded().bench.observed
-    largest = max(np.abs(c.value).max() for c in observed.channels if c.name == "thrust")
-    part = part_of(row(equation="sensor", channel="thrust"), eroded().base.fit.burnt, observed)
-    history = row().history
-    assert history is not None
-    assert part == pytest.approx(np.abs(history.mean).max() / largest)
-    assert part_of(row(equation="sensor", channel="no_such"), eroded().base.fit.burnt, observed) is None
+    largest = max(np.abs(c.value).max() for c in observed().channels if c.name == "thrust")
+    read = row(equation="sensor", channel="thrust")
+    assert read.history is not None
+    assert read.part == pytest.approx(np.abs(read.history.mean).max() / largest)
+    assert "% of what the sensor reads" in str(place_sentence(read))
+    assert row(equation="sensor", channel="no_such").part is None
 
 
 def test_what_is_open_beside_a_name_is_not_asked_for_its_size() -> None:
-    burnt, observed = eroded().base.fit.burnt, eroded().bench.observed
-    assert too_small([row(1e-3, beside=True)], burnt, observed) == {}
+    assert too_small([row(1e-3, beside=True)]) == {}
 
 
 def test_little_nitrogen_does_much() -> None:
     flow = row().source
     assert least_of(row(equation="tank_volume", source=replace(flow, unit="kg/s"))) == OF_NITROGEN
-    assert least_of(row(equation="injector", source=replace(flow, unit="kg/s"))) == MATTERS
+    assert least_of(row(equation="injector", source=replace(flow, unit="kg/s"))) > 10.0 * OF_NITROGEN
+
+
+@pytest.mark.parametrize(
+    ("equation", "unit", "least"),
+    [("injector", "kg/s", 0.03), ("injector", "1", 0.03), ("tank_energy", "W", 0.03), ("tank_energy", "Pa", MATTERS),
+     ("tank_volume", "Pa", MATTERS), ("feed", "Pa", 0.02), ("sensor", "Pa", MATTERS), ("chamber_mass", "kg/s", MATTERS)],
+)  # fmt: skip
+def test_what_laws_of_an_equation_differ_by_is_too_small(equation: str, unit: str, least: float) -> None:
+    assert least_of(row(equation=equation, source=replace(row().source, unit=unit))) == least
 
 
 def test_the_headline_says_that_it_is_there() -> None:
@@ -79,3 +109,50 @@ def test_the_headline_says_that_it_is_there() -> None:
     )  # fmt: skip
     said = "Tank heat (0.97) is there, but too small to matter: 0.04 % of what goes through its equation."
     assert headline(product) == said
+
+
+def test_a_name_beside_the_first_that_is_too_small_is_no_claim() -> None:
+    found = eroded()
+    one = found.singles[0]
+    both = replace(one, names=(*one.names, "other"), log_evidence=one.log_evidence + 20.0)
+    verdict = replace(verdict_of(found), chosen=both, partners={"other": 0.99})
+    left, small = without_the_small(verdict, [row(), row(1e-3, site="other")], found)
+    assert left.chosen is one
+    assert left.partners == {}
+    assert list(small) == ["other"]
+
+
+def test_fuel_is_measured_by_what_burns_at_another_time() -> None:
+    """A sliver as large as the flow for a hundredth of a second is a hundredth of a second's fuel."""
+    time = np.linspace(0.0, 0.01, 20)
+    flow = burnt().output("fuel_flow")
+    history = row().history
+    assert history is not None
+    brief = history.but(time=tuple(time.tolist()), mean=(float(flow.max()),) * 20)
+    (sized,) = with_parts([row().but(equation="grain", history=brief)], burnt(), observed())
+    assert sized.part == pytest.approx(0.01 * flow.max() / np.trapezoid(flow, burnt().time))
+    assert sized.part < MATTERS
+
+
+@dataclass(frozen=True)
+class Wavy:
+    """A free curve of one size."""
+
+    size: float
+    unit: str
+
+    def history(self, fit: Fit, observed: Observed) -> History:
+        """As large all along."""
+        time = np.linspace(0.0, 3.0, 20)
+        place = SourcePlace("somewhere", "injector", self.unit, 0.1)
+        return History(place, time, np.full(20, self.size), np.full(20, 0.1 * self.size), 0.1)
+
+
+@pytest.mark.parametrize(
+    ("size", "unit", "kept"), [(0.05, "1", 1), (1e-4, "1", 0), (0.3, "kg/s", 1), (1e-4, "kg/s", 0)]
+)
+def test_a_free_curve_that_is_too_small_is_nothing_unknown(size: float, unit: str, kept: int) -> None:
+    """What two right models differ by is no source; where that is all, there is none."""
+    found = eroded()
+    curve = replace(found.singles[0], names=("somewhere",), source=cast("Unknown", Wavy(size, unit)))
+    assert len(without_small_sources(replace(found, unknown=(curve,))).unknown) == kept

@@ -10,7 +10,8 @@ from tests.inference import made
 from tests.products.filled import filled
 
 from hfanalysis.diagnose.answer.plausible import judged, size_of
-from hfanalysis.diagnose.answer.verdict import effects_product, places, verdict_of
+from hfanalysis.diagnose.answer.source_places import places
+from hfanalysis.diagnose.answer.verdict import effects_product, verdict_of
 from hfanalysis.diagnose.answer.where import by_equation
 from hfanalysis.diagnose.answer.words import (
     effect_sentences,

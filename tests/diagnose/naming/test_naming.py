@@ -15,7 +15,8 @@ from tests.inference import made
 
 from hfanalysis.arrays import Array
 from hfanalysis.diagnose.answer.limits import inserted, limits
-from hfanalysis.diagnose.answer.verdict import of_unknown, places, verdict_of
+from hfanalysis.diagnose.answer.source_places import of_unknown, places
+from hfanalysis.diagnose.answer.verdict import verdict_of
 from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.naming import base_model as valley
 from hfanalysis.diagnose.naming import singles

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tests.inference import logged, made
 
-from hfanalysis.diagnose.answer.verdict import of_unknown
+from hfanalysis.diagnose.answer.source_places import of_unknown
 from hfanalysis.diagnose.answer.words import place_sentence
 from hfanalysis.diagnose.naming.plain import plain_sources
 from hfanalysis.effects import effect

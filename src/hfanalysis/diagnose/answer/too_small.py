@@ -1,4 +1,8 @@
-"""Whether what was found is large enough to matter: against what goes through its equation."""
+"""Whether what was found is large enough to matter: against what goes through its equation.
+
+Two right models of an engine differ by as much as what is too small; a free curve finds what they differ by, and a name
+may follow it.
+"""
 
 from __future__ import annotations
 
@@ -8,28 +12,70 @@ from dataclasses import replace
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.diagnose.answer.source_places import of_unknown
 from hfanalysis.diagnose.answer.verdict import Verdict
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.engine.unsteady import Burn
+from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.observations.observed import Observed
-from hfanalysis.products.diagnosis import Place
+from hfanalysis.inference.unknowns import kind_of
+from hfanalysis.products.diagnosis import Place, SourceHistory
 
-MATTERS = 1e-3
+MATTERS = 5e-3
 """Part of what goes through an equation, or of a channel's largest reading, below which a source is too small to
-matter. Source: a tenth of what transducers and cells of a stand are good for, 1 % of their range at best over a
-firing; the tables of nitrous oxide and of combustion are known to no more (docs/properties.md)."""
+matter. Source: by as much do two tables of nitrous oxide differ at burn temperatures (docs/properties.md); transducers
+and cells of a stand are good for 0.25 to 1 % of their range."""
 
-OF_NITROGEN = 1e-4
+OF_NITROGEN = 4e-4
 """The same of nitrogen's flow into the tank, beside that of the oxidizer out of it. Source: at 50 bar and 280 K a
 kilogram of it (60 kg/m^3) takes the volume of thirteen of liquid, by which it holds up the tank's pressure."""
 
+LAWS_DIFFER: Mapping[str, float] = {
+    "injector": 0.03,
+    "feed": 0.02,
+    "grain": 0.02,
+    "chamber_energy": 0.02,
+    "nozzle": 0.01,
+    "tank_energy W": 0.03,
+    "tank_volume kg/s": OF_NITROGEN,
+}
+"""The same where right models of an equation, or of a source of one unit in it, differ by more.
 
-def part_of(row: Place, found: Burn, observed: Observed) -> float | None:
-    """The largest size of a source over what goes through its equation [-]; None where that is not known."""
-    whole = _whole(row, found, observed)
-    if row.history is None or whole is None or not whole > 0.0:
+Source: an orifice's coefficient goes with the Reynolds number and the pressure behind it by some per cent; a loss with
+the power 1.8 or 2 of the flow, by a fifth of a tenth of the tank's pressure; regression with the oxidizer's flux or the
+total one, of which the end of the fuel tells the mean; c* by 1 % with frozen or shifting mixtures, its square by 2 %; a
+nozzle's boundary layer takes about 1 %; in a tank three times the flow work goes into evaporation, of whose heat tables
+know 1 %. Choice, with the development set of docs/worlds-quick.md, whose engines have such laws: what was named there
+where nothing is hidden is smaller, but for what burns on at the end of the fuel.
+"""
+
+
+def with_parts(rows: Sequence[Place], found: Burn, observed: Observed) -> tuple[Place, ...]:
+    """Sources with how large each is at its largest, as a part of what goes through its equation."""
+    return tuple(row.but(part=_part_of(row, found, observed)) for row in rows)
+
+
+def _part_of(row: Place, found: Burn, observed: Observed) -> float | None:
+    if row.history is None or kind_of(row) is not None:
         return None
-    return float(np.abs(row.history.mean).max()) / whole
+    size = np.abs(row.history.mean)
+    if row.equation == "grain":
+        return _moved(row, row.history, found)
+    whole = 1.0 if row.source.unit == FACTOR else _whole(row, found, observed)
+    return None if whole is None or not whole > 0.0 else float(size.max()) / whole
+
+
+FACTOR = "1"
+"""Unit of a source that is a factor of what goes through its equation."""
+
+
+def _moved(row: Place, history: SourceHistory, found: Burn) -> float:
+    """Part [-] of the fuel that burns at another time: at the end of it any shift is as large as the flow, for an
+    instant."""
+    flow, size = found.output("fuel_flow"), np.abs(history.mean)
+    if row.source.unit == FACTOR:
+        size = size * np.interp(history.time, found.time, flow)
+    return float(np.trapezoid(size, history.time) / np.trapezoid(flow, found.time))
 
 
 def _whole(row: Place, found: Burn, observed: Observed) -> float | None:
@@ -42,7 +88,7 @@ def _whole(row: Place, found: Burn, observed: Observed) -> float | None:
     if unit == "N":
         return float(found.output("thrust").max())
     if unit == "kg/s":
-        return _largest(found, "fuel_flow" if row.equation == "grain" else "oxidizer_flow")
+        return _largest(found, "oxidizer_flow")
     return _power(row.equation, found) if unit == "W" else None
 
 
@@ -63,23 +109,42 @@ def _power(equation: str, found: Burn) -> float:
 
 def least_of(row: Place) -> float:
     """The part [-] from which on a source at a place matters."""
-    return OF_NITROGEN if row.equation == "tank_volume" and row.source.unit == "kg/s" else MATTERS
+    return LAWS_DIFFER.get(f"{row.equation} {row.source.unit}", LAWS_DIFFER.get(row.equation, MATTERS))
 
 
-def too_small(rows: Sequence[Place], found: Burn, observed: Observed) -> dict[str, float]:
+def too_small(rows: Sequence[Place]) -> dict[str, float]:
     """The sites of sources that are too small to matter, with the part [-] that each is."""
-    parts = {row.site: (part_of(row, found, observed), least_of(row)) for row in rows if not row.beside}
-    return {site: part for site, (part, least) in parts.items() if part is not None and part < least}
+    named = [row for row in rows if not row.beside and row.part is not None]
+    return {row.site: row.part for row in named if row.part is not None and row.part < least_of(row)}
+
+
+def without_small_sources(found: Naming) -> Naming:
+    """The same without free curves that are too small to matter."""
+    observed = found.bench.observed
+
+    def matters(source: Candidate) -> bool:
+        row = of_unknown(source.history(observed), 0.0, observed.phases)
+        return not too_small(with_parts([row], source.fit.burnt, observed))
+
+    return replace(found, unknown=tuple(c for c in found.unknown if matters(c)))
 
 
 def without_the_small(verdict: Verdict, rows: Sequence[Place], found: Naming) -> tuple[Verdict, Mapping[str, float]]:
-    """The verdict, which is none where all that is claimed is too small to matter; what is, with the part that it is.
+    """The verdict without names that are too small to matter; none where all that is claimed is; and what is, with the
+    part that it is.
 
     ``rows``: the places of what is claimed.
     """
     if verdict.label == "none":
         return verdict, {}
-    small = too_small(rows, verdict.chosen.fit.burnt, found.bench.observed)
-    if set(small) < {row.site for row in rows if not row.beside} or not small:
+    small = too_small(rows)
+    if not small:
         return verdict, small
-    return replace(verdict, label="none", chosen=found.base, partners={}, doubts=()), small
+    if set(small) >= {row.site for row in rows if not row.beside}:
+        return replace(verdict, label="none", chosen=found.base, partners={}, doubts=()), small
+    rest = tuple(name for name in verdict.chosen.names if name not in small)
+    alike = [c for c in (*found.singles, *found.sets) if set(c.names) == set(rest)]
+    if verdict.chosen.unknown or verdict.chosen.names[0] in small or not alike:
+        return verdict, small
+    partners = {name: p for name, p in verdict.partners.items() if name not in small}
+    return replace(verdict, chosen=max(alike, key=lambda c: c.log_evidence), partners=partners), small

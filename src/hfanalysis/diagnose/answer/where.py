@@ -26,6 +26,14 @@ def elsewhere(found: Naming) -> float | None:
     return None if best is None else best - found.base.log_evidence
 
 
+def near(some: Iterable[str], others: Iterable[str], found: Naming) -> bool:
+    """Whether some effects act where others do, in the same equation or in one like it; a sensor's show where what it
+    reads does."""
+    taken = {e for name in others for e in _with_alike(found.equations[name], found.bench.observed)}
+    mine = {found.equations[name] for name in some}
+    return "sensor" in taken | mine or bool(taken & mine)
+
+
 def _with_alike(equation: str, observed: Observed) -> set[str]:
     groups = ALIKE if "p_run" in observed.names else (*ALIKE, ORIFICES)
     return {equation}.union(*(group for group in groups if equation in group))

@@ -253,7 +253,15 @@ def place_sentence(row: Place, last: float | None = None) -> str:
     mostly = "" if row.phase in ("", "purge") and not uneven else f" Most of it is in the {row.phase} phase."
     what = f"{_where(row)} goes up and down by {SIZE} (rms)" if uneven else _lacking(row)
     before, _, after = what.partition(SIZE)
-    return joined("", [f"{_span(row, last)} {before}", size, f"{after}.{mostly}{left}"])
+    return joined("", [f"{_span(row, last)} {before}", size, f"{after}.{mostly}{_share(row)}{left}"])
+
+
+def _share(row: Place) -> str:
+    """How large it is beside what it is a part of."""
+    if row.part is None:
+        return ""
+    whole = "what the sensor reads" if row.channel else "what goes through its equation"
+    return f" At its largest it is {100.0 * row.part:.2g} % of {whole}."
 
 
 def _sized(value: float, std: float, unit: str) -> Text:
