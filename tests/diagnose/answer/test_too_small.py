@@ -12,7 +12,6 @@ from tests.diagnose.answer.test_verdict import eroded
 from hfanalysis.diagnose.answer.source_places import places
 from hfanalysis.diagnose.answer.too_small import (
     MATTERS,
-    OF_NITROGEN,
     least_of,
     too_small,
     with_parts,
@@ -86,15 +85,19 @@ def test_what_is_open_beside_a_name_is_not_asked_for_its_size() -> None:
 
 
 def test_little_nitrogen_does_much() -> None:
-    flow = row().source
-    assert least_of(row(equation="tank_volume", source=replace(flow, unit="kg/s"))) == OF_NITROGEN
-    assert least_of(row(equation="injector", source=replace(flow, unit="kg/s"))) > 10.0 * OF_NITROGEN
+    """A kilogram of it takes the volume of thirteen of liquid, one of vapor that leaks that of five."""
+    flow = replace(row().source, unit="kg/s")
+    of_injector = least_of(row(equation="injector", source=flow))
+    into = least_of(row(equation="tank_volume", site="n2_purge", source=flow))
+    assert of_injector / into == pytest.approx(13.0)
+    assert into < least_of(row(equation="tank_volume", site="tank_leak", source=flow)) < of_injector
 
 
 @pytest.mark.parametrize(
     ("equation", "unit", "least"),
     [("injector", "kg/s", 0.03), ("injector", "1", 0.03), ("tank_energy", "W", 0.03), ("tank_energy", "Pa", MATTERS),
-     ("tank_volume", "Pa", MATTERS), ("feed", "Pa", 0.02), ("sensor", "Pa", MATTERS), ("chamber_mass", "kg/s", MATTERS)],
+     ("tank_volume", "Pa", MATTERS), ("feed", "Pa", 0.02), ("sensor", "Pa", MATTERS),
+     ("chamber_mass", "kg/s", MATTERS)],
 )  # fmt: skip
 def test_what_laws_of_an_equation_differ_by_is_too_small(equation: str, unit: str, least: float) -> None:
     assert least_of(row(equation=equation, source=replace(row().source, unit=unit))) == least

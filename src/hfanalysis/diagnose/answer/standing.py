@@ -11,7 +11,7 @@ from math import exp
 import numpy as np
 
 from hfanalysis.diagnose.answer.plausible import sized
-from hfanalysis.diagnose.answer.posterior import kind
+from hfanalysis.diagnose.answer.posterior import BEFORE, kind
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.bounds import on_bounds
 from hfanalysis.inference.fitting.fit import Fit
@@ -160,7 +160,7 @@ def beside_a_curve(
     posterior: Mapping[str, float], evidences: Mapping[str, float], elsewhere: float | None, heat: float
 ) -> dict[str, float]:
     """The probabilities with the best name keeping what a free curve does not deny it: the curve explains what the
-    name's law gets wrong.
+    name's law gets wrong, and where both explain as much the name is as much likelier as it is before a test.
 
     ``elsewhere``: log evidence [natural log] of the best source in another equation than the name's, which is not of
     its law; ``heat``: temperature [-] of other evidences.
@@ -168,7 +168,7 @@ def beside_a_curve(
     >>> found = {"none": 0.0, "a": 191.0, "unknown": 213.0}
     >>> sure = {"none": 0.0, "a": 0.0, "unknown": 1.0}
     >>> round(beside_a_curve(sure, found, None, 0.8)["a"], 2), round(beside_a_curve(sure, found, 213.0, 0.8)["a"], 2)
-    (0.26, 0.0)
+    (0.58, 0.0)
     """
     out = dict(posterior)
     first = max((n for n in evidences if kind(n) == "named"), key=lambda n: (evidences[n], n), default=None)
@@ -178,6 +178,7 @@ def beside_a_curve(
     least = less_likely(evidences["unknown"] - explained, explained, heat, COURSE)
     if elsewhere is not None:
         least = min(least, less_likely(elsewhere - explained, 0.0, heat))
+    least *= BEFORE["named"] / (BEFORE["named"] * least + BEFORE["unknown"] * (1.0 - least))
     both = out[first] + out["unknown"]
     out[first] = max(out[first], least * both)
     out["unknown"] = both - out[first]
