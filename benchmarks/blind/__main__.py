@@ -1,4 +1,4 @@
-"""python -m benchmarks.blind run|table|calibrate: see docs/blind.md."""
+"""python -m benchmarks.blind run|table|calibrate|against: see docs/blind.md."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ def _arguments(given: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.blind", description="The blind benchmark at full size.")
     commands = parser.add_subparsers(dest="command", required=True)
     about = {"run": "diagnose every case that is not done", "table": "write the figures",
-             "calibrate": "fit the constants of the stated probabilities"}  # fmt: skip
+             "calibrate": "fit the constants of the stated probabilities",
+             "against": "the figures beside those of an earlier version, on the same cases"}  # fmt: skip
     parsers = {name: commands.add_parser(name, help=text, description=text) for name, text in about.items()}
     for p in parsers.values():
         p.add_argument("--split", choices=SPLITS, required=True)
@@ -26,6 +27,8 @@ def _arguments(given: list[str] | None) -> argparse.Namespace:
     parsers["table"].add_argument("--write", type=Path, help="the page to write; a picture goes beside it")
     parsers["table"].add_argument("--none", action="store_true", help="of tests without an effect: what was claimed")
     parsers["table"].add_argument("--json", type=Path, help="write all figures here as well")
+    parsers["against"].add_argument("--earlier", type=Path, metavar="FILE", required=True, help="what it found")
+    parsers["against"].add_argument("--write", type=Path, help="the page whose table to write")
     parsers["calibrate"].add_argument(
         "--write", type=Path, help="instead of src/hfanalysis/diagnose/answer/probabilities.json"
     )
@@ -105,6 +108,24 @@ def _table(a: argparse.Namespace, folder: Any) -> int:
     return 0
 
 
+def _against(a: argparse.Namespace, folder: Any) -> int:
+    from benchmarks.studies import put
+
+    from .archive import cases_of
+    from .results import WrongSplit, results
+    from .variants import comparison
+
+    try:
+        found = results(folder, a.split)
+    except WrongSplit as error:
+        print(error, file=sys.stderr)
+        return 2
+    earlier = cases_of(a.earlier, found.cases)
+    lines = comparison(found.cases, earlier, found.groups, ("now", "earlier"))
+    print("\n".join(lines)) if a.write is None else put(a.write, "against", lines)
+    return 0
+
+
 def _calibrate(a: argparse.Namespace, folder: Any) -> int:
     from .calibrate import Unfit, calibrate, calibrate_only, pooled, save
     from .folder import PROBABILITIES
@@ -139,7 +160,7 @@ def main(given: list[str] | None = None) -> int:
     a = _arguments(given)
     root = a.out or Path(".cache") / "blind" / "cases" / a.split
     folder = Folder(root.resolve(), getattr(a, "variant", None))
-    return {"run": _run, "table": _table, "calibrate": _calibrate}[a.command](a, folder)
+    return {"run": _run, "table": _table, "calibrate": _calibrate, "against": _against}[a.command](a, folder)
 
 
 if __name__ == "__main__":

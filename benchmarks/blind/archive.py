@@ -15,7 +15,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from simulated.blind.judged import by_significance
+from simulated.blind.judged import FAILED, Case, by_significance
 
 from .folder import DONE, UNWRITTEN, Folder, Note, write_json
 
@@ -91,6 +91,16 @@ def unpack(path: Path, folder: Folder, wanted: Container[str], now: tuple[str, s
         folder.write_note(note)
         taken += 1
     return taken
+
+
+def cases_of(path: Path, wanted: Container[str]) -> dict[str, Case]:
+    """The ``wanted`` cases of a file, as it has them."""
+    rows = ((row["note"], row) for row in _rows(path))
+    return {
+        note["id"]: Case(row["answer"], row.get("product", {"verdict": FAILED}))
+        for note, row in rows
+        if note["id"] in wanted
+    }
 
 
 def _rows(path: Path) -> Iterable[dict[str, Any]]:

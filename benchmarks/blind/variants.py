@@ -14,13 +14,19 @@ MEANS = ("set90_size", "log_score")
 """Numbers of which the mean is given; of the others the median, beside the mean of their differences."""
 
 
-def comparison(full: Mapping[str, Case], other: Mapping[str, Case], groups: Groups) -> list[str]:
-    """A row per figure over the cases in which both methods contribute to it.
+def comparison(
+    full: Mapping[str, Case],
+    other: Mapping[str, Case],
+    groups: Groups,
+    called: tuple[str, str] = ("full", "variant"),
+) -> list[str]:
+    """A row per figure over the cases in which both methods contribute to it; what each is ``called``.
 
     None of the time: the full method's cases may have been diagnosed on another machine, or a busier one.
     """
     both = sorted(full.keys() & other.keys())
-    lines = ["| figure | full | variant | full less variant | 95 % limits | cases |", "|---|---|---|---|---|---|"]
+    one, two = called
+    lines = [f"| figure | {one} | {two} | {one} less {two} | 95 % limits | cases |", "|---|---|---|---|---|---|"]
     for name, judge in {**SHARES, **NUMBERS}.items():
         if name == "runtime":
             continue

@@ -20,7 +20,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from benchmarks.blind import folder as fo
-from benchmarks.blind.archive import pack, rounded, unpack
+from benchmarks.blind.archive import cases_of, pack, rounded, unpack
 from benchmarks.blind.calibrate import Unfit, alarms, calibrate, forms, leads, pooled, save, weights
 from benchmarks.blind.document import document, without_effect, write
 from benchmarks.blind.fit import OFFSETS, Constants, Sample, fit, folds
@@ -39,6 +39,7 @@ from benchmarks.blind.run import (
     variant_settings,
     without_log,
 )
+from benchmarks.blind.variants import comparison
 from benchmarks.blind.work import Job, settings_of
 from benchmarks.blind.wrong import longest, wrong_names
 from simulated.blind import write as blind_write
@@ -308,6 +309,17 @@ def test_a_run_goes_on_elsewhere_from_what_was_kept(kept: Path, tmp_path: Path) 
     request = Request("calibration", 3, there)
     assert is_done(note, there.product("X001"), request, now)
     assert unpack(kept, there, ALL, now, "g") == 0, "it is there already"
+
+
+def test_what_an_earlier_version_found_stands_beside_it(kept: Path, tmp_path: Path) -> None:
+    """The same cases, each figure by both, and their paired difference."""
+    now, earlier = results(Folder(tmp_path), "calibration").cases, cases_of(kept, ("X000", "X001"))
+    assert sorted(earlier) == ["X000", "X001"]
+    assert earlier["X000"].failed
+    assert earlier["X001"].posterior["tank_heat"] == pytest.approx(now["X001"].posterior["tank_heat"], abs=1e-6)
+    lines = comparison(now, earlier, {}, ("now", "earlier"))
+    assert lines[0].startswith("| figure | now | earlier | now less earlier |")
+    assert all(" +0.000 " in line for line in lines[2:])
 
 
 @pytest.mark.parametrize(
