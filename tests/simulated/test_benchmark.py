@@ -313,11 +313,12 @@ def test_a_run_goes_on_elsewhere_from_what_was_kept(kept: Path, tmp_path: Path) 
 
 def test_what_an_earlier_version_found_stands_beside_it(kept: Path, tmp_path: Path) -> None:
     """The same cases, each figure by both, and their paired difference."""
-    now, earlier = results(Folder(tmp_path), "calibration").cases, cases_of(kept, ("X000", "X001"))
+    here = results(Folder(tmp_path), "calibration")
+    now, earlier = here.cases, cases_of(kept, ("X000", "X001"))
     assert sorted(earlier) == ["X000", "X001"]
     assert earlier["X000"].failed
     assert earlier["X001"].posterior["tank_heat"] == pytest.approx(now["X001"].posterior["tank_heat"], abs=1e-6)
-    lines = comparison(now, earlier, {}, ("now", "earlier"))
+    lines = comparison(now, earlier, here.groups, ("now", "earlier"))
     assert lines[0].startswith("| figure | now | earlier | now less earlier |")
     assert all(" +0.000 " in line for line in lines[2:])
 
