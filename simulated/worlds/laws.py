@@ -5,7 +5,7 @@ Each is an entry of an array that compiled code reads (its index), or a table th
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import exp, log
 
 import numpy as np
@@ -45,6 +45,12 @@ class World:
         pressure = np.linspace(combustion.P0, combustion.P1, made.shape[3]) - log(15e5)
         made[0] += 2.0 * (self.bent[0] * mixture[None, :] + self.bent[1] * pressure[:, None])
         return made
+
+    def fading(self, burning: float, cooling: float) -> World:
+        """The same where what is left burns on for so long, and the chamber turns cold so slowly [s]."""
+        laws = self.laws.copy()
+        laws[[TAIL, MIXING]] = burning, cooling
+        return replace(self, laws=laws)
 
 
 def draw(rng: np.random.Generator) -> World:

@@ -24,10 +24,15 @@ from simulated.worlds.hidden import observed, sized
 from simulated.worlds.plan import SETS, Test, plan
 
 
-def write_test(test: Test, root: Path) -> None:
-    """Write one test; the answer comes last, whole, and is what says that the test is there."""
+def write_test(test: Test, root: Path, fade: tuple[float, float] | None = None) -> None:
+    """Write one test; the answer comes last, whole, and is what says that the test is there.
+
+    ``fade``: how long what is left burns on and how slowly the chamber turns cold [s], instead of what is drawn.
+    """
     rng = np.random.default_rng(test.seed)
     world, logger = laws.draw(rng), loggers.LOGGERS[test.logger]
+    if fade is not None:
+        world = world.fading(*fade)
     stand = engines.drawn(rng, test.engine, test.end, world)
     with_ = loggers.drawn(rng, logger, stand)
     sizes = [sized(stand, world, drawn(EFFECTS[n], rng), test.target, logger, with_) for n in test.effects]

@@ -32,6 +32,7 @@ from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fade import abrupt
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.hypothesis import TABLE, Hypothesis
+from hfanalysis.inference.observations.burning import ended
 from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.subject import Subject
 from hfanalysis.products.diagnosis import (
@@ -71,11 +72,13 @@ def diagnose(
 
     Raises AbsentError where no engine is stated or too little was recorded.
     """
-    hypothesis, observed = subject.compared()
-    catalogue = Catalogue(_visible(effects, observed), subject.stated())
-    found = without_small_sources(name_effects(hypothesis, observed, catalogue, progress, settings))
-    verdict = verdict_of(found, {name: effect.twins for name, effect in catalogue.effects.items()})
-    verdict, small = without_the_small(verdict, sized_places(verdict, found), found)
+    one = _judged(subject, effects, progress, settings)
+    if (fade := _fade(one, effects)) is not None:
+        progress("leaving out how the fire fades", 0.0)
+        at_once = replace(subject, segments=ended(subject.segments, fade.t_start.value or 0.0, fade.t_start.std or 0.0))
+        rest = _judged(at_once, effects, progress, settings)
+        one = replace(rest, small={**one.small, **rest.small}, notes=(FADES,))
+    hypothesis, catalogue, found, verdict, small = one.hypothesis, one.catalogue, one.found, one.verdict, one.small
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
     product = _product(found, verdict, proof, catalogue)
@@ -88,13 +91,49 @@ def diagnose(
     sentences = story(product)
     if poor_fit(found.named.leftover):
         sentences += shown(subject).sentences
-    notes = (*subject.notes, *product.notes)
+    notes = (*subject.notes, *one.notes, *product.notes)
     return Diagnosed(found, verdict, product.but(notes=notes, sentences=tuple(sentences)))
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """What was tried, the verdict, and what is too small to matter, with the part that it is."""
+
+    hypothesis: Hypothesis
+    catalogue: Catalogue
+    found: Naming
+    verdict: Verdict
+    rows: tuple[Place, ...]
+    small: Mapping[str, float]
+    notes: tuple[str, ...] = ()
+
+
+FADES = "how a fire fades within a second of its end is in no model: names are judged by what comes before"
+"""What is said where a fade was taken for something else."""
+
+
+def _judged(subject: Subject, effects: Mapping[str, Effect], progress: Progress, settings: Settings | None) -> _Judged:
+    hypothesis, observed = subject.compared()
+    catalogue = Catalogue(_visible(effects, observed), subject.stated())
+    found = without_small_sources(name_effects(hypothesis, observed, catalogue, progress, settings))
+    verdict = verdict_of(found, {name: effect.twins for name, effect in catalogue.effects.items()})
+    rows = sized_places(verdict, found)
+    verdict, small = without_the_small(verdict, rows, found)
+    return _Judged(hypothesis, catalogue, found, verdict, rows, small)
+
+
+def _fade(one: _Judged, effects: Mapping[str, Effect]) -> Place | None:
+    """What was taken for fuel that burns later and is no more than how the fire fades; None where nothing was.
+
+    Other names may have been bent to it: they are judged by what comes before.
+    """
+    fading = {name for name, effect in effects.items() if effect.fading_web is not None}
+    return next((row for row in one.rows if row.site in fading & set(one.small)), None)
 
 
 def sized_places(verdict: Verdict, found: Naming) -> tuple[Place, ...]:
     """Where and when the model lacks what, and which part that is of what goes through its equation."""
-    return with_parts(places(verdict, found), verdict.chosen.fit.burnt, found.bench.observed)
+    return with_parts(places(verdict, found), verdict.chosen.fit.burnt, found.base.fit.burnt, found.bench.observed)
 
 
 def _with_calibrated(found: Gap, naming: Naming, hypothesis: Hypothesis, subject: Subject) -> Gap:

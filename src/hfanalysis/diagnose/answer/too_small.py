@@ -28,7 +28,7 @@ and cells of a stand are good for 0.25 to 1 % of their range."""
 
 LAWS_DIFFER: Mapping[str, float] = {
     "injector": 0.03,
-    "feed": 0.02,
+    "feed": 0.2,
     "grain": 0.02,
     "chamber_energy": 0.02,
     "nozzle": 0.01,
@@ -37,7 +37,7 @@ LAWS_DIFFER: Mapping[str, float] = {
 """The same where right models of an equation, or of a source of one unit in it, differ by more.
 
 Source: an orifice's coefficient goes with the Reynolds number and the pressure behind it by some per cent; a loss with
-the power 1.8 or 2 of the flow, by a fifth of a tenth of the tank's pressure; regression with the oxidizer's flux or the
+the power 1.8 or 2 of the flow, by a fifth of itself; regression with the oxidizer's flux or the
 total one, of which the end of the fuel tells the mean; c* by 1 % with frozen or shifting mixtures, its square by 2 %; a
 nozzle's boundary layer takes about 1 %; in a tank three times the flow work goes into evaporation, of whose heat tables
 know 1 %. Choice, with the development set of docs/worlds-quick.md, whose engines have such laws: what was named there
@@ -51,17 +51,18 @@ flows into the tank or out of it beside the oxidizer [-]. Source: at 280 K and 5
 nitrous oxide 130 to 160, liquid 800; a flow of the volume of what an injector's law may be wrong by is too small."""
 
 
-def with_parts(rows: Sequence[Place], found: Burn, observed: Observed) -> tuple[Place, ...]:
-    """Sources with how large each is at its largest, as a part of what goes through its equation."""
-    return tuple(row.but(part=_part_of(row, found, observed)) for row in rows)
+def with_parts(rows: Sequence[Place], found: Burn, base: Burn, observed: Observed) -> tuple[Place, ...]:
+    """Sources of a run with how large each is at its largest, as a part of what goes through its equation; ``base``:
+    the run without them."""
+    return tuple(row.but(part=_part_of(row, found, base, observed)) for row in rows)
 
 
-def _part_of(row: Place, found: Burn, observed: Observed) -> float | None:
+def _part_of(row: Place, found: Burn, base: Burn, observed: Observed) -> float | None:
     if row.history is None or kind_of(row) is not None:
         return None
     size = np.abs(row.history.mean)
     if row.equation == "grain":
-        return _moved(row, row.history, found)
+        return _moved(row, row.history, found, base.burn_time if base.fuel_out else None)
     whole = 1.0 if row.source.unit == FACTOR else _whole(row, found, observed)
     return None if whole is None or not whole > 0.0 else float(size.max()) / whole
 
@@ -70,13 +71,20 @@ FACTOR = "1"
 """Unit of a source that is a factor of what goes through its equation."""
 
 
-def _moved(row: Place, history: SourceHistory, found: Burn) -> float:
-    """Part [-] of the fuel that burns at another time: at the end of it any shift is as large as the flow, for an
-    instant."""
-    flow, size = found.output("fuel_flow"), np.abs(history.mean)
+FADES = 1.0
+"""Seconds about the end of the fuel in which nobody knows how a fire fades: that fuel burns at another time then is no
+name. Source: 6 ms to 1 s, by what is left on the walls and how the chamber is stirred."""
+
+
+def _moved(row: Place, history: SourceHistory, found: Burn, end: float | None) -> float:
+    """Part [-] of the fuel that burns at another time, but for what does about the ``end`` of it [s]; where it does not
+    end without the source, that is where the source is largest."""
+    flow, size, time = found.output("fuel_flow"), np.abs(history.mean), np.array(history.time)
     if row.source.unit == FACTOR:
-        size = size * np.interp(history.time, found.time, flow)
-    return float(np.trapezoid(size, history.time) / np.trapezoid(flow, found.time))
+        size = size * np.interp(time, found.time, flow)
+    end = float(time[size.argmax()]) if end is None else end
+    size = np.where(np.abs(time - end) > FADES, size, 0.0)
+    return float(np.trapezoid(size, time) / np.trapezoid(flow, found.time))
 
 
 def _whole(row: Place, found: Burn, observed: Observed) -> float | None:
@@ -84,6 +92,8 @@ def _whole(row: Place, found: Burn, observed: Observed) -> float | None:
     unit = row.source.unit
     if row.equation == "sensor":
         return next((float(np.abs(c.value).max()) for c in observed.channels if c.name == row.channel), None)
+    if row.equation == "feed":
+        return _loss(found)
     if unit == "Pa":
         return float(found.output("tank_pressure").max())
     if unit == "N":
@@ -91,6 +101,12 @@ def _whole(row: Place, found: Burn, observed: Observed) -> float | None:
     if unit == "kg/s":
         return _largest(found, "oxidizer_flow")
     return _power(row.equation, found) if unit == "W" else None
+
+
+def _loss(found: Burn) -> float:
+    """What a line takes of the pressure while liquid flows, once it is full [Pa]."""
+    wet = found.time < (np.inf if found.liquid_out is None else found.liquid_out)
+    return float(np.median((found.output("tank_pressure") - found.output("run_pressure"))[wet]))
 
 
 def _largest(found: Burn, name: str) -> float:
@@ -123,11 +139,11 @@ def too_small(rows: Sequence[Place]) -> dict[str, float]:
 
 def without_small_sources(found: Naming) -> Naming:
     """The same without free curves that are too small to matter."""
-    observed = found.bench.observed
+    observed, base = found.bench.observed, found.base.fit.burnt
 
     def matters(source: Candidate) -> bool:
         row = of_unknown(source.history(observed), 0.0, observed.phases)
-        return not too_small(with_parts([row], source.fit.burnt, observed))
+        return not too_small(with_parts([row], source.fit.burnt, base, observed))
 
     return replace(found, unknown=tuple(c for c in found.unknown if matters(c)))
 

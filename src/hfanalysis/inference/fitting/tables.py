@@ -1,6 +1,7 @@
-"""What a model would read if the table of nitrous oxide were another one: no test tells that from heat of some watts.
+"""What a model would read if the table of nitrous oxide were another one, or a law of an equation: no test tells the
+one from heat of some watts, nor the other from an effect of some per cent.
 
-The table's departures are constants of every hypothesis, and linear: a run with each of them says what it adds to the
+These departures are constants of every hypothesis, and linear: a run with each of them says what it adds to the
 channels' blocks, and to the instant at which the liquid ends.
 """
 
@@ -11,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from hfanalysis.inference.fitting.hypothesis import TABLE, Free, Hypothesis
+from hfanalysis.inference.fitting.laws import LAWS
 from hfanalysis.inference.fitting.predict import predict, readings
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.thermo.departures import DEPARTURES, departed
@@ -21,12 +23,15 @@ def with_other_tables(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypot
 
     One that cannot be run there is left as it is: its fit will say so.
     """
-    start, saturation = np.zeros(hypothesis.size), hypothesis.engine.saturation
-    engines = [replace(hypothesis.engine, saturation=departed(saturation, by)) for by in DEPARTURES]
+    start, engine = np.zeros(hypothesis.size), hypothesis.engine
+    by_name = {by.name: replace(engine, saturation=departed(engine.saturation, by)) for by in DEPARTURES} | {
+        law.name: replace(engine, effects=(*engine.effects, LAWS.at(**{law.name: law.typical})))
+        for law in LAWS.parameters
+    }
     try:
         here, *others = (
             predict(replace(hypothesis, engine=engine), observed, start, tangents=False).burnt
-            for engine in (hypothesis.engine, *engines)
+            for engine in (engine, *by_name.values())
         )
     except (ValueError, ArithmeticError):
         return hypothesis, observed
@@ -37,5 +42,5 @@ def with_other_tables(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypot
     )
     gone = [other.liquid_out for other in others]
     later = np.array([0.0 if g is None or here.liquid_out is None else g - here.liquid_out for g in gone])
-    free = tuple(Free(f"{TABLE}{by.name}", 0.0, 1.0) for by in DEPARTURES)
+    free = tuple(Free(f"{TABLE}{name}", 0.0, 1.0) for name in by_name)
     return replace(hypothesis, free=(*hypothesis.free, *free)), replace(observed, channels=channels, later=later)

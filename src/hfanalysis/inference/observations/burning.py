@@ -35,14 +35,14 @@ def as_it_burns(log: TestLog, segments: Segments, definition: TestDefinition, or
     begins, gone = segments.time("t_fuel_out"), segments.time("t_fuel_gone")
     if begins is not None and gone is not None and gone - begins > FADES:
         std = max(segments.std("t_fuel_out"), (gone - begins) / 12.0**0.5)
-        segments = _ended(segments, begins, std)
+        segments = ended(segments, begins, std)
     gone = segments.time("t_fuel_gone")
     if gone is None and _left(definition):
         return segments
     found = _flame_out(log, segments, definition, origin)
     if found is None or (gone is not None and gone < found.begins + LATE):
         return segments
-    return _ended(segments, found.begins, found.std)
+    return ended(segments, found.begins, found.std)
 
 
 def _left(definition: TestDefinition) -> bool:
@@ -51,8 +51,8 @@ def _left(definition: TestDefinition) -> bool:
     return weighed is not None and weighed.value > 0.0
 
 
-def _ended(segments: Segments, at: float, std: float) -> Segments:
-    """The fuel gone at an instant, known to ``std``; both [s]."""
+def ended(segments: Segments, at: float, std: float) -> Segments:
+    """The segments with the fuel gone at an instant, known to ``std``; both [s]."""
     end = Quantity(at, "s", std)
     return segments.but(t_fuel_out=end, t_fuel_gone=end)
 
