@@ -31,7 +31,7 @@ from hfanalysis.inference import gap
 from hfanalysis.inference.candidate import Candidate
 from hfanalysis.inference.fitting.fade import abrupt
 from hfanalysis.inference.fitting.fit import Fit
-from hfanalysis.inference.fitting.hypothesis import TABLE, Hypothesis
+from hfanalysis.inference.fitting.hypothesis import DEPARTURE, Hypothesis
 from hfanalysis.inference.observations.burning import ended
 from hfanalysis.inference.observations.observed import FADE, Observed
 from hfanalysis.inference.subject import Subject
@@ -276,7 +276,7 @@ def _constants(found: Naming, verdict: Verdict) -> Constants:
         out[arm] = {
             {"polytropic_exponent": "m"}.get(n, n): Quantity(values[n], units.get(n, ""), stds[n])
             for n in values
-            if "." not in n and not n.startswith(TABLE)
+            if "." not in n and not n.startswith(DEPARTURE)
         }
     return Constants.from_json(out)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hfanalysis.inference.fitting.departures import with_departures
 from hfanalysis.inference.fitting.fade import with_abrupt_end
 from hfanalysis.inference.fitting.hypothesis import Hypothesis, base_hypothesis
-from hfanalysis.inference.fitting.tables import with_other_tables
 from hfanalysis.inference.full_run import run_full
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.reduction import observe_test
@@ -54,7 +54,7 @@ class Subject:
         """
         hypothesis = self.hypothesis()
         observed = with_abrupt_end(self.observed(), hypothesis.engine)
-        return with_other_tables(hypothesis, observed) if any_table else (hypothesis, observed)
+        return with_departures(hypothesis, observed) if any_table else (hypothesis, observed)
 
 
 def _purge(subject: Subject) -> dict[str, float]:

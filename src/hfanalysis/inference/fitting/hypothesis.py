@@ -40,8 +40,8 @@ N_RANGE = 2.5
 law of a fuel."""
 
 
-TABLE = "table: "
-"""How the names of parameters begin that are departures of the table of nitrous oxide."""
+DEPARTURE = "departure: "
+"""How the names of parameters begin that are departures of the table of nitrous oxide, or of a law."""
 
 
 @dataclass(frozen=True)
@@ -149,13 +149,13 @@ class Hypothesis:
     @property
     def of_engine(self) -> tuple[str, ...]:
         """Names of those on which the engine depends."""
-        own = (f.name for f in self.free if not f.name.startswith(TABLE))
+        own = (f.name for f in self.free if not f.name.startswith(DEPARTURE))
         return (*own, *(n for b in self.blocks if b.sensor is None for n in b.names))
 
     @property
-    def of_tables(self) -> list[int]:
-        """Where among the parameters the departures of the table of nitrous oxide are."""
-        return [i for i, f in enumerate(self.free) if f.name.startswith(TABLE)]
+    def of_departures(self) -> list[int]:
+        """Where among the parameters the departures of the table of nitrous oxide and of laws are."""
+        return [i for i, f in enumerate(self.free) if f.name.startswith(DEPARTURE)]
 
     def places(self) -> list[tuple[Block, slice]]:
         """Where the blocks are among the parameters."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 from math import exp, log
 
 from hfanalysis.engine.effect import Effect, Parameter
+from hfanalysis.engine.equations import OUTER_RADIUS
 from hfanalysis.engine.sites import (
     AT_CHAMBER,
     AT_FLOW,
@@ -35,8 +36,8 @@ from hfanalysis.engine.sites import (
 USUAL_FLOW = 20e5 * 800.0
 """Pressure times density [Pa kg/m^3] about which what goes with the flow turns. Source: an injector of 20 bar."""
 
-USUAL_PRESSURE, USUAL_RATIO, USUAL_MIXTURE, USUAL_PORT = 20e5, 0.3, 6.0, 0.03
-"""Pressure [Pa], chamber's over tank's [-], oxidizer to fuel [-] and port's radius [m] about which the others turn.
+USUAL_PRESSURE, USUAL_RATIO, USUAL_MIXTURE, USUAL_PORT = 20e5, 0.3, 6.0, 0.75
+"""Pressure [Pa], chamber's over tank's [-], oxidizer to fuel [-] and port over grain [-] about which the others turn.
 Source: engines of this class; where a departure turns is taken up by the constants."""
 
 LEANEST, RICHEST = 30.0, 1.0
@@ -66,7 +67,9 @@ def _term(hook, t, env, c, p, x, site, dx):  # type: ignore[no-untyped-def]
             work = env[OXIDIZER_FLOW] * env[P_TANK] / env[RHO_FEED]
             site[TANK_HEAT] += p[EXPONENT] * work / GRUENEISEN * log(max(env[P_TANK], 1e4) / USUAL_PRESSURE)
         fuel = log((1.0 + 1.0 / min(max(env[OF_RATIO], RICHEST), LEANEST)) / (1.0 + 1.0 / USUAL_MIXTURE))
-        site[REGRESSION_FACTOR] *= exp(p[PORT] * log(env[PORT_RADIUS] / USUAL_PORT) + p[FUEL_FLUX] * fuel)
+        site[REGRESSION_FACTOR] *= exp(
+            p[PORT] * log(env[PORT_RADIUS] / (USUAL_PORT * c[OUTER_RADIUS])) + p[FUEL_FLUX] * fuel
+        )
         site[THRUST_FACTOR] *= 1.0 - p[THRUST]
 
 

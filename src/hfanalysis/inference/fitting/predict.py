@@ -108,15 +108,15 @@ def all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> 
     for block, place in hypothesis.places():
         if block.sensor is not None:
             out[:, place] = sensor_slopes(observed, block.sensor, block.splines)
-    if tables := hypothesis.of_tables:
-        out[:, tables] = table_slopes(observed, len(tables))
+    if places := hypothesis.of_departures:
+        out[:, places] = departure_slopes(observed, len(places))
     return out
 
 
-def table_slopes(observed: Observed, count: int) -> Array:
+def departure_slopes(observed: Observed, count: int) -> Array:
     """Whitened slopes (observations, ``count``) of the residuals with the departures of the table of nitrous oxide, in
     their standard deviations."""
-    blocks = [np.zeros((c.time.size, count)) if c.tables is None else c.tables for c in observed.channels]
+    blocks = [np.zeros((c.time.size, count)) if c.departures is None else c.departures for c in observed.channels]
     scalars = np.zeros((len(observed.events) + len(observed.stated), count))
     if observed.later is not None and "t_v" in observed.events:
         scalars[list(observed.events).index("t_v")] = -observed.later / observed.spread("t_v")
@@ -156,8 +156,8 @@ def residuals(
         deviation = observed.spread(name)
         if name == "t_v":
             gone = burnt.liquid_out if burnt.liquid_out is not None else 2.0 * observed.end
-            if observed.later is not None and (tables := hypothesis.of_tables):
-                gone += float(observed.later @ x[tables])
+            if observed.later is not None and (places := hypothesis.of_departures):
+                gone += float(observed.later @ x[places])
             scalars.append((at - gone) / deviation)
         else:
             web = hypothesis.engine.outer_radius - float(burnt.steps.at(np.array([at]))[0][0, RADIUS])
@@ -208,8 +208,8 @@ def added(hypothesis: Hypothesis, observed: Observed, x: Array, channel: Observe
     """What unknown sources and another table of nitrous oxide add to a channel's blocks (blocks,) [SI], at ``x``
     (parameters,)."""
     own = hypothesis.offset(channel.name, x, channel.time)
-    if channel.tables is not None and (tables := hypothesis.of_tables):
-        own = own + channel.tables @ x[tables]
+    if channel.departures is not None and (places := hypothesis.of_departures):
+        own = own + channel.departures @ x[places]
     if channel.name != ALIKE[1] or observed.line_zero is None:
         return own
     return own + hypothesis.offset(ALIKE[0], x, np.array([observed.line_zero]))

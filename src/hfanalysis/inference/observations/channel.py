@@ -27,8 +27,8 @@ class ObservedChannel:
     ``coherence``: blocks whose noise is worth one independent value. ``slow``: the part of the covariance that is slow
     noise, whose size a quiet time of seconds does not tell exactly, but to the standard deviation ``unsure`` of the log
     of its amplitude; None where there is none. ``span``: the range that the model-form error is a part of, where it is
-    not the channel's own. ``tables`` (blocks, departures): what a model would read more if the table of nitrous oxide
-    departed by a standard deviation; None where that was not asked.
+    not the channel's own. ``departures`` (blocks, departures): what a model would read more if the table of nitrous
+    oxide or a law departed by a standard deviation; None where that was not asked.
 
     Arrays are (blocks,), the covariances (blocks, blocks) [SI squared].
     """
@@ -46,14 +46,14 @@ class ObservedChannel:
     slow: Array | None = None
     span: float | None = None
     unsure: float = 1.0
-    tables: Array | None = None
+    departures: Array | None = None
 
     def only(self, rows: Integers) -> ObservedChannel:
         """The same with some of its blocks; ``rows`` (kept,): their numbers."""
         picked = {n: getattr(self, n)[rows] for n in ("time", "value", "first", "count", "resting", "noise_std")}
         slow = None if self.slow is None else self.slow[np.ix_(rows, rows)]
-        tables = None if self.tables is None else self.tables[rows]
-        return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)], slow=slow, tables=tables)
+        departures = None if self.departures is None else self.departures[rows]
+        return replace(self, **picked, covariance=self.covariance[np.ix_(rows, rows)], slow=slow, departures=departures)
 
     def with_white_noise(self) -> ObservedChannel:
         """The same with independent noise of the same size, beside offset and gain."""

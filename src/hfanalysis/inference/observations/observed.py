@@ -40,7 +40,7 @@ class Observed:
     taken of the first. ``errors``: model-form error, as part of the range of the tank's channels, and of chamber and
     thrust. ``unknowns``: those that the samples show without a model. ``abrupt``: the seconds that FADE would be if the
     fire were out at once, where a model was asked. ``later`` [s]: by how much a model's liquid ends later for every
-    departure of the table of nitrous oxide, where it was asked (as the channels' ``tables``).
+    departure of a table or law, where it was asked (as the channels' ``departures``).
 
     ``grid``: (points,); ``ambient``: pressure [Pa].
     """

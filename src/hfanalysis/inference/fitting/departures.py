@@ -11,36 +11,37 @@ from dataclasses import replace
 
 import numpy as np
 
-from hfanalysis.inference.fitting.hypothesis import TABLE, Free, Hypothesis
+from hfanalysis.inference.fitting.hypothesis import DEPARTURE, Free, Hypothesis
 from hfanalysis.inference.fitting.laws import LAWS
 from hfanalysis.inference.fitting.predict import predict, readings
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.thermo.departures import DEPARTURES, departed
 
 
-def with_other_tables(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothesis, Observed]:
+def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothesis, Observed]:
     """The hypothesis with the departures free, and the observations with what these add where it starts.
 
     One that cannot be run there is left as it is: its fit will say so.
     """
     start, engine = np.zeros(hypothesis.size), hypothesis.engine
-    by_name = {by.name: replace(engine, saturation=departed(engine.saturation, by)) for by in DEPARTURES} | {
-        law.name: replace(engine, effects=(*engine.effects, LAWS.at(**{law.name: law.typical})))
+    tables = {f"table: {by.name}": replace(engine, saturation=departed(engine.saturation, by)) for by in DEPARTURES}
+    laws = {
+        f"law: {law.name}": replace(engine, effects=(*engine.effects, LAWS.at(**{law.name: law.typical})))
         for law in LAWS.parameters
     }
     try:
         here, *others = (
-            predict(replace(hypothesis, engine=engine), observed, start, tangents=False).burnt
-            for engine in (engine, *by_name.values())
+            predict(replace(hypothesis, engine=one), observed, start, tangents=False).burnt
+            for one in (engine, *tables.values(), *laws.values())
         )
     except (ValueError, ArithmeticError):
         return hypothesis, observed
     read = readings(observed, here)
     more = [{name: values - read[name] for name, values in readings(observed, other).items()} for other in others]
     channels = tuple(
-        replace(c, tables=np.column_stack([c.averaged(added[c.name]) for added in more])) for c in observed.channels
+        replace(c, departures=np.column_stack([c.averaged(added[c.name]) for added in more])) for c in observed.channels
     )
     gone = [other.liquid_out for other in others]
     later = np.array([0.0 if g is None or here.liquid_out is None else g - here.liquid_out for g in gone])
-    free = tuple(Free(f"{TABLE}{name}", 0.0, 1.0) for name in by_name)
+    free = tuple(Free(f"{DEPARTURE}{name}", 0.0, 1.0) for name in (*tables, *laws))
     return replace(hypothesis, free=(*hypothesis.free, *free)), replace(observed, channels=channels, later=later)
