@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.inference.fitting.hypothesis import DEPARTURE
 
 AT = 1e-3
 """Standard deviations of its prior within which a constant is on its bound."""
@@ -20,5 +21,8 @@ def on_bounds(found: Fit) -> tuple[str, ...]:
     return tuple(
         f"{NAMES.get(f.name, f.name)} is on its bound ({f.value(x):.3g})"
         for f, x in zip(free, found.x.tolist(), strict=False)
-        if "." not in f.name and f.most > f.least and not f.least + AT < x < f.most - AT
+        if "." not in f.name
+        and not f.name.startswith(DEPARTURE)
+        and f.most > f.least
+        and not f.least + AT < x < f.most - AT
     )

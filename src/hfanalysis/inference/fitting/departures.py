@@ -17,6 +17,10 @@ from hfanalysis.inference.fitting.predict import predict, readings
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.thermo.departures import DEPARTURES, departed
 
+MOST = 2.0
+"""Standard deviations by which a law may depart. Source: a law that is off by more is no other law but something that
+is missing, and a run with one deviation does not tell what ten would do."""
+
 
 def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothesis, Observed]:
     """The hypothesis with the departures free, and the observations with what these add where it starts.
@@ -43,5 +47,8 @@ def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothe
     )
     gone = [other.liquid_out for other in others]
     later = np.array([0.0 if g is None or here.liquid_out is None else g - here.liquid_out for g in gone])
-    free = tuple(Free(f"{DEPARTURE}{name}", 0.0, 1.0) for name in (*tables, *laws))
+    free = (
+        *(Free(f"{DEPARTURE}{name}", 0.0, 1.0) for name in tables),
+        *(Free(f"{DEPARTURE}{name}", 0.0, 1.0, least=-MOST, most=MOST) for name in laws),
+    )
     return replace(hypothesis, free=(*hypothesis.free, *free)), replace(observed, channels=channels, later=later)
