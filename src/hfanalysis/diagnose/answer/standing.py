@@ -43,7 +43,7 @@ CLOSES, LEFT_OPEN = 0.5, 2.0
 """Part of the gap between model and test that a name has to close, where more of it is left than this many times the
 noise [-]. Source: half is the least that can be called an explanation, and the noise of means is known to some tens of
 per cent. Evidence: of the development set of docs/worlds-quick.md names that are right close 0.65 and more; of five
-that close less and leave 2.5 to 17 times the noise none is."""
+that close less and leave 2.5 to 17 times the noise one is."""
 
 
 def against(found: Candidate, base: Candidate, observed: Observed) -> tuple[str, ...]:
