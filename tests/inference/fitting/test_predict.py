@@ -16,7 +16,7 @@ from hfanalysis.effects.load_cell_drift import heat_clock
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.inference.fitting.fit import fit
 from hfanalysis.inference.fitting.hypothesis import FARTHEST_PARAMETER, M_RANGE, Free, Hypothesis, free_parameters
-from hfanalysis.inference.fitting.predict import predict, readings, signatures
+from hfanalysis.inference.fitting.predict import last_regression, predict, readings, signatures
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.places import PLACES
 from hfanalysis.inference.splines import Splines, probe
@@ -211,3 +211,13 @@ def test_a_probe_adds_its_splines_to_its_site() -> None:
     times = np.linspace(0.1, 3.9, 20)
     theirs, ours = (burn(e, 4.0, 1e-7, times=times).output("tank_pressure") for e in (heated, probed))
     assert ours == pytest.approx(theirs, rel=1e-6)
+
+
+def test_the_last_regression_is_that_of_the_run_where_the_fuel_ended_later() -> None:
+    """A run that ends before the measured end of the fuel has no regression there, and a fire would fade for ever."""
+    done = burn(engine_on_stand(), 20.0)
+    end = float(done.steps.times[-1, 1])
+    speed = last_regression(done, end - 0.5)
+    assert speed > 1e-4
+    assert 0.5 * speed < last_regression(done, end + 3.0) < 1.5 * speed
+    assert last_regression(done, 2.0) > speed  # early in a firing it is faster

@@ -137,7 +137,7 @@ def _fading(found: Fit, active: Active, observed: Observed, time: Array) -> Acti
     gone = observed.events["t_fuel_out"][0]
     share, speed = min(active.values[0], 1.0), last_regression(found.burnt, gone)
     assert active.effect.fading_web is not None
-    seconds = max(active.effect.fading_web(active.named) / speed, BRIEFEST_FADE)
+    seconds = min(max(active.effect.fading_web(active.named) / speed, BRIEFEST_FADE), gone)  # no longer than it burnt
     first, last = gone - (1.0 - 0.5 * share) * seconds, gone + 0.5 * share * seconds
     time = np.unique(np.r_[time, np.linspace(first, last, POINTS // 2), gone - 1e-6])
     before = aligned(observed, found.burnt, np.array([max(first, 0.0)]))

@@ -305,10 +305,11 @@ LEAST_REGRESSION = 1e-5
 
 def last_regression(burnt: Burn, gone: float) -> float:
     """The regression shortly before the fuel is ``gone`` [s after the opening], in [m/s]: late in a firing well below
-    the mean."""
-    first, last = (max(gone - ahead, 0.0) for ahead in LAST)
-    at = np.minimum([first, last], burnt.steps.times[-1, 1])
-    radius = burnt.steps.at(at)[0][:, RADIUS]
+    the mean; where a run ends before that, shortly before its end."""
+    earlier, later = LAST
+    last = max(min(gone - later, float(burnt.steps.times[-1, 1])), 0.0)
+    first = max(last - (earlier - later), 0.0)
+    radius = burnt.steps.at(np.array([first, last]))[0][:, RADIUS]
     return max(float(radius[1] - radius[0]) / max(last - first, TICK), LEAST_REGRESSION)
 
 
