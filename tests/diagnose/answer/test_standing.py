@@ -202,7 +202,8 @@ def test_of_a_quiet_sensor_a_little_beside_the_model_is_no_miss() -> None:
 )
 def test_twins_are_stated_together_unless_one_explains_far_more(right: float, wrong: float, together: bool) -> None:
     """Evidences of another generator's tests; the last as it has to be for a name alone."""
-    told = among_twins({"none": 0.01, "a": 0.98, "b": 0.01}, {"a": wrong, "b": right}, {"a": ("b",)}, 0.8)
+    found = {"a": wrong, "b": right}
+    told = among_twins({"none": 0.01, "a": 0.98, "b": 0.01}, found, found, {"a": ("b",)}, 0.8)
     assert sum(told.values()) == pytest.approx(1.0)
     assert (told["b"] > 1.0 - SET) == together
     assert told["a"] >= told["b"]

@@ -107,23 +107,33 @@ one."""
 
 
 def among_twins(
-    posterior: Mapping[str, float], evidences: Mapping[str, float], twins: Mapping[str, tuple[str, ...]], heat: float
+    posterior: Mapping[str, float],
+    evidences: Mapping[str, float],
+    of_all: Mapping[str, float],
+    twins: Mapping[str, tuple[str, ...]],
+    heat: float,
 ) -> dict[str, float]:
-    """The probabilities with each pair of twins sharing theirs as their evidences [natural log] tell them apart.
+    """The probabilities with each pair of twins sharing theirs as their evidences [natural log] tell them apart: those
+    of ``of_all`` data, or those that held-out data bear out, whichever are closer, for which of two that look alike
+    foretells a stretch better is chance.
 
     ``twins``: by name, those that the channels hardly tell from it; ``heat``: temperature [-] of other evidences.
 
-    >>> told = among_twins({"a": 0.99, "b": 0.01}, {"a": 13.5, "b": 8.7}, {"a": ("b",)}, 0.8)
-    >>> round(told["a"], 2)
+    >>> one = {"a": 13.5, "b": 8.7}
+    >>> round(among_twins({"a": 0.99, "b": 0.01}, one, one, {"a": ("b",)}, 0.8)["a"], 2)
     0.85
-    >>> round(among_twins({"a": 0.99, "b": 0.01}, {"a": 90.0, "b": 8.7}, {"a": ("b",)}, 0.8)["a"], 2)
+    >>> round(among_twins({"a": 0.99, "b": 0.01}, {"a": 13.5, "b": 0.0}, one, {"a": ("b",)}, 0.8)["a"], 2)
+    0.85
+    >>> far = {"a": 90.0, "b": 8.7}
+    >>> round(among_twins({"a": 0.99, "b": 0.01}, far, far, {"a": ("b",)}, 0.8)["a"], 2)
     0.99
     """
     names = sorted((n for n in posterior if kind(n) == "named"), key=lambda n: -posterior[n])
     out, first = dict(posterior), names[0] if names else ""
     for twin in twins.get(first, ()):
         if twin in out and evidences[first] > 0.0:
-            shared(out, first, twin, evidences[first] - evidences[twin], evidences[first], heat)
+            apart = min(told[first] - told[twin] for told in (evidences, of_all))
+            shared(out, first, twin, apart, evidences[first], heat)
     return out
 
 

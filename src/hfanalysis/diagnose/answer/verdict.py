@@ -101,11 +101,12 @@ def verdict_of(found: Naming, twins: Mapping[str, tuple[str, ...]] = NO_TWINS) -
         singles=tuple(_believed(c, found.bench.observed) for c in found.singles),
         sets=tuple(_believed(c, found.bench.observed) for c in found.sets),
     )
+    of_all = evidences_of(weighed)
     weighed = borne_out(weighed, _by_evidence)
     evidences, apart = evidences_of(weighed), elsewhere(weighed)
     posterior = scale().probabilities(evidences, found.named.leftover, apart)
     heat = scale().heat(found.named.leftover)
-    posterior = among_twins(beside_a_curve(posterior, evidences, apart, heat), evidences, twins, heat)
+    posterior = among_twins(beside_a_curve(posterior, evidences, apart, heat), evidences, of_all, twins, heat)
     plain = _verdict(weighed, posterior, evidences, twins)
     if plain.label in ("none", "unknown"):
         return replace(plain, elsewhere=apart, held_out=weighed.held_out)
