@@ -80,7 +80,9 @@ def test_of_a_sensor_it_is_a_part_of_what_it_reads() -> None:
     read = row(equation="sensor", channel="thrust")
     assert read.history is not None
     assert read.part == pytest.approx(np.abs(read.history.mean).max() / largest)
-    assert "% of what the sensor reads" in str(place_sentence(read))
+    assert "% of the largest reading." in str(place_sentence(read))
+    assert "% of the thrust." in str(place_sentence(row()))
+    assert "% of the fuel, burnt at another time." in str(place_sentence(row(equation="grain")))
     assert row(equation="sensor", channel="no_such").part is None
 
 
@@ -114,7 +116,7 @@ def test_the_headline_says_that_it_is_there() -> None:
         verdict="none", effects=(), posterior={"none": 0.02, "tank_heat": 0.97}, set90=("tank_heat",),
         too_small={"tank_heat": 4e-4},
     )  # fmt: skip
-    said = "Tank heat (0.97) is there, but too small to matter: 0.04 % of what goes through its equation."
+    said = "Tank heat (0.97) is there, but too small to matter: 0.04 % of what it is part of."
     assert headline(product) == said
 
 

@@ -165,7 +165,7 @@ def _small(product: Diagnosis) -> list[str]:
     """What is there, but too small to matter."""
     return [
         f"{capitalised(product.plain(name))}{_probability(name, product)} is there, but too small to matter: "
-        f"{100.0 * part:.2g} % of what goes through its equation."
+        f"{100.0 * part:.2g} % of what it is part of."
         for name, part in product.too_small.items()
     ]
 
@@ -260,8 +260,22 @@ def _share(row: Place) -> str:
     """How large it is beside what it is a part of."""
     if row.part is None:
         return ""
-    whole = "what the sensor reads" if row.channel else "what goes through its equation"
-    return f" At its largest it is {100.0 * row.part:.2g} % of {whole}."
+    part = f"{100.0 * row.part:.2g} % of"
+    if row.equation == "grain":
+        return f" In all it is {part} the fuel, burnt at another time."
+    whole = WHOLES.get(f"{row.equation} {row.source.unit}", WHOLES.get(row.equation, "the oxidizer's flow"))
+    return f" At its largest it is {part} {'the largest reading' if row.channel else whole}."
+
+
+WHOLES = {
+    "feed": "the line's loss",
+    "nozzle": "the thrust",
+    "chamber_energy": "the heat that the gas carries",
+    "tank_energy W": "the work of what flows out",
+    "tank_energy Pa": "the tank's pressure",
+    "tank_volume Pa": "the tank's pressure",
+}
+"""What a source is a part of, by its equation, or by equation and unit; of the others the oxidizer's flow."""
 
 
 def _sized(value: float, std: float, unit: str) -> Text:
