@@ -3,8 +3,8 @@
 python -m benchmarks.diagnosis_speed [--revision 26fccde] [--repeat 3] [--cases DIR [--only P04,P05]]
 
 The earlier revision is checked out in a temporary folder, with compiled code of its own; both are run once before
-anything is timed. CASES holds ``raw_tests/`` with tests of which the median ratio is told; without it HF5 alone is
-timed. Only the stage itself counts, by the run's own log.
+anything is timed, on the replica as that revision had it. CASES holds ``raw_tests/`` with tests of which the median
+ratio is told; without it HF5 alone is timed. Only the stage itself counts, by the run's own log.
 """
 
 from __future__ import annotations
@@ -36,16 +36,23 @@ class Checkout:
     source: Path
     work: Path
 
+    @property
+    def _path(self) -> str:
+        """Its source first; what else is there may be libraries that only the earlier revision needs."""
+        return os.pathsep.join(filter(None, [str(self.source / "src"), os.environ.get("PYTHONPATH")]))
+
     def seconds(self, root: Path, test: str) -> float:
         """Wall time [s] of the stage."""
         out = self.work / "out"
         threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
-        compiled = {"NUMBA_CACHE_DIR": str(self.work / "compiled"), "PYTHONPATH": str(self.source / "src")}
+        compiled = {"NUMBA_CACHE_DIR": str(self.work / "compiled"), "PYTHONPATH": self._path}
         command = [sys.executable, "-m", "hfanalysis", "diagnose", test, "--root", str(root), "--out", str(out)]
-        subprocess.run(
-            [*command, "--force", "--quiet"], check=True, env=os.environ | threads | compiled, cwd=self.work,
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        ended = subprocess.run(
+            [*command, "--force", "--quiet"], env=os.environ | threads | compiled, cwd=self.work, text=True,
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
         )  # fmt: skip
+        if ended.returncode:
+            raise SystemExit(f"diagnosis_speed: {self.source} ended with {ended.returncode}:\n{ended.stderr[-800:]}")
         lines = (out / test / "run.log").read_text(encoding="utf-8").splitlines()
         stages = [row for row in map(json.loads, lines) if row.get("stage") == "diagnose"]
         return float(stages[-1]["seconds"])
@@ -94,9 +101,9 @@ def main(given: Sequence[str] | None = None) -> int:
         now, earlier = Checkout(ROOT, Path(scratch) / "now"), Checkout(source, Path(scratch) / "earlier")
         for one in (now, earlier):
             one.work.mkdir()
-            one.seconds(ROOT, REPLICA)
+            one.seconds(source, REPLICA)
         print(f"wall time of diagnose, medians of {asked.repeat} pairs with {asked.revision}, one thread")
-        print(f"{REPLICA}: {verdict(ratio(now, earlier, ROOT, REPLICA, asked.repeat), MOST)}")
+        print(f"{REPLICA}: {verdict(ratio(now, earlier, source, REPLICA, asked.repeat), MOST)}")
         if asked.cases:
             root = asked.cases.resolve()
             names = asked.only.split(",") if asked.only else sorted(p.name for p in (root / "raw_tests").iterdir())
