@@ -152,7 +152,11 @@ def test_a_loss_in_the_line_is_a_part_of_the_line_s() -> None:
     assert read.history is not None
     assert read.part is not None
     largest = np.abs(read.history.mean).max()
-    assert largest / lost.max() < read.part < largest / lost[burnt().time < 2.0].min()
+    wet = burnt().time < (burnt().liquid_out or np.inf)
+    assert largest / lost.max() < read.part < largest / lost[wet].min()
+    crowded = replace(burnt(), time=np.sort(np.r_[burnt().time, np.linspace(0.0, 1e-3, 5000)]))
+    (same,) = with_parts([read], crowded, without(), observed())
+    assert same.part == pytest.approx(read.part, rel=0.01)
 
 
 @dataclass(frozen=True)

@@ -104,9 +104,14 @@ def _whole(row: Place, found: Burn, observed: Observed) -> float | None:
 
 
 def _loss(found: Burn) -> float:
-    """What a line takes of the pressure while liquid flows, once it is full [Pa]."""
-    wet = found.time < (np.inf if found.liquid_out is None else found.liquid_out)
-    return float(np.median((found.output("tank_pressure") - found.output("run_pressure"))[wet]))
+    """What a line takes of the pressure while liquid flows, once it is full: the median over time [Pa]."""
+    time = np.linspace(0.0, found.burn_time if found.liquid_out is None else found.liquid_out, INSTANTS)
+    lost = found.output("tank_pressure") - found.output("run_pressure")
+    return float(np.median(np.interp(time, found.time, lost)))
+
+
+INSTANTS = 200
+"""At which a run is asked that has most of its own where something begins."""
 
 
 def _largest(found: Burn, name: str) -> float:
