@@ -77,7 +77,7 @@ def diagnose(
         progress("leaving out how the fire fades", 0.0)
         at_once = replace(subject, segments=ended(subject.segments, fade.t_start.value or 0.0, fade.t_start.std or 0.0))
         rest = _judged(at_once, effects, progress, settings)
-        one = replace(rest, small={**one.small, **rest.small}, notes=(FADES,))
+        one = replace(rest, small={**one.small, **rest.small}, notes=(FADE_LEFT_OUT,))
     hypothesis, catalogue, found, verdict, small = one.hypothesis, one.catalogue, one.found, one.verdict, one.small
     progress("proving it", 0.93)
     proof = prove(found, verdict.chosen, other()) if verdict.label != "none" else Proof({}, None, ())
@@ -108,7 +108,7 @@ class _Judged:
     notes: tuple[str, ...] = ()
 
 
-FADES = "how a fire fades within a second of its end is in no model: names are judged by what comes before"
+FADE_LEFT_OUT = "how a fire fades within a second of its end is in no model: names are judged by what comes before"
 """What is said where a fade was taken for something else."""
 
 

@@ -18,7 +18,7 @@ from hfanalysis.diagnose.answer.too_small import (
     without_small_sources,
     without_the_small,
 )
-from hfanalysis.diagnose.answer.verdict import verdict_of
+from hfanalysis.diagnose.answer.verdict import effects_product, verdict_of
 from hfanalysis.diagnose.answer.words import headline, place_sentence
 from hfanalysis.engine.unsteady import Burn
 from hfanalysis.inference.fitting.fit import Fit
@@ -118,6 +118,17 @@ def test_the_headline_says_that_it_is_there() -> None:
     )  # fmt: skip
     said = "Tank heat (0.97) is there, but too small to matter: 0.04 % of what it is part of."
     assert headline(product) == said
+
+
+def test_where_the_first_name_is_too_small_the_one_beside_it_is_what_is_claimed() -> None:
+    found = eroded()
+    one = found.singles[0]
+    both = replace(one, names=("other", *one.names), log_evidence=one.log_evidence + 20.0)
+    verdict = replace(verdict_of(found), chosen=both, partners={one.names[0]: 0.93})
+    left, small = without_the_small(verdict, [row(), row(1e-3, site="other")], found)
+    assert list(small) == ["other"]
+    (claimed,) = effects_product(left, observed())
+    assert (claimed.name, claimed.probability) == (one.names[0], 0.93)
 
 
 def test_a_name_beside_the_first_that_is_too_small_is_no_claim() -> None:

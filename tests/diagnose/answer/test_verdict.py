@@ -36,7 +36,7 @@ from hfanalysis.diagnose.answer.posterior import (
 )
 from hfanalysis.diagnose.answer.proof import OtherTest, Proof, prove
 from hfanalysis.diagnose.answer.source_places import likeliest_place, of_acting, places
-from hfanalysis.diagnose.answer.standing import COURSE, LAWS
+from hfanalysis.diagnose.answer.standing import COURSE, LAW_ERROR
 from hfanalysis.diagnose.answer.verdict import _claimed, _within, effects_product, verdict_of
 from hfanalysis.diagnose.answer.where import by_equation, elsewhere, likeliest_of
 from hfanalysis.diagnose.answer.words import place_sentence
@@ -464,7 +464,7 @@ def with_set(gain: float, further: str = "load_cell_drift") -> Naming:
 def test_a_second_effect_is_claimed_where_one_does_not_explain_as_much(gain: float, claimed: int, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     """One alone has the probability 1 / (1 + e^(gain / warm)), by what an error of its law and of its course may
     explain, for a cell shows what the nozzle does; and 0.3 is enough."""
-    warm = np.linalg.norm([1.0, LAWS * np.sqrt(20.0), COURSE * 20.0])
+    warm = np.linalg.norm([1.0, LAW_ERROR * np.sqrt(20.0), COURSE * 20.0])
     monkeypatch.setattr(verdict_module, "scale", EvidenceScale)
     monkeypatch.setattr(posterior, "scale", EvidenceScale)
     verdict = verdict_of(with_set(gain))

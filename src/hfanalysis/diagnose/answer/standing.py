@@ -99,7 +99,7 @@ def withheld(
     return out
 
 
-LAWS = 0.6
+LAW_ERROR = 0.6
 """How far apart the evidences of twins are by what the laws of effects get wrong, over the root of the larger: their
 temperature. A law is not the library's to the last per cent, and what it gets wrong explains as much as a twin does.
 Evidence: of tests by another generator, with 13.5, 30 and 31 for the wrong twin and 8.7, 26.8 and 31.1 for the right
@@ -156,7 +156,7 @@ def less_likely(apart: float, explained: float, heat: float, course: float = 0.0
     >>> round(less_likely(22.0, 191.0, 0.8, COURSE), 2)
     0.26
     """
-    warm = float(np.linalg.norm([heat, LAWS * np.sqrt(max(explained, 0.0)), course * max(explained, 0.0)]))
+    warm = float(np.linalg.norm([heat, LAW_ERROR * np.sqrt(max(explained, 0.0)), course * max(explained, 0.0)]))
     return 1.0 / (1.0 + exp(min(max(apart / warm, 0.0), 500.0)))
 
 

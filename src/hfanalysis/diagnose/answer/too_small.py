@@ -37,11 +37,11 @@ LAWS_DIFFER: Mapping[str, float] = {
 """The same where right models of an equation, or of a source of one unit in it, differ by more.
 
 Source: an orifice's coefficient goes with the Reynolds number and the pressure behind it by some per cent; a loss with
-the power 1.8 or 2 of the flow, by a fifth of itself; regression with the oxidizer's flux or the
-total one, of which the end of the fuel tells the mean; c* by 1 % with frozen or shifting mixtures, its square by 2 %; a
-nozzle's boundary layer takes about 1 %; in a tank three times the flow work goes into evaporation, of whose heat tables
-know 1 %. Choice, with the development set of docs/worlds-quick.md, whose engines have such laws: what was named there
-where nothing is hidden is smaller, but for what burns on at the end of the fuel.
+the power 1.8 or 2 of the flow, by a fifth of itself; regression with the oxidizer's flux or the total one, of which the
+end of the fuel tells the mean; c* by 1 % with frozen or shifting mixtures, its square by 2 %; a nozzle's boundary layer
+takes about 1 %; in a tank three times the flow work goes into evaporation, of whose heat tables know 1 %. Choice, with
+the development set of docs/worlds-quick.md, whose engines have such laws: what was named there where nothing is hidden
+is smaller, but for what burns on at the end of the fuel.
 """
 
 
@@ -71,7 +71,7 @@ FACTOR = "1"
 """Unit of a source that is a factor of what goes through its equation."""
 
 
-FADES = 1.0
+ABOUT_END = 1.0
 """Seconds about the end of the fuel in which nobody knows how a fire fades: that fuel burns at another time then is no
 name. Source: 6 ms to 1 s, by what is left on the walls and how the chamber is stirred."""
 
@@ -83,7 +83,7 @@ def _moved(row: Place, history: SourceHistory, found: Burn, end: float | None) -
     if row.source.unit == FACTOR:
         size = size * np.interp(time, found.time, flow)
     end = float(time[size.argmax()]) if end is None else end
-    size = np.where(np.abs(time - end) > FADES, size, 0.0)
+    size = np.where(np.abs(time - end) > ABOUT_END, size, 0.0)
     return float(np.trapezoid(size, time) / np.trapezoid(flow, found.time))
 
 
@@ -168,7 +168,7 @@ def without_the_small(verdict: Verdict, rows: Sequence[Place], found: Naming) ->
         return replace(verdict, label="none", chosen=found.base, partners={}, doubts=()), small
     rest = tuple(name for name in verdict.chosen.names if name not in small)
     alike = [c for c in (*found.singles, *found.sets) if set(c.names) == set(rest)]
-    if verdict.chosen.unknown or verdict.chosen.names[0] in small or not alike:
+    if verdict.chosen.unknown or not alike:
         return verdict, small
     partners = {name: p for name, p in verdict.partners.items() if name not in small}
     return replace(verdict, chosen=max(alike, key=lambda c: c.log_evidence), partners=partners), small
