@@ -22,6 +22,7 @@ from hfanalysis.errors import AbsentError
 from hfanalysis.products.calibration import FuelLaw
 from hfanalysis.quantity import CONDITIONAL, IDENTIFIED, NORMAL_95, Quantity
 from hfanalysis.record.definition import TestDefinition
+from hfanalysis.record.schema import changed
 
 RECOVERIES = (0.0, 1.0)
 """How the flow widens behind the grain, between its limits [-]."""
@@ -37,6 +38,17 @@ def with_stated_tap(definition: TestDefinition, effects: Sequence[Active]) -> tu
     if channel is None or channel.tap != "head" or there:
         return tuple(effects)
     return *effects, EFFECT.at(weight=1.0)
+
+
+def as_read(definition: TestDefinition) -> TestDefinition:
+    """test.toml without the place of the chamber's gauge: its reading is taken as it is; the same where none is stated.
+
+    So the base model is calibrated that a diagnosis starts from: it knows no pressure along the port.
+    """
+    channel = definition.channels.get("p_chamber")
+    if channel is None or channel.tap is None:
+        return definition
+    return changed(definition, channels={**definition.channels, channel.name: changed(channel, tap=None)})
 
 
 def reaching_the_head(law: FuelLaw, found: Fitted, definition: TestDefinition) -> FuelLaw:

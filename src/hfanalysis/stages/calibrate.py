@@ -2,7 +2,8 @@
 
 Reads ``ingest.h5``, ``health.json`` and ``segments.json``; writes ``calibration.json``, the calibration with the
 adopted effects acting, and ``base_calibration.json``, that of the base model, which a diagnosis starts from. Without
-adopted effects they are the same.
+adopted effects they are the same, where nobody says which end of the grain the chamber's gauge reads: the base model
+takes its reading as it is.
 """
 
 from __future__ import annotations
@@ -16,20 +17,28 @@ from hfanalysis.stages.base import BASE, Context, Stage
 if TYPE_CHECKING:
     from hfanalysis.engine.effect import Active
     from hfanalysis.products.calibration import Calibration
+    from hfanalysis.record.definition import TestDefinition
+    from hfanalysis.record.log import TestLog
 
 
 def run(context: Context) -> None:
     """Calibrate the test's tank, then the regression with that tank's flow; with adopted effects all together."""
+    from hfanalysis.calibrate.narrow_port import as_read
     from hfanalysis.inference.adopted.effects import read_adopted
 
+    log, definition = context.believed()
     adopted = read_adopted(context.root, context.definition)
-    base = _calibration(context, ())
-    found = _with_effects(context, base, adopted.acting) if adopted.acting else base
+    without = _calibration(context, log, definition)
+    found = _with_effects(context, log, definition, without, adopted.acting) if adopted.acting else without
+    plain = as_read(definition)
+    base = without if plain is definition else _calibration(context, log, plain)
     context.write(base.but(effects=()), BASE + found.file)
     context.write(found.but(effects=adopted.product()))
 
 
-def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]) -> Calibration:
+def _with_effects(
+    context: Context, log: TestLog, definition: TestDefinition, base: Calibration, effects: Sequence[Active]
+) -> Calibration:
     """The same with adopted effects; where one acts on the engine, its constants are fitted together."""
     from hfanalysis.calibrate.joint_fit import fitted_together
     from hfanalysis.calibrate.joint_refused import change_nothing
@@ -38,9 +47,8 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
     from hfanalysis.products.segments import Segments
 
     if all(active.effect.of_sensor for active in effects):
-        return _calibration(context, effects)
+        return _calibration(context, log, definition, effects)
     segments = context.read(Segments).fired
-    log, definition = context.believed()
     subject = Subject(log, segments, base, definition)
     try:
         nothing = change_nothing(subject, effects)
@@ -49,7 +57,7 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
     if nothing:
         names = ", ".join(active.effect.name for active in effects)
         return base.but(notes=(*base.notes, f"{names} as adopted: no channel would show it, and it changes nothing"))
-    found = _calibration(context, effects)
+    found = _calibration(context, log, definition, effects)
     context.progress("fitting all constants together, adopted effects in", None)
     try:
         return fitted_together(subject, with_stated_tap(definition, effects), found)
@@ -58,7 +66,9 @@ def _with_effects(context: Context, base: Calibration, effects: Sequence[Active]
         return found.but(warnings=(*found.warnings, alone))
 
 
-def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
+def _calibration(
+    context: Context, log: TestLog, definition: TestDefinition, effects: Sequence[Active] = ()
+) -> Calibration:
     """The content of calibration.json with these effects acting."""
     from hfanalysis.calibrate.facts import held_against
     from hfanalysis.calibrate.fuel_law import contradiction, regress
@@ -66,7 +76,6 @@ def _calibration(context: Context, effects: Sequence[Active]) -> Calibration:
     from hfanalysis.products.segments import Segments
 
     segments = context.read(Segments).fired
-    log, definition = context.believed()
     if effects:
         from hfanalysis.inference.adopted.corrected_log import corrected
 
