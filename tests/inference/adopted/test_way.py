@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -177,7 +178,7 @@ def test_one_by_one_next_to_no_heat_is_next_to_no_change(root: Path, base: dict[
     """The vapor phase on the engine's equations is the report's, but for the order of its steps."""
     context = replace(opened(root), stage=STAGE)
     done(root, "segment")
-    found = _calibration(context, [effect("tank_heat").at(power=1e-6)]).quantities
+    found = _calibration(context, *context.believed(), [effect("tank_heat").at(power=1e-6)]).quantities
     for name, off in (("m", 2e-3), ("C_i", 1e-6), ("K_loss", 1e-6)):
         assert found[name].value == pytest.approx(base["calibration"][name]["value"], rel=off)
     # this burn tells little of n: its fit ends within a hundredth of n's deviation, and starts elsewhere as m differs
@@ -251,6 +252,22 @@ def test_the_base_model_is_what_a_diagnosis_starts_from(root: Path, base: dict[s
     assert hashes(root, *before) == before
     assert numbers(found["base_calibration"]) == numbers(base["calibration"])
     assert found["calibration"]["m"] != found["base_calibration"]["m"]
+
+
+@pytest.mark.parametrize("tap", ["aft", "head"])
+def test_the_base_model_takes_the_chambers_gauge_as_it_reads(
+    root: Path, base: dict[str, dict[str, Any]], tmp_path: Path, tap: str
+) -> None:
+    """Where it is stated to sit moves what is calibrated, and not what a diagnosis starts from."""
+    shutil.copytree(root / "raw_tests", tmp_path / "raw_tests")
+    definition = tmp_path / "raw_tests" / "T1" / "test.toml"
+    stated = definition.read_text(encoding="utf-8").replace(
+        'column = "p_chamber",', f'column = "p_chamber", tap = "{tap}",'
+    )
+    definition.write_text(stated, encoding="utf-8")
+    found = done(tmp_path, "calibrate")
+    assert numbers(found["base_calibration"]) == numbers(base["calibration"])
+    assert found["calibration"]["n"]["value"] != found["base_calibration"]["n"]["value"]
 
 
 def test_a_file_that_is_at_fault_stops_what_would_have_it(root: Path) -> None:

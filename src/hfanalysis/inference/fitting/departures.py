@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hfanalysis.inference.fitting.hypothesis import DEPARTURE, Free, Hypothesis
+from hfanalysis.inference.fitting.hypothesis import DEPARTURE, OF_LAW, Free, Hypothesis
 from hfanalysis.inference.fitting.laws import LAWS
 from hfanalysis.inference.fitting.predict import predict, readings
 from hfanalysis.inference.observations.observed import Observed
@@ -28,9 +28,11 @@ def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothe
     One that cannot be run there is left as it is: its fit will say so.
     """
     start, engine = np.zeros(hypothesis.size), hypothesis.engine
-    tables = {f"table: {by.name}": replace(engine, saturation=departed(engine.saturation, by)) for by in DEPARTURES}
+    tables = {
+        f"{DEPARTURE}table: {by.name}": replace(engine, saturation=departed(engine.saturation, by)) for by in DEPARTURES
+    }
     laws = {
-        f"law: {law.name}": replace(engine, effects=(*engine.effects, LAWS.at(**{law.name: law.typical})))
+        f"{OF_LAW}{law.name}": replace(engine, effects=(*engine.effects, LAWS.at(**{law.name: law.typical})))
         for law in LAWS.parameters
     }
     try:
@@ -48,7 +50,7 @@ def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothe
     gone = [other.liquid_out for other in others]
     later = np.array([0.0 if g is None or here.liquid_out is None else g - here.liquid_out for g in gone])
     free = (
-        *(Free(f"{DEPARTURE}{name}", 0.0, 1.0) for name in tables),
-        *(Free(f"{DEPARTURE}{name}", 0.0, 1.0, least=-MOST, most=MOST) for name in laws),
+        *(Free(name, 0.0, 1.0) for name in tables),
+        *(Free(name, 0.0, 1.0, least=-MOST, most=MOST) for name in laws),
     )
     return replace(hypothesis, free=(*hypothesis.free, *free)), replace(observed, channels=channels, later=later)

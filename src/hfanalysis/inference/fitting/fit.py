@@ -223,13 +223,13 @@ def log_evidence(residual: Array, slopes: Array, x: Array, observed: Observed, h
 
 
 def _of_any_size(curvature: Array, x: Array, hypothesis: Hypothesis) -> float:
-    """What the log evidence changes by as strengths are of any size."""
-    groups = hypothesis.strengths
-    if not groups:
+    """What the log evidence changes by as strengths, and the departures of laws, are of any size."""
+    groups, laws = hypothesis.strengths, hypothesis.of_laws
+    where = np.concatenate([*groups, np.array(laws, dtype=np.int64)])
+    if not where.size:
         return 0.0
-    where = np.concatenate(groups)
     columns = np.linalg.solve(curvature, np.eye(x.size)[:, where])
-    return of_any_size(np.linalg.inv(columns[where]), x[where], [group.size for group in groups])
+    return of_any_size(np.linalg.inv(columns[where]), x[where], [group.size for group in groups], len(laws))
 
 
 def promised(found: Fit, observed: Observed, other: Observed, slack: Array | None = None) -> float:

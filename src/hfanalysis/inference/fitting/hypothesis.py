@@ -43,6 +43,9 @@ law of a fuel."""
 DEPARTURE = "departure: "
 """How the names of parameters begin that are departures of the table of nitrous oxide, or of a law."""
 
+OF_LAW = f"{DEPARTURE}law: "
+"""How those of a law begin."""
+
 
 @dataclass(frozen=True)
 class Free:
@@ -156,6 +159,11 @@ class Hypothesis:
     def of_departures(self) -> list[int]:
         """Where among the parameters the departures of the table of nitrous oxide and of laws are."""
         return [i for i, f in enumerate(self.free) if f.name.startswith(DEPARTURE)]
+
+    @property
+    def of_laws(self) -> list[int]:
+        """Where among the parameters the departures of laws are."""
+        return [i for i, f in enumerate(self.free) if f.name.startswith(OF_LAW)]
 
     def places(self) -> list[tuple[Block, slice]]:
         """Where the blocks are among the parameters."""

@@ -6,6 +6,9 @@ source, whose size is chosen, would win. So strengths have a mixture of priors, 
 where an effect has several strengths (one per transducer) most of its prior is that all but one of them are nothing. A
 fit's slopes tell what that changes in its evidence: the strengths' likelihood is Gaussian, with everything else
 integrated over.
+
+So it is with the laws of the base model: how far an engine's are from these, a test itself shows. Where nothing else
+departs, one law hardly departs by as much as laws may.
 """
 
 from __future__ import annotations
@@ -24,23 +27,34 @@ much, for a strength is the hyperbolic sine of its x. Evidence: while strengths 
 smaller ones, a wall led heat and nitrogen by 2 to 4 in log evidence in four calibration cases (docs/blind.md,
 C060108)."""
 
+OF_LAWS = (1.0, 0.3, 0.1)
+"""Deviations of all laws of an engine together (as x), each as probable as the others: as large as stated with each, a
+third or a tenth of it. Source: as with the sizes of effects; a tenth of what laws may depart by is less than sensors
+show of one."""
+
 HOW_MANY = (0.75, 0.15, 0.10)
 """Probability that one, two or three of an effect's strengths are not nothing."""
 
 
-def of_any_size(precision: Array, x: Array, groups: Sequence[int]) -> float:
-    """What log evidence changes [natural log] by where the strengths of effects have the mixture for a prior, and not
-    N(0, 1).
+def of_any_size(precision: Array, x: Array, groups: Sequence[int], laws: int = 0) -> float:
+    """What log evidence changes [natural log] by where the strengths of effects, and the departures of laws, have the
+    mixture for a prior, and not N(0, 1).
 
     Args:
-        precision: of the strengths (strengths, strengths), the priors N(0, 1) counted, all other parameters integrated
+        precision: of both (strengths and departures twice), the priors N(0, 1) counted, all other parameters integrated
             over.
-        x: the most probable strengths (strengths,) in prior standard deviations.
+        x: the most probable ones (strengths and departures,) in prior standard deviations.
         groups: how many strengths each effect has, in their order.
+        laws: how many departures follow.
+
+    What the data do not show costs nothing, whatever its prior:
+
+    >>> abs(round(of_any_size(np.eye(2), np.zeros(2), [1], laws=1), 9))
+    0.0
     """
-    if not groups:
+    if not groups and not laws:
         return 0.0
-    spread, odds = _mixture(tuple(groups))
+    spread, odds = _mixture(tuple(groups), laws)
     likelihood = precision - np.eye(x.size)
     pull = precision @ x
     here = _log_evidence(likelihood, pull, spread)
@@ -56,9 +70,11 @@ def _log_evidence(likelihood: Array, pull: Array, variance: Array) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _mixture(groups: tuple[int, ...]) -> tuple[Array, Array]:
-    """Variances (priors, strengths) and the log of the odds of each prior."""
+def _mixture(groups: tuple[int, ...], laws: int) -> tuple[Array, Array]:
+    """Variances (priors, strengths and departures of laws) and the log of the odds of each prior."""
     choices = [_of_one(count) for count in groups]
+    if laws:
+        choices.append([(np.full(laws, size), -float(np.log(len(OF_LAWS)))) for size in OF_LAWS])
     spreads, odds = [], []
     for chosen in product(*choices):
         spreads.append(np.concatenate([sizes for sizes, _ in chosen]) ** 2)
