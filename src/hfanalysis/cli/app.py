@@ -10,7 +10,9 @@ from typing import Annotated, Any
 
 import typer
 
+from hfanalysis.cli.engine_commands import OF_ENGINES
 from hfanalysis.cli.exit_status import plain_exit
+from hfanalysis.cli.options import Firing, Force, Json, Out, ProductJson, Quiet, Root, Set, Test, Trust
 from hfanalysis.cli.request import Request, named
 from hfanalysis.cli.trust import ask
 from hfanalysis.errors import InputError
@@ -26,25 +28,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-
-Test = Annotated[str, typer.Argument(metavar="TEST", help="Name of the test, or its folder: raw_tests/TEST.")]
-Root = Annotated[Path, typer.Option(help="Folder that holds raw_tests/ and processed/.", show_default="here")]
-Out = Annotated[Path | None, typer.Option(help="Write products to OUT/TEST/ instead of ROOT/processed/TEST/.")]
-Json = Annotated[bool, typer.Option("--json", help="Print the stage's JSON product on standard output, nothing else.")]
-Force = Annotated[bool, typer.Option("--force", help="Redo the stage and all before it, even if nothing changed.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No table and no progress; warnings still show.")]
-Set = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="STAGE.NAME=VALUE", help="Set a parameter of a stage; help lists them."),
-]
-
-Firing = Annotated[
-    int | None,
-    typer.Option("--firing", min=1, metavar="N", help="Take this firing of the log; products go to TEST.firing-N/."),
-]
-
-
-Trust = Annotated[bool, typer.Option("--trust-effects", help="Run the code in ROOT/effects/, until it changes.")]
 
 
 def _version(wanted: bool) -> None:
@@ -263,115 +246,8 @@ def _watch(
         watch_folder(folder, root, once, as_json)
 
 
-EngineToml = Annotated[Path, typer.Argument(metavar="ENGINE.toml", help="An engine file, see engines/.")]
-Folder = Annotated[Path | None, typer.Option(help="Also write what was found to this folder.")]
-EngineJson = Annotated[bool, typer.Option("--json", help="Print the JSON product on standard output, nothing else.")]
-
-
-Until = Annotated[
-    float | None,
-    typer.Option("--until", metavar="SECONDS", help="Run on after burn-out, through vapor and cold gas, to this time."),
-]
-
-
-@app.command("simulate")
-def _simulate(
-    engine: EngineToml, as_json: EngineJson = False, out: Folder = None, quiet: Quiet = False, until: Until = None
-) -> None:
-    """Run the unsteady model of an engine: tank, injector, grain, chamber, nozzle and flight."""
-    with plain_exit():
-        from hfanalysis.cli import engines
-
-        engines.simulate(engine, out, as_json, quiet, until)
-
-
-HandOver = Annotated[
-    Path | None,
-    typer.Option("--hand-over", metavar="OUT.toml", help="Also write the solved engine, for hfa simulate; a new file."),
-]
-Flows = Annotated[list[str] | None, typer.Option("--flow", metavar='"2.5 kg/s"', help="Of the study; several.")]
-Lengths = Annotated[list[str] | None, typer.Option("--length", metavar='"610 mm"', help="Of the study; several.")]
-Pressures = Annotated[list[str] | None, typer.Option("--pressure", metavar='"400 psi"', help="Of the study; several.")]
-
-
-@app.command("design")
-def _design(
-    engine: EngineToml,
-    as_json: EngineJson = False,
-    out: Folder = None,
-    hand_over: HandOver = None,
-    flow: Flows = None,
-    length: Lengths = None,
-    pressure: Pressures = None,
-    quiet: Quiet = False,
-) -> None:
-    """Steady-state design of an engine; with --out also the parametric study and a .eng file."""
-    with plain_exit():
-        from hfanalysis.cli import engines
-
-        study = {"flow": flow or [], "length": length or [], "pressure": pressure or []}
-        engines.design(engine, out, as_json, quiet, study, hand_over)
-
-
-@app.command("engine")
-def _engine(
-    test: Test,
-    of: Annotated[
-        str | None, typer.Option("--of", metavar="STAND", help="Constants and effects of this stand.")
-    ] = None,
-    flight: Annotated[
-        bool, typer.Option("--flight", help="In its rocket: without what is of the stand alone.")
-    ] = False,
-    out: Annotated[Path | None, typer.Option(metavar="FILE", help="Instead of ROOT/engines/TEST.toml.")] = None,
-    root: Root = Path(),
-    quiet: Quiet = False,
-    trust_effects: Trust = False,
-) -> None:
-    """Write the engine file of a calibrated test, for simulate: geometry as stated, constants and effects as found."""
-    with plain_exit():
-        from hfanalysis.cli import engine_of
-
-        test, root = named(test, root)
-        ask(root, trust_effects)
-        engine_of.engine(Request(test, root, None, False, False, quiet), of, flight, out)
-
-
-@app.command("predict")
-def _predict(
-    plan: Annotated[Path, typer.Argument(metavar="NEXT.toml", help="A test.toml without its log: as planned.")],
-    tests: Annotated[list[str], typer.Option("--from", metavar="TEST", help="A fired test; again for every other.")],
-    root: Root = Path(),
-    temperature: Annotated[
-        str | None, typer.Option(metavar="VALUE", help="The tank's on the day, as '18 degC': NEXT.day.json.")
-    ] = None,
-    draws: Annotated[int, typer.Option(min=20, help="Engines drawn.")] = 400,
-    as_json: EngineJson = False,
-    quiet: Quiet = False,
-    trust_effects: Trust = False,
-) -> None:
-    """Freeze what a planned test will measure, with 90 % bands: predictions/NEXT.json, never written over."""
-    with plain_exit():
-        from hfanalysis.cli import predict
-
-        ask(root, trust_effects)
-        predict.predict(plan, tests, root, temperature, draws, as_json, quiet)
-
-
-@app.command("score")
-def _score(
-    name: Annotated[str, typer.Argument(metavar="NEXT", help="Name of a prediction.")],
-    test: Annotated[str | None, typer.Option(metavar="TEST", help="The fired test, if it has another name.")] = None,
-    root: Root = Path(),
-    as_json: EngineJson = False,
-    quiet: Quiet = False,
-    trust_effects: Trust = False,
-) -> None:
-    """Lay a fired test over its prediction: which bands hold, and the errors beside those of two rivals."""
-    with plain_exit():
-        from hfanalysis.cli import predict
-
-        ask(root, trust_effects)
-        predict.score(name, test, root, as_json, quiet)
+for _name, _command in OF_ENGINES.items():
+    app.command(_name)(_command)
 
 
 @app.command("regression")
@@ -379,7 +255,7 @@ def _regression(
     tests: Annotated[list[str], typer.Argument(metavar="TEST OTHER…", help="Tests of one fuel; at least two.")],
     root: Root = Path(),
     out: Out = None,
-    as_json: EngineJson = False,
+    as_json: ProductJson = False,
     trust_effects: Trust = False,
 ) -> None:
     """Regression constants a and n common to several tests, and whether the tests agree on them."""
@@ -400,7 +276,7 @@ def _campaign(
     root: Root = Path(),
     out: Out = None,
     jobs: Jobs = None,
-    as_json: EngineJson = False,
+    as_json: ProductJson = False,
     force: Force = False,
     quiet: Quiet = False,
     trust_effects: Trust = False,
@@ -426,7 +302,7 @@ def _effects(
     test: AnyTest = None,
     root: Root = Path(),
     out: Out = None,
-    as_json: EngineJson = False,
+    as_json: ProductJson = False,
     trust_effects: Trust = False,
 ) -> None:
     """List the effects that can be added to the model; for a TEST, what its channels can tell apart."""
