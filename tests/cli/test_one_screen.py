@@ -13,7 +13,7 @@ from tests.cli.run import hfa
 from tests.report.prose import CODE, SYMBOLS, words_of
 from tests.report.sample import HEALTH, material, saying
 
-from hfanalysis.cli import tables
+from hfanalysis.cli import paper, tables
 from hfanalysis.cli.perform import MOST_WARNINGS, _warn
 from hfanalysis.cli.request import named
 from hfanalysis.quantity import Quantity
@@ -25,12 +25,12 @@ from hfanalysis.wording.plain import sentences_of
 def printed(monkeypatch: pytest.MonkeyPatch, folder: Path, width: int) -> str:
     """What is printed of a run, at a terminal of some columns."""
     made = saying(material(folder), health=HEALTH)
-    paper = tables._Paper(file=io.StringIO(), force_terminal=True, no_color=True, width=width, highlight=False)
-    monkeypatch.setattr(tables, "paper", lambda: paper)
+    console = paper._Paper(file=io.StringIO(), force_terminal=True, no_color=True, width=width, highlight=False)
+    monkeypatch.setattr(tables, "paper", lambda: console)
     monkeypatch.setattr(stages_material, "load", lambda context: made)
     context: Any = SimpleNamespace(definition=made.definition, id="HF0", product=lambda name: Path(name))
     tables.show_run(context)
-    return re.sub(r"\x1b\[[0-9;]*m", "", paper.file.getvalue())  # type: ignore[attr-defined]
+    return re.sub(r"\x1b\[[0-9;]*m", "", console.file.getvalue())  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("width", [50, 80, 140])
@@ -59,8 +59,8 @@ def test_columns_go_before_digits_do(width: int, kept: list[str]) -> None:
         "oxidizer_mass_liquid_phase": Quantity(6.478, "kg", 0.042, verdict="identified"),
     }
     out = io.StringIO()
-    paper = tables._Paper(file=out, force_terminal=True, no_color=True, width=width, highlight=False)
-    tables._print(paper, found, "calibration")
+    console = paper._Paper(file=out, force_terminal=True, no_color=True, width=width, highlight=False)
+    paper.print_quantities(console, found, "calibration")
     text = out.getvalue()
     assert "×10⁸ 1/m⁴" in text
     assert "×10⁻⁴ m/s (kg/m²/s)⁻ⁿ" in text

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from rich.text import Text
 
 from hfanalysis.cli.exit_status import put, tell
+from hfanalysis.cli.paper import new_table, paper
 from hfanalysis.cli.perform import bring
 from hfanalysis.cli.request import Request
-from hfanalysis.cli.tables import new_table, paper
 from hfanalysis.errors import AbsentError
 from hfanalysis.products.budgets import Made, made_of
 from hfanalysis.products.calibration import Calibration

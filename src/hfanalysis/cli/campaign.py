@@ -13,7 +13,7 @@ from hfanalysis.campaign.product import row_of, stand_row
 from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended, run_all
 from hfanalysis.campaign.words import agreement, diagnosed, regression_sentence
 from hfanalysis.cli.exit_status import put, tell
-from hfanalysis.cli.tables import new_table, paper
+from hfanalysis.cli.paper import new_table, paper
 from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.processors import processors

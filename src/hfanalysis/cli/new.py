@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hfanalysis.cli.asking import edited
-from hfanalysis.cli.tables import paper
+from hfanalysis.cli.paper import paper
 from hfanalysis.drafting.document import plain
 from hfanalysis.drafting.guesses import Judged
 from hfanalysis.drafting.new import NewTest, new_test

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hfanalysis.cli.exit_status import put, tell
-from hfanalysis.cli.tables import new_table, paper
+from hfanalysis.cli.paper import new_table, paper
 from hfanalysis.cli.watch import watch
 from hfanalysis.interface import predicting
 from hfanalysis.products.disk import read_json, to_json

@@ -7,8 +7,8 @@ from pathlib import Path
 from rich.text import Text
 
 from hfanalysis.cli import effects as listing
-from hfanalysis.cli import tables
 from hfanalysis.cli.exit_status import put
+from hfanalysis.cli.paper import new_table, paper
 from hfanalysis.cli.perform import bring
 from hfanalysis.cli.request import Request
 from hfanalysis.diagnose.added_sensors import Sensor
@@ -98,9 +98,9 @@ def _declarations(outlook: Outlook) -> list[tuple[str, str]]:
 
 def show(product: Separability) -> None:
     """Print it for people."""
-    console = tables.paper()
+    console = paper()
     title = f"{product.id}: what {', '.join(map(called, product.channels))} can show"
-    table = tables.new_table("effect", "typical size", "stands out by", "seen from", "closest rivals", title=title)
+    table = new_table("effect", "typical size", "stands out by", "seen from", "closest rivals", title=title)
     for name, row in product.effects.items():
         rivals = ", ".join(f"{called(r.name)} {r.apart:.1f}" for r in row.rivals[:2])
         table.add_row(called(name), _size(row.typical, row), f"{row.detectability:.1f}", _seen(row), rivals)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -10,11 +10,11 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from hfanalysis.cli.exit_status import nobody_reads
-from hfanalysis.health.reasons import Doubt, marked, reasons
-from hfanalysis.products.health import TRUSTED, Finding
+from hfanalysis.cli.paper import doubted, marks, new_table, paper, print_quantities, print_values, soft
+from hfanalysis.health.reasons import Doubt, reasons
+from hfanalysis.products.health import Finding
 from hfanalysis.products.model import AdoptedEffect, Part
-from hfanalysis.quantity import DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
+from hfanalysis.quantity import Quantity
 from hfanalysis.stages import way_to
 from hfanalysis.stages.base import Context, load_stage
 from hfanalysis.wording import numbers as wording
@@ -29,49 +29,6 @@ if TYPE_CHECKING:  # each stage reads its own: so a command starts in no time
     from hfanalysis.products.reconstruction import Reconstruction
     from hfanalysis.products.validation import Validation
 
-_NARROWEST = 140
-"""Columns assumed where nobody says (a pipe), so that tables do not break."""
-
-_WIDE = 116
-"""Columns from which on the quantities' names in words fit."""
-
-_ROOMY = 100
-"""Columns from which on the intervals fit beside the deviations."""
-
-_MAY_WRAP = ("", "effect", "what it is", "flags", "column", "closest rivals")
-"""Columns that give way where the terminal is narrow; numbers and symbols never do."""
-
-_NUMBERS = (
-    "value", "± std", "samples", "rate", "least", "largest", "rms", "bias", "noise", "stands out by", "typical size",
-    "seen from",
-)  # fmt: skip
-
-_WORDS = {"of_ratio": "O/F"}
-"""What an engine's quantities are called, where that is not plain from their names."""
-
-_STYLES = {IDENTIFIED: "green", UNPHYSICAL: "red"}
-
-
-class _Paper(Console):
-    """A console whose reader may go away (``hfa … | head``)."""
-
-    def on_broken_pipe(self) -> None:
-        self.quiet = True
-        nobody_reads()
-
-
-def paper() -> Console:
-    """Standard output, wide enough for tables that do not break where nobody says how wide it is."""
-    console = _Paper(highlight=False)
-    if not console.is_terminal:
-        console.width = max(console.width, _NARROWEST)
-    return console
-
-
-def _soft(console: Console) -> bool:
-    """Whether lines are left whole, for what reads a pipe; a terminal wraps them at words."""
-    return not console.is_terminal
-
 
 def show(name: str, context: Context) -> None:
     """Print what a stage ("run": all of them) found, on standard output."""
@@ -81,7 +38,7 @@ def show(name: str, context: Context) -> None:
         if stage not in context.absent:
             _SHOWN.get(stage, partial(_written, stage))(context, console)
     if adopted := _adopted(name, context):
-        console.print(Text(adopted), soft_wrap=_soft(console))
+        console.print(Text(adopted), soft_wrap=soft(console))
 
 
 def show_run(context: Context) -> None:
@@ -99,11 +56,11 @@ def show_run(context: Context) -> None:
         text = shown(quantity, "si", name)
         letter = motor_class(material) if name == "total_impulse" else ""
         unit = f"{text.unit}, class {letter}" if letter else text.unit
-        table.add_row(in_words(name), text.value, text.std, unit, _doubt(quantity, material.reasons))
+        table.add_row(in_words(name), text.value, text.std, unit, doubted(quantity, material.reasons))
     if numbers:
         console.print(table)
-    console.print(Text(f"page: {context.product('report.html')}"), soft_wrap=_soft(console))
-    console.print(Text(f"everything that was found: hfa run {context.id} --verbose"), soft_wrap=_soft(console))
+    console.print(Text(f"page: {context.product('report.html')}"), soft_wrap=soft(console))
+    console.print(Text(f"everything that was found: hfa run {context.id} --verbose"), soft_wrap=soft(console))
 
 
 def _told(head: str, words: str) -> Table:
@@ -144,75 +101,6 @@ def _headline(context: Context) -> Text:
     return Text("  ").join([Text("  ".join(filter(None, words)), style="bold"), Text(source, style=style)])
 
 
-def new_table(*columns: str, title: str) -> Table:
-    """An empty table; columns of numbers stand to the right."""
-    table = Table(title=title, title_justify="left", title_style="", box=None, pad_edge=False, header_style="dim")
-    for column in columns:
-        right = column in _NUMBERS
-        table.add_column(column, overflow="fold", justify="right" if right else "left", no_wrap=column not in _MAY_WRAP)
-    return table
-
-
-def _quantities(found: Mapping[str, Quantity], title: str, console: Console, known: Sequence[Doubt]) -> Table:
-    """The quantities in as many columns as the terminal has room for: columns go before digits do."""
-    kept = ["value", "± std", *["95 % interval"] * (console.width >= _ROOMY), "unit", "verdict"]
-    wide = console.width >= _WIDE
-    table = _of_columns(found, title, wide, kept, known)
-    for name in ("", "95 % interval", "verdict", "± std"):
-        if _too_wide(table, console) and (name in kept or (not name and wide)):
-            kept = [column for column in kept if column != name]
-            table = _of_columns(found, title, False, kept, known)
-    if _too_wide(table, console):
-        table.columns[0].no_wrap = False
-    return table
-
-
-def _too_wide(table: Table, console: Console) -> bool:
-    """Whether a table has to break a word or a number to fit."""
-    return console.measure(table, options=console.options.update(width=10 * _WIDE)).maximum > console.width
-
-
-def _of_columns(
-    found: Mapping[str, Quantity], title: str, wide: bool, columns: Sequence[str], known: Sequence[Doubt]
-) -> Table:
-    table = new_table("symbol", *[""] * wide, *columns, title=title)
-    for name, quantity in found.items():
-        text = shown(quantity)
-        told = f"{text.verdict} {_marks(marked(quantity, known)[0])}".strip()
-        cells: dict[str, str | Text] = {
-            "value": text.value,
-            "± std": text.std,
-            "95 % interval": text.interval,
-            "unit": text.unit,
-            "verdict": Text(told, style=_STYLES.get(text.verdict, "yellow")),
-        }
-        table.add_row(name, *[in_words(name)] * wide, *(cells[column] for column in columns))
-    return table
-
-
-def _marks(numbers: Iterable[int]) -> str:
-    """The numbers of the reasons for a doubt; the warnings say them, each once."""
-    return " ".join(f"[{number}]" for number in numbers)
-
-
-def _notes(found: Mapping[str, Quantity], known: Sequence[Doubt]) -> Iterator[str]:
-    """Why quantities are missing, or judged as they are, where that is not plain: what is said of several, once."""
-    told: dict[str, list[str]] = {}
-    for name, quantity in found.items():
-        verdict, (_, why) = shown(quantity).verdict, marked(quantity, known)
-        if why and verdict not in (IDENTIFIED, ""):
-            told.setdefault(f"{verdict}: {why}", []).append(name)
-    return (f"{', '.join(names)}: {words}" for words, names in told.items())
-
-
-def _print(console: Console, found: Mapping[str, Quantity], title: str, known: Sequence[Doubt] = ()) -> None:
-    console.print(_quantities(found, title, console, known))
-    from hfanalysis.report.names import plain
-
-    for note in map(plain, _notes(found, known)):
-        console.print(Text(f"  {note}"), soft_wrap=_soft(console))
-
-
 def _reasons(context: Context) -> list[Doubt]:
     """Why channels of a test are doubted, in the order of their numbers."""
     from hfanalysis.products.health import Health
@@ -243,7 +131,7 @@ def _health(context: Context, console: Console) -> None:
     for name, channel in product.channels.items():
         numbered = {f: n for n, doubt in enumerate(known, 1) for f in channel.findings if _is(doubt, name, f)}
         what = dict.fromkeys(
-            f"{f.kind.replace('_', ' ')} {_marks([numbered[f]] if f in numbered else [])}".strip()
+            f"{f.kind.replace('_', ' ')} {marks([numbered[f]] if f in numbered else [])}".strip()
             for f in channel.findings
         )
         trust = f"trusted: {channel.trust}; against: " if channel.trust and what else ""
@@ -267,7 +155,7 @@ def _segment(context: Context, console: Console) -> None:
 
     product = context.read(Segments)
     kind = wording.KINDS.get(product.kind, product.kind)
-    _print(console, product.quantities, f"phases (seconds after the valve opens): recognized as {kind}",
+    print_quantities(console, product.quantities, f"phases (seconds after the valve opens): recognized as {kind}",
            _reasons(context))  # fmt: skip
     if product.engineer:
         console.print(Text(f"  set by the engineer in test.toml: {', '.join(product.engineer)}"))
@@ -279,10 +167,10 @@ def _calibrate(context: Context, console: Console) -> None:
 
     product, events = context.read(Calibration), context.read(Segments).events
     times = {name: events[name] for name in ("t_feed", "t_v", "t_purge")}
-    _print(console, ordered(product.quantities) | times, "calibration", _reasons(context))
+    print_quantities(console, ordered(product.quantities) | times, "calibration", _reasons(context))
     if product.inlet is not None:
         reaching = product.inlet.quantities | dict(product.C_d)
-        _print(console, reaching, "what reaches the injector, and its C_d by law", _reasons(context))
+        print_quantities(console, reaching, "what reaches the injector, and its C_d by law", _reasons(context))
     _regression(product.regression, console)
 
 
@@ -291,7 +179,7 @@ def _regression(regression: RegressionBasis, console: Console) -> None:
     from hfanalysis.report.names import plain
 
     for test in regression.tests:
-        console.print(Text(plain(f"  a, n: {'; '.join(test.fitted_with)}")), soft_wrap=_soft(console))
+        console.print(Text(plain(f"  a, n: {'; '.join(test.fitted_with)}")), soft_wrap=soft(console))
         burn = test.burn_time_measured
         seen = "" if burn is None else f" (measured {burn:.2f} s)"
         console.print(
@@ -299,7 +187,7 @@ def _regression(regression: RegressionBasis, console: Console) -> None:
                 f"  a, n leave {test.p_chamber_rms / 1e5:.3f} bar rms in chamber pressure over the window, "
                 f"{test.independent_samples:.0f} independent values; burn time {test.burn_time_model:.2f} s{seen}"
             ),
-            soft_wrap=_soft(console),
+            soft_wrap=soft(console),
         )
 
 
@@ -309,26 +197,26 @@ def show_quick(product: QuickLook) -> None:
     head = [product.test, wording.KINDS.get(product.kind or "", product.kind or "no firing"), "quick look"]
     source = wording.SOURCES.get(product.source, product.source)
     console.print(Text.assemble(("  ".join(head), "bold"), "  ", (source, "bold yellow")))
-    console.print(Text(f"test.toml: {product.facts}"), soft_wrap=_soft(console))
+    console.print(Text(f"test.toml: {product.facts}"), soft_wrap=soft(console))
     verdicts = ", ".join(f"{name} {verdict}" for name, verdict in product.health.items())
-    console.print(Text(f"sensors: {verdicts}"), soft_wrap=_soft(console))
+    console.print(Text(f"sensors: {verdicts}"), soft_wrap=soft(console))
     for finding in product.findings:
-        console.print(Text(f"  {finding}", style="yellow"), soft_wrap=_soft(console))
+        console.print(Text(f"  {finding}", style="yellow"), soft_wrap=soft(console))
     if product.phases:
-        _print(console, product.phases, "phases (seconds after the valve opens)")
-    _print(console, {"C_i": product.C_i} | product.performance, "performance, as measured")
+        print_quantities(console, product.phases, "phases (seconds after the valve opens)")
+    print_quantities(console, {"C_i": product.C_i} | product.performance, "performance, as measured")
     console.print(Text("not fitted, not compared with the model, not diagnosed: hfa run without --quick does"))
 
 
 def show_regression(product: CommonLaw) -> None:
     """Print a and n of several tests, together and each alone."""
     console = paper()
-    _print(console, ordered(product.quantities), f"regression common to {', '.join(product.tests)}")
+    print_quantities(console, ordered(product.quantities), f"regression common to {', '.join(product.tests)}")
     _regression(product.regression, console)
     agreement = product.agreement
     console.print(Text(f"  the tests {agreement.verdict} (probability {agreement.probability:.2g})"))
     for name, found in product.alone.items():
-        _print(console, ordered(found.quantities), f"{name} alone")
+        print_quantities(console, ordered(found.quantities), f"{name} alone")
 
 
 def _performance(product: Validation, known: Sequence[Doubt], console: Console) -> None:
@@ -341,19 +229,21 @@ def _performance(product: Validation, known: Sequence[Doubt], console: Console) 
         found = shown(measured)
         if measured.value is not None or model.value != "–":
             unit = found.unit or model.unit
-            table.add_row(in_words(name), found.value, found.std, model.value, model.std, unit, _doubt(measured, known))
+            table.add_row(
+                in_words(name), found.value, found.std, model.value, model.std, unit, doubted(measured, known)
+            )
     console.print(table)
     if performance.motor_class:
-        console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=_soft(console))
+        console.print(Text(f"  motor class {performance.motor_class}"), soft_wrap=soft(console))
     if product.reconstruction is not None:
-        console.print(Text(f"  reconstruction: {_reconstructed(product.reconstruction)}"), soft_wrap=_soft(console))
+        console.print(Text(f"  reconstruction: {_reconstructed(product.reconstruction)}"), soft_wrap=soft(console))
     if product.stability is not None:
         console.print(
             Text(f"  stability: {product.stability.verdict}: {product.stability.why}"),
-            soft_wrap=_soft(console),
+            soft_wrap=soft(console),
         )
     for name, reason in product.absent.items():
-        console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=_soft(console))
+        console.print(Text(f"  without {in_words(name)}: {reason}"), soft_wrap=soft(console))
 
 
 def _reconstructed(found: Reconstruction) -> str:
@@ -389,13 +279,13 @@ def _flight(context: Context, console: Console) -> None:
 
     product = context.read(Flight)
     title = f"flight, thrust {product.thrust_basis}, {product.thrust}"
-    _values(console, ordered(product.flown), title, _reasons(context))
-    console.print(Text(f"  the intervals hold {product.band_covers}"), soft_wrap=_soft(console))
-    _values(console, ordered(product.stability.quantities), "stability")
+    print_values(console, ordered(product.flown), title, _reasons(context))
+    console.print(Text(f"  the intervals hold {product.band_covers}"), soft_wrap=soft(console))
+    print_values(console, ordered(product.stability.quantities), "stability")
     for name, check in product.checks.items():
         style = {"passed": "green", "failed": "red"}.get(check.result, "yellow")
         line = Text.assemble(f"  {in_words(name)}: ", (check.result, style), f": {check.why}")
-        console.print(line, soft_wrap=_soft(console))
+        console.print(line, soft_wrap=soft(console))
 
 
 def _diagnose(context: Context, console: Console) -> None:
@@ -403,15 +293,15 @@ def _diagnose(context: Context, console: Console) -> None:
 
     product = context.read(Diagnosis)
     for i, sentence in enumerate(product.sentences):
-        console.print(Text(sentence, style="bold" if i == 0 else ""), soft_wrap=_soft(console))
+        console.print(Text(sentence, style="bold" if i == 0 else ""), soft_wrap=soft(console))
     likely = sorted(((p, n) for n, p in product.posterior.items() if p >= SHOWN), reverse=True)
     odds = ", ".join(f"{product.plain(name)} {p:.2f}" for p, name in likely)
-    console.print(Text(f"  probabilities: {odds}"), soft_wrap=_soft(console))
+    console.print(Text(f"  probabilities: {odds}"), soft_wrap=soft(console))
     if partners := {product.plain(name): p for name, p in product.partners.items() if p >= SHOWN}:
         beside = ", ".join(f"{n} {p:.2f}" for n, p in partners.items())
-        console.print(Text(f"  beside it: {beside}"), soft_wrap=_soft(console))
+        console.print(Text(f"  beside it: {beside}"), soft_wrap=soft(console))
     for warning in (*product.notes, *product.warnings):
-        console.print(Text(f"  {warning}", style="yellow"), soft_wrap=_soft(console))
+        console.print(Text(f"  {warning}", style="yellow"), soft_wrap=soft(console))
 
 
 SHOWN = 0.005
@@ -421,7 +311,7 @@ SHOWN = 0.005
 def _written(stage: str, context: Context, console: Console) -> None:
     """What a stage wrote, where nothing else is said of it here."""
     for name in load_stage(stage).products:
-        console.print(Text(f"{stage}: {context.product(name)}"), soft_wrap=_soft(console))
+        console.print(Text(f"{stage}: {context.product(name)}"), soft_wrap=soft(console))
 
 
 def show_engine(product: Simulated | Designed) -> None:
@@ -430,10 +320,10 @@ def show_engine(product: Simulated | Designed) -> None:
     words = (product.engine, product.command, f"conventions: {product.conventions}")
     console.print(Text("  ".join(words), style="bold"))
     console.print(Text(f"oxidizer enthalpy: {product.oxidizer_enthalpy.of}"))
-    _values(console, ordered(product.quantities), "engine")
+    print_values(console, ordered(product.quantities), "engine")
     for name, part in product.content.items():
         if isinstance(part, Part) and part.quantities:
-            _values(console, ordered(part.quantities), in_words(name))
+            print_values(console, ordered(part.quantities), in_words(name))
 
 
 def show_effects(product: EffectLibrary) -> None:
@@ -448,7 +338,7 @@ def show_effects(product: EffectLibrary) -> None:
     console.print(table)
     console.print(
         Text("docs/effects.md has their equations, priors and sources; --json all of it"),
-        soft_wrap=_soft(console),
+        soft_wrap=soft(console),
     )
 
 
@@ -461,33 +351,6 @@ def _strength(effect: EffectEntry) -> str:
     name, first = next((name, p) for name, p in effect.parameters.items() if p.strength)
     factor, unit = wording.people_unit(first.unit)
     return f"{name} {wording.tidy(factor * first.typical, 6)} {unit.strip('-')}".strip()
-
-
-def _values(console: Console, found: Mapping[str, Quantity], title: str, known: Sequence[Doubt] = ()) -> None:
-    """A table of values, with intervals where any has one, and below it what cannot be had, by reason."""
-    spread = any(quantity.std for quantity in found.values())
-    table = new_table("", "value", *(["± std", "95 % interval"] if spread else []), "unit", "", title=title)
-    absent: dict[str, list[str]] = {}
-    for name, quantity in found.items():
-        text = shown(quantity)
-        if quantity.value is None:
-            absent.setdefault(text.why, []).append(in_words(name))
-        else:
-            extra = [text.std, text.interval] if spread else []
-            table.add_row(_WORDS.get(name, in_words(name)), text.value, *extra, text.unit, _doubt(quantity, known))
-    if table.row_count:
-        console.print(table)
-    for reason, names in absent.items():
-        console.print(Text(f"  without {', '.join(names)}: {reason}"))
-
-
-def _doubt(quantity: Quantity, known: Sequence[Doubt]) -> Text:
-    """In a table without verdicts: that a number is doubted, or rests on a channel that is trusted, and the numbers of
-    the reasons, or for which channel; the warnings say more."""
-    told, numbers = (quantity.why or "").partition(": ")[0], _marks(marked(quantity, known)[0])
-    trusted = TRUSTED in told and quantity.value is not None
-    doubted = quantity.verdict == DOUBTED and quantity.value is not None
-    return Text(f"doubted {numbers or told}" if doubted else f"{told} {numbers}" if trusted else "", style="yellow")
 
 
 _SHOWN = {
