@@ -12,7 +12,9 @@ from dataclasses import replace
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.diagnose.answer.posterior import smallest_set
 from hfanalysis.diagnose.answer.source_places import of_unknown
+from hfanalysis.diagnose.answer.standing import against, withheld
 from hfanalysis.diagnose.answer.verdict import Verdict
 from hfanalysis.diagnose.naming.naming import Naming
 from hfanalysis.engine.unsteady import Burn
@@ -155,7 +157,7 @@ def without_small_sources(found: Naming) -> Naming:
 
 def without_the_small(verdict: Verdict, rows: Sequence[Place], found: Naming) -> tuple[Verdict, Mapping[str, float]]:
     """The verdict without names that are too small to matter; none where all that is claimed is; and what is, with the
-    part that it is.
+    part that it is. Where the rest alone is not the whole story, it is unknown beside that.
 
     ``rows``: the places of what is claimed.
     """
@@ -170,5 +172,10 @@ def without_the_small(verdict: Verdict, rows: Sequence[Place], found: Naming) ->
     alike = [c for c in (*found.singles, *found.sets) if set(c.names) == set(rest)]
     if verdict.chosen.unknown or not alike:
         return verdict, small
+    chosen = max(alike, key=lambda c: c.log_evidence)
     partners = {name: p for name, p in verdict.partners.items() if name not in small}
-    return replace(verdict, chosen=max(alike, key=lambda c: c.log_evidence), partners=partners), small
+    less = replace(verdict, chosen=chosen, partners=partners)
+    if doubts := against(chosen, found.base, found.bench.observed):
+        kept = withheld(verdict.posterior, {chosen.names[0]: chosen}, found.base, found.bench.observed)
+        return replace(less, label="unknown", posterior=kept, set90=smallest_set(kept), doubts=doubts), small
+    return less, small

@@ -11,8 +11,11 @@ CERTAIN = 8.0
 
 
 def dropped(found: Candidate, bench: Bench) -> Candidate:
-    """The set without the effects whose loss makes the data no less probable; what it is named for last stays."""
-    for name in found.names[:-1]:
+    """The set without the effects whose loss makes the data no less probable; a source stays.
+
+    One that was added last may have done no more than show the others the way to a better fit.
+    """
+    for name in found.names[:-1] if found.unknown else found.names:
         if len(found.names) < 2:
             break
         if _certain(found, name):

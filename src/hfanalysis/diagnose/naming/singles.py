@@ -48,6 +48,10 @@ MODERATE = 0.6
 STARTS = 2
 """Starts of an effect's fit."""
 
+FOLLOWED, LARGE = 3, 2.0
+"""Effects, those that explain most, to whose size the constants follow first where the base model is far away, and that
+size (as x): four times the typical one, as the largest of size.py."""
+
 LOST, KEPT = 0.5, 0.5
 """Log of posterior density by which a fit that is lost is worse than its parent, and the part of what a score test
 promises that a fit brings if it went where that pointed."""
@@ -122,7 +126,24 @@ def _first_children(base: Candidate, valleys: list[Candidate], search: Search, n
     def seen(fits: list[Fit | None]) -> bool:
         return any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
 
-    return [c for c in each(child, names) if c is not None]
+    found = [c for c in each(child, names) if c is not None]
+    return [*found, *_once_all_has_followed(found, base, search)] if far else found
+
+
+def _once_all_has_followed(found: list[Candidate], base: Candidate, search: Search) -> list[Candidate]:
+    """The effects that explain most of a test that the base model is far from, fitted once its constants have followed
+    to a large size: all at once may have gone into a valley where a small size suits what they were bent to."""
+    observed, size = search.bench.at(base.form), base.fit.x.size
+
+    def again(one: Candidate) -> Candidate | None:
+        own = slice(size, size + search.catalogue.effects[one.names[0]].strengths)
+        start = np.concatenate([base.fit.x, np.zeros(one.fit.x.size - size)])
+        start[own] = np.copysign(LARGE, one.fit.x[own])
+        return _best(one.names, [followed(one.fit.hypothesis, slice(size, None), observed, start)], base.form)
+
+    first = sorted(found, key=lambda c: -c.log_evidence)[:FOLLOWED]
+    seen = [c for c in first if c.log_evidence > base.log_evidence + SEEN]
+    return [c for c in each(again, seen) if c is not None]
 
 
 def _from_elsewhere(base: Candidate, valleys: list[Candidate], search: Search, names: list[str]) -> list[Candidate]:
