@@ -60,7 +60,7 @@ def sets_of(
     bench, tried = search.bench, set[frozenset[str]]()
     singles = sorted(singles, key=lambda c: -c.log_evidence)
     front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + PLAIN]
-    known = _loosened(singles, bench)
+    known = _loosened(singles, base, bench)
     found: list[Candidate] = []
     for size in range(2, MOST_EFFECTS + 1):
         search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
@@ -69,7 +69,7 @@ def sets_of(
         if size == 2 and (better := _shown_the_way(grown[:2], singles, bench)):
             return sets_of(base, _best_each([*better, *singles]), search, at_hand)
         best = [c for c in each(lambda c: dropped(c, bench), grown[:2]) if len(c.names) > 1]
-        loose = _loosened([*best, *grown], bench)
+        loose = _loosened([*best, *grown], base, bench)
         front = [c for c, free in zip(best, loose, strict=False) if free.log_evidence > _of_subsets(c, known)][:1]
         if not front:
             break
@@ -77,7 +77,7 @@ def sets_of(
         known += loose
         last = front[0]
     if found and (other := swapped(last, search)) is not last:
-        found += _loosened([other], bench)
+        found += _loosened([other], base, bench)
     best_first = sorted(_best_each(found), key=lambda c: -c.log_evidence)
     return known[: len(singles)], [by_what_each_explains(c, singles) for c in best_first]
 
@@ -102,15 +102,17 @@ def _shown_the_way(pairs: list[Candidate], singles: list[Candidate], bench: Benc
     return [c for c in each(alone, pairs) if c is not None and c.log_evidence > known[c.names] + FAR]
 
 
-def _loosened(candidates: list[Candidate], bench: Bench) -> list[Candidate]:
-    """Candidates of one kind, all as much more probable as slack makes the first of them.
+def _loosened(candidates: list[Candidate], base: Candidate, bench: Bench) -> list[Candidate]:
+    """Candidates of one kind, more probable by what slack brings the first of them, in proportion to what they explain.
 
-    Among themselves they are compared without slack, which would make neighbors alike.
+    Among themselves they are compared without slack, which would make neighbors alike. An effect that is hardly there
+    has no slack to speak of: it stays with the ``base`` model.
     """
     if not candidates:
         return []
-    gain = slack_gain(candidates[0], bench)
-    return [replace(c, log_evidence=c.log_evidence + gain) for c in candidates]
+    gain, most = slack_gain(candidates[0], bench), candidates[0].log_evidence - base.log_evidence
+    explained = [min(max((c.log_evidence - base.log_evidence) / max(most, 1e-9), 0.0), 1.0) for c in candidates]
+    return [replace(c, log_evidence=c.log_evidence + gain * e) for c, e in zip(candidates, explained, strict=True)]
 
 
 def _of_subsets(candidate: Candidate, known: list[Candidate]) -> float:

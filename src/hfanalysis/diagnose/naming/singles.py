@@ -73,10 +73,11 @@ WORSE = 0.05
 def singles_of(base: Candidate, valleys: list[Candidate], search: Search) -> list[Candidate]:
     """Every effect that is seen from the base model or its other ``valleys``, the best first."""
     bench, names = search.bench, list(search.catalogue.effects)
+    started = _first_children(base, valleys, search, names)
+    if _far_away(base, bench):
+        started += _once_all_has_followed(started, base, search)
     best: dict[str, Candidate] = {}
-    for one in _raced(
-        [*_first_children(base, valleys, search, names), *_from_elsewhere(base, valleys, search, names)], bench
-    ):
+    for one in _raced([*started, *_from_elsewhere(base, valleys, search, names)], bench):
         name = one.names[0]
         if name not in best or more_probable(one, best[name]):
             best[name] = one
@@ -105,7 +106,7 @@ def _first_children(base: Candidate, valleys: list[Candidate], search: Search, n
     """
     observed, done = search.bench.at(base.form), count()
     fits_of_base = [c.fit for c in (base, *valleys)]
-    far = base.form != FINEST or any(left > WELL_FITTED for left in observed.left_open(base.fit.residual))
+    far = _far_away(base, search.bench)
 
     def child(name: str) -> Candidate | None:
         search.progress(f"fitting {name}", 0.6 * next(done) / len(names))
@@ -126,8 +127,13 @@ def _first_children(base: Candidate, valleys: list[Candidate], search: Search, n
     def seen(fits: list[Fit | None]) -> bool:
         return any(f is not None and f.log_evidence > base.fit.log_evidence + SEEN for f in fits)
 
-    found = [c for c in each(child, names) if c is not None]
-    return [*found, *_once_all_has_followed(found, base, search)] if far else found
+    return [c for c in each(child, names) if c is not None]
+
+
+def _far_away(base: Candidate, bench: Bench) -> bool:
+    """Whether the base model is far from the data, or leaves much open."""
+    left = bench.at(base.form).left_open(base.fit.residual)
+    return base.form != FINEST or any(part > WELL_FITTED for part in left)
 
 
 def _once_all_has_followed(found: list[Candidate], base: Candidate, search: Search) -> list[Candidate]:
