@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from tests.diagnose.answer.test_verdict import eroded
 
+from hfanalysis.diagnose.answer import standing
+from hfanalysis.diagnose.answer import too_small as smallness
 from hfanalysis.diagnose.answer.source_places import places
 from hfanalysis.diagnose.answer.too_small import (
     MATTERS,
@@ -140,6 +142,23 @@ def test_a_name_beside_the_first_that_is_too_small_is_no_claim() -> None:
     assert left.chosen is one
     assert left.partners == {}
     assert list(small) == ["other"]
+
+
+def test_where_what_is_left_without_the_small_is_not_the_whole_story_it_is_unknown_beside_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found = eroded()
+    one = found.singles[0]
+    both = replace(one, names=(*one.names, "other"), log_evidence=one.log_evidence + 20.0)
+    verdict = replace(verdict_of(found), chosen=both, partners={"other": 0.99})
+    for module in (smallness, standing):
+        monkeypatch.setattr(module, "against", lambda *_: ("thrust is missed",))
+    left, _ = without_the_small(verdict, [row(), row(1e-3, site="other")], found)
+    assert left.label == "unknown"
+    assert left.chosen is one
+    assert left.doubts == ("thrust is missed",)
+    assert left.posterior["unknown"] > left.posterior["nozzle_throat_erosion"]
+    assert sum(left.posterior.values()) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("about", [0.0, 0.9, -0.9])

@@ -22,3 +22,13 @@ def test_a_source_called_like_the_effect_that_is_left_out_stays() -> None:
     assert less.unknown
     assert less.fit.hypothesis.blocks
     assert not any(name.startswith("tank_heat.") for name in less.fit.hypothesis.names)
+
+
+def test_what_was_added_last_and_is_hardly_there_is_left_out() -> None:
+    """It may have shown the others the way: they stay, with the constants that it led to."""
+    heat, lag = effect("tank_heat"), effect("chamber_tap_lag")
+    test = made.observed(heat.at(power=5000.0))
+    both = fit(made.hypothesis().with_effect(heat).with_effect(lag), test)
+    less = dropped(candidate(("tank_heat", "chamber_tap_lag"), both, FINEST), Bench(test))
+    assert less.names == ("tank_heat",)
+    assert less.log_evidence > candidate(("tank_heat", "chamber_tap_lag"), both, FINEST).log_evidence

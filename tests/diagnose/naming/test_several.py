@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from tests.inference import made
 
+from hfanalysis.diagnose.naming import several
 from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.naming.several import by_what_each_explains, sets_of
+from hfanalysis.diagnose.naming.several import _loosened, by_what_each_explains, sets_of
 from hfanalysis.effects import effect
 from hfanalysis.inference.candidate import Bench, Candidate, candidate
 from hfanalysis.inference.fitting.fit import fit
@@ -52,3 +53,13 @@ def test_a_set_is_named_for_what_explains_most_whichever_it_was_come_upon_from()
     both = replace(one, names=(LAG.name, EROSION.name), log_evidence=79.0)
     assert by_what_each_explains(both, [erosion, lag]).names == (EROSION.name, LAG.name)
     assert by_what_each_explains(both, [lag]).names == (LAG.name, EROSION.name)
+
+
+def test_what_is_hardly_there_has_no_slack_to_speak_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What slack brings the first it brings others in proportion: one at nothing stays with the base model."""
+    monkeypatch.setattr(several, "slack_gain", lambda *_: 12.0)
+    base = replace(eroding(1, ()), names=(), log_evidence=10.0)
+    first, half, nothing, worse = (replace(base, log_evidence=e) for e in (50.0, 30.0, 10.0, 5.0))
+    loose = [c.log_evidence for c in _loosened([first, half, nothing, worse], base, bench())]
+    assert loose == pytest.approx([62.0, 36.0, 10.0, 5.0])
+    assert _loosened([], base, bench()) == []

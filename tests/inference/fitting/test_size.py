@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -13,7 +14,8 @@ from scipy.stats import norm
 from tests.inference import made
 
 from hfanalysis.effects import effect
-from hfanalysis.inference.fitting.size import HOW_MANY, SIZES, of_any_size
+from hfanalysis.inference.fitting.hypothesis import DEPARTURE, OF_LAW, Free
+from hfanalysis.inference.fitting.size import HOW_MANY, OF_LAWS, SIZES, of_any_size
 
 Array = NDArray[np.float64]
 
@@ -94,3 +96,30 @@ def test_strengths_of_one_effect_go_together() -> None:
         [f"pressure_transducer_offset.{channel}" for channel in ("p_tank", "p_run", "p_chamber")],
         ["tank_heat.power"],
     ]
+
+
+def test_where_no_other_law_departs_one_hardly_does() -> None:
+    """Ten laws, nine of which a test shows to be the library's: that the tenth is off by a deviation costs more."""
+    precise = np.diag(np.full(10, 1e4))
+    exact = of_any_size(precise, np.zeros(10), [], laws=10)
+    one_off = of_any_size(precise, np.eye(10)[0], [], laws=10)
+    all_off = of_any_size(precise, np.ones(10), [], laws=10)
+    unseen = of_any_size(np.eye(10), np.zeros(10), [], laws=10)
+    assert exact > one_off + 10.0
+    assert all_off == pytest.approx(-np.log(len(OF_LAWS)), abs=1e-6)
+    assert unseen == pytest.approx(0.0, abs=1e-9)
+
+
+@given(PRECISE, FAR, PRECISE, FAR)
+def test_an_effect_and_laws_change_each_by_their_own(one: float, x: float, law: float, y: float) -> None:
+    both = of_any_size(np.diag([one, law]), np.array([x, y]), [1], laws=1)
+    alone = of_any_size(np.array([[one]]), np.array([x]), [1])
+    assert both == pytest.approx(alone + of_any_size(np.array([[law]]), np.array([y]), [], 1), rel=1e-6, abs=1e-6)
+
+
+def test_only_departures_of_laws_are_of_one_size_together() -> None:
+    table, law = Free(f"{DEPARTURE}table: pressure", 0.0, 1.0), Free(f"{OF_LAW}loss", 0.0, 1.0)
+    hypothesis = made.hypothesis()
+    hypothesis = replace(hypothesis, free=(*hypothesis.free, table, law))
+    assert [hypothesis.names[i] for i in hypothesis.of_laws] == [law.name]
+    assert [hypothesis.names[i] for i in hypothesis.of_departures] == [table.name, law.name]
