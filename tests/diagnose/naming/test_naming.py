@@ -29,7 +29,7 @@ from hfanalysis.diagnose.naming.polish import DEEPER, polished
 from hfanalysis.diagnose.naming.score import score
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import swapped
-from hfanalysis.diagnose.naming.singles import _first_children, _promising, singles_of
+from hfanalysis.diagnose.naming.singles import _first_children, _once_all_has_followed, _promising, singles_of
 from hfanalysis.diagnose.naming.slack import course_error, slack_gain
 from hfanalysis.effects import effect
 from hfanalysis.engine.effect import Active
@@ -168,6 +168,20 @@ def test_constants_follow_to_an_effect_where_a_fit_of_all_at_once_leads_to_nothi
     (found,) = _first_children(base, [], Search(bench, catalogue(("tank_heat",))), ["tank_heat"])
     assert found.log_evidence > base.log_evidence + 20.0
     assert found.fit.hypothesis.free[-1].most > found.fit.hypothesis.free[-1].least  # it is free again in the end
+
+
+def test_a_large_effect_is_found_where_a_fit_of_all_at_once_ended_at_a_small_size() -> None:
+    lag = effect("chamber_tap_lag")
+    bench = Bench(made.observed(lag.at(lag=0.25)))
+    search = Search(bench, Catalogue({lag.name: lag}, {}))
+    base, _ = base_model(made.hypothesis(), bench)
+    made_with = base.fit.hypothesis.with_effect(lag)
+    start = np.concatenate([base.fit.x, [0.3, 0.0]])
+    stuck = candidate((lag.name,), fit(made_with, bench.at(base.form), start, 1), base.form)
+    (found,) = _once_all_has_followed([stuck], base, search)
+    assert stuck.fit.values["chamber_tap_lag.lag"] < 0.2
+    assert found.log_evidence > stuck.log_evidence + 100.0
+    assert found.fit.values["chamber_tap_lag.lag"] == pytest.approx(0.25, abs=0.03)
 
 
 def test_an_effect_whose_place_the_constants_take_starts_far_from_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
