@@ -12,7 +12,7 @@ import typer
 
 from hfanalysis.cli.engine_commands import OF_ENGINES
 from hfanalysis.cli.exit_status import plain_exit
-from hfanalysis.cli.options import Firing, Force, Json, Out, ProductJson, Quiet, Root, Set, Test, Trust
+from hfanalysis.cli.options import Firing, Force, Json, Out, ProductJson, Quiet, Root, Set, Test, Trust, tests_of
 from hfanalysis.cli.request import Request, named
 from hfanalysis.cli.trust import ask
 from hfanalysis.errors import InputError
@@ -23,7 +23,6 @@ app = typer.Typer(
     name="hfa",
     help="Hot-fire test data analysis for nitrous oxide / paraffin hybrid engines.",
     epilog="Exit status: 0 done, 2 the input is at fault, 3 the log does not hold what was asked, 1 a defect of ours.",
-    add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -266,7 +265,10 @@ def _regression(
         regression.regression(tests, root, out, as_json)
 
 
-Tests = Annotated[list[str] | None, typer.Argument(metavar="[TEST…]", help="Names of tests; none: all.")]
+Tests = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="[TEST…]", help="Names of tests; none: all.", autocompletion=tests_of),
+]
 Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Tests at a time.", show_default="one per core")]
 
 

@@ -7,7 +7,18 @@ from typing import Annotated
 
 import typer
 
-Test = Annotated[str, typer.Argument(metavar="TEST", help="Name of the test, or its folder: raw_tests/TEST.")]
+
+def tests_of(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Names of the tests under ROOT/raw_tests/ that begin so, for a shell that completes them."""
+    raw = Path(ctx.params.get("root") or ".") / "raw_tests"
+    names = (path.parent.name for path in raw.glob("*/test.toml"))
+    return sorted(name for name in names if name.startswith(incomplete))
+
+
+Test = Annotated[
+    str,
+    typer.Argument(metavar="TEST", help="Name of the test, or its folder: raw_tests/TEST.", autocompletion=tests_of),
+]
 Root = Annotated[Path, typer.Option(help="Folder that holds raw_tests/ and processed/.", show_default="here")]
 Out = Annotated[Path | None, typer.Option(help="Write products to OUT/TEST/ instead of ROOT/processed/TEST/.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the stage's JSON product on standard output, nothing else.")]
