@@ -8,6 +8,7 @@ from urllib.parse import quote
 
 from markupsafe import Markup, escape
 
+from hfanalysis.campaign.conclusions import conclusions
 from hfanalysis.campaign.strips import strip
 from hfanalysis.campaign.words import HIDDEN, agreement, alone, diagnosed, regression_sentence
 from hfanalysis.products.campaign import Campaign, StandRow, TestRow, Together
@@ -59,6 +60,8 @@ def _stand(stand: StandRow, tests: Mapping[str, TestRow]) -> Iterator[Markup]:
     if len(stand.tests) == 1:
         yield html.paragraph(alone(stand.tests[0]))
         return
+    for sentence in conclusions(stand, tests):
+        yield html.paragraph(sentence)
     rows = {test: tests[test].calibration for test in stand.tests}
     columns = ("constant", *(f">{test}" for test in rows), ">together", "the tests")
     caption = "The mean counts how far the tests differ beyond their own deviations; only what is identified is in it."

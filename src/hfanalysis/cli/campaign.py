@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rich.text import Text
 
+from hfanalysis.campaign.conclusions import conclusions
 from hfanalysis.campaign.page import page
 from hfanalysis.campaign.product import row_of, stand_row
 from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended, run_all
@@ -133,6 +134,8 @@ def _print(product: Campaign) -> None:
         if len(stand.tests) == 1:
             continue
         constants = stand.constants
+        for sentence in conclusions(stand, product.tests):
+            console.print(Text(f"  {sentence}"), soft_wrap=True)
         table = new_table("", *constants, title=f"stand: {name}")
         for test in stand.tests:
             table.add_row(test, *(_number(product.tests[test].calibration.get(c)) for c in constants))

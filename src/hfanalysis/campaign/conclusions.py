@@ -1,0 +1,111 @@
+"""What the tests of one stand say together, in sentences: what is the same in all, and what is not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import hypot
+
+from hfanalysis.campaign.pooling import DISAGREE
+from hfanalysis.products.campaign import EffectRow, StandRow, TestRow, Together
+from hfanalysis.quantity import NORMAL_95, Quantity
+from hfanalysis.report.names import called
+from hfanalysis.wording.numbers import in_words, listed, shown
+
+TWICE = 1.5
+"""Ratio of an effect's size in two tests from which on it is worth a look, if they differ beyond their deviations.
+Source: by choice, half more."""
+
+
+def conclusions(stand: StandRow, tests: Mapping[str, TestRow]) -> list[str]:
+    """Sentences on the constants of a stand and on its effects; nothing of a stand with one test.
+
+    ``tests``: all rows of the campaign, by name.
+    """
+    if len(stand.tests) < 2:
+        return []
+    rows = {test: tests[test] for test in stand.tests}
+    return [*_constants(stand.constants, rows), *_with_holes(rows), *_effects(stand.effects, stand.tests)]
+
+
+def _constants(constants: Mapping[str, Together], rows: Mapping[str, TestRow]) -> Iterator[str]:
+    same = [name for name, together in constants.items() if _agree(together) and set(together.tests) == set(rows)]
+    if same:
+        both = "both" if len(rows) == 2 else f"all {len(rows)}"
+        yield f"The same {listed([in_words(name) for name in same])} in {both} tests, within their deviations."
+    for name, together in constants.items():
+        if together.agreement is not None and not _agree(together):
+            found = {test: rows[test].calibration[name] for test in together.tests}
+            yield _apart(in_words(name), found)
+
+
+def _agree(together: Together) -> bool:
+    return together.agreement is not None and together.agreement.probability >= DISAGREE
+
+
+def _apart(words: str, found: Mapping[str, Quantity]) -> str:
+    """That a number differs, with the tests in which it is least and largest."""
+    low, high = _ends(found)
+    small, large = shown(found[low]), shown(found[high])
+    unit = f" {large.unit}" if large.unit else ""
+    return (
+        f"The {words} differs: {small.value} ± {small.std}{unit} in {low}, {large.value} ± {large.std}{unit} in {high}."
+    )
+
+
+def _ends(found: Mapping[str, Quantity]) -> tuple[str, str]:
+    """The tests with the least and the largest value."""
+    in_order = sorted(found, key=lambda test: found[test].value or 0.0)
+    return in_order[0], in_order[-1]
+
+
+def _with_holes(rows: Mapping[str, TestRow]) -> Iterator[str]:
+    """Whether the coefficient of an injector goes with the area of its holes: then it is no property of the hole."""
+    known = {
+        test: (row.injector_area, q)
+        for test, row in rows.items()
+        if row.injector_area is not None and (q := row.calibration.get("C_i")) is not None and q.value and q.std
+    }
+    if len({area for area, _ in known.values()}) < 2:
+        return
+    in_order = sorted(known, key=lambda test: known[test][0])
+    values = [known[test][1].value or 0.0 for test in in_order]
+    few, many = (known[test][1] for test in (in_order[0], in_order[-1]))
+    rising, falling = values == sorted(values), values == sorted(values, reverse=True)
+    if not _beyond_chance(few, many):
+        yield f"Injectors of other hole areas have the same C_i: {listed(in_order)}."
+    elif rising or falling:
+        word = "rises" if rising else "falls"
+        yield f"C_i {word} with the area of the holes: it is no property of the hole."
+    else:
+        yield "C_i differs between the injectors, but not with the area of their holes."
+
+
+def _beyond_chance(one: Quantity, other: Quantity) -> bool:
+    """Whether two numbers differ by more than their deviations allow."""
+    return abs((one.value or 0.0) - (other.value or 0.0)) > NORMAL_95 * hypot(one.std or 0.0, other.std or 0.0)
+
+
+def _effects(effects: Mapping[str, EffectRow], tests: tuple[str, ...]) -> Iterator[str]:
+    for name, effect in effects.items():
+        others = [test for test in tests if test not in effect.named_in]
+        where = listed(list(effect.named_in))
+        if others:
+            yield f"{_capital(called(name))} is named in {where}, and not in {listed(others)}."
+        else:
+            yield f"{_capital(called(name))} is named in {'both' if len(tests) == 2 else 'all'} tests."
+        for parameter, row in effect.parameters.items():
+            if row.together.agreement is not None and not _agree(row.together):
+                yield from _larger(called(name), parameter, row.by_test)
+
+
+def _larger(name: str, parameter: str, found: Mapping[str, Quantity]) -> Iterator[str]:
+    """By how many times a number of an effect differs between tests."""
+    low, high = _ends(found)
+    least, most = found[low].value or 0.0, found[high].value or 0.0
+    if least > 0.0 and most > TWICE * least:
+        times = f"{most / least:.1f} times that in {low}"
+        yield f"{_capital(name)}: its {parameter.replace('_', ' ')} in {high} is {times}; look at what changed."
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:]
