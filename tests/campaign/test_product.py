@@ -118,5 +118,6 @@ def test_the_page_has_a_picture_of_each_constant_and_links_to_the_tests(product:
     text = page(product)
     assert text.count('<svg class="chart"') == 3
     assert 'href="A/report.html"' in text
+    assert '<a href="index.html">All tests</a>' in text
     assert "<strong>0.93</strong> named" in text
     assert "&lt; 0.01" in text

@@ -351,6 +351,7 @@ def test_a_campaign_has_every_test_and_says_which_is_at_fault(run: Run, quick: P
     assert {test: row["status"] for test, row in product["tests"].items()} == {"T1": "done", "T2": "input at fault"}
     assert product["tests"]["T1"]["calibration"]["C_i"]["verdict"] == "identified"
     assert "T1/report.html" in (quick / "processed" / "campaign.html").read_text()
+    assert 'href="campaign.html">What they say together' in (quick / "processed" / "index.html").read_text()
     assert run("campaign", "T3", "--root", quick).status == 2
     assert run("campaign", "--root", tmp_path).status == 2
 
@@ -364,6 +365,7 @@ def test_two_tests_are_compared_on_one_page(run: Run, root: Path) -> None:
     text = Path(path).read_text()
     assert text.count("REPLICA") == 2
     assert ">HF4</th>" in text
+    assert 'href="HF5/compare_HF4.html"' in (Path(path).parents[1] / "index.html").read_text()
 
 
 def test_a_comparison_knows_both_tests_before_it_computes(run: Run, tmp_path: Path) -> None:

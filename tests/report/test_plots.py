@@ -15,6 +15,7 @@ from tests.report.sample import CALIBRATION, material, quantity, saying
 
 from hfanalysis.charts.chart import Chart, Series
 from hfanalysis.errors import InputError
+from hfanalysis.record.schema import changed
 from hfanalysis.report import pdf
 from hfanalysis.report.compare import both_charts, compare
 from hfanalysis.report.payload import LEAST_SAMPLES, MOST_SAMPLES, detail
@@ -91,6 +92,14 @@ def test_differences_have_their_standard_deviation(tmp_path: Path) -> None:
     assert "+2.00 ± 0.20 bar" in row[0]
     assert "+29.0 ± 2.9 psi" in row[0]
     assert "<strong>10.0</strong>" in row[0]
+
+
+def test_a_page_of_two_tests_leads_to_both_and_back_to_all(tmp_path: Path) -> None:
+    one = material(tmp_path)
+    other = replace(one, definition=changed(one.definition, test=changed(one.definition.test, id="cold 2")))
+    text = compare(one, other)
+    hrefs = re.findall(r'<a href="([^"#]+)">([^<]+)</a>', text)
+    assert hrefs[:3] == [("report.html", "HF0"), ("../cold%202/report.html", "cold 2"), ("../index.html", "All tests")]
 
 
 def test_a_missing_browser_is_told_plainly(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

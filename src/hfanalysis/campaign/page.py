@@ -31,6 +31,7 @@ def page(product: Campaign) -> str:
         lacking=[(test, diagnosed(row.diagnosis)) for test, row in tests.items()],
         missing=[(test, row.status, row.reason) for test, row in tests.items() if row.reason],
         stands=[(name, list(_stand(stand, tests))) for name, stand in product.stands.items()],
+        has_pages=any(row.page for row in tests.values()),
         generated=sorted({row.source for row in tests.values() if row.source} - {"measured"}),
     )
 

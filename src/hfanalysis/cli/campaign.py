@@ -23,6 +23,7 @@ from hfanalysis.products.disk import atomic, to_json, write_json
 from hfanalysis.progress import Progress
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.definition import TestDefinition, find_definition
+from hfanalysis.report.index import write_index
 from hfanalysis.stages.open_test import PROCESSED, RAW, open_test
 from hfanalysis.wording.numbers import in_words, shown
 
@@ -63,6 +64,7 @@ def campaign(request: CampaignRequest) -> int:
     write_json(folder / product.file, product)
     with atomic(folder / "campaign.html") as scratch:
         scratch.write_text(page(product), encoding="utf-8")
+    write_index(folder)
     _show(product, request, folder)
     return _status(ended)
 

@@ -55,6 +55,7 @@ def _plots(context: Context, request: Request) -> None:
 def compare(request: Request, other: str, as_pdf: bool) -> None:
     """The page that lays two tests over each other."""
     from hfanalysis.report.compare import compare as page
+    from hfanalysis.report.index import write_index
 
     if other == request.test:
         raise InputError(f"compare {request.test} {other}: one test twice; expected two different ones")
@@ -66,6 +67,7 @@ def compare(request: Request, other: str, as_pdf: bool) -> None:
     path = contexts[0].product(f"compare_{other}.html")
     with atomic(path) as scratch:
         scratch.write_text(page(*map(load, contexts)), encoding="utf-8")
+    write_index(contexts[0].out.parent)
     made = [path] + ([pdf.print_page(path, path.with_suffix(".pdf"))] if as_pdf else [])
     if request.as_json:
         put(to_json({"tests": [request.test, other], "products": made}))

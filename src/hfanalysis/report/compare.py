@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
+from urllib.parse import quote
 
 from markupsafe import Markup
 
@@ -35,12 +36,13 @@ _LONG_UNIT = 16
 
 
 def compare(one: Material, other: Material) -> str:
-    """The HTML of the page of two tests."""
+    """The HTML of the page of two tests, which lies beside the page of the first."""
     pairs = list(both_charts(one, other))
     return render(
         "compare.html.j2",
         tests=[(material.definition.test, kind(material)) for material in (one, other)],
         tables=list(_tables(one, other)),
+        pages=["report.html", f"../{quote(other.definition.test.id)}/report.html"],
         figures=[figure(chart) for chart in pairs],
         data=payload(pairs),
     )
