@@ -2,7 +2,8 @@
 one from heat of some watts, nor the other from an effect of some per cent.
 
 These departures are constants of every hypothesis, and linear: a run with each of them says what it adds to the
-channels' blocks, and to the instant at which the liquid ends.
+channels' blocks, to the instant at which the liquid ends, and to how wide the port is when the fuel does. They are made
+about a rough fit: what a law does depends on the regression's exponent, and that a calibration may have elsewhere.
 """
 
 from __future__ import annotations
@@ -11,9 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from hfanalysis.inference.fitting.fit import fit
+from hfanalysis.inference.fitting.form import COARSEST
 from hfanalysis.inference.fitting.hypothesis import DEPARTURE, OF_LAW, Free, Hypothesis
 from hfanalysis.inference.fitting.laws import LAWS
-from hfanalysis.inference.fitting.predict import predict, readings
+from hfanalysis.inference.fitting.predict import port_radius, predict, readings
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.thermo.departures import DEPARTURES, departed
 
@@ -22,12 +25,16 @@ MOST = 2.0
 is missing, and a run with one deviation does not tell what ten would do."""
 
 
+ROUGHLY = 12
+"""Steps of the rough fit about which departures are made."""
+
+
 def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothesis, Observed]:
     """The hypothesis with the departures free, and the observations with what these add where it starts.
 
     One that cannot be run there is left as it is: its fit will say so.
     """
-    start, engine = np.zeros(hypothesis.size), hypothesis.engine
+    engine = hypothesis.engine
     tables = {
         f"{DEPARTURE}table: {by.name}": replace(engine, saturation=departed(engine.saturation, by)) for by in DEPARTURES
     }
@@ -36,6 +43,7 @@ def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothe
         for law in LAWS.parameters
     }
     try:
+        start = fit(hypothesis, observed.with_errors(*COARSEST.errors), most=ROUGHLY).x
         here, *others = (
             predict(replace(hypothesis, engine=one), observed, start, tangents=False).burnt
             for one in (engine, *tables.values(), *laws.values())
@@ -49,8 +57,12 @@ def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothe
     )
     gone = [other.liquid_out for other in others]
     later = np.array([0.0 if g is None or here.liquid_out is None else g - here.liquid_out for g in gone])
+    ends = [at for name, (at, _) in observed.events.items() if name != "t_v"]
+    wider = np.array([port_radius(other, ends[0]) - port_radius(here, ends[0]) if ends else 0.0 for other in others])
     free = (
         *(Free(name, 0.0, 1.0) for name in tables),
         *(Free(name, 0.0, 1.0, least=-MOST, most=MOST) for name in laws),
     )
-    return replace(hypothesis, free=(*hypothesis.free, *free)), replace(observed, channels=channels, later=later)
+    return replace(hypothesis, free=(*hypothesis.free, *free)), replace(
+        observed, channels=channels, later=later, wider=wider
+    )

@@ -109,17 +109,21 @@ def all_slopes(hypothesis: Hypothesis, observed: Observed, of_engine: Array) -> 
         if block.sensor is not None:
             out[:, place] = sensor_slopes(observed, block.sensor, block.splines)
     if places := hypothesis.of_departures:
-        out[:, places] = departure_slopes(observed, len(places))
+        out[:, places] = departure_slopes(observed, hypothesis.engine, len(places))
     return out
 
 
-def departure_slopes(observed: Observed, count: int) -> Array:
-    """Whitened slopes (observations, ``count``) of the residuals with the departures of the table of nitrous oxide, in
-    their standard deviations."""
+def departure_slopes(observed: Observed, engine: Engine, count: int) -> Array:
+    """Whitened slopes (observations, ``count``) of the residuals with the departures of the table of nitrous oxide and
+    of laws, in their standard deviations; ``engine``: whose grain it is."""
     blocks = [np.zeros((c.time.size, count)) if c.departures is None else c.departures for c in observed.channels]
     scalars = np.zeros((len(observed.events) + len(observed.stated), count))
-    if observed.later is not None and "t_v" in observed.events:
-        scalars[list(observed.events).index("t_v")] = -observed.later / observed.spread("t_v")
+    for row, (name, (at, _)) in enumerate(observed.events.items()):
+        added = observed.later if name == "t_v" else observed.wider
+        if added is not None:
+            scalars[row] = -added / (
+                observed.spread(name) * (1.0 if name == "t_v" else _typical_regression(engine, at))
+            )
     return np.concatenate([-observed.whiten(np.concatenate(blocks)), scalars])
 
 
@@ -160,8 +164,10 @@ def residuals(
                 gone += float(observed.later @ x[places])
             scalars.append((at - gone) / deviation)
         else:
-            web = hypothesis.engine.outer_radius - float(burnt.steps.at(np.array([at]))[0][0, RADIUS])
-            scalars.append(web / (deviation * _typical_regression(hypothesis, at)))
+            web = hypothesis.engine.outer_radius - port_radius(burnt, at)
+            if observed.wider is not None and (places := hypothesis.of_departures):
+                web -= float(observed.wider @ x[places])
+            scalars.append(web / (deviation * _typical_regression(hypothesis.engine, at)))
     for name, (value, deviation) in observed.stated.items():
         if name == FADE:
             scalars.append(bounded(faded(observed, burnt, burnt.steps.engine) / deviation)[0])
@@ -245,7 +251,7 @@ def slopes_of(
         if name == "t_v":
             rows.append(-np.nan_to_num(found.event(LIQUID_OUT)) / deviation)
         else:
-            unit = deviation * _typical_regression(hypothesis, at)
+            unit = deviation * _typical_regression(hypothesis.engine, at)
             rows.append(-found.output("port_radius", np.array([at]))[0] / unit)
     for name, (_, deviation) in observed.stated.items():
         if name == FADE:
@@ -291,9 +297,14 @@ def _slopes_of_readings(observed: Observed, found: Tangents, true: Mapping[str, 
     return _with_its_zero(observed, slopes, read)
 
 
-def _typical_regression(hypothesis: Hypothesis, burn_time: float) -> float:
+def port_radius(burnt: Burn, at: float) -> float:
+    """Of a run at an instant [s after the opening], in [m]."""
+    return float(burnt.steps.at(np.array([at]))[0][0, RADIUS])
+
+
+def _typical_regression(engine: Engine, burn_time: float) -> float:
     """The web over the burn time [m/s]: what turns an instant's deviation into one of the port's radius."""
-    return (hypothesis.engine.outer_radius - hypothesis.engine.port_radius) / burn_time
+    return (engine.outer_radius - engine.port_radius) / burn_time
 
 
 LAST = 0.5, 0.2
