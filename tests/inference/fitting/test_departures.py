@@ -7,18 +7,22 @@ from functools import cache, reduce
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from tests.engine.stand import engine_on_stand
 from tests.inference import made
 
 from hfanalysis.engine.effect import Parameter
-from hfanalysis.inference.fitting.departures import with_departures
+from hfanalysis.inference.fitting.departures import ROUGHLY, with_departures
 from hfanalysis.inference.fitting.fit import fit
+from hfanalysis.inference.fitting.form import COARSEST
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.laws import LAWS
 from hfanalysis.inference.fitting.predict import predict
 from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.thermo.departures import DEPARTURES, Departure, departed
 from hfanalysis.thermo.saturation import Saturation
+
+Array = NDArray[np.float64]
 
 OFF = (4.0, 4.0, -4.0, 4.0, -4.0, -4.0, -4.0, 4.0)
 """Standard deviations by which a made-up table departs."""
@@ -69,19 +73,39 @@ def test_what_a_departure_adds_is_what_a_run_by_such_a_table_reads(which: int) -
     assert added == pytest.approx(there, abs=0.05 * float(np.abs(there - without).max()))
 
 
-@pytest.mark.parametrize("law", LAWS.parameters, ids=lambda law: law.name)
-def test_what_a_law_adds_is_what_an_engine_of_that_law_reads(law: Parameter) -> None:
+@cache
+def roughly() -> Array:
+    """Constants about which departures are made (parameters of the base model,)."""
+    return fit(made.hypothesis(), ready()[1].with_errors(*COARSEST.errors), most=ROUGHLY).x
+
+
+def with_a_law(law: Parameter) -> tuple[Array, Array, Array]:
+    """Residuals (observations,) of a law that departs by two deviations: by a run, by the departure, and without."""
     hypothesis, observed = ready()
-    x, base = np.zeros(hypothesis.size), made.hypothesis()
+    base, x = made.hypothesis(), np.concatenate([roughly(), np.zeros(len(hypothesis.of_departures))])
     engine = replace(base.engine, effects=(LAWS.at(**{law.name: 2.0 * law.typical}),))
-    there = predict(replace(base, engine=engine), observed, x[: base.size], tangents=False).residual
+    there = predict(replace(base, engine=engine), observed, roughly(), tangents=False).residual
     without = predict(hypothesis, observed, x, tangents=False).residual
     x[hypothesis.names.index(f"departure: law: {law.name}")] = 2.0
-    added = predict(hypothesis, observed, x, tangents=False).residual
-    blocks = slice(sum(c.time.size for c in observed.channels))  # what was weighed is left to the constants
+    return there, predict(hypothesis, observed, x, tangents=False).residual, without
+
+
+@pytest.mark.parametrize("law", LAWS.parameters, ids=lambda law: law.name)
+def test_what_a_law_adds_is_what_an_engine_of_that_law_reads(law: Parameter) -> None:
+    there, added, without = with_a_law(law)
+    blocks = slice(sum(c.time.size for c in ready()[1].channels))  # what was weighed is left to the constants
     off, whole = (added - there)[blocks], (there - without)[blocks]
     assert np.abs(whole).max() > 0.05
     assert np.sqrt(np.mean(off**2)) < 0.15 * np.sqrt(np.mean(whole**2))
+
+
+@pytest.mark.parametrize("name", ["port", "fuel's flux"])
+def test_a_law_of_the_regression_moves_the_end_of_the_fuel(name: str) -> None:
+    observed = ready()[1]
+    there, added, without = with_a_law(next(law for law in LAWS.parameters if law.name == name))
+    row = sum(c.time.size for c in observed.channels) + list(observed.events).index("t_fuel_out")
+    assert abs(there[row] - without[row]) > 0.1
+    assert added[row] - without[row] == pytest.approx(there[row] - without[row], rel=0.15)
 
 
 def test_without_a_departure_the_laws_are_the_base_model_s() -> None:
