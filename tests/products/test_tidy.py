@@ -20,6 +20,7 @@ CALIBRATION = {
     "a": {"value": 4e-4, "unit": "m/s (kg/m²/s)⁻ⁿ", "ci95": [1e-4, 9e-4]},
     "m": {"value": None, "reason": "no vapor, =SUM(1) it seems"},
     "by_law": {"spi": {"value": 0.4, "unit": ""}},
+    "C_i_history": {"time": [0.0], "value": [0.3], "unit": "", "drift": {"value": 1e-3, "unit": "1/s"}},
     "provenance": {"parameters": {"value": 1, "unit": "no quantity"}},
 }
 
@@ -35,7 +36,7 @@ def folder(tmp_path: Path) -> Path:
 
 def test_a_row_per_quantity_with_interval_or_reason(folder: Path) -> None:
     found = {row["name"]: row for row in tidy.rows_of_test(folder / "T1")}
-    assert list(found) == ["C_i", "a", "m", "by_law.spi"]
+    assert list(found) == ["C_i", "a", "m", "by_law.spi", "C_i_history.drift"]  # a course over time is no number
     assert found["C_i"]["low95"] == pytest.approx(0.3 - 0.0196, abs=1e-5)
     assert found["C_i"]["unit"] == "1"
     assert (found["a"]["low95"], found["a"]["high95"], found["a"]["std"]) == (1e-4, 9e-4, None)
@@ -45,7 +46,7 @@ def test_a_row_per_quantity_with_interval_or_reason(folder: Path) -> None:
 def test_a_campaign_s_common_numbers_are_rows_without_a_test(folder: Path) -> None:
     rows = tidy.rows_of_campaign(folder, ["T1"])
     assert [(row["test"], row["name"]) for row in rows][-1] == ("", "stands.north.constants.C_i")
-    assert len(rows) == 5
+    assert len(rows) == 6
 
 
 @pytest.mark.parametrize("name", ["x.csv", "x.parquet", "x.xlsx"])

@@ -353,6 +353,39 @@ def _table(
         table.table(tests or (), root, out, write)
 
 
+@app.command("diff")
+def _diff(
+    old: Annotated[Path, typer.Argument(metavar="OLD", help="Products as they were: a processed/, or one TEST of it.")],
+    new: Annotated[Path, typer.Argument(metavar="NEW", help="Products as they are.")],
+    least: Annotated[
+        float, typer.Option(min=0.0, metavar="DEVIATIONS", help="Smallest change that counts, in standard deviations.")
+    ] = 0.01,
+    as_json: ProductJson = False,
+) -> None:
+    """Which numbers changed between two folders of products, by how many standard deviations, and what made them."""
+    with plain_exit():
+        from hfanalysis.cli import differences
+
+        differences.differ(old, new, least, as_json)
+
+
+@app.command("find")
+def _find(
+    condition: Annotated[
+        str, typer.Argument(metavar="CONDITION", help="Such as \"C_i > 0.3 and m < 1 and stand = 'north'\".")
+    ],
+    root: Root = Path(),
+    out: Out = None,
+    doubted: Annotated[bool, typer.Option("--all", help="Doubted and refused numbers count, too.")] = False,
+    as_json: ProductJson = False,
+) -> None:
+    """Tests that meet a condition on their quantities, in SI units; what it names is shown with verdicts."""
+    with plain_exit():
+        from hfanalysis.cli import query
+
+        query.find(condition, root, out, doubted, as_json)
+
+
 @app.command("demo")
 def _demo(
     folder: Annotated[

@@ -47,7 +47,8 @@ def rows(test: str, product: str, data: Mapping[str, Any]) -> Iterator[Row]:
 
 def _quantities(data: Any, name: str) -> Iterator[tuple[str, Quantity]]:
     if isinstance(data, Mapping):
-        if "value" in data and ("unit" in data or "reason" in data):
+        is_history = isinstance(data.get("value"), list)
+        if "value" in data and not is_history and ("unit" in data or "reason" in data):
             yield name, _quantity(data)
             return
         parts = [(key, part) for key, part in data.items() if key not in ("provenance", "quoted")]
