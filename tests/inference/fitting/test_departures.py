@@ -12,9 +12,8 @@ from tests.engine.stand import engine_on_stand
 from tests.inference import made
 
 from hfanalysis.engine.effect import Parameter
-from hfanalysis.inference.fitting.departures import ROUGHLY, with_departures
+from hfanalysis.inference.fitting.departures import with_departures
 from hfanalysis.inference.fitting.fit import fit
-from hfanalysis.inference.fitting.form import COARSEST
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.laws import LAWS
 from hfanalysis.inference.fitting.predict import predict
@@ -73,18 +72,12 @@ def test_what_a_departure_adds_is_what_a_run_by_such_a_table_reads(which: int) -
     assert added == pytest.approx(there, abs=0.05 * float(np.abs(there - without).max()))
 
 
-@cache
-def roughly() -> Array:
-    """Constants about which departures are made (parameters of the base model,)."""
-    return fit(made.hypothesis(), ready()[1].with_errors(*COARSEST.errors), most=ROUGHLY).x
-
-
 def with_a_law(law: Parameter) -> tuple[Array, Array, Array]:
     """Residuals (observations,) of a law that departs by two deviations: by a run, by the departure, and without."""
     hypothesis, observed = ready()
-    base, x = made.hypothesis(), np.concatenate([roughly(), np.zeros(len(hypothesis.of_departures))])
+    x, base = np.zeros(hypothesis.size), made.hypothesis()
     engine = replace(base.engine, effects=(LAWS.at(**{law.name: 2.0 * law.typical}),))
-    there = predict(replace(base, engine=engine), observed, roughly(), tangents=False).residual
+    there = predict(replace(base, engine=engine), observed, x[: base.size], tangents=False).residual
     without = predict(hypothesis, observed, x, tangents=False).residual
     x[hypothesis.names.index(f"departure: law: {law.name}")] = 2.0
     return there, predict(hypothesis, observed, x, tangents=False).residual, without

@@ -2,8 +2,7 @@
 one from heat of some watts, nor the other from an effect of some per cent.
 
 These departures are constants of every hypothesis, and linear: a run with each of them says what it adds to the
-channels' blocks, to the instant at which the liquid ends, and to how wide the port is when the fuel does. They are made
-about a rough fit: what a law does depends on the regression's exponent, and that a calibration may have elsewhere.
+channels' blocks, to the instant at which the liquid ends, and to how wide the port is when the fuel does.
 """
 
 from __future__ import annotations
@@ -12,8 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from hfanalysis.inference.fitting.fit import fit
-from hfanalysis.inference.fitting.form import COARSEST
 from hfanalysis.inference.fitting.hypothesis import DEPARTURE, OF_LAW, Free, Hypothesis
 from hfanalysis.inference.fitting.laws import LAWS
 from hfanalysis.inference.fitting.predict import port_radius, predict, readings
@@ -25,16 +22,12 @@ MOST = 2.0
 is missing, and a run with one deviation does not tell what ten would do."""
 
 
-ROUGHLY = 12
-"""Steps of the rough fit about which departures are made."""
-
-
 def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothesis, Observed]:
     """The hypothesis with the departures free, and the observations with what these add where it starts.
 
     One that cannot be run there is left as it is: its fit will say so.
     """
-    engine = hypothesis.engine
+    start, engine = np.zeros(hypothesis.size), hypothesis.engine
     tables = {
         f"{DEPARTURE}table: {by.name}": replace(engine, saturation=departed(engine.saturation, by)) for by in DEPARTURES
     }
@@ -43,7 +36,6 @@ def with_departures(hypothesis: Hypothesis, observed: Observed) -> tuple[Hypothe
         for law in LAWS.parameters
     }
     try:
-        start = fit(hypothesis, observed.with_errors(*COARSEST.errors), most=ROUGHLY).x
         here, *others = (
             predict(replace(hypothesis, engine=one), observed, start, tangents=False).burnt
             for one in (engine, *tables.values(), *laws.values())
