@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isclose
@@ -20,8 +21,11 @@ MADE_FROM = {"raw": "the log", "test_toml": "test.toml", "effects": "the adopted
 
 @dataclass(frozen=True)
 class Difference:
-    """A quantity that is not what it was. ``deviations``: its change over its standard deviation [-], the larger of the
-    two; None where neither has one, or one of the numbers is not there."""
+    """A quantity that is not what it was.
+
+    ``deviations``: its change over the larger of its two standard deviations [-]; None where neither has one, or one of
+    the numbers is not there.
+    """
 
     test: str
     product: str
@@ -85,10 +89,13 @@ def _deviations(one: Mapping[str, Any], other: Mapping[str, Any]) -> float | Non
 
 
 def made_with(folder: Path) -> str:
-    """The version and the code that made a test's products, in short; "" where there are none."""
-    provenance = next(_provenances(folder), {})
-    version, code = provenance.get("hfanalysis", ""), str(provenance.get("code", ""))[:8]
-    return f"{version} ({code})" if code else str(version)
+    """The version that made a test's products, and a short digest of the code of all their stages; "" where there are
+    none."""
+    made = list(_provenances(folder))
+    if not made:
+        return ""
+    codes = "".join(str(provenance.get("code", "")) for provenance in made)
+    return f"{made[-1].get('hfanalysis', '')} ({hashlib.sha256(codes.encode()).hexdigest()[:8]})"
 
 
 def other_inputs(old: Path, new: Path) -> list[str]:

@@ -28,26 +28,9 @@ FACTS = ("test", "stand", "kind", "source", "date")
 _WORDS = re.compile(r"'(?:[^']|'')*'|\"([^\"]+)\"|(?<![\w.])([A-Za-z_][\w.]*)(?![\w.])(?!\s*\()")
 """Texts in single quotes; names in double quotes or plain; a name before a bracket is a function."""
 
-_KEYWORDS = frozenset(
-    (
-        "and",
-        "or",
-        "not",
-        "is",
-        "null",
-        "like",
-        "in",
-        "between",
-        "glob",
-        "true",
-        "false",
-        "case",
-        "when",
-        "then",
-        "else",
-        "end",
-    )
-)
+_KEYWORDS = frozenset(("and", "or", "not", "is", "null", "like", "in", "between", "glob", "true", "false", "case",
+                       "when", "then", "else", "end"))  # fmt: skip
+"""Words of SQL that are no names."""
 
 _FUNCTIONS = frozenset(("abs", "min", "max", "round", "coalesce", "ifnull", "like", "glob", "lower", "upper", "length"))
 """Functions of SQLite that a condition may use: none reads or loads anything."""
