@@ -22,6 +22,7 @@ from hfanalysis.diagnose.naming.catalogue import Catalogue
 from hfanalysis.diagnose.naming.naming import Naming, name_effects
 from hfanalysis.diagnose.naming.polish import not_converged
 from hfanalysis.diagnose.naming.slack import course_error
+from hfanalysis.diagnose.naming.valleys import told_otherwise
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.diagnose.weak_form.spread import Spread
 from hfanalysis.diagnose.weak_form.weak import weak_residuals
@@ -211,7 +212,7 @@ def _product(found: Naming, verdict: Verdict, proof: Proof, catalogue: Catalogue
         weak_form=weak_product(residuals),
         compared=_compared(found, chosen, observed),
         probabilities_from="probabilities.json" if scale().temperature != 1.0 else "raw evidences",
-        notes=(*proof.notes, *_course(verdict, found)),
+        notes=(*proof.notes, *_course(verdict, found), *_two_tops(verdict.chosen)),
         warnings=unsure,
         runtime_s=NO_TIME,
         seed=0,
@@ -289,6 +290,22 @@ def _plausibility(found: Naming, chosen: Candidate) -> dict[str, Plausibility]:
     for candidate in found.singles:
         out.setdefault(candidate.names[0], of(candidate.fit, candidate.names[0]))
     return out | {name: of(chosen.fit, name) for name in acting_in(chosen.fit)}
+
+
+def _two_tops(chosen: Candidate) -> list[str]:
+    """That constants may as well be elsewhere, where another set of them explains the test nearly as well."""
+    weight, far = told_otherwise(chosen)
+    if not far:
+        return []
+    names = {n: {"polytropic_exponent": "m"}.get(n, n) for n in far}
+    here, there = (", ".join(f"{names[n]} {both[k]:.3g}" for n, both in far.items()) for k in (0, 1))
+    return [TWO_TOPS.format(here, weight, there)]
+
+
+TWO_TOPS = (
+    "two sets of constants explain the test: {}, which is told, or with probability {:.1g} {}; "
+    "the intervals reach over both"
+)
 
 
 def _course(verdict: Verdict, found: Naming) -> list[str]:

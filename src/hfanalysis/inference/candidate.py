@@ -47,7 +47,8 @@ and bent."""
 class Candidate:
     """A set of ``names``, the fit, and its log evidence; the ``form`` that it asks for.
 
-    ``source``: the unknown that it has, if any, whose place is the last of the names.
+    ``source``: the unknown that it has, if any, whose place is the last of the names. ``others``: fits in its other
+    valleys, where they were looked for, each with its probability beside this one's [-].
     """
 
     names: tuple[str, ...]
@@ -55,6 +56,7 @@ class Candidate:
     log_evidence: float
     form: Form = FINEST
     source: Unknown | None = None
+    others: tuple[tuple[Fit, float], ...] = ()
 
     @property
     def unknown(self) -> bool:
@@ -153,7 +155,7 @@ class Bench:
         """At forms of which something may be hoped for; None for the others."""
         doubt = FAR_DOUBT if found.unknown or len(found.names) < 2 else DOUBT
         hopeful = [form for form in forms if not found.fit.converged or self._promised(found, form) > -doubt]
-        made = dict(zip(hopeful, each(partial(self.refitted, found), hopeful), strict=True))
+        made = dict(zip(hopeful, each(partial(self._fairly_refitted, found), hopeful), strict=True))
         return [made.get(form) for form in forms]
 
     def _promised(self, found: Candidate, form: Form) -> float:
@@ -171,6 +173,14 @@ class Bench:
         """The candidate at another form, None where it cannot be run."""
         again = self._gone_on(found, form, SHORT)
         return None if again is None else candidate(found.names, again, form, found.source)
+
+    def _fairly_refitted(self, found: Candidate, form: Form) -> Candidate | None:
+        """As :meth:`refitted`, gone on with where it was stopped on its way and promises more than the candidate has:
+        which form is taken must not hang on where a fit happens to stand after so many steps."""
+        again = self.refitted(found, form)
+        if again is None or more_probable(again, found) or self.reach(again) <= found.log_evidence:
+            return again
+        return self.converged(again)
 
     def converged(self, found: Candidate, most: int = LONGEST) -> Candidate:
         """The candidate, its fit gone on with until it has converged, or as far as at ``most`` so many steps lead."""

@@ -12,6 +12,7 @@ from hfanalysis.diagnose.naming.polish import ROUNDS, polished
 from hfanalysis.diagnose.naming.search import Search
 from hfanalysis.diagnose.naming.several import sets_of
 from hfanalysis.diagnose.naming.singles import singles_of
+from hfanalysis.diagnose.naming.valleys import among_valleys
 from hfanalysis.diagnose.naming.variants import Settings
 from hfanalysis.inference.candidate import Bench, Candidate
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
@@ -59,6 +60,11 @@ def _told(candidates: list[Candidate], best: float, bench: Bench) -> list[Candid
     return sorted(ended, key=lambda c: -c.log_evidence)
 
 
+def _in_its_valley(found: Candidate, best: float, bench: Bench) -> Candidate:
+    """A set near the ``best``, in the valley that is told of those that it has; one effect was looked for in all."""
+    return among_valleys(found, bench) if found.log_evidence > best - RIVAL else found
+
+
 def name_effects(
     hypothesis: Hypothesis,
     observed: Observed,
@@ -80,6 +86,7 @@ def name_effects(
     told, base = base, polished(base, (*sets, *unknown), bench)
     best = max(c.log_evidence for c in (named, *unknown))
     singles, sets, unknown = (_told(some, best, bench) for some in (singles, sets, unknown))
+    sets = sorted(each(lambda c: _in_its_valley(c, best, bench), sets), key=lambda c: -c.log_evidence)
     equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     risen = base.log_evidence - told.log_evidence
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations, risen=risen)

@@ -8,7 +8,6 @@ behind are left out, and each stays at the form at which it has most evidence.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from itertools import count
 
@@ -19,6 +18,7 @@ from hfanalysis.diagnose.naming.base_model import FAR_BEHIND
 from hfanalysis.diagnose.naming.fading import fades, fades_unseen, fading_fit, unseen_fits
 from hfanalysis.diagnose.naming.score import Test, score_tests
 from hfanalysis.diagnose.naming.search import Search
+from hfanalysis.diagnose.naming.valleys import ELSEWHERE, with_exponent
 from hfanalysis.engine.effect import Effect
 from hfanalysis.inference.candidate import (
     SHORT,
@@ -29,14 +29,12 @@ from hfanalysis.inference.candidate import (
     attempted,
     candidate,
     followed,
-    held,
     more_probable,
 )
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.form import FINEST, Form
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.threads import each
-from hfanalysis.inference.observations.observed import Observed
 from hfanalysis.inference.observations.recorded import TOGETHER
 
 SEEN = 0.7
@@ -58,10 +56,6 @@ promises that a fit brings if it went where that pointed."""
 
 LOW = -1.5
 """Where n starts besides (as x) with a strength far from nothing: the base model's n has grown to take its place."""
-
-ELSEWHERE = (-1.0, 1.0)
-"""How far from the base model's n effects are looked for besides, in standard deviations of its prior. Evidence: an
-effect of the nozzle was none while a and n were bent to it."""
 
 CHAMBER_SIDE = ("grain", "chamber_mass", "chamber_energy", "nozzle")
 """Equations whose effects a and n may be bent to."""
@@ -159,11 +153,11 @@ def _from_elsewhere(base: Candidate, valleys: list[Candidate], search: Search, n
     Where the base model has bent a and n to what an effect does, that effect explains little from there, and most of it
     in another valley.
     """
-    observed, place = search.bench.at(base.form), [f.name for f in base.fit.hypothesis.free].index("n")
+    observed = search.bench.at(base.form)
     bent = [
         parent
         for away in ELSEWHERE
-        if (parent := _with_exponent(base, place, base.fit.x[place] + away, observed)) is not None
+        if (parent := with_exponent(base, away, observed)) is not None
         and parent.log_evidence > base.fit.log_evidence - FAR_BEHIND
     ]
     tried = [(name, valley.fit) for valley in valleys for name in names]
@@ -177,18 +171,6 @@ def _from_elsewhere(base: Candidate, valleys: list[Candidate], search: Search, n
         return _best((name,), [attempted(made, observed, x, SHORT) for _, x in tests[:1]], base.form)
 
     return [c for c in each(child, tried) if c is not None]
-
-
-def _with_exponent(base: Candidate, place: int, x: float, observed: Observed) -> Fit | None:
-    """The base model with n held at ``x``, as a fit in which it is free; None where it cannot be there."""
-    hypothesis = base.fit.hypothesis
-    free = hypothesis.free[place]
-    if not free.least < x < free.most:
-        return None
-    start = base.fit.x.copy()
-    start[place] = x
-    found = attempted(held(hypothesis, slice(place, place + 1), start), observed, start, SHORT)
-    return None if found is None else replace(found, hypothesis=hypothesis)
 
 
 def _on_chamber_side(effect: Effect) -> bool:
