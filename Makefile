@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format docs pictures benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test lint format docs pictures benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -67,8 +67,9 @@ lint: $(STAMP) ## ruff, mypy, and that no room of the package imports one above 
 format: $(STAMP) ## format the code with ruff
 	$(BIN)/ruff format
 
-pictures: $(STAMP) ## the pictures of README and documentation anew, from HF5; needs a browser
+pictures: $(STAMP) ## the pictures of README and documentation anew, from HF5 and the effects; needs a browser
 	$(BIN)/python pipeline/pictures.py
+	PYTHONPATH=. $(BIN)/python pipeline/effects_pictures.py
 
 docs: $(STAMP) ## the documentation as pages in site/: no warning, no dead link, nothing loaded from elsewhere
 	@$(BIN)/python pipeline/site.py
@@ -189,7 +190,7 @@ blind-calibrate: $(STAMP) ## fit the stated probabilities on 600 tests of the ca
 
 readme: $(STAMP) ## write anew what comes of the code: samples in README.md, docs/effects.md, docs/constants.md, docs/channels.md, docs/products.md, docs/schemas, make's rules
 	@$(BIN)/python pipeline/readme.py
-	@$(BIN)/python pipeline/effects_page.py
+	@PYTHONPATH=. $(BIN)/python pipeline/effects_page.py
 	@$(BIN)/python pipeline/products_page.py
 	@$(BIN)/python pipeline/dag.py
 	@$(BIN)/python pipeline/constants_page.py
@@ -201,6 +202,9 @@ COMPILE := $(BIN)/uv pip compile --universal --python-version 3.11 --only-binary
 lock: $(STAMP) ## write both lock files anew from pyproject.toml
 	$(COMPILE) pyproject.toml --extra dev -o requirements.lock
 	$(COMPILE) --group rocketpy --constraint requirements.lock -o requirements-rocketpy.lock
+
+wheels: $(STAMP) ## on which platforms every package that runs need has a wheel, and what they take: into docs/machines.md
+	$(BIN)/python pipeline/wheels.py
 
 clean: ## remove processed/ and caches; raw_tests/ and .venv/ stay
 	rm -rf processed site .mypy_cache .ruff_cache .pytest_cache .hypothesis .cache dist

@@ -1,19 +1,29 @@
-"""Writes the part of docs/effects.md that describes the library, from the library itself: `make readme`."""
+"""Writes the list of the library in docs/effects.md and a page per effect, from the library itself: `make readme`."""
 
 from __future__ import annotations
 
 from math import isfinite
 from pathlib import Path
 
+from pipeline.effects_pictures import shown
+
 from hfanalysis.effects import library
 from hfanalysis.engine.effect import EQUATIONS, Effect, Parameter
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "effects.md"
+FOLDER = PAGE.parent / "effects"
 BEGIN, END = "<!-- library (written by `make readme`) -->\n", "<!-- end of library -->"
 
 
 def main() -> None:
     PAGE.write_text(anew(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    for name, page in pages().items():
+        (FOLDER / f"{name}.md").write_text(page, encoding="utf-8")
+
+
+def pages() -> dict[str, str]:
+    """The page of every effect, by its name."""
+    return {e.name: _effect(e) for e in library().values()}
 
 
 def anew(page: str) -> str:
@@ -25,15 +35,20 @@ def anew(page: str) -> str:
 def _library() -> str:
     found = sorted(library().values(), key=lambda e: (EQUATIONS.index(e.equation), e.name))
     lines = ["| effect | in plain words | equation | what it says |", "|---|---|---|---|"]
-    lines += [f"| [`{e.name}`](#{e.name}) | {e.plain_name} | {e.equation} | {e.meaning} |" for e in found]
-    return "\n".join(lines) + "\n\n" + "\n".join(_effect(e) for e in found)
+    lines += [
+        f"| [`{e.name}`](effects/{e.name}.md) | {e.plain_name} | {e.equation} | {e.meaning} |" for e in found
+    ]
+    return "\n".join(lines) + "\n"
 
 
 def _effect(e: Effect) -> str:
     lines = [
-        f"### {e.name}\n",
+        f"# {e.plain_name[0].upper()}{e.plain_name[1:]}: `{e.name}`\n",
         f"{e.meaning[0].upper()}{e.meaning[1:]}.\n",
         f"    {e.formula}\n",
+        f"![What the sensors read with it, and dashed without]({e.name}.png)\n",
+        f"A simulated test with {_size(e)} (in color) and without the effect (dashed).\n",
+        f"Equation: {e.equation}. Values are SI; a strength is bold; a prior reads *center ± standard deviation*.\n",
         "| parameter | unit | | prior | bounds |",
         "|---|---|---|---|---|",
         *(_parameter(p, k < e.strengths) for k, p in enumerate(e.parameters)),
@@ -46,6 +61,13 @@ def _effect(e: Effect) -> str:
         f"\nSource: {e.reference}.\n",
     ]
     return "\n".join(lines)
+
+
+def _size(e: Effect) -> str:
+    """The size that its picture shows."""
+    sizes = shown(e).named
+    units = {p.name: "" if p.unit == "-" else f" {p.unit}" for p in e.parameters}
+    return " and ".join(f"{p.name} {sizes[p.name]:.3g}{units[p.name]}" for p in e.parameters[: e.strengths])
 
 
 def _believable(e: Effect) -> str:

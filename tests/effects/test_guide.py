@@ -49,6 +49,12 @@ def test_the_page_describes_the_library_as_it_is() -> None:
     assert effects_page.anew(page) == page
 
 
+def test_every_effect_has_its_page_and_its_picture_and_no_other_has() -> None:
+    there = {path.stem: path.read_text(encoding="utf-8") for path in effects_page.FOLDER.glob("*.md")}
+    assert there == effects_page.pages()
+    assert {path.stem for path in effects_page.FOLDER.glob("*.png")} == set(there)
+
+
 def test_the_example_stands_among_the_effects_of_the_library(folder: Path) -> None:
     found = library(folder)
     assert set(found) - set(library()) == {"tank_seal"}

@@ -43,7 +43,7 @@ def demo(folder: Path) -> None:
 def docs(page: str | None) -> None:
     """Show a page at the terminal; without one the list of them, and where they are."""
     folder = _pages()
-    there = {path.stem: path for path in sorted(folder.glob("*.md"))}
+    there = {path.stem: path for path in sorted(folder.rglob("*.md"))}
     if page is None:
         tell(f"pages are in {folder}; hfa docs NAME shows one")
         put("".join(f"{name:<18} {_title(path)}\n" for name, path in there.items()))
