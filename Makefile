@@ -19,7 +19,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format docs pictures benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test lint format docs pictures benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -202,6 +202,9 @@ COMPILE := $(BIN)/uv pip compile --universal --python-version 3.11 --only-binary
 lock: $(STAMP) ## write both lock files anew from pyproject.toml
 	$(COMPILE) pyproject.toml --extra dev -o requirements.lock
 	$(COMPILE) --group rocketpy --constraint requirements.lock -o requirements-rocketpy.lock
+
+wheel: $(STAMP) ## the wheel built, installed by itself, and hfa demo and hfa run HF5 in an empty folder, with their times
+	@sh pipeline/try_wheel.sh '$(PYTHON)' "$$PWD/$(BIN)"
 
 wheels: $(STAMP) ## on which platforms every package that runs need has a wheel, and what they take: into docs/machines.md
 	$(BIN)/python pipeline/wheels.py

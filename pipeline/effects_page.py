@@ -35,9 +35,7 @@ def anew(page: str) -> str:
 def _library() -> str:
     found = sorted(library().values(), key=lambda e: (EQUATIONS.index(e.equation), e.name))
     lines = ["| effect | in plain words | equation | what it says |", "|---|---|---|---|"]
-    lines += [
-        f"| [`{e.name}`](effects/{e.name}.md) | {e.plain_name} | {e.equation} | {e.meaning} |" for e in found
-    ]
+    lines += [f"| [`{e.name}`](effects/{e.name}.md) | {e.plain_name} | {e.equation} | {e.meaning} |" for e in found]
     return "\n".join(lines) + "\n"
 
 

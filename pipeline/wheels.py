@@ -5,11 +5,11 @@ Asks the package index that pip is set to for each package's metadata; downloads
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from importlib import metadata
 from pathlib import Path
 
@@ -20,11 +20,15 @@ PAGE = ROOT / "docs" / "machines.md"
 BEGIN, END = "<!-- wheels (written by `make wheels`) -->", "<!-- end of wheels -->"
 
 PLATFORMS = {
-    "Windows, x86-64": "x86_64-pc-windows-msvc",
-    "macOS, arm64": "aarch64-apple-darwin",
-    "Linux, x86-64": "x86_64-manylinux_2_28",
-    "Linux, arm64": "aarch64-manylinux_2_28",
+    "Windows, x86-64": ("x86_64-pc-windows-msvc", ""),
+    "macOS 13, arm64": ("aarch64-apple-darwin", "13.0"),
+    "macOS 14, arm64": ("aarch64-apple-darwin", "14.0"),
+    "macOS 15, x86-64": ("x86_64-apple-darwin", "15.0"),
+    "Linux, x86-64": ("x86_64-manylinux_2_28", ""),
+    "Linux, arm64": ("aarch64-manylinux_2_28", ""),
 }
+"""By name the platform that uv is asked for, and the version of macOS."""
+
 PYTHONS = ("3.11", "3.12", "3.13")
 PROJECT = "hfanalysis"
 
@@ -50,28 +54,38 @@ def size_of(name: str) -> int:
     return sum(path.stat().st_size for path in paths if path.is_file())
 
 
-def has_wheel(pinned: str, platform: str, python: str) -> bool:
-    """Whether the index has a wheel of ``NAME==VERSION`` that such an interpreter on such a platform takes."""
+def without_wheel(pins: list[str], platform: str, macos: str, python: str) -> list[str]:
+    """Those of ``NAME==VERSION`` of which the index has no wheel that such an interpreter on such a platform takes."""
     uv = Path(sys.executable).with_name("uv")
     command = [str(uv), "pip", "compile", "-", "--no-deps", "--no-build", "--quiet", "--no-header"]
     command += ["--python-platform", platform, "--python-version", python]
-    ended = subprocess.run(command, input=pinned, capture_output=True, text=True, check=False)
-    if ended.returncode and "no usable wheels" not in ended.stderr and "no wheels" not in ended.stderr:
-        raise RuntimeError(f"{pinned}, {platform}: {ended.stderr.strip()}")
-    return ended.returncode == 0
+    of_macos = {**os.environ, "MACOSX_DEPLOYMENT_TARGET": macos} if macos else None
+    missing = list[str]()
+    while True:
+        left = [pin for pin in pins if pin not in missing]
+        ended = subprocess.run(
+            command, env=of_macos, input="\n".join(left), capture_output=True, text=True, check=False
+        )
+        named = [f"{name}=={version}" for name, version in NO_WHEEL.findall(" ".join(ended.stderr.split()))]
+        found = [pin for pin in left if pin.lower() in {one.lower() for one in named}]
+        if not ended.returncode:
+            return missing
+        if not found:
+            raise RuntimeError(f"{platform}, Python {python}: {ended.stderr.strip()}")
+        missing += found
+
+
+NO_WHEEL = re.compile(r"([\w.-]+)==([\w.]+) has no (?:usable )?wheels")
 
 
 def rows(packages: dict[str, str]) -> Iterator[str]:
     """A line per platform: for how many packages there is a wheel by each Python, and which have none."""
     pins = [f"{name}=={version}" for name, version in packages.items()]
-    for platform, triple in PLATFORMS.items():
-        cells, without = [], set[str]()
-        for python in PYTHONS:
-            with ThreadPoolExecutor(8) as pool:
-                there = list(pool.map(lambda pin: has_wheel(pin, triple, python), pins))  # noqa: B023
-            cells.append(f"{sum(there)} of {len(pins)}")
-            without |= {pin for pin, has in zip(pins, there, strict=True) if not has}
-        yield f"| {platform} | {' | '.join(cells)} | {', '.join(sorted(without)) or '-'} |"
+    for platform, (triple, macos) in PLATFORMS.items():
+        missing = [without_wheel(pins, triple, macos, python) for python in PYTHONS]
+        cells = [f"{len(pins) - len(some)} of {len(pins)}" for some in missing]
+        named = sorted({pin for some in missing for pin in some})
+        yield f"| {platform} | {' | '.join(cells)} | {', '.join(named) or '-'} |"
 
 
 def section() -> str:
@@ -86,8 +100,7 @@ def section() -> str:
         [
             BEGIN,
             "",
-            f"The package needs {len(packages)} others to run, itself counted out. Of the versions in",
-            "`requirements.lock` there is a wheel for:",
+            f"To run, the package needs {len(packages)} others. There is a wheel of the versions in `requirements.lock` for:",
             "",
             f"| platform | {heads} | no wheel of |",
             f"|---|{'---|' * len(PYTHONS)}---|",
