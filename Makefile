@@ -9,6 +9,7 @@ VENV  := .venv
 BIN   := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 ROCKETPY := .venv-rocketpy
+NOTEBOOKS := .venv-notebooks
 
 # The names go to hfa as they were typed, whatever is in them.
 override TEST := $(value TEST)
@@ -19,7 +20,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test lint format docs pictures benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test lint format docs pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -73,6 +74,12 @@ pictures: $(STAMP) ## the pictures of README and documentation anew, from HF5 an
 
 docs: $(STAMP) ## the documentation as pages in site/: no warning, no dead link, nothing loaded from elsewhere
 	@$(BIN)/python pipeline/site.py
+
+# Jupyter has an environment of its own; the kernel is the project's Python.
+notebooks: $(STAMP) rocketpy ## the notebooks executed, with what they show in site/notebooks/; FLAGS='notebooks/NAME.ipynb'
+	@test $(NOTEBOOKS)/.set-up -nt requirements-notebooks.lock || { \
+		sh pipeline/setup.sh '$(PYTHON)' $(NOTEBOOKS) requirements-notebooks.lock && touch $(NOTEBOOKS)/.set-up; }
+	@$(NOTEBOOKS)/bin/python pipeline/notebooks.py "$$PWD/$(BIN)/python" $(FLAGS)
 
 benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers, localisation, a 1 GB log beside pandas
 	$(BIN)/python -m benchmarks.startup
@@ -199,9 +206,10 @@ readme: $(STAMP) ## write anew what comes of the code: samples in README.md, doc
 COMPILE := $(BIN)/uv pip compile --universal --python-version 3.11 --only-binary :all: --upgrade --generate-hashes \
 	--no-emit-index-url --custom-compile-command 'make lock' --quiet
 
-lock: $(STAMP) ## write both lock files anew from pyproject.toml
+lock: $(STAMP) ## write the lock files anew from pyproject.toml
 	$(COMPILE) pyproject.toml --extra dev -o requirements.lock
 	$(COMPILE) --group rocketpy --constraint requirements.lock -o requirements-rocketpy.lock
+	$(COMPILE) --group notebooks --constraint requirements.lock -o requirements-notebooks.lock
 
 wheel: $(STAMP) ## the wheel built, installed by itself, and hfa demo and hfa run HF5 in an empty folder, with their times
 	@sh pipeline/try_wheel.sh '$(PYTHON)' "$$PWD/$(BIN)"

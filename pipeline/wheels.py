@@ -100,7 +100,8 @@ def section() -> str:
         [
             BEGIN,
             "",
-            f"To run, the package needs {len(packages)} others. There is a wheel of the versions in `requirements.lock` for:",
+            f"The package needs {len(packages)} others to run. Of the versions in `requirements.lock` there is a",
+            "wheel for:",
             "",
             f"| platform | {heads} | no wheel of |",
             f"|---|{'---|' * len(PYTHONS)}---|",

@@ -63,6 +63,31 @@ class Quantity:
             object.__setattr__(self, "verdict", NOT_IDENTIFIABLE)
             object.__setattr__(self, "why", f"{HOLDS_ZERO}{f'; {self.why}' if self.why else ''}")
 
+    def __str__(self) -> str:
+        """As people write it, in its SI unit, with interval, verdict and why.
+
+        >>> print(Quantity(5.271906, "s", 0.000485))
+        5.27191 ± 0.00049 s (95 %: 5.27096 to 5.27286)
+        >>> print(Quantity.absent("no p_chamber"))
+        absent: no p_chamber
+        """
+        if self.value is None:
+            return f"absent: {self.reason}"
+        decimals = None if not self.std else max(1 - math.floor(math.log10(self.std)), 0)
+
+        def text(value: float) -> str:
+            plain = decimals is not None and decimals < 9 and abs(value) < 1e6
+            return f"{value:.{decimals}f}" if plain else f"{value:.4g}"
+
+        std = f" ± {text(self.std)}" if self.std else ""
+        ends = f" (95 %: {' to '.join(text(end) for end in self.interval)})" if self.interval else ""
+        judged = ": ".join(part for part in (self.verdict, self.why) if part)
+        return f"{text(self.value)}{std}{self.unit and ' '}{self.unit}{ends}{judged and ', '}{judged}"
+
+    def _repr_pretty_(self, printer: Any, _cycle: bool) -> None:
+        """What a notebook shows."""
+        printer.text(str(self))
+
     @classmethod
     def absent(cls, reason: str, *, verdict: str | None = None) -> Quantity:
         """A quantity that cannot be had, with the reason."""

@@ -12,6 +12,7 @@ from pipeline import effects_page
 from tests.effects.runs import SECONDS, base
 from tests.engine.stand import engine_on_stand
 
+import hfanalysis
 from hfanalysis.effects import effect, library
 from hfanalysis.effects.trust import agree
 from hfanalysis.engine.effect import Effect
@@ -59,6 +60,21 @@ def test_the_example_stands_among_the_effects_of_the_library(folder: Path) -> No
     found = library(folder)
     assert set(found) - set(library()) == {"tank_seal"}
     assert list(found) == sorted(found)
+
+
+def test_an_engine_file_may_name_the_example(folder: Path) -> None:
+    """One in engines/ beside the team's folder; one that lies elsewhere may not."""
+    engine = (PAGE.parents[1] / "engines" / "maelstrom.toml").read_text(encoding="utf-8")
+    named = engine + '[effects.tank_seal]\narea = "20 mm^2"\nmoment = "2 s"\n'
+    there, elsewhere = folder.parent / "engines" / "leaking.toml", folder.parent / "other" / "leaking.toml"
+    for path in (there, elsewhere):
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(named, encoding="utf-8")
+    sealed = hfanalysis.simulate(PAGE.parents[1] / "engines" / "maelstrom.toml")
+    leaking = hfanalysis.simulate(there)
+    assert leaking.attrs["result"]["total_impulse"]["value"] < 0.95 * sealed.attrs["result"]["total_impulse"]["value"]
+    with pytest.raises(InputError, match="tank_seal"):
+        hfanalysis.simulate(elsewhere)
 
 
 def test_the_example_at_strength_zero_is_the_base_model(seal: Effect) -> None:

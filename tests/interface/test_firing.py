@@ -80,6 +80,7 @@ def test_a_folder_names_a_test_too(root: Path) -> None:
 
 def test_pressures_are_drawn_in_bar_over_the_firing(root: Path) -> None:
     figure = hfanalysis.open("HF5", root).plot.pressures()
+    assert figure._repr_png_().startswith(b"\x89PNG")  # type: ignore[attr-defined]
     assert isinstance(figure, Figure)
     axes = figure.axes[0]
     assert axes.get_ylabel() == "pressure [bar]"

@@ -24,12 +24,19 @@ Until = Annotated[
 
 
 def _simulate(
-    engine: EngineToml, as_json: ProductJson = False, out: Folder = None, quiet: Quiet = False, until: Until = None
+    engine: EngineToml,
+    as_json: ProductJson = False,
+    out: Folder = None,
+    quiet: Quiet = False,
+    until: Until = None,
+    trust_effects: Trust = False,
 ) -> None:
     """Run the unsteady model of an engine: tank, injector, grain, chamber, nozzle and flight."""
     with plain_exit():
         from hfanalysis.cli import engines
+        from hfanalysis.effects import beside
 
+        ask(beside(engine.absolute()).parent, trust_effects)
         engines.simulate(engine, out, as_json, quiet, until)
 
 

@@ -37,6 +37,17 @@ def library(folder: Path | None = None) -> dict[str, Effect]:
     return dict(sorted(found.items()))
 
 
+def beside(engine_file: Path) -> Path:
+    """The folder of a team's own effects that an engine file may name: below the root that ``engines/`` is in, or else
+    beside the file.
+
+    >>> beside(Path("stand/engines/HF6.toml")).as_posix(), beside(Path("HF6.toml")).as_posix()
+    ('stand/effects', 'effects')
+    """
+    folder = engine_file.parent
+    return (folder.parent if folder.name == "engines" else folder) / FOLDER
+
+
 def effect(name: str, folder: Path | None = None) -> Effect:
     """One effect; ValueError, with those there are, for an unknown name."""
     there = library(folder)

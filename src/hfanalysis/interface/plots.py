@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -89,7 +90,14 @@ class Plots:
 def _figure(height: float) -> Figure:
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(8.0, height), layout="constrained")
+    class Shown(Figure):
+        """A figure that a notebook shows without being told to."""
+
+        def _repr_png_(self) -> bytes:
+            self.savefig(out := BytesIO(), format="png", dpi=100)
+            return out.getvalue()
+
+    return Shown(figsize=(8.0, height), layout="constrained")
 
 
 def _compared(axes: Axes, name: str, data: xr.Dataset) -> None:

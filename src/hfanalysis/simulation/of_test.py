@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hfanalysis.assembly.calibrated import exponent, loss_factor
-from hfanalysis.effects import library
+from hfanalysis.effects import beside, library
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted.effects import Adopted, tables
@@ -63,7 +63,7 @@ def text_of(found: OfTest, path: Path, flight: bool = False) -> Written:
     Raises AbsentError where a constant is none that an engine can have.
     """
     sections = _sections(found, flight)
-    acting, left_out = _effects(found.adopted, flight)
+    acting, left_out = _effects(found.adopted, path, flight)
     lines = [*_heading(found, left_out, flight), "schema = 1"]
     for name, table in sections.items():
         lines += table.lines(name)
@@ -206,17 +206,17 @@ def _site(found: OfTest, flight: bool) -> dict[str, Table]:
     return {"site": table}
 
 
-def _effects(adopted: Adopted, flight: bool) -> tuple[Adopted, tuple[str, ...]]:
+def _effects(adopted: Adopted, path: Path, flight: bool) -> tuple[Adopted, tuple[str, ...]]:
     """The effects that the engine has here, and which are left out, with the reason."""
-    left_out = {}
+    left_out, known = {}, library(beside(path.absolute()))
     for active in adopted.effects:
         effect = active.effect
         if effect.of_sensor:
             left_out[effect.name] = "it acts on what a sensor reads, not on the engine"
         elif flight and effect.stand_only:
             left_out[effect.name] = f"it is of {effect.stand_only}"
-        elif effect.name not in library():
-            raise AbsentError(f"effect {effect.name}: is a team's own; an engine file knows those of the package alone")
+        elif effect.name not in known:
+            raise AbsentError(f"effect {effect.name}: is a team's own, and {path} is not where its file would be found")
     kept = tuple(active for active in adopted.effects if active.effect.name not in left_out)
     words = [f"{name}: {why}" for name, why in left_out.items()]
     if flight:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly import engine as build
-from hfanalysis.effects import library
+from hfanalysis.effects import beside, library
 from hfanalysis.engine import closure, unsteady
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine
@@ -63,10 +63,10 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
 
 
 def _effects(file: EngineFile) -> tuple[Active, ...]:
-    """What [effects] states beside the base model; InputError for what cannot be."""
+    """What [effects] states beside the base model, a team's own among them; InputError for what cannot be."""
     if not file.effects:
         return ()
-    return effects_in(file.effects, file.path, library()).acting
+    return effects_in(file.effects, file.path, library(beside(file.path.absolute()))).acting
 
 
 def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:
