@@ -31,7 +31,7 @@ def test_the_continuous_check_runs_the_test_command_of_the_readme() -> None:
 
 
 def test_links_between_documents_lead_somewhere() -> None:
-    for document in [REPOSITORY / "README.md", *(REPOSITORY / "docs").glob("*.md")]:
+    for document in [REPOSITORY / "README.md", *(REPOSITORY / "docs").rglob("*.md")]:
         for target in re.findall(r"\]\((?!https?:)([^)#]+)", document.read_text()):
             assert (document.parent / target).exists(), f"{document.name}: {target}"
 
@@ -59,12 +59,14 @@ def test_equations_of_pages_become_mathml_and_files_of_the_repository_names() ->
 
 def test_every_page_has_its_place() -> None:
     navigation = (REPOSITORY / "mkdocs.yml").read_text()
-    pages = {path.name for path in (REPOSITORY / "docs").glob("*.md")}
-    assert set(re.findall(r"[\w-]+\.md", navigation.partition("\nnav:")[2])) == pages
+    docs = REPOSITORY / "docs"
+    pages = {path.relative_to(docs).as_posix() for path in docs.rglob("*.md")}
+    assert set(re.findall(r"[\w/-]+\.md", navigation.partition("\nnav:")[2])) == pages
 
 
-def test_the_lock_file_names_no_place() -> None:
-    lock = (REPOSITORY / "requirements.lock").read_text()
+@pytest.mark.parametrize("path", sorted(REPOSITORY.glob("requirements*.lock")), ids=lambda path: path.name)
+def test_a_lock_file_names_no_place(path: Path) -> None:
+    lock = path.read_text()
     assert "://" not in lock
     assert "--hash=sha256:" in lock
     assert not re.search(r"(?m)^(-|.*\s@\s|.*file:|#.*/)", lock)
