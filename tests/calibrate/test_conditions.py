@@ -11,7 +11,8 @@ from tests.calibrate.engine_sample import evidence
 from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.conditions import conditioned, conditions, variance_of_n
 from hfanalysis.calibrate.fuel_law import _conditional
-from hfanalysis.calibrate.regression import fit, result
+from hfanalysis.calibrate.regression import fit
+from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.quantity import CONDITIONAL, DOUBTED, IDENTIFIED, UNPHYSICAL, Quantity
 
 WINDOW = [(120.0, 500.0)]

@@ -11,7 +11,8 @@ from tests.segment.stand import Stand, Trial, definition, fire, log_of, segments
 
 from hfanalysis.calibrate.evidence import Evidence
 from hfanalysis.calibrate.measured_pressures import read_at
-from hfanalysis.calibrate.regression import fit, law_at, result
+from hfanalysis.calibrate.regression import fit, law_at
+from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.products.calibration import TankConstants
 from hfanalysis.record.log import TestLog

@@ -10,7 +10,8 @@ from hfanalysis.calibrate.course import Course
 from hfanalysis.calibrate.drifting import USUAL, by_drift, drift_std
 from hfanalysis.calibrate.evidence import NUISANCES
 from hfanalysis.calibrate.law_errors import LawErrors
-from hfanalysis.calibrate.regression import fit, result
+from hfanalysis.calibrate.regression import fit
+from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.quantity import CONDITIONAL
 
 

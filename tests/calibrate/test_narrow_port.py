@@ -15,7 +15,8 @@ from tests.calibrate.engine_sample import TRUTH, engine, evidence
 from hfanalysis.assembly.calibrated import Regression
 from hfanalysis.calibrate.evidence import Evidence, chamber_at
 from hfanalysis.calibrate.narrow_port import reaching_the_head, with_stated_tap
-from hfanalysis.calibrate.regression import Fitted, fit, result
+from hfanalysis.calibrate.regression import Fitted, fit
+from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.effects import effect
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.products.calibration import FuelLaw

@@ -11,17 +11,8 @@ from tests.calibrate.engine_sample import TRUTH, engine, evidence, rate
 from hfanalysis.assembly.calibrated import Regression, pressure_at, starting_for
 from hfanalysis.calibrate.evidence import Evidence, Scalar, burn_time_of
 from hfanalysis.calibrate.likelihood import effective_samples, surface, weights_from
-from hfanalysis.calibrate.regression import (
-    RANGE_N,
-    RANGE_RATE,
-    Fitted,
-    _likeliest,
-    _minimum,
-    fit,
-    fit_together,
-    law_at,
-    result,
-)
+from hfanalysis.calibrate.regression import RANGE_N, RANGE_RATE, Fitted, _likeliest, _minimum, fit, fit_together, law_at
+from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.engine.unsteady import burn
 from hfanalysis.errors import AbsentError
 

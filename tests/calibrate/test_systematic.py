@@ -16,7 +16,8 @@ from tests.segment.stand import EXACT, HOLE_AREA, HOLES, Trial, definition, fire
 from hfanalysis.calibrate.course import Course, with_course, with_drift
 from hfanalysis.calibrate.evidence import NUISANCES
 from hfanalysis.calibrate.law_errors import LawErrors
-from hfanalysis.calibrate.regression import Fitted, fit, result
+from hfanalysis.calibrate.regression import Fitted, fit
+from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.products.calibration import CoefficientHistory, TankConstants
 from hfanalysis.quantity import IDENTIFIED, Quantity

@@ -16,7 +16,8 @@ from hfanalysis.calibrate.evidence_from_log import evidence_of, whole_covariance
 from hfanalysis.calibrate.facts import nothing_to_regress
 from hfanalysis.calibrate.law_errors import LawErrors
 from hfanalysis.calibrate.narrow_port import reaching_the_head, with_stated_tap
-from hfanalysis.calibrate.regression import Fitted, Joint, fit, fit_together, result
+from hfanalysis.calibrate.regression import Fitted, Joint, fit, fit_together
+from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.calibrate.stated import apart, held_law, law_of
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError

@@ -24,7 +24,7 @@ from hfanalysis.calibrate.beside_report import joint_of
 from hfanalysis.calibrate.conditions import conditioned, conditions
 from hfanalysis.calibrate.evidence import burn_time_of
 from hfanalysis.calibrate.joint_refused import reasons
-from hfanalysis.calibrate.regression import judge_regression, rate_at
+from hfanalysis.calibrate.regression_verdict import judge_regression, rate_at
 from hfanalysis.calibrate.tank import PEAK_OVER
 from hfanalysis.calibrate.verdicts import PHYSICAL_M
 from hfanalysis.engine.effect import Active

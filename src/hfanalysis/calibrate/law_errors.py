@@ -18,7 +18,8 @@ from hfanalysis.calibrate.beside_report import joint_of
 from hfanalysis.calibrate.drifting import by_drift
 from hfanalysis.calibrate.evidence import NUISANCES
 from hfanalysis.calibrate.likelihood import Weights
-from hfanalysis.calibrate.regression import WIDEST_N, Fitted, law_at, weighed
+from hfanalysis.calibrate.regression import Fitted, law_at, weighed
+from hfanalysis.calibrate.regression_verdict import WIDEST_N
 from hfanalysis.products.calibration import FuelLaw, Joint
 from hfanalysis.quantity import CONDITIONAL, IDENTIFIED, Quantity
 

@@ -14,7 +14,8 @@ from math import exp, log
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.calibrate.regression import WIDEST_N, Fitted, law_at, slopes
+from hfanalysis.calibrate.regression import Fitted, law_at, slopes
+from hfanalysis.calibrate.regression_verdict import WIDEST_N
 from hfanalysis.effects.head_end_pressure import EFFECT
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Engine

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hfanalysis.calibrate.fuel_law import evidence_for
-from hfanalysis.calibrate.regression import fit, fit_together, result
+from hfanalysis.calibrate.regression import fit, fit_together
+from hfanalysis.calibrate.regression_verdict import result
 from hfanalysis.calibrate.tank import calibrate
 from hfanalysis.errors import AbsentError
 from hfanalysis.inference.adopted.corrected_log import corrected
