@@ -12,8 +12,9 @@ import typer
 
 from hfanalysis.cli.engine_commands import OF_ENGINES
 from hfanalysis.cli.exit_status import plain_exit
-from hfanalysis.cli.options import Firing, Force, Json, Out, ProductJson, Quiet, Root, Set, Test, Trust, tests_of
+from hfanalysis.cli.options import Firing, Force, Json, Out, Pdf, ProductJson, Quiet, Root, Set, Test, Trust
 from hfanalysis.cli.request import Request, named
+from hfanalysis.cli.several_commands import OF_SEVERAL
 from hfanalysis.cli.trust import ask
 from hfanalysis.errors import InputError
 from hfanalysis.stages import RUN, STAGES
@@ -121,10 +122,7 @@ def _diagnose(
         (adopt.apply if apply else adopt.retract)(request, stand)
 
 
-Pdf = Annotated[bool, typer.Option("--pdf", help="Also print the page to PDF; needs Chromium or Chrome.")]
 Plots = Annotated[bool, typer.Option("--plots", help="Also write every chart as PNG and CSV to TEST/plots/.")]
-
-
 Summary = Annotated[bool, typer.Option("--summary", help="Also write the first screen as one page: summary.pdf (A4).")]
 Letter = Annotated[bool, typer.Option("--letter", help="With --summary: on Letter paper.")]
 
@@ -198,25 +196,6 @@ for _name, _text in {**STAGES, RUN: "Every stage; the diagnosis takes longest."}
     _stage(_name, _text, _WITH_OPTIONS.get(_name) or _plain(_name))
 
 
-@app.command("compare")
-def _compare(
-    test: Test,
-    other: Annotated[str, typer.Argument(metavar="OTHER", help="The test to lay over it.")],
-    root: Root = Path(),
-    out: Out = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    pdf: Pdf = False,
-    trust_effects: Trust = False,
-) -> None:
-    """Lay two tests over each other: TEST/compare_OTHER.html, curves from the valve's opening, numbers side by side."""
-    with plain_exit():
-        from hfanalysis.cli import exports
-
-        ask(root, trust_effects)
-        exports.compare(Request(test, root, out, as_json, False, quiet), other, pdf)
-
-
 def _budget(request: Request) -> None:
     from hfanalysis.cli import budget
 
@@ -245,53 +224,8 @@ def _watch(
         watch_folder(folder, root, once, as_json)
 
 
-for _name, _command in OF_ENGINES.items():
+for _name, _command in {**OF_ENGINES, **OF_SEVERAL}.items():
     app.command(_name)(_command)
-
-
-@app.command("regression")
-def _regression(
-    tests: Annotated[list[str], typer.Argument(metavar="TEST OTHER…", help="Tests of one fuel; at least two.")],
-    root: Root = Path(),
-    out: Out = None,
-    as_json: ProductJson = False,
-    trust_effects: Trust = False,
-) -> None:
-    """Regression constants a and n common to several tests, and whether the tests agree on them."""
-    with plain_exit():
-        from hfanalysis.cli import regression
-
-        ask(root, trust_effects)
-        regression.regression(tests, root, out, as_json)
-
-
-Tests = Annotated[
-    list[str] | None,
-    typer.Argument(metavar="[TEST…]", help="Names of tests; none: all.", autocompletion=tests_of),
-]
-Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Tests at a time.", show_default="one per core")]
-
-
-@app.command("campaign")
-def _campaign(
-    tests: Tests = None,
-    root: Root = Path(),
-    out: Out = None,
-    jobs: Jobs = None,
-    as_json: ProductJson = False,
-    force: Force = False,
-    quiet: Quiet = False,
-    trust_effects: Trust = False,
-) -> None:
-    """Every stage of all tests, several at a time, and what those of one stand say together: campaign.html, .json."""
-    with plain_exit():
-        from hfanalysis.cli import campaign
-
-        ask(root, trust_effects)
-        request = campaign.CampaignRequest(tuple(tests or ()), root, out, jobs, as_json, force, quiet, trust_effects)
-        status = campaign.campaign(request)
-        if status:
-            raise typer.Exit(status)
 
 
 AnyTest = Annotated[
@@ -335,55 +269,6 @@ def _new(
         from hfanalysis.cli import new
 
         new.new(root, test, log, edit)
-
-
-@app.command("table")
-def _table(
-    tests: Tests = None,
-    root: Root = Path(),
-    out: Out = None,
-    write: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write it there: .csv, .parquet or .xlsx, by the ending.")
-    ] = None,
-) -> None:
-    """Every quantity of the products of tests as one tidy table: CSV on standard output, or a file. Runs nothing."""
-    with plain_exit():
-        from hfanalysis.cli import table
-
-        table.table(tests or (), root, out, write)
-
-
-@app.command("diff")
-def _diff(
-    old: Annotated[Path, typer.Argument(metavar="OLD", help="Products as they were: a processed/, or one TEST of it.")],
-    new: Annotated[Path, typer.Argument(metavar="NEW", help="Products as they are.")],
-    least: Annotated[
-        float, typer.Option(min=0.0, metavar="DEVIATIONS", help="Smallest change that counts, in standard deviations.")
-    ] = 0.01,
-    as_json: ProductJson = False,
-) -> None:
-    """Which numbers changed between two folders of products, by how many standard deviations, and what made them."""
-    with plain_exit():
-        from hfanalysis.cli import differences
-
-        differences.differ(old, new, least, as_json)
-
-
-@app.command("find")
-def _find(
-    condition: Annotated[
-        str, typer.Argument(metavar="CONDITION", help="Such as \"C_i > 0.3 and m < 1 and stand = 'north'\".")
-    ],
-    root: Root = Path(),
-    out: Out = None,
-    doubted: Annotated[bool, typer.Option("--all", help="Doubted and refused numbers count, too.")] = False,
-    as_json: ProductJson = False,
-) -> None:
-    """Tests that meet a condition on their quantities, in SI units; what it names is shown with verdicts."""
-    with plain_exit():
-        from hfanalysis.cli import query
-
-        query.find(condition, root, out, doubted, as_json)
 
 
 @app.command("demo")

@@ -34,3 +34,4 @@ Firing = Annotated[
     typer.Option("--firing", min=1, metavar="N", help="Take this firing of the log; products go to TEST.firing-N/."),
 ]
 Trust = Annotated[bool, typer.Option("--trust-effects", help="Run the code in ROOT/effects/, until it changes.")]
+Pdf = Annotated[bool, typer.Option("--pdf", help="Also print the page to PDF; needs Chromium or Chrome.")]
