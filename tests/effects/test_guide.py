@@ -13,6 +13,7 @@ from tests.effects.runs import SECONDS, base
 from tests.engine.stand import engine_on_stand
 
 import hfanalysis
+from hfanalysis.cli.effects import effects
 from hfanalysis.effects import effect, library
 from hfanalysis.effects.trust import agree
 from hfanalysis.engine.effect import Effect
@@ -75,6 +76,13 @@ def test_an_engine_file_may_name_the_example(folder: Path) -> None:
     assert leaking.attrs["result"]["total_impulse"]["value"] < 0.95 * sealed.attrs["result"]["total_impulse"]["value"]
     with pytest.raises(InputError, match="tank_seal"):
         hfanalysis.simulate(elsewhere)
+
+
+def test_the_list_of_effects_calls_the_example_what_its_file_does(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    effects(folder.parent, as_json=False)
+    assert "tank that leaks" in capsys.readouterr().out
 
 
 def test_the_example_at_strength_zero_is_the_base_model(seal: Effect) -> None:

@@ -43,6 +43,7 @@ def _described(effect: Effect) -> EffectEntry:
         twins=effect.twins,
         decisive=effect.decisive,
         reference=effect.reference,
+        plain_name=effect.plain_name,
     )
 
 

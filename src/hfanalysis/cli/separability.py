@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from rich.text import Text
@@ -56,6 +57,7 @@ def product_of(test: str, outlook: Outlook) -> Separability:
             Pair(effects=p, apart=outlook.now.apart(*p)) for p in _declarations(outlook) if p not in twins
         ),
         sensors={sensor.name: _added(sensor, outlook) for sensor in outlook.extra},
+        called={name: effect.plain_name for name, effect in outlook.effects.items() if effect.plain_name},
     )
 
 
@@ -102,11 +104,16 @@ def show(product: Separability) -> None:
     title = f"{product.id}: what {', '.join(map(called, product.channels))} can show"
     table = new_table("effect", "typical size", "stands out by", "seen from", "closest rivals", title=title)
     for name, row in product.effects.items():
-        rivals = ", ".join(f"{called(r.name)} {r.apart:.1f}" for r in row.rivals[:2])
-        table.add_row(called(name), _size(row.typical, row), f"{row.detectability:.1f}", _seen(row), rivals)
+        rivals = ", ".join(f"{_plain(product, r.name)} {r.apart:.1f}" for r in row.rivals[:2])
+        table.add_row(_plain(product, name), _size(row.typical, row), f"{row.detectability:.1f}", _seen(row), rivals)
     console.print(table)
     for sentence in sentences(product):
         console.print(Text(sentence), soft_wrap=not console.is_terminal)
+
+
+def _plain(product: Separability, effect: str) -> str:
+    """What people call an effect, a team's own among them."""
+    return product.called.get(effect) or called(effect)
 
 
 def _size(strength: float, row: Visibility) -> str:
@@ -121,22 +128,22 @@ def _seen(row: Visibility) -> str:
 
 def sentences(product: Separability) -> list[str]:
     """Twins, what would separate them, and what the numbers mean."""
-    out = []
+    out, plain = [], partial(_plain, product)
     for pair in product.twins:
         one, other = pair.effects
         out += [
-            f"twins: {called(one)} and {called(other)}: {pair.apart:.1f} of {NOMINAL:g}",
+            f"twins: {plain(one)} and {plain(other)}: {pair.apart:.1f} of {NOMINAL:g}",
             f"  {_advice(one, other, product)}",
         ]
     if not out:
         out = ["twins: none"]
-    declared = [f"{' and '.join(map(called, pair.effects))} {pair.apart:.1f}" for pair in product.declared_twins_apart]
+    declared = [f"{' and '.join(map(plain, pair.effects))} {pair.apart:.1f}" for pair in product.declared_twins_apart]
     if declared:
         out.append(f"called twins in the library, but told apart here: {', '.join(declared)}")
     for name, sensor in product.sensors.items():
         if sensor.shows:
             out.append(
-                f"{name} ({sensor.words}) would show {', '.join(map(called, sensor.shows))} of typical strength as well"
+                f"{name} ({sensor.words}) would show {', '.join(map(plain, sensor.shows))} of typical strength as well"
             )
     return [
         *out,

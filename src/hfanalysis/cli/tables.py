@@ -333,7 +333,13 @@ def show_effects(product: EffectLibrary) -> None:
 
     table = new_table("effect", "name in files", "acts in", "phases", "typical size", "what it is", title="effects")
     for name, found in product.effects.items():
-        words = (called(name), name, found.equation.replace("_", " "), _phases(found.phases), _strength(found))
+        words = (
+            found.plain_name or called(name),
+            name,
+            found.equation.replace("_", " "),
+            _phases(found.phases),
+            _strength(found),
+        )
         table.add_row(*words, Text(found.meaning))
     console.print(table)
     console.print(

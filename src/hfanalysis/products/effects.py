@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
 from hfanalysis.products.model import Is, Part
@@ -32,6 +33,7 @@ class EffectEntry(Part):
     twins: Annotated[tuple[str, ...], Is("effects that look alike")]
     decisive: Annotated[str, Is("measurement that would decide")]
     reference: Annotated[str, Is("where it is from")]
+    plain_name: Annotated[str, Is("what people call it; empty where it says none")] = ""
 
 
 class Rival(Part):
@@ -90,6 +92,7 @@ class Separability(Part):
     twins: Annotated[tuple[TwinPair, ...], Is("that the test does not tell apart")]
     declared_twins_apart: Annotated[tuple[Pair, ...], Is("twins of the library that it does tell apart")]
     sensors: Annotated[dict[str, AddedSensor], Is("that would help, by name")]
+    called: Annotated[Mapping[str, str], Is("what people call every effect, by its name")] = {}
 
 
 class EffectLibrary(Part):
