@@ -114,6 +114,7 @@ def _against(a: argparse.Namespace, folder: Any) -> int:
     from .archive import cases_of
     from .results import WrongSplit, results
     from .variants import comparison
+    from .wrong import no_longer_named
 
     try:
         found = results(folder, a.split)
@@ -122,6 +123,8 @@ def _against(a: argparse.Namespace, folder: Any) -> int:
         return 2
     earlier = cases_of(a.earlier, found.cases)
     lines = comparison(found.cases, earlier, found.groups, ("now", "earlier"))
+    lines += ["", "Single effects in plain view that were named then and are not now:", ""]
+    lines += no_longer_named({i: c for i, c in found.cases.items() if i in earlier}, earlier)
     print("\n".join(lines)) if a.write is None else put(a.write, "against", lines)
     return 0
 

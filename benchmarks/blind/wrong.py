@@ -23,6 +23,26 @@ def wrong_names(cases: Iterable[Case], groups: Groups) -> list[str]:
     return [*lines, *(_row(c, groups) for c in sorted(found, key=lambda c: (_hidden(c), str(c.answer["id"]))))]
 
 
+def no_longer_named(cases: Mapping[str, Case], earlier: Mapping[str, Case]) -> list[str]:
+    """Every single effect in plain view that was named by an earlier version and is not now, with what is said instead.
+
+    ``too small``: the part of what goes through its equation, where that is said to be too small to matter.
+    """
+    lines = ["| case | hidden | d' | stated now | probability of the truth | log evidence: now, then | too small |",
+             "|---|---|---|---|---|---|---|"]  # fmt: skip
+    lost = [c for i, c in cases.items() if seen(c) and c.stated != c.truth and earlier[i].stated == earlier[i].truth]
+    for c in sorted(lost, key=lambda c: (_hidden(c), str(c.answer["id"]))):
+        evidences = [of.product.get("evidences", {}).get(c.truth, 0.0) for of in (c, earlier[str(c.answer["id"])])]
+        part = c.product.get("too_small", {}).get(c.truth)
+        small = "-" if part is None else f"{100.0 * part:.1f} %"
+        probability = c.product.get("posterior", {}).get(c.truth, 0.0)
+        lines.append(
+            f"| {c.answer['id']} | {_hidden(c)} | {c.d_prime:.1f} | {c.stated} | {probability:.2f} | "
+            f"{evidences[0]:.1f}, {evidences[1]:.1f} | {small} |"
+        )
+    return lines
+
+
 def _is_wrong(c: Case) -> bool:
     return (seen(c) or strange(c)) and c.stated != c.truth
 
