@@ -39,7 +39,7 @@ class Error:
 
 
 CATALOGUE = (
-    Error("n_std_doubled", "_Told", "return 0.5 *", "return 1.0 *", "law_at"),
+    Error("n_std_doubled", "_Told", "return 0.5 *", "return 1.0 *", "judge_regression"),
     Error("span_error_a_fifth", "SPAN_SHARE", "0.7071", "0.14"),
     Error("drift_course_doubled", "ANY_COURSE", "12.0", "3.0"),
     Error("drift_left_in_doubled", "CellError", "0.5 * self.left", "self.left"),
