@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -76,6 +77,17 @@ def test_an_engine_file_may_name_the_example(folder: Path) -> None:
     assert leaking.attrs["result"]["total_impulse"]["value"] < 0.95 * sealed.attrs["result"]["total_impulse"]["value"]
     with pytest.raises(InputError, match="tank_seal"):
         hfanalysis.simulate(elsewhere)
+
+
+def test_code_that_an_engine_file_does_not_name_needs_nobody_to_agree_to_it(folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(folder, tmp_path / "effects")
+    engine = (PAGE.parents[1] / "engines" / "maelstrom.toml").read_text(encoding="utf-8")
+    path = tmp_path / "engine.toml"
+    path.write_text(f"{engine}[effects.nozzle_divergence]\nloss = 0.01\n", encoding="utf-8")
+    assert hfanalysis.simulate(path).attrs["result"]["total_impulse"]["value"] > 0.0
+    path.write_text(f'{engine}[effects.tank_seal]\narea = "3 mm^2"\n', encoding="utf-8")
+    with pytest.raises(InputError, match="nobody has agreed"):
+        hfanalysis.simulate(path)
 
 
 def test_the_list_of_effects_calls_the_example_what_its_file_does(

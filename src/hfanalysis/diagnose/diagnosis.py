@@ -268,6 +268,10 @@ def _errors(candidate: Candidate) -> FormError:
     return FormError(tank=tank, chamber=chamber)
 
 
+CALLED = {"polytropic_exponent": "m"}
+"""What people call a constant that has another name in the model."""
+
+
 def _constants(found: Naming, verdict: Verdict) -> Constants:
     """The base model's constants as fitted without and with the effects; m above all."""
     units = {"a": "m/s (kg/m^2/s)^-n", "area": "m^2", "loss_factor": "1/m^4", "oxidizer_mass": "kg", "temperature": "K"}
@@ -275,7 +279,7 @@ def _constants(found: Naming, verdict: Verdict) -> Constants:
     for arm, fitted in (("without", found.base.fit), ("with", verdict.chosen.fit)):
         values, stds = fitted.values, fitted.stds
         out[arm] = {
-            {"polytropic_exponent": "m"}.get(n, n): Quantity(values[n], units.get(n, ""), stds[n])
+            CALLED.get(n, n): Quantity(values[n], units.get(n, ""), stds[n])
             for n in values
             if "." not in n and not n.startswith(DEPARTURE)
         }
@@ -297,8 +301,7 @@ def _two_tops(chosen: Candidate) -> list[str]:
     weight, far = told_otherwise(chosen)
     if not far:
         return []
-    names = {n: {"polytropic_exponent": "m"}.get(n, n) for n in far}
-    here, there = (", ".join(f"{names[n]} {both[k]:.3g}" for n, both in far.items()) for k in (0, 1))
+    here, there = (", ".join(f"{CALLED.get(n, n)} {both[k]:.3g}" for n, both in far.items()) for k in (0, 1))
     return [TWO_TOPS.format(here, weight, there)]
 
 

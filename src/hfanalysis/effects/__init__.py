@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from functools import lru_cache
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
@@ -46,6 +47,15 @@ def beside(engine_file: Path) -> Path:
     """
     folder = engine_file.parent
     return (folder.parent if folder.name == "engines" else folder) / FOLDER
+
+
+def library_of(engine_file: Path, names: Iterable[str]) -> dict[str, Effect]:
+    """The effects among which an engine file may name some; a team's own only where ``names`` ask for one.
+
+    Raises as :func:`library`: code that nobody asks for needs nobody to agree to it.
+    """
+    own = any(name not in _built_in() for name in names)
+    return library(beside(engine_file.absolute())) if own else library()
 
 
 def effect(name: str, folder: Path | None = None) -> Effect:

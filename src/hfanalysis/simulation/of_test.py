@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hfanalysis.assembly.calibrated import exponent, loss_factor
-from hfanalysis.effects import beside, library
+from hfanalysis.effects import library_of
 from hfanalysis.engine.unsteady import Engine
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.inference.adopted.effects import Adopted, tables
@@ -208,7 +208,7 @@ def _site(found: OfTest, flight: bool) -> dict[str, Table]:
 
 def _effects(adopted: Adopted, path: Path, flight: bool) -> tuple[Adopted, tuple[str, ...]]:
     """The effects that the engine has here, and which are left out, with the reason."""
-    left_out, known = {}, library(beside(path.absolute()))
+    left_out, known = {}, library_of(path, [active.effect.name for active in adopted.effects])
     for active in adopted.effects:
         effect = active.effect
         if effect.of_sensor:

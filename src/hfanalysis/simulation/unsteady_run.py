@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly import engine as build
-from hfanalysis.effects import beside, library
+from hfanalysis.effects import library_of
 from hfanalysis.engine import closure, unsteady
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine
@@ -66,7 +66,7 @@ def _effects(file: EngineFile) -> tuple[Active, ...]:
     """What [effects] states beside the base model, a team's own among them; InputError for what cannot be."""
     if not file.effects:
         return ()
-    return effects_in(file.effects, file.path, library(beside(file.path.absolute()))).acting
+    return effects_in(file.effects, file.path, library_of(file.path, file.effects)).acting
 
 
 def run(file: EngineFile, engine: Engine, until: float | None = None) -> Burn:

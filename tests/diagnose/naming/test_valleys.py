@@ -93,13 +93,23 @@ def test_n_is_not_held_where_it_cannot_be() -> None:
     assert with_exponent(eroding(), 100.0, bench().observed) is None
 
 
-def test_a_form_is_not_left_because_a_fit_to_it_was_stopped_on_its_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One step at a form is no answer where its slopes promise more."""
-    coarse = Form(2, 2)
+def stopped() -> Candidate:
+    """A fit at the finest form that was stopped on its way, far from its end."""
     hypothesis = made.hypothesis().with_effect(EROSION)
-    away = np.full(hypothesis.size, 0.3)
-    found = candidate((EROSION.name,), fit(hypothesis, bench().at(coarse), away, 2), coarse)
-    assert not found.fit.converged
-    as_long_as_it_takes = bench().judged(found)
-    monkeypatch.setattr("hfanalysis.inference.candidate.SHORT", 1)
-    assert bench().judged(found).form == as_long_as_it_takes.form
+    found = fit(hypothesis, bench().observed, np.full(hypothesis.size, 0.3), 1)
+    assert not found.converged
+    return candidate((EROSION.name,), found, FINEST)
+
+
+@pytest.mark.parametrize(("beyond", "gone_on"), [(1.0, True), (1e4, False)])
+def test_a_form_is_not_left_because_a_fit_to_it_was_stopped_on_its_way(
+    monkeypatch: pytest.MonkeyPatch, beyond: float, gone_on: bool
+) -> None:
+    """It is gone on with where its slopes promise more than the candidate has, which it has not reached yet."""
+    half_way = stopped()
+    monkeypatch.setattr(Bench, "refitted", lambda *_: half_way)
+    has = replace(eroding(), form=Form(1, 1), log_evidence=half_way.log_evidence + beyond)
+    assert (bench().reach(half_way) > has.log_evidence) is gone_on
+    (again,) = bench()._refitted(replace(has, fit=replace(has.fit, within=np.inf)), [FINEST])
+    assert again is not None
+    assert again.fit.converged is gone_on

@@ -27,7 +27,7 @@ AS_PROBABLE = 1.0
 """Log evidence [natural log] behind the deepest valley within which another may be the one that is told. Source: odds
 of less than three are barely worth a mention (Kass and Raftery 1995)."""
 
-TWO_TOPS = 2.0
+FAR_APART = 2.0
 """Standard deviations, by one valley's own, from which on another valley's constant is told beside it."""
 
 LEAST_WEIGHT = 0.05
@@ -62,7 +62,7 @@ def told_otherwise(found: Candidate) -> tuple[float, dict[str, tuple[float, floa
     if weight < LEAST_WEIGHT:
         return weight, {}
     here, there, stds = found.fit.values, other.values, other.stds
-    far = [n for n in here if abs(there[n] - here[n]) > TWO_TOPS * stds[n]]
+    far = [n for n in here if abs(there[n] - here[n]) > FAR_APART * stds[n]]
     return weight, {n: (here[n], there[n]) for n in far}
 
 
