@@ -6,7 +6,7 @@ the size that makes the data most probable, at a price per step: an explanation 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -143,13 +143,17 @@ class Bench:
         return None
 
     def eased(self, found: Candidate) -> Candidate | None:
-        """The candidate one step coarser where it leaves much open; None where it has no more evidence."""
+        """The candidate one step coarser where that may bring something; None where it has no more evidence."""
         return self._best_of(found, self._refitted(found, self._coarser(found)))
 
     def _coarser(self, found: Candidate) -> list[Form]:
-        """The form one step coarser where a candidate leaves much open; none where it does not."""
-        form = found.form.coarser(*(left > WELL_FITTED for left in self.at(found.form).left_open(found.fit.residual)))
-        return [] if form == found.form else [form]
+        """The form one step coarser where a candidate leaves much open, and those that promise more by the slopes of
+        its fit: which form it comes to must not hang on whether it was reached from a coarser or from a finer one."""
+        left = self.at(found.form).left_open(found.fit.residual)
+        wanted = [found.form.coarser(*(chi2 > WELL_FITTED for chi2 in left))]
+        if found.fit.converged:
+            wanted += [form for form in found.form.coarser_ones if self._promised(found, form) > 0.0]
+        return [form for form in dict.fromkeys(wanted) if form != found.form]
 
     def _refitted(self, found: Candidate, forms: Sequence[Form]) -> list[Candidate | None]:
         """At forms of which something may be hoped for; None for the others."""
@@ -233,8 +237,13 @@ def more_probable(one: Candidate, other: Candidate) -> bool:
     return one.log_evidence > other.log_evidence
 
 
+def by_evidence(candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Candidates, the best first."""
+    return sorted(candidates, key=lambda c: -c.log_evidence)
+
+
 WELL_FITTED = 1.15
-"""Chi-square per observation, on a side, below which no larger model-form error is asked for there."""
+"""Chi-square per observation, on a side, from which on a larger model-form error is tried whatever it promises."""
 
 
 def attempted(hypothesis: Hypothesis, observed: Observed, start: Array, most: int = LONG) -> Fit | None:

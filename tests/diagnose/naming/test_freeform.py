@@ -12,7 +12,7 @@ from tests.inference import made
 
 from hfanalysis.diagnose.answer.source_places import of_unknown
 from hfanalysis.diagnose.answer.words import place_sentence
-from hfanalysis.diagnose.naming.freeform import unknown_sources
+from hfanalysis.diagnose.naming.freeform import unknown_instead
 from hfanalysis.engine.effect import Active, Effect, Parameter
 from hfanalysis.engine.sites import AT_FLOW, FEED_LOSS, IS_LIQUID, term
 from hfanalysis.inference.candidate import Bench, Candidate, candidate
@@ -54,7 +54,7 @@ def found(channel: str, course: Callable[[np.ndarray], np.ndarray], form: Form) 
     test = made.observed(misread(channel, course))
     bench = Bench(test)
     base = candidate((), fit(made.hypothesis(), bench.at(form)), form)
-    return base, unknown_sources(base, [], base, bench)[0], bench
+    return base, unknown_instead(base, [], base, bench)[0], bench
 
 
 def test_a_sensor_that_drifts_stays_there_when_the_flow_is_over() -> None:
@@ -108,7 +108,7 @@ def test_a_source_may_end_with_the_liquid() -> None:
     test = made.observed(flashing(2e4))
     bench = Bench(test)
     base = candidate((), fit(made.hypothesis(), bench.at(FINEST)), FINEST)
-    best = unknown_sources(base, [], base, bench)[0]
+    best = unknown_instead(base, [], base, bench)[0]
     assert best.names == ("feed_loss",)
     block = best.fit.hypothesis.blocks[0]
     t_v = test.events["t_v"][0]

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from hfanalysis.inference.candidate import Bench, Candidate, candidate, followed
-from hfanalysis.inference.fitting.fit import Fit
+from hfanalysis.arrays import Array
+from hfanalysis.inference.candidate import Bench, Candidate, by_evidence, candidate, followed
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.threads import each
 
@@ -44,7 +44,7 @@ def base_model(hypothesis: Hypothesis, bench: Bench) -> tuple[Candidate, list[Ca
         start = first.fit.x.copy()
         start[place] = exponent
         other = followed(hypothesis, slice(place, place + 1), bench.at(first.form), start)
-        if other is None or _same(other, first.fit):
+        if other is None or in_one_valley(other.x, first.fit.x):
             continue
         found = candidate((), other, first.form)
         if found.log_evidence > first.log_evidence - NEARLY:
@@ -58,9 +58,9 @@ def _elsewhere(base: Candidate, seen: list[Candidate], bench: Bench) -> list[Can
     """Those of the fits that are in another valley than the base model, brought to their end at its form, each once."""
     ended = each(lambda c: _ended(c, base, bench), [c for c in seen if c is not base])
     valleys: list[Candidate] = []
-    for one in sorted((c for c in ended if c is not None), key=lambda c: -c.log_evidence):
+    for one in by_evidence(c for c in ended if c is not None):
         far = one.log_evidence < base.log_evidence - FAR_BEHIND
-        if not far and not any(_same(one.fit, other.fit) for other in (base, *valleys)):
+        if not far and not any(in_one_valley(one.fit.x, c.fit.x) for c in (base, *valleys)):
             valleys.append(one)
     return valleys
 
@@ -71,6 +71,9 @@ def _ended(found: Candidate, base: Candidate, bench: Bench) -> Candidate | None:
     return None if there is None else bench.converged(there)
 
 
-def _same(one: Fit, other: Fit) -> bool:
-    """Whether two fits are in the same valley."""
-    return bool(np.abs(one.x - other.x).max() < SAME)
+def in_one_valley(one: Array, other: Array) -> bool:
+    """Whether two fits whose constants are these (parameters,), in prior standard deviations, are in the same valley.
+
+    Where the kink of a law runs through a valley (soot appears in the products, say), two fits of it end on either side
+    and differ in their slopes, and so in their evidence, though not in what they fit."""
+    return bool(np.abs(one - other).max() < SAME)

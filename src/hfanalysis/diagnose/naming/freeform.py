@@ -10,7 +10,15 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.diagnose.naming.dropping import dropped
 from hfanalysis.diagnose.naming.plain import plain_sources
-from hfanalysis.inference.candidate import SHORT, TOO_FAR_BEHIND, Bench, Candidate, attempted, candidate
+from hfanalysis.inference.candidate import (
+    SHORT,
+    TOO_FAR_BEHIND,
+    Bench,
+    Candidate,
+    attempted,
+    by_evidence,
+    candidate,
+)
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.form import FINEST
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
@@ -46,17 +54,23 @@ STRIDES = (1.0, 0.5, 0.2)
 """Parts of the way to the linear estimate from which a full fit may start: a large source is not linear."""
 
 
-def unknown_sources(base: Candidate, valleys: list[Candidate], named: Candidate, bench: Bench) -> list[Candidate]:
-    """Sources instead of any name, from the base model or its other ``valleys``, and beside the best name, where either
-    is worth it; the best first."""
+def unknown_instead(base: Candidate, valleys: list[Candidate], named: Candidate, bench: Bench) -> list[Candidate]:
+    """Sources instead of any name, from the base model or its other ``valleys``, where they are worth it; the best
+    first."""
     sides = [partial(side, base, named, bench) for side in (_instead, _at_finest, plain_sources)]
     sides += [partial(_instead, valley, named, bench) for valley in valleys]
-    if named.names:
-        sides += [partial(_beside, base, named, bench), partial(plain_sources, named, named, bench)]
     instead, at_finest, *others = each(lambda side: side(), sides)
     done = {c.names for c in instead if c.form == FINEST}
     found = [*instead, *(c for c in at_finest if c.names not in done), *(c for side in others for c in side)]
-    return sorted((_priced(c) for c in found), key=lambda c: -c.log_evidence)
+    return by_evidence(_priced(c) for c in found)
+
+
+def unknown_beside(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
+    """Sources beside what is named, where that is anything; the best first."""
+    if not named.names:
+        return []
+    sides = [partial(_beside, base, named, bench), partial(plain_sources, named, named, bench)]
+    return by_evidence(_priced(c) for side in each(lambda side: side(), sides) for c in side)
 
 
 def _instead(base: Candidate, named: Candidate, bench: Bench) -> list[Candidate]:
@@ -125,7 +139,7 @@ def _fitted(
     the best goes on unless it is out of the question.
     """
     tried = each(lambda source: with_fitted(start, source, bench), sources)
-    found = sorted((c for c in tried if c is not None), key=lambda c: -c.log_evidence)
+    found = by_evidence(c for c in tried if c is not None)
     if not found:
         return []
     rival = found[0].log_evidence

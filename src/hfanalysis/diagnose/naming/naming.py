@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 
 from hfanalysis.diagnose.naming.base_model import base_model
 from hfanalysis.diagnose.naming.catalogue import Catalogue
-from hfanalysis.diagnose.naming.freeform import unknown_sources
+from hfanalysis.diagnose.naming.freeform import unknown_beside, unknown_instead
 from hfanalysis.diagnose.naming.polish import ROUNDS, polished
 from hfanalysis.diagnose.naming.search import Search
-from hfanalysis.diagnose.naming.several import sets_of
+from hfanalysis.diagnose.naming.several import MOST_EFFECTS, sets_in_place_of, sets_of
 from hfanalysis.diagnose.naming.singles import singles_of
 from hfanalysis.diagnose.naming.valleys import among_valleys
 from hfanalysis.diagnose.naming.variants import Settings
-from hfanalysis.inference.candidate import Bench, Candidate
+from hfanalysis.inference.candidate import Bench, Candidate, by_evidence, more_probable
 from hfanalysis.inference.fitting.hypothesis import Hypothesis
 from hfanalysis.inference.fitting.threads import each
 from hfanalysis.inference.observations.observed import Observed
@@ -57,7 +57,7 @@ class Naming:
 def _told(candidates: list[Candidate], best: float, bench: Bench) -> list[Candidate]:
     """Candidates, the best first, with the fits of those whose numbers may be told brought to their end."""
     ended = each(lambda c: bench.told(c) if c.log_evidence > best - RIVAL else c, candidates)
-    return sorted(ended, key=lambda c: -c.log_evidence)
+    return by_evidence(ended)
 
 
 def _in_its_valley(found: Candidate, best: float, bench: Bench) -> Candidate:
@@ -82,14 +82,32 @@ def name_effects(
     singles, sets = sets_of(base, singles, search)
     named = max((base, *singles, *sets), key=lambda c: c.log_evidence)
     progress("trying unknown sources", 0.85)
-    unknown = unknown_sources(base, valleys, named, bench)
+    unknown = unknown_instead(base, valleys, named, bench)
+    named, further, beside = _every_name_first(base, named, singles, search)
+    sets, unknown = by_evidence([*further, *sets]), by_evidence([*beside, *unknown])
     told, base = base, polished(base, (*sets, *unknown), bench)
     best = max(c.log_evidence for c in (named, *unknown))
     singles, sets, unknown = (_told(some, best, bench) for some in (singles, sets, unknown))
-    sets = sorted(each(lambda c: _in_its_valley(c, best, bench), sets), key=lambda c: -c.log_evidence)
+    sets = by_evidence(each(lambda c: _in_its_valley(c, best, bench), sets))
     equations = {name: effect.equation for name, effect in catalogue.effects.items()}
     risen = base.log_evidence - told.log_evidence
     return Naming(base, tuple(singles), tuple(sets), tuple(unknown), bench, equations, risen=risen)
+
+
+def _every_name_first(
+    base: Candidate, named: Candidate, singles: list[Candidate], search: Search
+) -> tuple[Candidate, list[Candidate], list[Candidate]]:
+    """What is named once no effect does better in the place of an unknown source beside it; the sets that were found on
+    the way, and the sources beside what is named."""
+    further = list[Candidate]()
+    beside = unknown_beside(base, named, search.bench)
+    while beside and more_probable(beside[0], named) and len(named.names) < MOST_EFFECTS:
+        found = sets_in_place_of(beside[0], named, base, singles, search)
+        further += found
+        if not found or not more_probable(found[0], named):
+            break
+        named, beside = found[0], unknown_beside(base, found[0], search.bench)
+    return named, further, beside
 
 
 def _from_the_deepest(

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from hfanalysis.diagnose.naming.base_model import SAME
-from hfanalysis.inference.candidate import SHORT, Bench, Candidate, attempted, candidate
+from hfanalysis.diagnose.naming.base_model import in_one_valley
+from hfanalysis.inference.candidate import SHORT, Bench, Candidate, attempted, by_evidence, candidate
 from hfanalysis.inference.fitting.threads import each
 
 DEEPER = 0.5
@@ -31,7 +31,7 @@ def polished(base: Candidate, children: Iterable[Candidate], bench: Bench) -> Ca
     starts = _starts(base, [c for c in children if c.log_evidence > base.log_evidence + ABOVE])
     hypothesis, observed = base.fit.hypothesis, bench.at(base.form)
     fits = each(lambda x: attempted(hypothesis, observed, x, SHORT), starts)
-    tried = [candidate((), found, base.form) for found in fits if found is not None]
+    tried = [candidate((), f, base.form) for f in fits if f is not None and not in_one_valley(f.x, base.fit.x)]
     best = max(tried, key=lambda c: c.log_evidence, default=base)
     if best.log_evidence <= base.log_evidence + DEEPER:
         return base
@@ -41,9 +41,9 @@ def polished(base: Candidate, children: Iterable[Candidate], bench: Bench) -> Ca
 def _starts(base: Candidate, children: Sequence[Candidate]) -> list[np.ndarray]:
     """Constants of children (parameters of the base model,), each valley once, that of the best first."""
     size, out = base.fit.x.size, list[np.ndarray]()
-    for child in sorted(children, key=lambda c: -c.log_evidence):
+    for child in by_evidence(children):
         x = child.fit.x[:size]
-        if all(np.abs(x - other).max() > SAME for other in (base.fit.x, *out)):
+        if not any(in_one_valley(x, other) for other in (base.fit.x, *out)):
             out.append(x)
     return out
 

@@ -20,6 +20,7 @@ from hfanalysis.inference.candidate import (
     Bench,
     Candidate,
     attempted,
+    by_evidence,
     candidate,
     more_probable,
 )
@@ -58,14 +59,14 @@ def sets_of(
     than show the first the way to a better fit, the search begins anew with that.
     """
     bench, tried = search.bench, set[frozenset[str]]()
-    singles = sorted(singles, key=lambda c: -c.log_evidence)
+    singles = by_evidence(singles)
     front = [c for c in singles[:2] if c.log_evidence > base.log_evidence + PLAIN]
     known = _loosened(singles, base, bench)
     found: list[Candidate] = []
     for size in range(2, MOST_EFFECTS + 1):
         search.progress(f"trying {size} effects together", 0.6 + 0.06 * size)
         at_hand: Pairs = pairs if size == 2 and pairs is not None else {}
-        grown = sorted(_partners(front, search, tried, at_hand), key=lambda c: -c.log_evidence)
+        grown = by_evidence(_partners(front, search, tried, at_hand))
         if size == 2 and (better := _shown_the_way(grown[:2], singles, bench)):
             return sets_of(base, _best_each([*better, *singles]), search, at_hand)
         best = [c for c in each(lambda c: dropped(c, bench), grown[:2]) if len(c.names) > 1]
@@ -78,8 +79,24 @@ def sets_of(
         last = front[0]
     if found and (other := swapped(last, search)) is not last:
         found += _loosened([other], base, bench)
-    best_first = sorted(_best_each(found), key=lambda c: -c.log_evidence)
-    return known[: len(singles)], [by_what_each_explains(c, singles) for c in best_first]
+    return known[: len(singles)], [by_what_each_explains(c, singles) for c in by_evidence(_best_each(found))]
+
+
+def sets_in_place_of(
+    unknown: Candidate, named: Candidate, base: Candidate, singles: list[Candidate], search: Search
+) -> list[Candidate]:
+    """What is ``named`` with each effect that is asked for in the place of an ``unknown`` source, the best first.
+
+    At the form that the source led to: what a coarser one takes for model-form error may have a name.
+    """
+    bench = search.bench
+    parent = named if named.form == unknown.form else bench.refitted(named, unknown.form)
+    if parent is None:
+        return []
+    grown = by_evidence(_beside(parent, search, set()))
+    best = [less for c in grown[:1] if (less := dropped(c, bench)) is not c and len(less.names) > 1]
+    found = by_evidence(_best_each(_loosened(by_evidence([*best, *grown]), base, bench)))
+    return [by_what_each_explains(c, singles) for c in found]
 
 
 def by_what_each_explains(found: Candidate, singles: list[Candidate]) -> Candidate:

@@ -27,6 +27,7 @@ from hfanalysis.inference.candidate import (
     Bench,
     Candidate,
     attempted,
+    by_evidence,
     candidate,
     followed,
     more_probable,
@@ -76,7 +77,7 @@ def singles_of(base: Candidate, valleys: list[Candidate], search: Search) -> lis
         if name not in best or more_probable(one, best[name]):
             best[name] = one
     found = each(partial(_no_worse, parent=base, bench=bench), each(bench.converged, list(best.values())))
-    return sorted(found, key=lambda c: -c.log_evidence)
+    return by_evidence(found)
 
 
 def _no_worse(child: Candidate, parent: Candidate, bench: Bench) -> Candidate:
@@ -141,7 +142,7 @@ def _once_all_has_followed(found: list[Candidate], base: Candidate, search: Sear
         start[own] = np.copysign(LARGE, one.fit.x[own])
         return _best(one.names, [followed(one.fit.hypothesis, slice(size, None), observed, start)], base.form)
 
-    first = sorted(found, key=lambda c: -c.log_evidence)[:FOLLOWED]
+    first = by_evidence(found)[:FOLLOWED]
     seen = [c for c in first if c.log_evidence > base.log_evidence + SEEN]
     return [c for c in each(again, seen) if c is not None]
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from hfanalysis.arrays import Array
-from hfanalysis.diagnose.naming.base_model import SAME
+from hfanalysis.diagnose.naming.base_model import in_one_valley
 from hfanalysis.inference.candidate import SHORT, Bench, Candidate, attempted, candidate, held, price
 from hfanalysis.inference.fitting.fit import Fit
 from hfanalysis.inference.fitting.threads import each
@@ -95,7 +95,7 @@ def _valleys(found: Candidate, bench: Bench) -> list[Candidate]:
 
     valleys = [found]
     for one in each(other, ELSEWHERE):
-        if one is not None and all(np.abs(one.fit.x - c.fit.x).max() > SAME for c in valleys):
+        if one is not None and not any(in_one_valley(one.fit.x, c.fit.x) for c in valleys):
             valleys.append(one)
     return valleys
 

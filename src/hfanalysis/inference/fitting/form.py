@@ -52,6 +52,12 @@ class Form(NamedTuple):
         """One step coarser on these sides, as far as there is one."""
         return Form(min(self.tank + tank, STEPS - 1), min(self.chamber + chamber, STEPS - 1))
 
+    @property
+    def coarser_ones(self) -> list[Form]:
+        """The forms one step coarser on either side, and on both, as far as there are any."""
+        forms = [self.coarser(*sides) for sides in ((True, False), (False, True), (True, True))]
+        return [form for form in dict.fromkeys(forms) if form != self]
+
 
 FINEST, COARSEST = Form(0, 0), Form(STEPS - 1, STEPS - 1)
 """The least and the largest model-form error on either side. Evidence: that fits begin at the coarsest was changed
