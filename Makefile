@@ -20,7 +20,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test test-all lint format docs pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -89,6 +89,9 @@ notebooks: $(STAMP) rocketpy ## the notebooks executed, with what they show in s
 	@test $(NOTEBOOKS)/.set-up -nt requirements-notebooks.lock || { \
 		sh pipeline/setup.sh '$(PYTHON)' $(NOTEBOOKS) requirements-notebooks.lock && touch $(NOTEBOOKS)/.set-up; }
 	@$(NOTEBOOKS)/bin/python pipeline/notebooks.py "$$PWD/$(BIN)/python" $(FLAGS)
+
+code-blocks: $(STAMP) ## every code block of the documents, those that analyse a test, too; FLAGS=--quick without them
+	@$(BIN)/python pipeline/code_blocks.py $(FLAGS)
 
 benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers, localisation, a 1 GB log beside pandas
 	$(BIN)/python -m benchmarks.startup
