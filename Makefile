@@ -80,6 +80,7 @@ format: $(STAMP) ## format the code with ruff
 pictures: $(STAMP) ## the pictures of README and documentation anew, from HF5 and the effects; needs a browser
 	$(BIN)/python pipeline/pictures.py
 	PYTHONPATH=. $(BIN)/python pipeline/effects_pictures.py
+	$(BIN)/python pipeline/diagnosis_pictures.py
 
 docs: $(STAMP) ## the documentation as pages in site/: no warning, no dead link, nothing loaded from elsewhere
 	@$(BIN)/python pipeline/site.py

@@ -24,6 +24,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from hfanalysis.record.planned import FIRED
+
 ROOT = Path(__file__).resolve().parent.parent
 ELSEWHERE = ("docs/tutorial.md", "docs/walkthrough.md")
 """Pages whose blocks tests of their own run in turn."""
@@ -73,7 +75,7 @@ def scratch(folder: Path) -> None:
     stated = (raw / "HF5" / "test.toml").read_text(encoding="utf-8").replace('id = "HF5"', f'id = "{fired}"')
     (raw / fired / "test.toml").write_text(stated, encoding="utf-8")
     sections = re.split(r"^(?=\[)", stated, flags=re.MULTILINE)
-    plan = [s for s in sections if not re.match(r"\[\[?(log|channels|exclude)\b", s)]
+    plan = [s for s in sections if not re.match(rf"\[\[?({'|'.join(FIRED)})\b", s)]
     (folder / f"{fired}.toml").write_text("".join(plan), encoding="utf-8")
 
 
