@@ -102,6 +102,7 @@ benchmark: $(STAMP) rocketpy ## start-up, engine and flight beside other solvers
 	$(BIN)/python -m benchmarks.flights
 	OMP_NUM_THREADS=1 $(BIN)/python -m benchmarks.localisation
 	$(BIN)/python -m benchmarks.diagnosis_speed
+	$(BIN)/python -m benchmarks.archive
 	@if [ -f benchmarks/ingest_1gb.py ]; then set -x; $(BIN)/python -m benchmarks.ingest_1gb --gigabytes 1; fi
 
 # Only the tests and the benchmark use it: it has an environment of its own, and where it cannot be installed they go on

@@ -38,6 +38,9 @@ OF_A_FILE = re.compile(rf"# (src|effects)\b|{ROW}|def run\(context")
 NOT_RUN = {"text", "matlab"}
 """Kinds that nothing here reads: what is printed, pictures in letters, another language."""
 
+PREPARED = ("validate HF5", "archive HF5 --write season.h5")
+"""What has been done where a page's Python begins."""
+
 Run = subprocess.CompletedProcess[str]
 
 
@@ -76,7 +79,8 @@ def scratch(folder: Path) -> None:
     (raw / fired / "test.toml").write_text(stated, encoding="utf-8")
     sections = re.split(r"^(?=\[)", stated, flags=re.MULTILINE)
     plan = [s for s in sections if not re.match(rf"\[\[?({'|'.join(FIRED)})\b", s)]
-    (folder / f"{fired}.toml").write_text("".join(plan), encoding="utf-8")
+    told = "".join(plan).replace("[tank]\n", '[tank]\ntemperature = "20 degC"\n', 1)
+    (folder / f"{fired}.toml").write_text(told, encoding="utf-8")
 
 
 def python_of(some: Sequence[Block], quick: bool) -> str:
@@ -100,6 +104,9 @@ def python_of(some: Sequence[Block], quick: bool) -> str:
 
 def failures(folder: Path, quick: bool) -> list[str]:
     """What does not do as it stands in the documents, with its place."""
+    if not quick:
+        for command in PREPARED:
+            _python("-m", "hfanalysis", *command.split(), folder=folder).check_returncode()
     of_pages: dict[str, list[Block]] = {}
     out = list[str]()
     for block in blocks():

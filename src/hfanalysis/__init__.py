@@ -15,6 +15,7 @@ from hfanalysis.version import __version__
 if TYPE_CHECKING:
     import xarray as xr
 
+    from hfanalysis.archive.reading import Archive
     from hfanalysis.interface.engines import design, simulate
     from hfanalysis.interface.firing import Firing, open
     from hfanalysis.interface.made import firing
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AbsentError",
     "AnalysisError",
+    "Archive",
     "Firing",
     "InputError",
     "Quantity",
@@ -40,6 +42,7 @@ __all__ = [
 ]
 
 _PLACES = {
+    "Archive": "archive.reading",
     "Firing": "interface.firing",
     "open": "interface.firing",
     "firing": "interface.made",

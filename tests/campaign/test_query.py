@@ -12,6 +12,7 @@ from tests.cli.run import hfa
 
 from hfanalysis.campaign.query import Asked, asked_of, matching, names_in
 from hfanalysis.errors import InputError
+from hfanalysis.products.tidy import rows_of_test
 
 
 def products(root: Path, test: str, c_i: float, verdict: str, impulse: float) -> Path:
@@ -40,7 +41,7 @@ def root(tmp_path: Path) -> Path:
 
 
 def asked(root: Path) -> dict[str, Asked]:
-    return {name: asked_of(root / "processed" / name, {"test": name, "stand": "north"}) for name in "ABC"}
+    return {name: asked_of(rows_of_test(root / "processed" / name), {"test": name, "stand": "north"}) for name in "ABC"}
 
 
 @pytest.mark.parametrize(

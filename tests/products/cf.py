@@ -14,6 +14,9 @@ import xarray as xr
 OF_ITS_OWN = {"a": "m/s (kg/m²/s)⁻ⁿ"}
 """Variables whose unit no library can read: that of the regression coefficient hangs on the fitted exponent."""
 
+NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable"
+"""What netCDF-4 names a dimension without coordinates: it is no variable, and has no unit."""
+
 
 @cache
 def _registry() -> Any:
@@ -40,6 +43,8 @@ def _faults(file: h5py.File) -> Iterator[str]:
     found: list[tuple[str, Any]] = []
     file.visititems(lambda name, item: found.append((name, item)))
     for name, item in found:
+        if isinstance(item, h5py.Dataset) and str(item.attrs.get("NAME", b"")).lstrip("b'").startswith(NO_VARIABLE):
+            continue
         if isinstance(item, h5py.Dataset):
             yield from _of_variable(name, item)
         else:

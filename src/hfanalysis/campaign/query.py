@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import re
 import sqlite3
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from hfanalysis.errors import InputError
-from hfanalysis.products.tidy import Row, rows_of_test
+from hfanalysis.products.tidy import Row
 from hfanalysis.quantity import CONDITIONAL, DERIVED, IDENTIFIED, STATED
 from hfanalysis.units import near
 
@@ -46,12 +45,12 @@ class Asked:
     quantities: Mapping[str, Row]
 
 
-def asked_of(folder: Path, facts: Mapping[str, str | None]) -> Asked:
-    """A test's quantities by their way through a product ("validation.performance.measured.total_impulse") and by the
-    last word of it alone, which the first of them has, those of measurement before those of a model."""
+def asked_of(rows: Iterable[Row], facts: Mapping[str, str | None]) -> Asked:
+    """A test's quantities, its ``rows``, by their way through a product ("validation.performance.measured.peak_thrust")
+    and by the last word of it alone, which the first of them has, those of measurement before those of a model."""
     long: dict[str, Row] = {}
     short: dict[str, Row] = {}
-    for row in rows_of_test(folder):
+    for row in rows:
         long[f"{row['product']}.{row['name']}"] = row
         short.setdefault(row["name"].rpartition(".")[2], row)
     for row in long.values():  # what a product says first hand goes before what stands deeper in it

@@ -11,23 +11,23 @@ from hfanalysis.cli.exit_status import put
 from hfanalysis.cli.paper import new_table, paper, soft
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.disk import to_json
+from hfanalysis.products.tidy import rows_of_test
 from hfanalysis.record.definition import find_definition, load_definition
 from hfanalysis.stages.open_test import PROCESSED
 
 
-def find(condition: str, root: Path, out: Path | None, doubted: bool, as_json: bool) -> None:
-    """Print the tests below ``root`` (or ``out``) whose products meet a condition, with what it names; runs nothing.
+def find(
+    condition: str, root: Path, out: Path | None, doubted: bool, as_json: bool, archive: Path | None = None
+) -> None:
+    """Print the tests below ``root`` (or ``out``), or of an ``archive``, whose products meet a condition, with what it
+    names; runs nothing.
 
     ``doubted``: doubted and refused numbers count, too. Raises InputError where the condition is none, AbsentError
     where no test has products.
     """
-    folder = out if out is not None else root / PROCESSED
-    folders = sorted(path.parent for path in folder.glob("*/segments.json"))
-    if not folders:
-        raise AbsentError(f"{folder}: no products of any test; hfa run TEST makes them")
-    tests = {path.name: asked_of(path, _facts(root, path.name)) for path in folders}
-    found = matching(tests, condition, doubted)
     names = names_in(condition)
+    tests = _made(root, out) if archive is None else _archived(archive, names)
+    found = matching(tests, condition, doubted)
     if as_json:
         told = {test: {"facts": dict(tests[test].facts), "quantities": shown_of(tests[test], names)} for test in found}
         put(to_json({"condition": condition, "of": len(tests), "tests": told}))
@@ -35,7 +35,24 @@ def find(condition: str, root: Path, out: Path | None, doubted: bool, as_json: b
         _show(found, tests, names)
 
 
-def _facts(root: Path, test: str) -> dict[str, str | None]:
+def _made(root: Path, out: Path | None) -> dict[str, Asked]:
+    """The tests that have products below ``root``, or in ``out``."""
+    folder = out if out is not None else root / PROCESSED
+    folders = sorted(path.parent for path in folder.glob("*/segments.json"))
+    if not folders:
+        raise AbsentError(f"{folder}: no products of any test; hfa run TEST makes them")
+    return {path.name: asked_of(rows_of_test(path), facts_of(root, path.name)) for path in folders}
+
+
+def _archived(path: Path, names: list[str]) -> dict[str, Asked]:
+    """The tests of an archive, with what is asked for."""
+    from hfanalysis.archive.reading import Archive
+
+    with Archive(path) as kept:
+        return kept.asked(names)
+
+
+def facts_of(root: Path, test: str) -> dict[str, str | None]:
     """What test.toml states of a test; its name alone where it is not there any more, or does not load."""
     try:
         about = load_definition(find_definition(root, test.partition(".firing-")[0])).test

@@ -17,6 +17,7 @@ Tests = Annotated[
     list[str] | None,
     typer.Argument(metavar="[TEST…]", help="Names of tests; none: all.", autocompletion=tests_of),
 ]
+Kept = Annotated[Path | None, typer.Option("--archive", metavar="FILE", help="Of the tests of an archive instead.")]
 Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Tests at a time.", show_default="one per core")]
 
 
@@ -81,12 +82,13 @@ def _table(
     write: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write it there: .csv, .parquet or .xlsx, by the ending.")
     ] = None,
+    archive: Kept = None,
 ) -> None:
     """Every quantity of the products of tests as one tidy table: CSV on standard output, or a file. Runs nothing."""
     with plain_exit():
         from hfanalysis.cli import table
 
-        table.table(tests or (), root, out, write)
+        table.table(tests or (), root, out, write, archive)
 
 
 def _diff(
@@ -112,12 +114,53 @@ def _find(
     out: Out = None,
     doubted: Annotated[bool, typer.Option("--all", help="Doubted and refused numbers count, too.")] = False,
     as_json: ProductJson = False,
+    archive: Kept = None,
 ) -> None:
     """Tests that meet a condition on their quantities, in SI units; what it names is shown with verdicts."""
     with plain_exit():
         from hfanalysis.cli import query
 
-        query.find(condition, root, out, doubted, as_json)
+        query.find(condition, root, out, doubted, as_json, archive)
+
+
+def _archive(
+    write: Annotated[Path, typer.Option(metavar="FILE", help="Write it there; a name that ends with .h5.")],
+    tests: Tests = None,
+    root: Root = Path(),
+    out: Out = None,
+    lean: Annotated[
+        bool,
+        typer.Option("--lean", help="Without the HDF5 products' own bytes: a test that is given back is run anew."),
+    ] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Tests with raw logs, test.toml and products as one file, which xarray opens lazily. Runs nothing."""
+    with plain_exit():
+        from hfanalysis.cli import archive
+
+        archive.archive(tests or (), root, out, write, lean, quiet)
+
+
+def _open(
+    archive: Annotated[Path, typer.Argument(metavar="FILE", help="What hfa archive has written.")],
+    tests: Annotated[
+        list[str] | None, typer.Argument(metavar="[TEST…]", help="Tests to give back, or to write.")
+    ] = None,
+    root: Root = Path(),
+    out: Out = None,
+    series: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Write this series: ingest, residuals/full/p_chamber, …")
+    ] = None,
+    write: Annotated[
+        Path | None, typer.Option(metavar="OUT", help="Where to: .csv, .parquet or .mat, by the ending.")
+    ] = None,
+    as_json: ProductJson = False,
+) -> None:
+    """What an archive holds; with TEST, its files given back below ROOT; with --series, numbers for other programs."""
+    with plain_exit():
+        from hfanalysis.cli import archive as archives
+
+        archives.opened(archive, tests or (), root, out, series, write, as_json)
 
 
 OF_SEVERAL: dict[str, Callable[..., None]] = {
@@ -127,5 +170,7 @@ OF_SEVERAL: dict[str, Callable[..., None]] = {
     "table": _table,
     "diff": _diff,
     "find": _find,
+    "archive": _archive,
+    "open": _open,
 }
 """By name; their first lines are the help."""

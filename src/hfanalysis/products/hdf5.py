@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -80,12 +80,12 @@ class _Deferring(io.RawIOBase):
 
 
 @contextmanager
-def created(path: Path, **options: Any) -> Iterator[h5py.File]:
-    """A new HDF5 file at ``path``, closed at the end; ``options`` as of ``h5py.File``. Raises OSError where the system
-    did not take what was written."""
+def created(path: Path, opened: Callable[..., Any] = h5py.File, **options: Any) -> Iterator[Any]:
+    """A new HDF5 file at ``path``, closed at the end; ``options`` as of what it is ``opened`` with (``h5netcdf.File``
+    does as well). Raises OSError where the system did not take what was written."""
     target = _Deferring(path)
     try:
-        with h5py.File(target, "w", **options) as file:
+        with opened(target, "w", **options) as file:
             yield file
     finally:
         target.close()
