@@ -8,8 +8,9 @@ from typing import TypeVar
 
 from hfanalysis.campaign.pooling import pooled
 from hfanalysis.campaign.regression import regression_of
-from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended
+from hfanalysis.campaign.side_by_side import Ended
 from hfanalysis.errors import AbsentError
+from hfanalysis.interface.ending import ABSENT, DONE, INPUT_AT_FAULT
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.campaign import (
     Agreement,

@@ -1,20 +1,18 @@
-"""Every test through all stages, several at a time, each in a process of its own: what ends one ends no other."""
+"""Every test through all stages, several at a time, on the processes of a cluster: what ends one ends no other."""
 
 from __future__ import annotations
 
-import subprocess
-import sys
+import traceback
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
+from pathlib import Path
 
-from hfanalysis.errors import AbsentError, InputError
-
-DONE, INPUT_AT_FAULT, ABSENT = 0, InputError.exit_status, AbsentError.exit_status
-"""Exit statuses of a test's run: done, and the two in which an analysis ends early."""
-
-_ADDRESSED = "hfa: "
-_WARNING = "hfa: warning: "
+from hfanalysis.campaign.cluster import Cluster, Telling
+from hfanalysis.interface.bringing import check_spine
+from hfanalysis.interface.ending import ABSENT, DEFECT, DONE, INPUT_AT_FAULT, plainly
+from hfanalysis.stages import ORDER
+from hfanalysis.stages.open_test import open_test
+from hfanalysis.stages.runner import run_to
 
 
 @dataclass(frozen=True)
@@ -30,35 +28,40 @@ class Ended:
         return self.status not in (DONE, INPUT_AT_FAULT, ABSENT)
 
 
-def run_all(
-    tests: Sequence[str], arguments: Sequence[str], jobs: int, ended: Callable[[str, Ended], None]
-) -> Mapping[str, Ended]:
-    """``hfa run TEST`` with these further arguments for every test, ``jobs`` at a time.
+@dataclass(frozen=True)
+class Work:
+    """What is done with every test: where it is, where its products go, whether all is redone."""
 
-    ``ended`` is called, from this thread, as each one ends. An interrupt ends what has not begun; what runs is
-    interrupted itself.
+    root: Path
+    out: Path | None = None
+    force: bool = False
+
+
+def run_all(
+    tests: Sequence[str],
+    work: Work,
+    cluster: Cluster,
+    ended: Callable[[str, Ended], None],
+    doing: Callable[[str], None] = lambda _text: None,
+) -> Mapping[str, Ended]:
+    """All stages of every test, on the workers of a ``cluster``.
+
+    ``ended`` is called, from this thread, as each one ends; ``doing`` with what the workers are at. A test that has
+    ended the process it ran in too often (:data:`hfanalysis.campaign.cluster.DEATHS`) has ended with a defect.
     """
     found: dict[str, Ended] = {}
-    with ThreadPoolExecutor(jobs) as pool:
-        running = {pool.submit(_run, test, arguments): test for test in tests}
-        try:
-            for future in as_completed(running):
-                found[running[future]] = future.result()
-                ended(running[future], future.result())
-        except KeyboardInterrupt:
-            pool.shutdown(cancel_futures=True)
-            raise
+    for test, outcome in cluster.each(run_one, tests, work, doing):
+        found[test] = outcome if isinstance(outcome, Ended) else Ended(DEFECT, outcome)
+        ended(test, found[test])
     return {test: found[test] for test in tests}
 
 
-def _run(test: str, arguments: Sequence[str]) -> Ended:
-    command = [sys.executable, "-m", "hfanalysis", "run", "--quiet", *arguments, "--", test]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    return Ended(done.returncode, _said(done.stderr) if done.returncode else "")
-
-
-def _said(text: str) -> str:
-    """The message among what a command prints for people; all of it (a traceback) where there is none."""
-    lines = [line for line in text.splitlines() if line and not line.startswith(_WARNING)]
-    told = [line.removeprefix(_ADDRESSED) for line in lines if line.startswith(_ADDRESSED)]
-    return "\n".join(told or lines) or "it ended without a word"
+def run_one(test: str, work: Work) -> Ended:
+    """All stages of one test, in the process of a worker; it raises nothing."""
+    try:
+        context = open_test(work.root, test, work.out, progress=Telling(test))
+        check_spine(run_to(ORDER[-1], context, force=work.force, whole=True))
+    except Exception as error:
+        known = plainly(error)
+        return Ended(*known) if known else Ended(DEFECT, traceback.format_exc())
+    return Ended(DONE, "")

@@ -8,15 +8,17 @@ from pathlib import Path
 
 from rich.text import Text
 
+from hfanalysis.campaign.cluster import Cluster
 from hfanalysis.campaign.conclusions import conclusions
 from hfanalysis.campaign.page import page
 from hfanalysis.campaign.product import row_of, stand_row
-from hfanalysis.campaign.side_by_side import ABSENT, DONE, INPUT_AT_FAULT, Ended, run_all
+from hfanalysis.campaign.side_by_side import Ended, Work, run_all
 from hfanalysis.campaign.words import agreement, diagnosed, regression_sentence
 from hfanalysis.cli.exit_status import put, tell
 from hfanalysis.cli.paper import new_table, paper
 from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
+from hfanalysis.interface.ending import ABSENT, DONE, INPUT_AT_FAULT
 from hfanalysis.processors import processors
 from hfanalysis.products.campaign import Campaign, Together
 from hfanalysis.products.disk import atomic, to_json, write_json
@@ -41,7 +43,7 @@ class CampaignRequest:
     as_json: bool
     force: bool
     quiet: bool
-    trust_effects: bool = False
+    scheduler: str | None = None
 
 
 def campaign(request: CampaignRequest) -> int:
@@ -88,19 +90,24 @@ def _definitions(request: CampaignRequest) -> tuple[dict[str, TestDefinition], d
 
 
 def _run(tests: list[str], request: CampaignRequest, progress: Progress) -> Mapping[str, Ended]:
-    arguments = ["--root", str(request.root), *(("--out", str(request.out)) if request.out is not None else ())]
-    arguments += ["--force"] if request.force else []
-    arguments += ["--trust-effects"] if request.trust_effects else []
     done: list[str] = []
 
     def ended(test: str, how: Ended) -> None:
         done.append(test)
-        progress(f"{len(done)} of {len(tests)} tests", len(done) / len(tests))
+        doing(test)
         if how.status != DONE:
             tell(f"{test}: {how.said}")
 
-    progress(f"0 of {len(tests)} tests", 0.0)
-    return run_all(tests, arguments, request.jobs or processors(), ended)
+    def doing(text: str) -> None:
+        progress(f"{len(done)} of {len(tests)} tests; {text}", len(done) / len(tests))
+
+    if not tests:
+        return {}
+    if request.scheduler is not None and not request.scheduler.startswith("tls://"):
+        tell(f"warning: {request.scheduler}: whoever reaches it can run anything on its workers; expected tls://…")
+    doing("starting")
+    with Cluster(min(request.jobs or processors(), len(tests)), request.scheduler) as cluster:
+        return run_all(tests, Work(request.root, request.out, request.force), cluster, ended, doing)
 
 
 def _status(ended: Mapping[str, Ended]) -> int:

@@ -9,8 +9,8 @@ from contextlib import contextmanager
 
 import typer
 
-from hfanalysis.errors import AnalysisError, InputError
-from hfanalysis.products.disk import REFUSED
+from hfanalysis.errors import AnalysisError
+from hfanalysis.interface.ending import plainly
 
 LONGEST = 4000
 """Length of what is told in one line [characters]. Evidence: a screen holds as much."""
@@ -21,17 +21,12 @@ def plain_exit() -> Iterator[None]:
     """Turn an :class:`AnalysisError` into its message and exit status; everything else passes, as a defect of ours."""
     try:
         yield
-    except AnalysisError as error:
-        tell(str(error))
-        raise typer.Exit(error.exit_status) from None
-    except OSError as error:
-        if error.errno not in REFUSED:
+    except (AnalysisError, OSError, MemoryError) as error:
+        known = plainly(error)
+        if known is None:
             raise
-        tell(": ".join(filter(None, (str(error.filename or ""), str(error.strerror)))))
-        raise typer.Exit(InputError.exit_status) from None
-    except MemoryError:
-        tell("the memory is not enough for this log; close what else runs, or lower its rate")
-        raise typer.Exit(InputError.exit_status) from None
+        tell(known[1])
+        raise typer.Exit(known[0]) from None
     except KeyboardInterrupt:
         tell("interrupted; products are as they were before, or complete")
         raise typer.Exit(130) from None

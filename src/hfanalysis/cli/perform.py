@@ -18,9 +18,6 @@ from hfanalysis.stages.freshness import edited
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.units import near
 
-_SPINE = ("segment", "calibrate")
-"""The stages without which a run of all of them found nothing; what else is absent is warned of."""
-
 
 def bring(name: str, request: Request) -> Context:
     """Bring a stage (or, for "run", all of them) up to date, silently; returns its context."""
@@ -48,7 +45,7 @@ def stage(name: str, request: Request) -> Context:
         path = context.definition.path
         tell(f"warning: {path} was edited while this ran: these numbers are of the file as it was; run again")
     if name == "run":
-        _check_spine(context)
+        bringing.check_spine(context)
     return context
 
 
@@ -72,13 +69,6 @@ def _log_warnings(request: Request) -> list[str]:
         return [str(text) for text in json.loads(path.read_text(encoding="utf-8"))["warnings"]]
     except (OSError, ValueError, KeyError):
         return []
-
-
-def _check_spine(context: Context) -> None:
-    """A run of all stages did not get what it asked for if there is nothing to calibrate; its page is written still."""
-    missing = [stage for stage in _SPINE if stage in context.absent]
-    if missing:
-        raise AbsentError(context.absent[missing[0]])
 
 
 def _settings(texts: tuple[str, ...]) -> dict[str, Any]:
@@ -163,7 +153,7 @@ def _warnings(context: Context, name: str) -> list[str]:
         if stage in context.absent:
             if stage in ASIDE and name not in ("run", stage):
                 continue  # nobody asked for it; the page says how to
-            texts += [] if stage in _SPINE and name == "run" else [f"{stage}: {context.absent[stage]}"]
+            texts += [] if stage in bringing.SPINE and name == "run" else [f"{stage}: {context.absent[stage]}"]
             continue
         texts += _product_warnings(context, stage)
     return [_numbered(text, known) for known in [_reasons(context)] for text in dict.fromkeys(texts)]

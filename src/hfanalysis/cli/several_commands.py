@@ -63,13 +63,16 @@ def _campaign(
     force: Force = False,
     quiet: Quiet = False,
     trust_effects: Trust = False,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A dask scheduler whose workers run them: tls://HOST:PORT.")
+    ] = None,
 ) -> None:
     """Every stage of all tests, several at a time, and what those of one stand say together: campaign.html, .json."""
     with plain_exit():
         from hfanalysis.cli import campaign
 
         ask(root, trust_effects)
-        request = campaign.CampaignRequest(tuple(tests or ()), root, out, jobs, as_json, force, quiet, trust_effects)
+        request = campaign.CampaignRequest(tuple(tests or ()), root, out, jobs, as_json, force, quiet, scheduler)
         status = campaign.campaign(request)
         if status:
             raise typer.Exit(status)

@@ -33,10 +33,13 @@ def agreed(folder: Path) -> bool:
     return held in _agreed or noted.split() == [held[1]]
 
 
-def agree(folder: Path) -> None:
-    """Note that what is in the folder may be run; for this process alone where there is no place for a note."""
+def agree(folder: Path, note: bool = True) -> None:
+    """Note that what is in the folder may be run; for this process alone without a ``note``, or where there is no place
+    for one."""
     held = _held(folder)
     _agreed.add(held)
+    if not note:
+        return
     with suppress(OSError), atomic(_note(folder)) as scratch:
         scratch.write_text(f"{held[1]}\n", encoding="utf-8")
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from hfanalysis.errors import AbsentError
 from hfanalysis.progress import Progress, silent
 from hfanalysis.stages import ORDER, RUN
 from hfanalysis.stages.base import Context
@@ -14,6 +15,16 @@ from hfanalysis.stages.runner import run_to
 
 PAGES = ("report", RUN)
 """What has a page, of which the index tells."""
+
+SPINE = ("segment", "calibrate")
+"""The stages without which a run of all of them found nothing; what else is absent is told."""
+
+
+def check_spine(context: Context) -> None:
+    """Raises :class:`AbsentError` where a run of all stages found nothing to calibrate; its page is written still."""
+    missing = [stage for stage in SPINE if stage in context.absent]
+    if missing:
+        raise AbsentError(context.absent[missing[0]])
 
 
 def bring(
