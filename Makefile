@@ -20,7 +20,7 @@ include pipeline/dag.mk
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup $(STAGES) compare campaign all test test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
+.PHONY: help setup $(STAGES) compare campaign all test test-all lint format docs code-blocks pictures notebooks benchmark rocketpy real-logs health-rates phases-coverage recovery mutants constants-trial fuzz kills campaign-study last-digits replicas blind blind-none blind-ablations blind-other-table blind-smoke blind-calibrate blind-cases worlds-quick readme lock wheel wheels clean flown-thrust coverage narrow-port feed-laws reconstruction oscillations
 
 help: ## this list
 	@echo "usage: make TARGET [TEST=HF5] [FLAGS='--force'] [PYTHON=python3.12]"
@@ -158,6 +158,9 @@ constants-trial: $(STAMP) ## which constants without source or evidence change n
 
 feed-laws: $(STAMP) ## injectors that flash and choke, and the replicas, by the report's laws and by others: docs/feed-laws.md
 	$(BIN)/python -m benchmarks.feed_laws --write docs/feed-laws.md
+
+campaign-study: $(STAMP) ## 500 tests by a campaign beside two processes, and with workers killed; into docs/campaign.md
+	$(BIN)/python -m benchmarks.campaign --write docs/campaign.md $(FLAGS)
 
 last-digits: $(STAMP) ## how far numbers move by the last digits of logs, FLAGS='--cases FOLDER' with others too: docs/last-digits.md
 	$(BIN)/python -m benchmarks.last_digits --write docs/last-digits.md $(FLAGS)

@@ -10,7 +10,7 @@ from pathlib import Path
 from hfanalysis.campaign.cluster import Cluster, Telling
 from hfanalysis.interface.bringing import check_spine
 from hfanalysis.interface.ending import ABSENT, DEFECT, DONE, INPUT_AT_FAULT, plainly
-from hfanalysis.stages import ORDER
+from hfanalysis.stages import ORDER, RUN
 from hfanalysis.stages.open_test import open_test
 from hfanalysis.stages.runner import run_to
 
@@ -30,11 +30,13 @@ class Ended:
 
 @dataclass(frozen=True)
 class Work:
-    """What is done with every test: where it is, where its products go, whether all is redone."""
+    """What is done with every test: where it is, where its products go, whether all is redone, and up to which stage
+    (RUN: all of them, the diagnosis with them)."""
 
     root: Path
     out: Path | None = None
     force: bool = False
+    to: str = RUN
 
 
 def run_all(
@@ -57,10 +59,11 @@ def run_all(
 
 
 def run_one(test: str, work: Work) -> Ended:
-    """All stages of one test, in the process of a worker; it raises nothing."""
+    """The stages of one test, in the process of a worker; it raises nothing."""
     try:
         context = open_test(work.root, test, work.out, progress=Telling(test))
-        check_spine(run_to(ORDER[-1], context, force=work.force, whole=True))
+        last = ORDER[-1] if work.to == RUN else work.to
+        check_spine(run_to(last, context, force=work.force, whole=work.to == RUN))
     except Exception as error:
         known = plainly(error)
         return Ended(*known) if known else Ended(DEFECT, traceback.format_exc())
