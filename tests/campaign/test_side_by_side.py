@@ -49,6 +49,19 @@ def test_what_kills_its_process_is_named_and_the_others_are_there(workers: Clust
     assert (tmp_path / "once.died").read_text() == "x"
 
 
+def test_a_process_that_is_not_started_again_is_replaced(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """One that dies while it is being started is given up by the library."""
+    monkeypatch.setattr(place, "LOOKED_AFTER", 0.2)
+    with Cluster(1) as opened:
+        lent = opened._client.cluster
+        (nanny,) = lent.workers.values()
+        nanny.status = distributed.Status.failed
+        (process,) = (p for p in psutil.Process().children(recursive=True) if p.pid == nanny.pid)
+        process.kill()
+        assert dict(opened.each(killing, ["one"], Work(tmp_path))) == {"one": "one 1"}
+        assert len(lent.plan) == 2
+
+
 def test_nobody_else_reaches_the_processes(workers: Cluster) -> None:
     me = psutil.Process()
     listening = [

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import logging
 import tempfile
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
@@ -32,6 +33,10 @@ can be killed from outside; twice is no accident."""
 
 SECONDS = 20.0
 """Within which a scheduler has to answer [s]."""
+
+LOOKED_AFTER, MISSED = 2.0, 8
+"""Seconds between two looks at the processes of this machine, and looks at which one is missing before another is asked
+for: a busy machine takes some seconds to start one."""
 
 TOPIC = "hfanalysis"
 """Of what workers tell about what they are doing."""
@@ -140,6 +145,7 @@ class Cluster:
                     silence_logs=logging.CRITICAL,
                 )
             )  # fmt: skip
+            opened.enter_context(_kept_up(cluster, self._jobs))
             yield opened.enter_context(Client(cluster, set_as_default=False))
 
     def _check_versions(self) -> None:
@@ -162,6 +168,30 @@ class Cluster:
         agreed = trust.agreed(work.root / "effects") if (work.root / "effects").is_dir() else False
         whole = {name: content for part in SENT for name, content in contents(work.root / part, part).items()}
         return work, self._client.scatter((agreed, whole), broadcast=True)
+
+
+@contextmanager
+def _kept_up(cluster: Any, count: int) -> Iterator[None]:
+    """As long as it is open a local cluster gets a process more where one is missing for a while: a process that dies
+    while it is being started is not started again by the library."""
+    over = threading.Event()
+
+    def keep() -> None:
+        missed = 0
+        while not over.wait(LOOKED_AFTER):
+            missing = count - len(cluster.scheduler.workers)
+            missed = missed + 1 if missing > 0 else 0
+            if missed > MISSED:
+                cluster.scale(len(cluster.plan) + missing)
+                missed = 0
+
+    thread = threading.Thread(target=keep, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
 
 
 def version() -> str:
