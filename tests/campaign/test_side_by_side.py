@@ -180,3 +180,23 @@ def test_a_scheduler_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatc
     assert ended.status == 2
     assert "expected the address of a scheduler that runs" in ended.err
     assert "whoever reaches it can run anything on its workers" in ended.err
+
+
+@pytest.mark.parametrize("name", ["../x", "/tmp/x", "a/../../x"])
+def test_a_worker_puts_nothing_elsewhere(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError, match="expected a file below"):
+        place.put(tmp_path / "T1", {name: b""})
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_scheduler_without_workers_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(place, "SECONDS", 1.0)
+    with (
+        distributed.LocalCluster(
+            n_workers=0, host="127.0.0.1", dashboard_address=None, silence_logs=50,
+            scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
+        ) as lent,
+        Cluster(scheduler=lent.scheduler_address) as none,
+        pytest.raises(InputError, match="has no worker"),
+    ):  # fmt: skip
+        list(none.each(making, ["T1"], Work(tmp_path)))

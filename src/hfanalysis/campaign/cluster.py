@@ -20,7 +20,7 @@ from hfanalysis.effects import trust
 from hfanalysis.errors import InputError
 from hfanalysis.processors import processors
 from hfanalysis.products.disk import atomic
-from hfanalysis.sources import closure, digest
+from hfanalysis.sources import PACKAGE, digest
 from hfanalysis.stages.open_test import PROCESSED, RAW
 from hfanalysis.version import __version__
 
@@ -43,7 +43,7 @@ TOPIC = "hfanalysis"
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
-SENT = (RAW, "effects", "engines", "limits.toml", "adopted")
+SENT = (RAW, "effects", "engines", "limits.toml")
 """What workers are sent of a root that they do not see."""
 
 UNTOLD = (".lock",)
@@ -131,11 +131,12 @@ class Cluster:
         with dask.config.set(settings), ExitStack() as opened:
             if self._scheduler is not None:
                 try:
-                    yield opened.enter_context(Client(self._scheduler, timeout=SECONDS, set_as_default=False))
+                    client = opened.enter_context(Client(self._scheduler, timeout=SECONDS, set_as_default=False))
                 except OSError as error:
                     raise InputError(
                         f"--scheduler {self._scheduler}: {error}; expected the address of a scheduler that runs"
                     ) from None
+                yield client
                 return
             scratch = opened.enter_context(tempfile.TemporaryDirectory(prefix="hfanalysis-workers-"))
             cluster = opened.enter_context(
@@ -152,7 +153,10 @@ class Cluster:
         if self._scheduler is None:
             return
         own = version()
-        self._client.wait_for_workers(1, timeout=SECONDS)
+        try:
+            self._client.wait_for_workers(1, timeout=SECONDS)
+        except TimeoutError:
+            raise InputError(f"--scheduler {self._scheduler}: has no worker; expected one at least") from None
         for worker, theirs in self._client.run(version).items():
             if theirs != own:
                 raise InputError(f"worker {worker}: has hfanalysis {theirs}; expected the one here, {own}")
@@ -196,7 +200,7 @@ def _kept_up(cluster: Any, count: int) -> Iterator[None]:
 
 def version() -> str:
     """The package's version, and the digest of its sources."""
-    return f"{__version__} ({digest(closure(Path(__file__)))[:12]})"
+    return f"{__version__} ({digest(frozenset(PACKAGE.rglob('*.py')))[:12]})"
 
 
 def seen(root: Path) -> str | None:
@@ -214,7 +218,9 @@ def contents(place: Path, name: str = "") -> Content:
 
 
 def put(folder: Path, made: Content) -> None:
-    """Files into a folder, each whole or not at all."""
+    """Files into a folder, each whole or not at all; raises InputError where one would lie outside of it."""
+    if odd := [name for name in made if Path(name).is_absolute() or ".." in Path(name).parts]:
+        raise InputError(f"{odd[0]!r}: expected a file below {folder}")
     for name, content in made.items():
         with atomic(folder / name) as scratch:
             scratch.write_bytes(content)
