@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from benchmarks.last_digits import times
 from benchmarks.studies import one_thread
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -42,14 +43,7 @@ def generate(root: Path, name: str, seed: int) -> None:
         out.writerow(header)
         for row in rows[::EVERY]:
             off = 1.0 + NOISE * rng.standard_normal(len(row))
-            out.writerow([row[0], *(_times(c, by) for c, by in zip(row[1:], off[1:].tolist(), strict=True))])
-
-
-def _times(cell: str, by: float) -> str:
-    try:
-        return f"{float(cell) * by:.6g}"
-    except ValueError:
-        return cell
+            out.writerow([row[0], *(times(c, by) for c, by in zip(row[1:], off[1:].tolist(), strict=True))])
 
 
 class Counting(io.FileIO):

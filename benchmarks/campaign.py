@@ -13,7 +13,6 @@ import argparse
 import os
 import random
 import resource
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -28,7 +27,6 @@ from benchmarks.archive import generate
 from benchmarks.studies import one_thread, put
 
 WORKERS = 2
-ROOT = Path(__file__).resolve().parent.parent
 OF_THE_RUN = ("run.log", "hashes.json", ".lock")
 """Files of a test that tell of a run and not of the test: times, and what was hashed when."""
 
@@ -159,7 +157,6 @@ def main() -> int:
     print("\n".join(["", *lines]))
     if asked.write:
         put(asked.write, "campaign", lines)
-    shutil.rmtree(scratch, ignore_errors=True)
     return 0
 
 

@@ -60,11 +60,12 @@ def _rewrite(source: Path, target: Path, time: str, seed: Sequence[int]) -> None
         off = 1.0 + SIZE * rng.standard_normal((len(rows), len(header)))
         off[:, header.index(time)] = 1.0
         out.writerows(
-            [_times(cell, by) for cell, by in zip(*row, strict=True)] for row in zip(rows, off.tolist(), strict=True)
+            [times(cell, by) for cell, by in zip(*row, strict=True)] for row in zip(rows, off.tolist(), strict=True)
         )
 
 
-def _times(cell: str, by: float) -> str:
+def times(cell: str, by: float) -> str:
+    """A reading times a factor, with all its digits; what is no number stays."""
     try:
         return repr(float(cell) * by)
     except ValueError:

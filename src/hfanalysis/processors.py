@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Environment variables that say how many threads linear algebra takes."""
+
 
 def processors() -> int:
     """Processors that this process may use."""

@@ -182,7 +182,7 @@ def test_a_scheduler_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatc
     assert "whoever reaches it can run anything on its workers" in ended.err
 
 
-@pytest.mark.parametrize("name", ["../x", "/tmp/x", "a/../../x"])
+@pytest.mark.parametrize("name", ["../x", "/x", "a/../../x"])
 def test_a_worker_puts_nothing_elsewhere(tmp_path: Path, name: str) -> None:
     with pytest.raises(InputError, match="expected a file below"):
         place.put(tmp_path / "T1", {name: b""})

@@ -18,7 +18,7 @@ from typing import Any
 
 from hfanalysis.effects import trust
 from hfanalysis.errors import InputError
-from hfanalysis.processors import processors
+from hfanalysis.processors import THREADS, processors
 from hfanalysis.products.disk import atomic
 from hfanalysis.sources import PACKAGE, digest
 from hfanalysis.stages.open_test import PROCESSED, RAW
@@ -41,12 +41,11 @@ for: a busy machine takes some seconds to start one."""
 TOPIC = "hfanalysis"
 """Of what workers tell about what they are doing."""
 
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-
 SENT = (RAW, "effects", "engines", "limits.toml")
 """What workers are sent of a root that they do not see."""
 
-UNTOLD = (".lock",)
+UNSENT = (".lock",)
+"""Files that are of the folder they lie in, and of no other."""
 
 Content = dict[str, bytes]
 
@@ -213,7 +212,7 @@ def contents(place: Path, name: str = "") -> Content:
     """The files below a folder, or the file, by their paths from there, with ``name`` before them."""
     if place.is_file():
         return {name: place.read_bytes()}
-    files = (path for path in sorted(place.rglob("*")) if path.is_file() and path.name not in UNTOLD)
+    files = (path for path in sorted(place.rglob("*")) if path.is_file() and path.name not in UNSENT)
     return {(Path(name) / path.relative_to(place)).as_posix(): path.read_bytes() for path in files}
 
 

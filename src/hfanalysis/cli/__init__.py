@@ -9,6 +9,7 @@ import os
 import sys
 
 from hfanalysis.errors import InputError
+from hfanalysis.processors import THREADS
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C. Source: shells' convention, 128 plus the number of the signal (2)."""
@@ -24,7 +25,7 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal that lacks a sign must not stop an analysis
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    for name in THREADS:
         os.environ.setdefault(name, "1")  # matrices are small here; it is fits that run side by side
     os.environ.pop("MPLBACKEND", None)  # of a notebook, whose packages need not be here; charts are drawn into files
     try:

@@ -10,8 +10,8 @@ from hfanalysis.archive.reading import Archive
 from hfanalysis.archive.writing import Kept, write
 from hfanalysis.cli.exit_status import put, tell
 from hfanalysis.cli.paper import new_table, paper
-from hfanalysis.cli.progress import PATIENCE, spinner
 from hfanalysis.cli.query import facts_of
+from hfanalysis.cli.watch import watch
 from hfanalysis.errors import AbsentError, InputError
 from hfanalysis.products.disk import to_json
 from hfanalysis.record.definition import find_definition
@@ -26,7 +26,7 @@ def archive(tests: Sequence[str], root: Path, out: Path | None, target: Path, le
     if not named:
         raise AbsentError(f"{folder}: no products of any test; hfa run TEST makes them")
     kept = [Kept(name, find_definition(root, name).parent, folder / name, facts_of(root, name)) for name in named]
-    with spinner("archive", patience=float("inf") if quiet else PATIENCE) as progress:
+    with watch("archive", quiet) as progress:
         write(target, kept, lean, progress)
     if not quiet:
         size = target.stat().st_size / 1e6
