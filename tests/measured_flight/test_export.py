@@ -11,7 +11,8 @@ from simulated.purged import ROCKET, Truth, fired
 from tests.flight import loaders
 
 from hfanalysis.flight import rasp, rocksim
-from hfanalysis.measured_flight.engine_files import Export, export
+from hfanalysis.flight.engine_files import Export
+from hfanalysis.measured_flight.motor import export
 from hfanalysis.measured_flight.product import MeasuredFlight, fly_measured
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.rocket import Geometry

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 
 from hfanalysis.record.rocket import Geometry, Rocket
 from hfanalysis.record.sections import Chamber, GrainSection, Tank
 from hfanalysis.rocket.aerodynamics import REGULAR_PAINT, Fins, Nose, Shape, Tail
-from hfanalysis.rocket.balance import MassPart, TankPlace
+from hfanalysis.rocket.balance import Masses, MassPart, Places, TankPlace
 
 AGREE = 0.02
 """Relative difference [-] within which the dry mass and the sum of structure and engine are the same rocket."""
@@ -49,41 +48,16 @@ def _tail(geometry: Geometry, aft: float) -> Tail | None:
     return Tail(tail.length.value, tail.diameter.value, tail.position.value if tail.position is not None else aft)
 
 
-@dataclass(frozen=True)
-class Places:
-    """Where the tank is, and the middles of grain and chamber [m from the nose tip].
-
-    ``front``: the engine's front, from which engine files count; ``length``: of the engine [m].
-    """
-
-    tank: TankPlace
-    grain_center: float
-    grain_length: float
-    gas_center: float
-    front: float
-    length: float
-
-
-@dataclass(frozen=True)
-class Masses:
-    """Parts that stay as they are, and where the propellant is.
-
-    ``dry``: mass [kg] and center of gravity of the empty engine, None where the structure holds it.
-    """
-
-    fixed: tuple[MassPart, ...]
-    where: Places
-    dry: MassPart | None
-    remark: str
-
-
-def masses(
-    rocket: Rocket, outside: Shape, tank: Tank | None, grain: GrainSection | None, chamber: Chamber | None
-) -> Masses | str:
-    """Where the masses [kg] are [m from the nose tip], or what is not given of it."""
-    geometry = rocket.geometry
-    if geometry is None:
-        return "no [rocket.geometry] is given"
+def built(
+    rocket: Rocket | None, tank: Tank | None, grain: GrainSection | None, chamber: Chamber | None
+) -> tuple[Shape, Masses] | str:
+    """The rocket's outside, and where its masses [kg] are [m from the nose tip]; or what is not given of them."""
+    outside = shape(rocket)
+    geometry = rocket.geometry if rocket is not None else None
+    if isinstance(outside, str):
+        return outside
+    assert rocket is not None
+    assert geometry is not None
     if geometry.structure is None:
         return "rocket.geometry.structure is not given"
     where = places(rocket, tank, grain, chamber)
@@ -91,7 +65,8 @@ def masses(
         return where
     engine = _engine(geometry, outside)
     parts = (MassPart(geometry.structure.mass.value, geometry.structure.center_of_gravity.value, outside.length),)
-    return Masses((*parts, *((engine,) if engine else ())), where, engine, _remark(rocket, geometry, engine))
+    dry = (*parts, *((engine,) if engine else ()))
+    return outside, Masses(dry, where, engine, _remark(rocket, geometry, engine))
 
 
 def places(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hfanalysis.arrays import Array
+from hfanalysis.sentences import rounded
 
 RAMP = 1e-3
 """Time [s] in which a thrust that is there from the start rises, and one that is there to the end falls."""
@@ -27,6 +28,14 @@ MOST_POINTS = 200
 IMPULSE_TOLERANCE = 5e-4
 """Relative impulse that thinning may lose before it is put back [-]. Evidence: a tenth of it takes more points and
 changes nothing else."""
+
+
+OUT = 0.05
+"""Part of the largest thrust below which a motor is burnt out. Source: NFPA 1125, burn time of its thrust curve."""
+
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+LEAST_OF_B = 2.5
+"""Largest total impulse of class A [N s]; each class has twice that of the one before. Source: NFPA 1125."""
 
 
 @dataclass(frozen=True)
@@ -196,3 +205,18 @@ def _apart(t: Array) -> list[int]:
         if min(t[i] - t[kept[-1]], t[-1] - t[i]) >= RESOLUTION:
             kept.append(i)
     return [*kept, t.size - 1]
+
+
+def motor_class(impulse: float) -> str:
+    """Letter of a total impulse [N s], with its upper limit.
+
+    >>> motor_class(979.0)
+    'J (640 to 1280 N s)'
+    >>> motor_class(16135.0)
+    'N (10240 to 20480 N s)'
+    """
+    number = max(int(np.ceil(np.log2(max(impulse, 1e-9) / LEAST_OF_B))), 0)
+    if number >= len(LETTERS):
+        return f"beyond Z ({LEAST_OF_B * 2.0 ** (len(LETTERS) - 1):.3g} N s)"
+    high = LEAST_OF_B * 2.0**number
+    return f"{LETTERS[number]} ({rounded(0.5 * high if number else 0.0, '.4g')} to {rounded(high, '.4g')} N s)"

@@ -13,11 +13,11 @@ from hfanalysis.arrays import Array
 from hfanalysis.assembly.rocket import drag_from
 from hfanalysis.engine.cautions import LEAST_RAIL_SPEED
 from hfanalysis.errors import AbsentError
-from hfanalysis.flight import summary
-from hfanalysis.flight.ascent import LIFT_OFF, THRUST_BIAS, THRUST_DRIFT, THRUST_SCALE, TRACE, Ascent, ascend
+from hfanalysis.flight import histories, stability, summary
+from hfanalysis.flight.ascent import LIFT_OFF, THRUST_BIAS, THRUST_DRIFT, THRUST_SCALE, Ascent, ascend
 from hfanalysis.flight.curve import Curve
-from hfanalysis.flight.descent import Leg, descend, fall
-from hfanalysis.measured_flight import stability
+from hfanalysis.flight.histories import BAND, Flown
+from hfanalysis.flight.stability import Launch
 from hfanalysis.measured_flight.budget import apogee_budget
 from hfanalysis.measured_flight.firing import Firing
 from hfanalysis.measured_flight.uncertainty import (
@@ -31,35 +31,12 @@ from hfanalysis.measured_flight.uncertainty import (
     spread_of,
 )
 from hfanalysis.products import flight as products
-from hfanalysis.products import netcdf
 from hfanalysis.products.budget import Budget
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.rocket import Rocket
 from hfanalysis.rocket.vehicle import gravity
 
 Progress = Callable[[str, float | None], None]
-
-ABOUT: dict[str, netcdf.About] = {
-    "time": ("s", "time after ignition"),
-    "altitude": ("m", "altitude above sea level"),
-    "height": ("m", "height above the launch site"),
-    "speed": ("m/s", "speed along the path; falling, downwards is negative"),
-    "acceleration": ("m/s^2", "acceleration along the path"),
-    "thrust": ("N", "thrust"),
-    "drag": ("N", "drag"),
-    "mass": ("kg", "mass of the rocket"),
-    "mach": ("1", "Mach number"),
-    "oxidizer_mass": ("kg", "oxidizer left"),
-    "fuel_mass": ("kg", "fuel left"),
-    "center_of_gravity": ("m", "center of gravity from the nose's tip"),
-    "pitch_inertia": ("kg m^2", "moment of inertia in pitch, about the center of gravity"),
-    "margin_mean": ("1", "static margin in calibers: mean over the gusts"),
-    "margin_std": ("1", "static margin in calibers: standard deviation over the gusts"),
-    "angle_of_attack": ("rad", "angle of attack"),
-}
-"""Unit and name in words of each variable of flight.h5."""
-
-BAND = {"low": "lower end of its band", "median": "median", "high": "upper end of its band"}
 
 
 @dataclass(frozen=True)
@@ -223,58 +200,12 @@ def write_histories(
     path: Path, launched: MeasuredFlight, stable: stability.StabilityRuns | str, provenance: Mapping[str, Any]
 ) -> None:
     """flight.h5: groups ``ascent``, ``bands``, the ways down, ``balance`` and ``stability``, in SI."""
-    level = launched.firing.vehicle.launch_altitude
-    about = {"launch_altitude": level, "launch_altitude_units": "m"}
-    with netcdf.product(path, "flight on the measured thrust", provenance, **about) as file:
-        ascent = {name: launched.ascent.column(name) for name in TRACE}
-        _write(file, "ascent", ascent | _drawn_on(launched, ascent["time"]))
-        bands = {
-            f"{name}_{side}": band[i] for name, band in launched.dispersion.bands.items() for i, side in enumerate(BAND)
-        }
-        _write(file, "bands", {"time": launched.dispersion.time} | bands)
-        for name, leg in _legs(launched).items():
-            _write(file, name, {"time": leg.time, "height": leg.altitude - level, "speed": leg.speed})
-        if not isinstance(stable, str):
-            _write_stability(file, launched, stable)
-
-
-def _write_stability(file: Any, launched: MeasuredFlight, stable: stability.StabilityRuns) -> None:
-    """Group ``balance`` over the burn, and ``stability/N`` for every wind."""
-    weighed = stable.balance
-    columns = {"mass": weighed.mass, "center_of_gravity": weighed.center, "pitch_inertia": weighed.inertia}
-    _write(file, "balance", {"time": launched.firing.curve.time, **columns})
-    for i, margin in enumerate(stable.margins):
-        series = {"time": margin.time, "margin_mean": margin.mean, "margin_std": margin.std}
-        _write(file, f"stability/{i}", {**series, "angle_of_attack": margin.attack})
-        file[f"stability/{i}"].attrs.update(wind=margin.wind, wind_units="m/s")
-
-
-def _drawn_on(launched: MeasuredFlight, time: Array) -> dict[str, Array]:
-    """Height above the pad and the propellant's masses at the flight's times."""
-    load = launched.firing.propellant
-    height = launched.ascent.column("altitude") - launched.firing.vehicle.launch_altitude
-    return {
-        "height": height,
-        "oxidizer_mass": np.interp(time, load.time, load.oxidizer),
-        "fuel_mass": np.interp(time, load.time, load.fuel),
-    }
-
-
-def _legs(launched: MeasuredFlight) -> dict[str, Leg]:
-    """The ways down; each downwards negative in speed."""
-    firing, top = launched.firing, launched.ascent.end
-    legs = {"ballistic": fall(firing.vehicle, 0.0, (top[0], top[1], 0.0), firing.vehicle.launch_altitude)}
-    if isinstance(firing.canopies, str):
-        return legs
-    down = descend(firing.vehicle, top, *firing.canopies)
-    return {"drogue": down.legs[0], "main": down.legs[1], **legs}
-
-
-def _write(file: Any, name: str, columns: Mapping[str, Array]) -> None:
-    netcdf.table(file.create_group(name), columns, ABOUT | _banded(columns))
-
-
-def _banded(columns: Mapping[str, Array]) -> dict[str, netcdf.About]:
-    """What the three parts of a band are."""
-    parts = {key: key.rpartition("_") for key in columns if key.rpartition("_")[2] in BAND}
-    return {key: (ABOUT[name][0], f"{ABOUT[name][1]}: {BAND[part]}") for key, (name, _, part) in parts.items()}
+    firing, load, dispersion = launched.firing, launched.firing.propellant, launched.dispersion
+    time = launched.ascent.column("time")
+    masses = {name: np.interp(time, load.time, of) for name, of in (("oxidizer", load.oxidizer), ("fuel", load.fuel))}
+    bands = {f"{name}_{side}": band[i] for name, band in dispersion.bands.items() for i, side in enumerate(BAND)}
+    launch = Launch(firing.curve, firing.vehicle, firing.rail_length)
+    flown = Flown(launch, launched.ascent, firing.canopies, stable)
+    beside = {f"{name}_mass": of for name, of in masses.items()}
+    title = "flight on the measured thrust"
+    histories.write(path, title, provenance, flown, beside, {"time": dispersion.time} | bands)

@@ -10,10 +10,11 @@ import numpy as np
 from hfanalysis.arrays import Array
 from hfanalysis.calibrate.loaded_mass import UNSTATED, load_cell_mass
 from hfanalysis.flight.constant_thrust import STANDARD_GRAVITY
+from hfanalysis.flight.motor import OUT
 from hfanalysis.inference.budget import Input, total
 from hfanalysis.performance.load_cell import UNSEEN_DRIFT, CellError, cell_error, drift_unseen
 from hfanalysis.performance.stand import unknown_weight
-from hfanalysis.performance.thrust import AT_AMBIENT, OUT, Thrust, burnt_out, thrust_of
+from hfanalysis.performance.thrust import AT_AMBIENT, Thrust, burnt_out, thrust_of
 from hfanalysis.products.calibration import Calibration
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import UNPHYSICAL, Quantity

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hfanalysis.arrays import Array
+from hfanalysis.flight.motor import OUT
 from hfanalysis.performance.stand import without_stand
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import TestDefinition
 from hfanalysis.record.log import TestLog
 from hfanalysis.record.signals import Signal
-from hfanalysis.sentences import rounded
 
 AT_AMBIENT = 0.04
 """Chamber pressure above ambient, relative, below which the thrust is nothing. Source: a nozzle that is not choked
@@ -37,15 +37,8 @@ NOTICEABLE = 0.02
 test_thrust.py: a cell that reads next to nothing is left alone."""
 
 
-OUT = 0.05
-"""Part of the largest thrust below which a motor is burnt out. Source: NFPA 1125, burn time of its thrust curve."""
-
 FADED = (0.1, 0.025)
 """Parts of it [-] between which it passes OUT: how well that instant is told."""
-
-LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-LEAST_OF_B = 2.5
-"""Largest total impulse of class A [N s]; each class has twice that of the one before. Source: NFPA 1125."""
 
 
 @dataclass(frozen=True)
@@ -128,18 +121,3 @@ def burnt_out(signal: Signal) -> tuple[float, float] | None:
         return None
     told = after.time[min(late + 1, smooth.size - 1)] - after.time[first]
     return float(after.time[last + 1]), float(np.hypot(width, 0.5 * told) / np.sqrt(12.0))
-
-
-def motor_class(impulse: float) -> str:
-    """Letter of a total impulse [N s], with its upper limit.
-
-    >>> motor_class(979.0)
-    'J (640 to 1280 N s)'
-    >>> motor_class(16135.0)
-    'N (10240 to 20480 N s)'
-    """
-    number = max(int(np.ceil(np.log2(max(impulse, 1e-9) / LEAST_OF_B))), 0)
-    if number >= len(LETTERS):
-        return f"beyond Z ({LEAST_OF_B * 2.0 ** (len(LETTERS) - 1):.3g} N s)"
-    high = LEAST_OF_B * 2.0**number
-    return f"{LETTERS[number]} ({rounded(0.5 * high if number else 0.0, '.4g')} to {rounded(high, '.4g')} N s)"

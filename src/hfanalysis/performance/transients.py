@@ -11,9 +11,10 @@ import numpy as np
 from scipy.signal import medfilt
 
 from hfanalysis.arrays import Array
+from hfanalysis.flight.motor import OUT
 from hfanalysis.performance.lag import pressure_lag
 from hfanalysis.performance.measured import EARLY, Fire, bias
-from hfanalysis.performance.thrust import OUT, Thrust, thrust_of
+from hfanalysis.performance.thrust import Thrust, thrust_of
 from hfanalysis.products.segments import Segments
 from hfanalysis.quantity import NORMAL_95, Quantity
 from hfanalysis.record.definition import TestDefinition

@@ -63,3 +63,66 @@ def oxidizer(place: TankPlace, liquid: Array, vapor: Array, liquid_volume: Array
         MassPart(liquid, bottom - 0.5 * height, height),
         MassPart(vapor, place.top + 0.5 * (place.length - height), place.length - height),
     ]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where the tank is, and the middles of grain and chamber [m from the nose tip].
+
+    ``front``: the engine's front, from which engine files count; ``length``: of the engine [m].
+    """
+
+    tank: TankPlace
+    grain_center: float
+    grain_length: float
+    gas_center: float
+    front: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Masses:
+    """Parts that stay as they are, and where the propellant is.
+
+    ``dry``: mass [kg] and center of gravity of the empty engine, None where the structure holds it.
+    """
+
+    fixed: tuple[MassPart, ...]
+    where: Places
+    dry: MassPart | None
+    remark: str
+
+
+@dataclass(frozen=True)
+class Held:
+    """What tank, grain and chamber hold on one clock [kg], (n,) each, and the liquid's specific volume [m^3/kg].
+
+    ``oxidizer``: in the tank, of which ``liquid``; ``gas``: in the chamber, None where it is not known. ``remark``:
+    what is not known of it.
+    """
+
+    oxidizer: Array
+    liquid: Array
+    liquid_volume: Array
+    fuel: Array
+    gas: Array | None
+    remark: str = ""
+
+    def parts(self, place: Places) -> list[MassPart]:
+        """Where it is."""
+        tank = oxidizer(place.tank, self.liquid, self.oxidizer - self.liquid, self.liquid_volume)
+        gas = [] if self.gas is None else [MassPart(self.gas, place.gas_center)]
+        return [*tank, MassPart(self.fuel, place.grain_center, place.grain_length), *gas]
+
+
+def engine_center(held: Held, place: Places, empty: MassPart | None) -> Array:
+    """Of an engine with what it holds [m from its front], (n,); once nothing is left, the last that it had.
+
+    ``empty``: the engine by itself, None where it is not weighed apart.
+    """
+    parts = [*([] if empty is None else [empty]), *held.parts(place)]
+    weight = np.asarray(sum((np.asarray(part.mass) for part in parts), np.zeros(1)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        center = np.asarray(balance(parts).center - place.front)
+    there = weight > 0.0
+    return center if there.all() else np.interp(np.arange(weight.size), np.flatnonzero(there), center[there])

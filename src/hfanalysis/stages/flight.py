@@ -7,6 +7,7 @@ Reads ``ingest.h5``, ``health.json`` and, where they are there, ``segments.json`
 from __future__ import annotations
 
 from hfanalysis.errors import AbsentError
+from hfanalysis.flight.winds import GUST_SEEDS, WINDS
 from hfanalysis.stages.base import Context, Stage
 
 
@@ -14,10 +15,10 @@ def run(context: Context) -> None:
     """Fly the test's rocket."""
     from hfanalysis.inference.adopted.corrected_log import corrected
     from hfanalysis.inference.adopted.effects import read_adopted
-    from hfanalysis.measured_flight.engine_files import export, rocketpy
     from hfanalysis.measured_flight.firing import firing
+    from hfanalysis.measured_flight.held import in_winds
+    from hfanalysis.measured_flight.motor import export, rocketpy
     from hfanalysis.measured_flight.product import fly_measured, product, write_histories
-    from hfanalysis.measured_flight.stability import stability
     from hfanalysis.products.calibration import Calibration
     from hfanalysis.products.segments import Segments
 
@@ -33,7 +34,7 @@ def run(context: Context) -> None:
     flights = int(context.parameter("flights"))
     found = fly_measured(flown, definition.rocket, flights, seed, context.progress, shots)
     winds, seeds = context.parameter("winds"), int(context.parameter("gust_seeds"))
-    stable = stability(flown, definition, winds, seeds, found.ascent.end[0] + 5.0, context.progress)
+    stable = in_winds(flown, definition, winds, seeds, found.ascent.end[0] + 5.0, context.progress)
     files = export(found, definition, stable)
     context.scratch("{test}.eng").write_text(files.eng, encoding="utf-8")
     context.scratch("{test}_static.eng").write_text(files.static_eng, encoding="utf-8")
@@ -53,8 +54,8 @@ STAGE = Stage(
         "flights": 4000,
         "seed": 1,
         "raw_thrust": False,
-        "winds": [2.235, 4.47, 6.706],
-        "gust_seeds": 20,
+        "winds": list(WINDS),
+        "gust_seeds": GUST_SEEDS,
         "shot_to_shot": False,
     },
     least={"flights": 10, "seed": 0, "winds": 0.0, "gust_seeds": 1},

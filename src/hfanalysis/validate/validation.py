@@ -15,6 +15,7 @@ from hfanalysis.calibrate.narrow_port import with_stated_tap
 from hfanalysis.calibrate.water_flow import is_water
 from hfanalysis.engine.effect import Active
 from hfanalysis.errors import AbsentError
+from hfanalysis.flight.motor import motor_class
 from hfanalysis.inference.adopted.corrected_log import corrected
 from hfanalysis.inference.full_run import FullRun, run_full
 from hfanalysis.performance import histories as histories_of
@@ -30,7 +31,7 @@ from hfanalysis.performance.reduction import Reduced, Test, reduced
 from hfanalysis.performance.stability.modes import Mode, chamber_between
 from hfanalysis.performance.stability.stability import stability
 from hfanalysis.performance.tank_alone import run_tank_alone
-from hfanalysis.performance.thrust import motor_class, thrust_of
+from hfanalysis.performance.thrust import thrust_of
 from hfanalysis.performance.transients import transients
 from hfanalysis.products.budget import Budget
 from hfanalysis.products.calibration import Calibration

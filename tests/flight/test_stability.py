@@ -10,7 +10,7 @@ import pytest
 
 from hfanalysis.flight.margin import margin
 from hfanalysis.flight.pitch import COLUMNS, HEIGHT, MARGIN, SPEED, Flights
-from hfanalysis.measured_flight.stability import StabilityRuns, checks, product
+from hfanalysis.flight.stability import StabilityRuns, checks, product
 from hfanalysis.rocket.aerodynamics import Fins, Nose, Shape
 
 SHAPE = Shape(0.16, Nose("von_karman", 0.5), 2.5, Fins(4, 0.25, 0.05, 0.12, 0.2, 2.7))
