@@ -11,6 +11,7 @@ from typing import Any, get_args, get_type_hints
 
 import pytest
 
+from hfanalysis.cli.engine_page import write_page
 from hfanalysis.inference.subject import Subject
 from hfanalysis.products.segments import Segments
 from hfanalysis.record.definition import Statements
@@ -18,6 +19,7 @@ from hfanalysis.record.engine_file import EngineStatements, load_engine
 from hfanalysis.record.log import read_log
 from hfanalysis.record.schema import DERIVED, Section
 from hfanalysis.record.unused import OF_ENGINES, OF_TESTS, SPREADS_OF_TESTS
+from hfanalysis.simulation import write
 from hfanalysis.simulation.steady_run import design
 from hfanalysis.simulation.unsteady_run import simulate
 from hfanalysis.stages.open_test import open_test
@@ -91,14 +93,17 @@ def patch() -> Iterator[pytest.MonkeyPatch]:
 
 @pytest.fixture(scope="module")
 def by_engines(patch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> set[tuple[str, str]]:
-    """What ``hfa simulate`` and ``hfa design`` read of an engine file with a rocket that has a shape."""
+    """What ``hfa simulate`` and ``hfa design`` read of an engine file with a rocket that has a shape, and write."""
     folder = tmp_path_factory.mktemp("engines")
     text = (ROOT / "engines" / "maelstrom.toml").read_text().replace("drag_coefficient = 0.529\nfrontal", "frontal")
-    (folder / "e.toml").write_text(text.replace('frontal_area = "19478 mm^2"', 'diameter = "157 mm"') + GEOMETRY)
+    text = text.replace('frontal_area = "19478 mm^2"', 'diameter = "157 mm"') + GEOMETRY
+    (folder / "e.toml").write_text(f'{text}engine_mass = "9 kg"\nengine_center_of_gravity = "2.5 m"\n')
     files = [load_engine(path) for path in (folder / "e.toml", ROOT / "engines" / "maelstrom.toml")]
     with watched(patch) as (read, _):
         for file in files:
-            simulate(file)
+            found = simulate(file)
+            write.simulation(folder / "out", found)
+            write_page(folder / "out", file, found)
             design(file)
     return read
 

@@ -39,6 +39,8 @@ class Course:
         if history is None or len(history.time) < LEAST_VALUES:
             return None
         time, value, std = (np.array(x) for x in (history.time, history.value, history.std))
+        if not (std > 0.0).all():  # rounded to nothing: a C_i of a hole as large as the tank
+            return None
         weight = 1.0 / std**2
         middle = float(weight @ time / weight.sum())
         x, level = time - middle, float(weight @ value / weight.sum())

@@ -42,7 +42,7 @@ def _by_loss(log: TestLog, segments: Segments, definition: TestDefinition, satur
     pressure = Signal.of(log["p_tank"]).shifted(origin)
     chamber = Signal.of(log["p_chamber"]).shifted(origin).mean(0.0, t_v) if "p_chamber" in log else 1e5
     middle = pressure.mean(0.0, t_v)
-    warm, dry = (float(saturation.temperature(p)) for p in (middle, pressure.mean(t_v - 0.1, t_v + 0.1)))
+    warm, dry = (float(saturation.temperature(p)) for p in (middle, pressure.around(t_v, 0.1)))
     if mass is None or not np.isfinite([warm, dry, chamber]).all():
         return None
     flow = (mass - tank.volume.value * float(saturation.vapor_density(dry))) / t_v

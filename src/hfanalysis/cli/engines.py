@@ -27,12 +27,14 @@ def simulate(path: Path, out: Path | None, as_json: bool, quiet: bool, until: fl
     """
     file = load_engine(path)
     with watch(file.engine.id, quiet):
+        from hfanalysis.cli import engine_page
         from hfanalysis.simulation import unsteady_run, write
 
         found = unsteady_run.simulate(file, until)
         if out is not None:
             with _writing(out):
                 write.simulation(out, found)
+                engine_page.write_page(out, file, found)
     _show(found.product, as_json, quiet)
 
 

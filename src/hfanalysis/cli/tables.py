@@ -322,8 +322,11 @@ def show_engine(product: Simulated | Designed) -> None:
     console.print(Text(f"oxidizer enthalpy: {product.oxidizer_enthalpy.of}"))
     print_values(console, ordered(product.quantities), "engine")
     for name, part in product.content.items():
-        if isinstance(part, Part) and part.quantities:
-            print_values(console, ordered(part.quantities), in_words(name))
+        if isinstance(part, Part) and part.shown:
+            print_values(console, ordered(part.shown), in_words(name))
+            for inner, of in part.content.items():
+                if isinstance(of, Part) and of.shown:
+                    print_values(console, ordered(of.shown), in_words(inner))
 
 
 def show_effects(product: EffectLibrary) -> None:

@@ -103,6 +103,27 @@ def separation(chamber: float, ambient: float, gamma: float, expansion: float) -
     return (_caution("nozzle_separation", ratio, limit, "", source, words),)
 
 
+def static_margin(least: float, largest: float, limits: tuple[float, float], wind: float) -> Cautions:
+    """``least`` and ``largest`` margin [calibers] in a ``wind`` [m/s], two deviations over gusts included."""
+    low, high = limits
+    here = said(wind, "m/s", ".1f")
+    if least < low:
+        words = text(
+            "in a wind of {wind} the static margin comes down to {least:.1f} calibers, below {low:g} ({source}): a "
+            "gust may turn the rocket over",
+            wind=here, least=least, low=low, source=_GUIDE,
+        )  # fmt: skip
+        return (_caution("static_margin", least, low, "", _GUIDE, words),)
+    if largest > high:
+        words = text(
+            "in a wind of {wind} the static margin comes up to {largest:.1f} calibers, above {high:g} ({source}): the "
+            "rocket turns far into the wind",
+            wind=here, largest=largest, high=high, source=_GUIDE,
+        )  # fmt: skip
+        return (_caution("static_margin", largest, high, "", _GUIDE, words),)
+    return ()
+
+
 def frozen_tank(temperature: float) -> Cautions:
     """Lowest ``temperature`` [K] in the tank."""
     if not temperature < TRIPLE_POINT:

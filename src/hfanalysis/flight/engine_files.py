@@ -98,6 +98,12 @@ def export(name: str, course: Course, stated: Stated, vehicle: Vehicle, stable: 
     return Export(motor, points, said, _radii(stated.nozzle), (static, (*about, designation(static))))
 
 
+def standing(name: str, stated: Stated, points: Points, about: tuple[str, ...], loaded: float) -> str:
+    """A motor without a rocket as a RASP file, as large as tank and grain; ``loaded`` [kg] of propellant."""
+    motor = Motor(name, *_size(stated, None), loaded, loaded)
+    return rasp.of_points(motor, points, (*about, *_of_size(stated), designation(points)))
+
+
 def rocketpy(
     launch: Launch,
     outside: Shape | str,
@@ -145,7 +151,7 @@ def _casing(rocket: Rocket | None) -> tuple[float, float]:
     return stated[0].value if stated[0] else 0.0, stated[1].value if stated[1] else 0.0
 
 
-def _size(stated: Stated, vehicle: Vehicle) -> tuple[float, float]:
+def _size(stated: Stated, vehicle: Vehicle | None) -> tuple[float, float]:
     """Diameter and length [m] of the motor: the casing's as stated, else of tank and grain; else as wide as the rocket.
 
     A length that is not known is the diameter's, since no file can do without one.
@@ -153,7 +159,7 @@ def _size(stated: Stated, vehicle: Vehicle) -> tuple[float, float]:
     grain, tank = stated.grain, stated.tank
     widths = [2.0 * grain.outer_radius.value] if grain is not None and grain.outer_radius is not None else []
     widths += [tank.inner_diameter.value] if tank is not None and tank.inner_diameter is not None else []
-    width = max(widths, default=2.0 * float(np.sqrt(vehicle.frontal_area / np.pi)))
+    width = max(widths, default=0.0 if vehicle is None else 2.0 * float(np.sqrt(vehicle.frontal_area / np.pi)))
     length = grain.length.value if grain is not None and grain.length is not None else width
     casing = _casing(stated.rocket)
     return casing[0] or width, casing[1] or length

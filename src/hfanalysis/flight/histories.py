@@ -61,6 +61,30 @@ class Flown:
         return {"drogue": down.legs[0], "main": down.legs[1], **legs}
 
 
+def groups(
+    flown: Flown, beside: Mapping[str, Array], bands: Mapping[str, Array] | None = None
+) -> dict[str, dict[str, Array]]:
+    """``ascent``, ``bands``, the ways down, ``balance`` and ``stability/N`` for every wind: columns (n,) in SI.
+
+    ``beside``: more columns (n,) on the times of the ascent; ``bands``: of flights that differ in what is uncertain.
+    """
+    level = flown.launch.vehicle.launch_altitude
+    found = {"ascent": {name: flown.ascent.column(name) for name in TRACE} | {"height": flown.height} | dict(beside)}
+    if bands is not None:
+        found["bands"] = dict(bands)
+    for name, leg in flown.legs().items():
+        found[name] = {"time": leg.time, "height": leg.altitude - level, "speed": leg.speed}
+    if isinstance(flown.stable, str):
+        return found
+    weighed = flown.stable.balance
+    columns = {"mass": weighed.mass, "center_of_gravity": weighed.center, "pitch_inertia": weighed.inertia}
+    found["balance"] = {"time": flown.launch.curve.time, **columns}
+    for i, margin in enumerate(flown.stable.margins):
+        series = {"time": margin.time, "margin_mean": margin.mean, "margin_std": margin.std}
+        found[f"stability/{i}"] = {**series, "angle_of_attack": margin.attack}
+    return found
+
+
 def write(
     path: Path,
     title: str,
@@ -69,32 +93,13 @@ def write(
     beside: Mapping[str, Array],
     bands: Mapping[str, Array] | None = None,
 ) -> None:
-    """flight.h5: groups ``ascent``, ``bands``, the ways down, ``balance`` and ``stability``, in SI.
-
-    ``beside``: more columns (n,) on the times of the ascent; ``bands``: of flights that differ in what is uncertain.
-    """
-    level = flown.launch.vehicle.launch_altitude
-    about = {"launch_altitude": level, "launch_altitude_units": "m"}
+    """flight.h5: the groups of :func:`groups`, whose arguments the last three are."""
+    about = {"launch_altitude": flown.launch.vehicle.launch_altitude, "launch_altitude_units": "m"}
     with netcdf.product(path, title, provenance, **about) as file:
-        ascent = {name: flown.ascent.column(name) for name in TRACE}
-        _write(file, "ascent", {**ascent, "height": flown.height, **beside})
-        if bands is not None:
-            _write(file, "bands", bands)
-        for name, leg in flown.legs().items():
-            _write(file, name, {"time": leg.time, "height": leg.altitude - level, "speed": leg.speed})
-        if not isinstance(flown.stable, str):
-            _write_stability(file, flown.launch, flown.stable)
-
-
-def _write_stability(file: Any, launch: Launch, stable: StabilityRuns) -> None:
-    """Group ``balance`` over the burn, and ``stability/N`` for every wind."""
-    weighed = stable.balance
-    columns = {"mass": weighed.mass, "center_of_gravity": weighed.center, "pitch_inertia": weighed.inertia}
-    _write(file, "balance", {"time": launch.curve.time, **columns})
-    for i, margin in enumerate(stable.margins):
-        series = {"time": margin.time, "margin_mean": margin.mean, "margin_std": margin.std}
-        _write(file, f"stability/{i}", {**series, "angle_of_attack": margin.attack})
-        file[f"stability/{i}"].attrs.update(wind=margin.wind, wind_units="m/s")
+        for name, columns in groups(flown, beside, bands).items():
+            _write(file, name, columns)
+        for i, margin in enumerate(() if isinstance(flown.stable, str) else flown.stable.margins):
+            file[f"stability/{i}"].attrs.update(wind=margin.wind, wind_units="m/s")
 
 
 def _write(file: Any, name: str, columns: Mapping[str, Array]) -> None:

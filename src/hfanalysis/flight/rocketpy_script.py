@@ -19,7 +19,7 @@ NOSES = {"cone": "conical", "ogive": "ogive", "von_karman": "von karman", "ellip
 RAIL_UNKNOWN = 5.0
 """Length of a rail that is not stated [m]. Evidence: RocketPy cannot do without one."""
 
-HEAD = '''"""A rocket on a measured motor. Written by hfanalysis. Needs RocketPy (pip install rocketpy).
+HEAD = '''"""A rocket on its motor. Written by hfanalysis. Needs RocketPy (pip install rocketpy).
 
 Usage: python THIS_FILE [--inclination DEGREES]
 """
@@ -34,8 +34,8 @@ TITLE = {title!r}
 
 BODY = '''
 
-class MeasuredMotor(GenericMotor):
-    """Its propellant leaves as the firing has it, not in proportion to the thrust."""
+class GivenMotor(GenericMotor):
+    """Its propellant leaves as it is given, not in proportion to the thrust."""
 
     @cached_property
     def propellant_mass(self):
@@ -51,7 +51,7 @@ class MeasuredMotor(GenericMotor):
 
 def build():
     """The rocket on its motor; positions count from the nozzle's end upwards."""
-    motor = MeasuredMotor(
+    motor = GivenMotor(
         thrust_source=THRUST,
         burn_time=THRUST[-1][0],
         chamber_radius=MOTOR_RADIUS,

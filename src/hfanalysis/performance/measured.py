@@ -193,8 +193,7 @@ def _of_drift(thrust: Thrust) -> str:
 def impulse_inputs(log: TestLog, thrust: Thrust, fire: Fire, definition: TestDefinition, impulse: float) -> list[Input]:
     """What an ``impulse`` [N s] over the burn may be off by: the cell, the burn's end, what lies between samples."""
     whole = thrust.signal.bridged()
-    near = thrust.signal.mean(fire.end - 0.2, fire.end + 0.2)
-    last = abs(near if np.isfinite(near) else float(whole.at(np.array([fire.end]))[0]))
+    last = abs(thrust.signal.around(fire.end, 0.2))
     inner = whole.between(0.0, fire.end)
     scatter = sample_noise(inner.value) * np.sqrt(thrust.signal.step * fire.end)
     cell = cell_error_of(log, thrust, definition, fire.end).of_impulse(impulse, fire.end)

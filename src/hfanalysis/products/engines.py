@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
 from hfanalysis.products.beyond import Beyond
-from hfanalysis.products.flight import FlightNumbers
+from hfanalysis.products.flight import Check, FlightNumbers, Stability
 from hfanalysis.products.model import Is, Part, Warnings
 from hfanalysis.quantity import Quantity
 
@@ -37,6 +38,8 @@ class SimulatedFlight(FlightNumbers):
 
     wet_mass: Annotated[Quantity, Is("of the rocket on its pad", "kg")]
     pad_thrust_to_weight: Annotated[Quantity, Is("peak thrust over wet weight", "")]
+    checks: Annotated[Mapping[str, Check], Is("limits of the static margin that are kept or not, by name")] = {}
+    stability: Annotated[Stability | None, Is("static margin in winds")] = None
 
 
 class Load(Part):
@@ -44,6 +47,11 @@ class Load(Part):
 
     oxidizer_mass: Annotated[Quantity, Is("of oxidizer", "kg")]
     fuel_mass: Annotated[Quantity, Is("of fuel", "kg")]
+
+    @property
+    def shown(self) -> dict[str, Quantity]:
+        """Under names that say what is to be done with them."""
+        return {"oxidizer_to_load": self.oxidizer_mass, "fuel_to_load": self.fuel_mass}
 
 
 class Simulated(EngineHead):

@@ -98,6 +98,11 @@ class Stability(Part):
     winds: Annotated[tuple[WindMargin, ...], Is("the margin by wind")] = ()
     notes: Notes = ()
 
+    @property
+    def shown(self) -> dict[str, Quantity]:
+        """Nothing where no geometry is given."""
+        return self.quantities if self.winds else {}
+
 
 OF_STAND = ("total_impulse", "average_thrust")
 """What is of the stand's thrust and stands in no table of the flight's; its impulse does under its own name."""

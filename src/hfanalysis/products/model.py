@@ -69,10 +69,25 @@ class Part(BaseModel):
         return own | (self.__pydantic_extra__ or {})
 
     @property
+    def shown(self) -> dict[str, Quantity]:
+        """Its quantities under the names that people read, where it has any to show."""
+        return self.quantities
+
+    @property
     def quantities(self) -> dict[str, Quantity]:
         """Its own quantities [SI] by name, in order; those of its parts are not among them."""
         fields = ((name, getattr(self, name)) for name in type(self).model_fields)
         return {name: value for name, value in fields if isinstance(value, Quantity)}
+
+
+def units_of(part: type[Part]) -> dict[str, str]:
+    """The units [SI] of a part's own quantities by name, whether it has them or not."""
+    found = {}
+    for name, field in part.model_fields.items():
+        said = next((about for about in field.metadata if isinstance(about, Is)), None)
+        if field.annotation is Quantity and said is not None and said.unit is not None:
+            found[name] = said.unit
+    return found
 
 
 LAST = ("quoted", "provenance")

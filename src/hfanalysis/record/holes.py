@@ -17,6 +17,21 @@ HOLE_STEPS = 10.0
 """Usual steps between samples that it lasts at least. Evidence: test_holes.py: a log without holes has none, whatever
 its rate."""
 
+LEAP = 1.5
+"""Usual steps from which on a step of an even clock is a leap. Source: by choice: half way to a lost sample."""
+
+LEAPS = 3
+"""Leaps that are told; a clock with more of them is not even, and its logger is known to lose samples."""
+
+EVEN = 0.05
+"""Share of the usual step by which steps of an even clock differ. Source: by choice: jitter is more."""
+
+UNEVEN = 0.01
+"""Share of steps that may differ by more. Source: by choice."""
+
+LEAST_STEPS = 8
+"""Steps that tell of an even clock."""
+
 STEPS_ASKED = 20_000
 """Steps, spread over a long log, whose median is the usual one. Evidence: its error is that of 20,000 samples, 1 %."""
 
@@ -36,6 +51,36 @@ def holes(time: Array) -> Array:
     usual = float(np.median(steps[:: max(1, steps.size // STEPS_ASKED)]))
     places = np.flatnonzero(steps > max(SHORTEST_HOLE, HOLE_STEPS * usual))
     return np.column_stack([time[places], time[places + 1]])
+
+
+def leaps(time: Array) -> Array:
+    """Where [s] an even clock ``time`` (n,) steps by more than it usually does, though by less than a hole, and by how
+    much more [s], (leaps, 2); none where it is not even, or where that happens all the time.
+
+    >>> leaps(np.array([0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.9, 1.0])).round(3).tolist()
+    [[0.7, 0.1]]
+    """
+    steps = np.diff(time)
+    if steps.size < LEAST_STEPS:
+        return np.empty((0, 2))
+    usual = float(np.median(steps[:: max(1, steps.size // STEPS_ASKED)]))
+    places = np.flatnonzero(steps > LEAP * usual)
+    uneven = np.count_nonzero(np.abs(steps - usual) > EVEN * usual) - places.size
+    if not usual > 0.0 or not 0 < places.size <= LEAPS or uneven > UNEVEN * steps.size:
+        return np.empty((0, 2))
+    places = places[steps[places] <= max(SHORTEST_HOLE, HOLE_STEPS * usual)]
+    return np.column_stack([time[places], steps[places] - usual])
+
+
+def leap_warnings(file: str, time: Array) -> Iterator[str]:
+    """One line for the leaps of a file's clock ``time`` (n,) [s]."""
+    found = leaps(time)
+    if found.size:
+        places = ", ".join(f"{by:.3g} s at {at:.2f} s" for at, by in found.tolist())
+        yield (
+            f"{file}: its clock is even but for a step that is longer by {places} of log time: samples are missing "
+            "there, or the clock jumped and all that follows is so much late"
+        )
 
 
 def not_excluded(channel: Channel) -> Array:

@@ -200,7 +200,9 @@ class _Ingest:
             lacking.append((plan.file, channel.name, holes.not_excluded(channel)))
             store.channel(channel, names[plan.clock], LONG_NAMES.get(channel.name, channel.name))
         count = Counter(plan.file for plan in self.plans)
-        self.warnings += [*flag_warnings(found, count), *holes.hole_warnings(lacking, count), *said]
+        files = {plan.clock: plan.file for plan in self.plans}
+        leaps = [said for key, clock in self.clocks.items() for said in holes.leap_warnings(files[key], clock.time)]
+        self.warnings += [*leaps, *flag_warnings(found, count), *holes.hole_warnings(lacking, count), *said]
 
     def _channels(self, firing: FiringSpan | None) -> Iterator[tuple[Plan, tuple[Channel, list[str]]]]:
         """Channels in order, a few of them at work."""

@@ -121,6 +121,11 @@ class Signal:
         part = self.between(start, end).value
         return float(part.mean()) if part.size else float("nan")
 
+    def around(self, time: float, half: float) -> float:
+        """Mean within ``half`` [s] of a ``time`` [s]; between the neighbors where there is no sample so near."""
+        near = self.mean(time - half, time + half)
+        return near if np.isfinite(near) else float(self.at(np.array([time]))[0])
+
     def reduced(self, width: float) -> Signal:
         """Block means over ``width`` [s] (the signal itself where its samples are no closer than that)."""
         if self.time.size < 2 or self.step >= width:

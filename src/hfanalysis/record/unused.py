@@ -12,11 +12,7 @@ from hfanalysis.units import Value
 OF_ENGINES = frozenset({
     "covariance.names", "covariance.std", "covariance.correlation",
     "model.nozzle", "purge.cracking_pressure", "site.launch_temperature", "site.launch_pressure",
-    "rocket.drag_uncertainty", "rocket.shot_to_shot", "rocket.wind_speed", "rocket.casing_diameter",
-    "rocket.casing_length", "rocket.geometry.structure.mass",
-    "rocket.geometry.structure.center_of_gravity",
-    "rocket.geometry.tank_position", "rocket.geometry.chamber_position", "rocket.geometry.engine_mass",
-    "rocket.geometry.engine_center_of_gravity",
+    "rocket.drag_uncertainty", "rocket.shot_to_shot",
 })  # fmt: skip
 """Of engine files. Evidence: test_unused.py: ``hfa simulate`` and ``hfa design`` read every other key of the schema,
 and none of these."""

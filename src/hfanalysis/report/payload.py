@@ -71,12 +71,19 @@ def _chart(chart: Chart, most: int) -> dict[str, Any]:
         "values": list(_si_span(chart)),
         "height": chart.height,
         "label": chart.x_label,
+        "across": list(across(chart)),
         "clock": chart.clock,
         "phases": [vars(phase) for phase in chart.phases],
         "events": [vars(event) for event in chart.events],
         "series": [_series(chart, one, most, clocks) for one in chart.series],
         "clocks": clocks,
     }
+
+
+def across(chart: Chart) -> tuple[str, str]:
+    """What the cursor calls the quantity along the axis, and its unit."""
+    name, _, unit = chart.x_label.rstrip("]").partition(" [")
+    return ("t" if unit == "s" else name), unit
 
 
 def _si_span(chart: Chart) -> tuple[float, float]:

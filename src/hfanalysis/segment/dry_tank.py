@@ -42,7 +42,7 @@ def _why_none(tank: Signal, knee: LiquidEnd | None, dry: float | None, load: Coa
         "the tank pressure has a knee at {time:.2f} s and {there}, but a tank of the stated volume and load runs "
         "dry at {dry}: [tank] oxidizer_mass or volume are off"
     )
-    there = said(tank.mean(knee.time - 0.1, knee.time + 0.1), "bar", ".1f")
+    there = said(tank.around(knee.time, 0.1), "bar", ".1f")
     return text(words, time=knee.time, there=there, dry=said(dry or 0.0, "bar", ".1f"))
 
 

@@ -118,6 +118,8 @@ def _last_of_burn(time: Array, excess: Array) -> int:
     runs = _runs(time, excess > 0.0)
     sizes = [float(np.trapezoid(excess[a : b + 1], time[a : b + 1])) for a, b in runs]
     first, last = runs[int(np.argmax(sizes))]
+    if first == last:
+        return first
     return first + int(np.argmax(np.cumsum(excess[first : last + 1] * np.gradient(time[first : last + 1]))))
 
 

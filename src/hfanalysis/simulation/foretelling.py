@@ -249,5 +249,5 @@ def _burnt(burnt: Burn | str) -> tuple[float, ...]:
 def _apogee(engine: Engine, burnt: Burn | str, rail: float | None) -> float:
     if isinstance(burnt, str):
         return float("nan")
-    found = flown.flight(engine, burnt, rail, "not asked for")["apogee"].value
+    found = flown.apogee(engine, burnt, rail)
     return float("nan") if found is None else found

@@ -10,13 +10,23 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.charts import svg
+from hfanalysis.charts.chart import Chart, Series, around
 from hfanalysis.charts.colors import STYLES
 from hfanalysis.charts.envelope import Envelope
 from hfanalysis.charts.style import sheet
+from hfanalysis.flight.histories import Flown
 from hfanalysis.simulation.study import FlowPoint, MixturePoint
 from hfanalysis.steady_design.steady import SteadyEngine
 
+_FLOW = "oxidizer flow [kg/s]"
+
+BESIDE = "raw"
+"""Style of what stands beside a line."""
+
 _ALONE = "svg { font-family: system-ui, sans-serif; background: var(--paper); }"
+
+
+_DOWN = {"drogue": "under the drogue", "main": "under the main", "ballistic": "without parachutes"}
 
 
 @dataclass(frozen=True)
@@ -42,52 +52,86 @@ def simulation(table: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
     yield "thrust.svg", chart("Thrust", "time [s]", "thrust [kN]", [curve("thrust [N]", 1e-3, "thrust")])
 
 
+def flight(found: Flown) -> Iterator[tuple[str, str]]:
+    """File names and plots of a flight to the ground: height, speed, acceleration, and the margin in winds."""
+    up, ground = found.ascent, found.launch.vehicle.launch_altitude
+    time, legs = up.column("time"), found.legs()
+    down = [(leg.time, leg.altitude - ground, leg.speed, _DOWN[name]) for name, leg in legs.items()]
+    heights = [PlottedCurve(time, found.height, "ascent"), *(PlottedCurve(t, z, name) for t, z, _, name in down)]
+    yield "height.svg", chart("Height above ground", "time [s]", "height [m]", heights)
+    speeds = [PlottedCurve(time, up.column("speed"), "ascent"), *(PlottedCurve(t, v, name) for t, _, v, name in down)]
+    yield "speed.svg", chart("Speed, falling downwards", "time [s]", "speed [m/s]", speeds)
+    felt = [PlottedCurve(time, up.column("acceleration"), "ascent")]
+    yield "acceleration.svg", chart("Acceleration on the way up", "time [s]", "acceleration [m/s^2]", felt)
+    if not isinstance(found.stable, str):
+        margins = [PlottedCurve(one.time, one.mean, f"wind {one.wind:.1f} m/s") for one in found.stable.margins]
+        title = "Static margin, mean over gusts"
+        yield "margin.svg", chart(title, "time [s]", "margin [calibers]", margins)
+
+
 def study(flows: Sequence[FlowPoint], mixtures: Sequence[MixturePoint]) -> Iterator[tuple[str, str]]:
     """File names and plots of the parametric study."""
+    for one in study_charts(flows, mixtures):
+        scale = one.scale()
+        label = f"{one.quantity} [{scale.unit}]"
+        styles = [line.style if line.style == BESIDE else "" for line in one.series]
+        curves = [
+            PlottedCurve(line.time, scale.factor * line.values + scale.zero, line.label, style)
+            for line, style in zip(one.series, styles, strict=True)
+        ]
+        yield f"{one.key}.svg", chart(one.title, one.x_label, label, curves, with_zero=False)
+
+
+def study_charts(flows: Sequence[FlowPoint], mixtures: Sequence[MixturePoint]) -> Iterator[Chart]:
+    """The same as charts: the report's figures of section 2.2."""
     fixed = any(point.fixed for point in flows)
-    for key, label, factor in (
-        ("specific_impulse", "specific impulse [s]", 1.0),
-        ("thrust", "thrust [kN]", 1e-3),
-        ("exit_radius", "exit radius, expanded to ambient [mm]", 1e3),
+    for key, quantity, unit in (
+        ("specific_impulse", "specific impulse", "s"),
+        ("thrust", "thrust", "N"),
+        ("exit_radius", "exit radius, expanded to ambient", "m"),
     ):
-        curves = _by_length(flows, key, factor, fixed and key != "exit_radius")
+        lines = _by_length(flows, key, fixed and key != "exit_radius")
         title = f"{key.replace('_', ' ').capitalize()} against oxidizer flow and grain length"
-        yield f"{key}_flow_length.svg", chart(title, "oxidizer flow [kg/s]", label, curves, with_zero=False)
+        yield _across(f"{key}_flow_length", title, (quantity, unit), _FLOW, lines)
     if fixed:
-        ideal = _by_length(flows, "specific_impulse", 1.0, False)
+        ideal = _by_length(flows, "specific_impulse", False)
         title = "Specific impulse expanded to ambient, against oxidizer flow and grain length"
-        labels = "oxidizer flow [kg/s]", "specific impulse [s]"
-        yield "specific_impulse_ideal_flow_length.svg", chart(title, *labels, ideal, with_zero=False)
+        yield _across("specific_impulse_ideal_flow_length", title, ("specific impulse", "s"), _FLOW, ideal)
     title = "Specific impulse expanded to ambient, against O/F and chamber pressure"
-    curves = list(_by_pressure(mixtures))
-    yield "specific_impulse_mixture.svg", chart(title, "O/F", "specific impulse [s]", curves, with_zero=False)
+    yield _across("specific_impulse_mixture", title, ("specific impulse", "s"), "O/F", list(_by_pressure(mixtures)))
 
 
-def _by_length(flows: Sequence[FlowPoint], key: str, factor: float, fixed: bool) -> list[PlottedCurve]:
+def _across(key: str, title: str, about: tuple[str, str], x_label: str, lines: Sequence[Series]) -> Chart:
+    drawn = tuple(line for line in lines if line.finite)
+    span = around([line.time for line in lines])
+    return Chart(key, title, *about, drawn, span, x_label=x_label, with_zero=False, clock=x_label)
+
+
+def _by_length(flows: Sequence[FlowPoint], key: str, fixed: bool) -> list[Series]:
     lengths = sorted({point.grain_length for point in flows})
-    curves = []
-    for length in lengths:
+    lines = []
+    for number, length in enumerate(lengths):
         points = [point for point in flows if point.grain_length == length]
-        found = [_value(point.fixed if fixed else point.ideal, key) * factor for point in points]
+        found = np.array([_value(point.fixed if fixed else point.ideal, key) for point in points])
         x = np.array([point.oxidizer_flow for point in points])
-        curves.append(PlottedCurve(x, np.array(found), f"{1e3 * length:.0f} mm"))
-    return curves
+        lines.append(Series(f"{1e3 * length:.0f} mm", STYLES[number % len(STYLES)], x, found))
+    return lines
 
 
 def _value(engine: SteadyEngine | None, key: str) -> float:
     return float("nan") if engine is None else float(getattr(engine, key))
 
 
-def _by_pressure(mixtures: Sequence[MixturePoint]) -> Iterator[PlottedCurve]:
+def _by_pressure(mixtures: Sequence[MixturePoint]) -> Iterator[Series]:
     """A curve for each pressure; beside it PROPEP's enthalpy where that is another."""
-    for pressure in sorted({point.chamber_pressure for point in mixtures}):
+    for number, pressure in enumerate(sorted({point.chamber_pressure for point in mixtures})):
         points = [point for point in mixtures if point.chamber_pressure == pressure]
         x = np.array([point.of_ratio for point in points])
         own = np.array([point.specific_impulse for point in points])
         propep = np.array([point.specific_impulse_propep for point in points])
-        yield PlottedCurve(x, own, f"{1e-5 * pressure:.1f} bar")
+        yield Series(f"{1e-5 * pressure:.1f} bar", STYLES[number % len(STYLES)], x, own)
         if not np.array_equal(own, propep):
-            yield PlottedCurve(x, propep, "PROPEP's", "raw")
+            yield Series("PROPEP's", BESIDE, x, propep)
 
 
 def chart(title: str, x_label: str, y_label: str, curves: Sequence[PlottedCurve], with_zero: bool = True) -> str:

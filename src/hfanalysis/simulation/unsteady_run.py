@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.assembly import engine as build
+from hfanalysis.assembly.tank import TankBuilt
 from hfanalysis.effects import library_of
 from hfanalysis.engine import closure, unsteady
 from hfanalysis.engine.effect import Active
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.errors import InputError
-from hfanalysis.flight import summary
+from hfanalysis.flight import stability
+from hfanalysis.flight.histories import Flown
+from hfanalysis.flight.stability import StabilityRuns
 from hfanalysis.inference.adopted.effects import effects_in
 from hfanalysis.products.engines import Simulated
 from hfanalysis.quantity import Quantity
@@ -25,14 +31,27 @@ LONGEST_RUN = 600.0
 """Longest run that can be asked for [s]: no stand runs on for longer."""
 
 
+EVEN = 1501
+"""Times of a chart. Source: by choice: 2 ms of a burn of three seconds."""
+
+
 @dataclass(frozen=True)
 class Simulation:
-    """An engine as built, its burn, the chamber's temperature [K] along it, and the JSON product."""
+    """An engine as stated and as built, its burn, the chamber's temperature [K] along it, its rocket's flight or why
+    there is none, and the JSON product."""
 
+    file: EngineFile
+    tank: TankBuilt
     engine: Engine
     burnt: Burn
     chamber_temperature: Array
+    flown: Flown | str
     product: Simulated
+
+    def evenly(self, points: int = EVEN) -> Simulation:
+        """The same on so many times of even distance, for charts."""
+        burnt = replace(self.burnt, time=np.linspace(0.0, float(self.burnt.time[-1]), points))
+        return replace(self, burnt=burnt, chamber_temperature=burnt.chamber_temperature())
 
 
 def simulate(file: EngineFile, until: float | None = None) -> Simulation:
@@ -45,7 +64,8 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
     engine = replace(build.engine(needs, tank), effects=_effects(file))
     burnt = run(file, engine, until)
     hot = burnt.chamber_temperature()
-    flight = _flight(file, engine, burnt)
+    found = flown.to_ground(file, engine, burnt, tank)
+    flight = _flight(file, engine, burnt, found)
     product = Simulated.from_json(
         {
             **heading.heading(file, COMMAND, build.oxidizer_enthalpy(needs)),
@@ -54,12 +74,12 @@ def simulate(file: EngineFile, until: float | None = None) -> Simulation:
             **sized.of_tank(tank),
             "flight": flight,
             **_propellant(needs, engine),
-            "beyond": warned.of_burn(engine, burnt, flight),
+            "beyond": (*warned.of_burn(engine, burnt, flight), *warned.of_stability(_stable(found))),
             "warnings": [*file.warnings, *_warnings(burnt)],
             "provenance": heading.provenance(file),
         }
     )
-    return Simulation(engine, burnt, hot, product)
+    return Simulation(file, tank, engine, burnt, hot, found, product)
 
 
 def _effects(file: EngineFile) -> tuple[Active, ...]:
@@ -130,15 +150,15 @@ def _loaded(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity
     return {"wet_mass": Quantity(mass, "kg"), "pad_thrust_to_weight": Quantity(peak_thrust(burnt) / weight)}
 
 
-def _flight(file: EngineFile, engine: Engine, burnt: Burn) -> dict[str, Quantity]:
+def _flight(file: EngineFile, engine: Engine, burnt: Burn, found: Flown | str) -> dict[str, Any]:
     """As flight.json."""
-    vehicle = build.vehicle(file)
-    if not isinstance(vehicle, Vehicle):
-        found = summary.absent(vehicle)
-    else:
-        rail = file.rocket.guided_length if file.rocket else None
-        found = flown.flight(engine, burnt, rail, build.parachutes(file))
-    return found | _loaded(file, engine, burnt)
+    stable = _stable(found)
+    margin = {"checks": stability.checks(stable), "stability": stability.product(stable)}
+    return flown.quantities(found) | _loaded(file, engine, burnt) | margin
+
+
+def _stable(found: Flown | str) -> StabilityRuns | str:
+    return found if isinstance(found, str) else found.stable
 
 
 def _propellant(needs: Needs, engine: Engine) -> dict[str, dict[str, Quantity]]:

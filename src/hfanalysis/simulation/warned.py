@@ -16,6 +16,8 @@ from hfanalysis.engine.grain import oxidizer_flux
 from hfanalysis.engine.nozzle import characteristic_velocity
 from hfanalysis.engine.unsteady import Burn, Engine
 from hfanalysis.flight import constant_thrust
+from hfanalysis.flight.pitch import HIGH, LOW
+from hfanalysis.flight.stability import StabilityRuns
 from hfanalysis.products.beyond import Beyond
 from hfanalysis.quantity import Quantity
 from hfanalysis.record.engine_file import EngineFile, Needs
@@ -38,6 +40,16 @@ ignition itself passes through every pressure, in milliseconds."""
 def of_burn(engine: Engine, burnt: Burn, flight: Mapping[str, Quantity]) -> Cautions:
     """Of a simulated burn and the quantities of the flight on it [SI]."""
     return tuple(_of_burn(engine, burnt, flight))
+
+
+def of_stability(stable: StabilityRuns | str) -> Cautions:
+    """Of the static margin in winds: in that where it is worst, on either side."""
+    if isinstance(stable, str):
+        return ()
+    winds = [one.product() for one in stable.margins]
+    low, high = min(winds, key=lambda one: one.least), max(winds, key=lambda one: one.largest)
+    worst = low if low.least < LOW else high
+    return cautions.static_margin(worst.least, worst.largest, (LOW, HIGH), worst.wind)
 
 
 def _of_burn(engine: Engine, burnt: Burn, flight: Mapping[str, Quantity]) -> Iterator[Beyond]:

@@ -198,6 +198,12 @@ class _Work:
         )
         time = histories_of.clock(self.log, self.segments, self.fire.end)
         flow = oxidizer_flow(read, self.segments, self.calibration, self.definition, alone, time)
+        lost = np.flatnonzero(~np.isfinite(flow) & (time >= 0.0) & (time <= self.fire.end))
+        if lost.size:
+            raise AbsentError(
+                f"the tank's model cannot be run beyond {time[lost[0]]:.2f} s, and the burn goes on to "
+                f"{self.fire.end:.2f} s: what passes the injector then is not known"
+            )
         nitrogen = flow * np.interp(time, alone.measured.time, alone.nitrogen, left=0.0)
         return Oxidizer(time, flow, nitrogen)
 

@@ -54,6 +54,7 @@ NAMES: dict[str, str] = {
     "oxidizer_mass_fitted": "load that the model needs",
     "tank_temperature": "oxidizer's temperature at the opening",
     "fuel_mass": "fuel loaded, less left",
+    "of_ratio": "O/F",
     "total_impulse_of_file": "the file's whole integral",
     "burn_time_5_percent": "burn time, by 5 % of the thrust",
     "action_time": "action time, by 10 % of the thrust",

@@ -83,7 +83,15 @@ def _clipped(seen: Seen, time: Array, values: Array) -> list[Finding]:
         # at rest a channel may well stand at its lower end: only what is cut off of the firing matters
         if sign > 0.0 or _in_the_middle(seen, time, values == -rail):
             found.append(_finding(seen, time, values, sign * rail, side))
-    return found or _held_up(seen, time, values)
+    return found or _held_up(seen, time, values) or _held_down(seen, time, values)
+
+
+def _held_down(seen: Seen, time: Array, values: Array) -> list[Finding]:
+    """Nothing is seen above a level, which a full tank stands at before the firing, though its noise is seen below."""
+    rail = _rail(values)
+    if rail is None or not _noisy(seen, values, rail):
+        return []
+    return [_finding(seen, time, values, rail, "highest")]
 
 
 def _held_up(seen: Seen, time: Array, values: Array) -> list[Finding]:

@@ -22,6 +22,7 @@ import numpy as np
 
 from hfanalysis.arrays import Array
 from hfanalysis.engine.grain import USUAL_N
+from hfanalysis.errors import AbsentError
 from hfanalysis.performance.reconstruction.inputs import SIGNS, Inputs
 from hfanalysis.performance.reconstruction.theory import MIXTURES, Theory
 
@@ -116,6 +117,11 @@ class _Problem:
         self.slopes = np.gradient(self.table, np.log(MIXTURES), axis=1)
         usual = inputs.efficiency[0] * theory.at(theory.c_star, inputs.pressure, np.full(share.size, 7.0))
         passed = (inputs.pressure * inputs.throat + usual * inputs.stored) / inputs.oxidizer
+        if not (passed > 0.0).all():
+            raise AbsentError(
+                "the chamber's pressure falls faster than its volume lets it: p_chamber, the clock, or the volume by "
+                "[grain] and [chamber] is off"
+            )
         self.right = np.log(passed / inputs.efficiency[0])
         self.noise = louder * np.hypot(inputs.white, ROUGH)
 

@@ -113,7 +113,7 @@ function showCursor(chart) {
   if (!chart.place) return;
   const { x, y, unit } = chart.place, t = viewOf(chart).cursor, inside = t !== null && t >= x.low && t <= x.high;
   chart.overlay.replaceChildren();
-  chart.instant.textContent = inside ? `t = ${fixed(t, finer(x.low, x.high))} s` : "";
+  chart.instant.textContent = inside ? `${chart.across[0]} = ${fixed(t, finer(x.low, x.high))} ${chart.across[1]}`.trim() : "";
   if (inside) element(chart.overlay, "path", { class: "cursor", d: `M${x(t)} ${y.to}V${y.from}` });
   for (const one of chart.series) {
     if (one.kind === "level" || !one.output) continue;
