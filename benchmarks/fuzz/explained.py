@@ -29,6 +29,9 @@ REASONS = {
     "the nozzle's and the combustion's efficiencies",
     "drift": "a gauge of tank or line that drifts by up to a tenth of its range over the log: it ends at a "
     "pressure that nothing else tells",
+    "holes": "another area of the injector's holes, or another number of them, was stated: the log tells C_i times it "
+    "alone, and C_i stays one that holes can have",
+    "noise": "noise on a channel: the interval is as wide as the noise makes it, and one in twenty of 95 % misses",
     "table": "another table of nitrous oxide was stated: the number is what the statement asks for, and the product "
     "says by which table",
 }
@@ -40,6 +43,10 @@ def reason(row: Mapping[str, Any], seed: int) -> str:
         return ""
     if row["mutators"] == ["toml: statement added"] and {"model", "properties"} <= set(row["hit"]):
         return REASONS["table"]
+    if row["mutators"] == ["values: white noise"]:
+        return REASONS["noise"]
+    if row["mutators"] == ["toml: number scaled"] and "injector" in row["hit"]:
+        return REASONS["holes"]
     if row["mutators"][0] not in ("clock: other pace", "values: scale", "values: drift"):
         return ""
     return _by_size(row["mutators"][0].partition(": ")[2], cases.build(row["number"], seed))

@@ -180,3 +180,10 @@ def test_errors_that_the_fit_has_weighed_by_widen_nothing() -> None:
     law = result(found)
     told = LawErrors(found, found.evidence[0].covariance).told(law)
     assert told.quantities == law.quantities
+
+
+def test_a_coefficient_that_is_rounded_to_nothing_has_no_course() -> None:
+    """Holes stated in square metres: C_i of some 1e-7."""
+    nothing = history(lambda t: 0.0 * t, std=0.0)
+    assert Course.of(nothing) is None
+    assert with_drift(nothing).drift is None

@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 from tests.engine.stand import engine_on_stand
 
 from hfanalysis.assembly.calibrated import Regression
-from hfanalysis.performance.flows import burn_fuel
+from hfanalysis.errors import AbsentError
+from hfanalysis.performance.flows import burn_fuel, whole
 
 TIME = np.arange(-1.0, 3.0, 0.02)
 FLOW = np.where(TIME > 0.0, 1.2, 0.0)
@@ -49,3 +50,11 @@ def test_an_effects_factor_is_a_factor_of_the_rate() -> None:
     engine, law = engine_on_stand(), Regression(1e-4, 0.0)
     plain, half = (burn_fuel(engine, law, TIME, FLOW, factor) for factor in (1.0, np.full(TIME.size, 0.5)))
     assert half.port - engine.port_radius == pytest.approx(0.5 * (plain.port - engine.port_radius), rel=1e-9)
+
+
+def test_a_flow_that_the_tanks_model_does_not_reach_is_refused_with_the_instant() -> None:
+    time = np.arange(0.0, 10.0, 0.5)
+    flow = np.where(time > 6.0, np.nan, 0.4)
+    whole(time, flow, 6.0)
+    with pytest.raises(AbsentError, match=r"beyond 6\.50 s, and the burn goes on to 8\.00 s"):
+        whole(time, flow, 8.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.segment.stand import definition, fire, log_of
 
-from hfanalysis.record.holes import hole_warnings, holes, not_excluded
+from hfanalysis.record.holes import hole_warnings, holes, leap_warnings, leaps, not_excluded
 from hfanalysis.record.log import Channel, Flag, TestLog
 from hfanalysis.segment.phases import find_phases
 
@@ -83,3 +83,20 @@ def test_a_liquid_that_ends_in_a_hole_of_the_tanks_pressure_ends_somewhere_in_it
     assert abs(found.time("t_v") - test.t_v) < 1.96 * found.std("t_v")
     assert found.std("t_v") == pytest.approx(1.0 / np.sqrt(12.0), rel=0.1)
     assert any("t_v lies in a hole of p_tank" in text for text in found.warnings)
+
+
+def test_a_leap_of_an_even_clock_is_told_with_its_place_and_its_size() -> None:
+    time = np.arange(0.0, 10.0, 0.02)
+    late = np.where(time > 3.45, time + 0.06, time)
+    (said,) = leap_warnings("log.csv", late)
+    assert "longer by 0.06 s at 3.44 s" in said
+    assert "the clock jumped" in said
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.003])
+def test_a_clock_without_a_leap_or_that_is_never_even_is_told_nothing_of(jitter: float) -> None:
+    time = np.arange(0.0, 10.0, 0.02)
+    uneven = np.sort(time + jitter * np.random.default_rng(2).standard_normal(time.size))
+    assert leaps(uneven).size == 0
+    often = np.delete(time, np.arange(10, 400, 20))
+    assert leaps(often).size == 0

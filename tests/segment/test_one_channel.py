@@ -10,7 +10,7 @@ from tests.segment.stand import AMBIENT, Stand, Trial, channel, definition, fire
 
 from hfanalysis.arrays import Array
 from hfanalysis.record.log import TestLog
-from hfanalysis.segment.end_of_burn import find_low_pressure, pulses_after
+from hfanalysis.segment.end_of_burn import _last_of_burn, find_low_pressure, pulses_after
 from hfanalysis.segment.kind import Known, recognize
 from hfanalysis.segment.opening import find_opening
 from hfanalysis.segment.phases import find_phases
@@ -129,3 +129,8 @@ def test_a_knee_that_what_is_stated_contradicts_is_told_with_what_may_be_off(bur
         assert found.t_v.value is None
         assert "has a knee at" in str(found.t_v.reason)
         assert off in str(found.t_v.reason)
+
+
+def test_a_burn_of_which_one_sample_stands_out_ends_at_it() -> None:
+    """As where a damaged log leaves one sample between two holes."""
+    assert _last_of_burn(np.arange(5.0), np.array([-1.0, -1.0, 2.0, -1.0, -1.0])) == 2

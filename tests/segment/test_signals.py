@@ -42,3 +42,10 @@ def test_a_hole_beside_a_single_sample_is_bridged_from_it(origin: float) -> None
     bridged = Signal("thrust", origin + time, values, 0.01, 0.01).shifted(origin).bridged()
     assert np.isfinite(bridged.value).all()
     assert bridged.at(np.array([1.245, 1.75])) == pytest.approx([1.5, 2.5])
+
+
+def test_between_two_samples_a_mean_is_their_line() -> None:
+    """A logger of 2 Hz has none within a tenth of a second of most instants."""
+    sparse = Signal("p_tank", np.arange(0.0, 4.0, 0.5), 2.0 * np.arange(0.0, 4.0, 0.5), 0.0, 0.5)
+    assert sparse.around(1.25, 0.1) == pytest.approx(2.5)
+    assert ramp(0.0).around(0.5, 0.1) == ramp(0.0).mean(0.4, 0.6)

@@ -17,6 +17,7 @@ from hfanalysis.engine.grain import opened, oxidizer_flux
 from hfanalysis.engine.injector import mass_flows
 from hfanalysis.engine.nozzle import expand_along
 from hfanalysis.engine.unsteady import Engine
+from hfanalysis.errors import AbsentError
 from hfanalysis.performance.tank_alone import TankRun
 from hfanalysis.products.calibration import TankConstants
 from hfanalysis.products.segments import Segments
@@ -98,6 +99,17 @@ def oxidizer_flow(
     t_v = segments.time("t_v")
     found = flow if t_v is None else np.where(time < t_v, flow, later)
     return np.asarray(np.where(time < 0.0, 0.0, found))
+
+
+def whole(time: Array, flow: Array, end: float) -> None:
+    """Raise AbsentError where a flow (n,) [kg/s] at ``time`` (n,) [s] is not known from the opening to the burn's
+    ``end`` [s]."""
+    lost = np.flatnonzero(~np.isfinite(flow) & (time >= 0.0) & (time <= end))
+    if lost.size:
+        raise AbsentError(
+            f"the tank's model cannot be run beyond {time[lost[0]]:.2f} s, and the burn goes on to {end:.2f} s: what "
+            "passes the injector then is not known"
+        )
 
 
 def burn_fuel(engine: Engine, law: Regression, time: Array, oxidizer: Array, factor: Array | float = 1.0) -> Flows:

@@ -21,7 +21,7 @@ from hfanalysis.inference.full_run import FullRun, run_full
 from hfanalysis.performance import histories as histories_of
 from hfanalysis.performance.budgets import budgets
 from hfanalysis.performance.efficiency import BASIS
-from hfanalysis.performance.flows import Flows, Oxidizer, burn_fuel, oxidizer_flow
+from hfanalysis.performance.flows import Flows, Oxidizer, burn_fuel, oxidizer_flow, whole
 from hfanalysis.performance.histories import Histories
 from hfanalysis.performance.measured import NAMES, Fire, fire_of, impulse_inputs
 from hfanalysis.performance.measured import measured as measured_column
@@ -198,12 +198,7 @@ class _Work:
         )
         time = histories_of.clock(self.log, self.segments, self.fire.end)
         flow = oxidizer_flow(read, self.segments, self.calibration, self.definition, alone, time)
-        lost = np.flatnonzero(~np.isfinite(flow) & (time >= 0.0) & (time <= self.fire.end))
-        if lost.size:
-            raise AbsentError(
-                f"the tank's model cannot be run beyond {time[lost[0]]:.2f} s, and the burn goes on to "
-                f"{self.fire.end:.2f} s: what passes the injector then is not known"
-            )
+        whole(time, flow, self.fire.end)
         nitrogen = flow * np.interp(time, alone.measured.time, alone.nitrogen, left=0.0)
         return Oxidizer(time, flow, nitrogen)
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hfanalysis.arrays import Array
+from hfanalysis.errors import AbsentError
 from hfanalysis.performance.reconstruction.inputs import Error, Inputs
 from hfanalysis.performance.reconstruction.posterior import Courses, courses
 from hfanalysis.performance.reconstruction.theory import Theory
@@ -81,3 +82,18 @@ def test_the_band_holds_an_oxidizer_flow_off_by_its_error(theory: Theory) -> Non
     found = courses(less, theory)
     band = np.quantile(found.oxidizer[25], (0.025, 0.975))
     assert band[0] < FLOW < band[1]
+
+
+def test_a_chamber_that_gives_off_more_than_enters_and_leaves_is_refused(theory: Theory) -> None:
+    """As with a chamber stated ten times as wide: what it stores outweighs what passes."""
+    made = inputs(theory, np.full(TIME.size, 8.0))
+    stored = np.where(np.arange(TIME.size) == 25, -1.0, 0.0)
+    with pytest.raises(AbsentError, match="falls faster than its volume lets it"):
+        courses(replace(made, stored=stored), theory)
+
+
+def test_a_burn_in_which_nothing_flows_for_a_while_is_refused_with_the_instant(theory: Theory) -> None:
+    made = inputs(theory, np.full(TIME.size, 8.0))
+    flow = np.where(np.arange(TIME.size) == 25, 0.0, made.oxidizer)
+    with pytest.raises(AbsentError, match=r"nothing passes the injector at 3\.00 s"):
+        courses(replace(made, oxidizer=flow), theory)

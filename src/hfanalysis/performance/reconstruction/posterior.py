@@ -104,6 +104,11 @@ class _Problem:
 
     def __init__(self, inputs: Inputs, theory: Theory, louder: Array | float = 1.0) -> None:
         self.inputs, share = inputs, inputs.share
+        idle = np.flatnonzero(~(inputs.oxidizer > 0.0))
+        if idle.size:
+            raise AbsentError(
+                f"by the pressures nothing passes the injector at {inputs.time[idle[0]]:.2f} s, within the burn"
+            )
         width = (ENDS[1] - ENDS[0]) / np.sqrt(12.0)
         k = np.arange(1, WAVES + 1)
         waves = BEND / k**2 * np.sin(np.pi * k * share[:, None])
