@@ -53,7 +53,8 @@ def mat5(log: Log) -> bytes:
     from scipy.io import savemat
 
     file = io.BytesIO()
-    savemat(file, dict(log.columns), oned_as="column")
+    named = {name or f"unnamed_{i}": values for i, (name, values) in enumerate(log.columns)}  # the format has no others
+    savemat(file, named, oned_as="column")
     return file.getvalue()
 
 
